@@ -135,13 +135,18 @@ def mesh(
 
     Samples on a graded grid (`row` and `column`) stay vertices, however long its cells are.
 
+    Of a CAD part it is a `PartMesh` of new vertices, as many as there are samples: first the
+    vertices and edges of the part are sampled, once for the faces at both sides, then the inside
+    of faces. Their triangles meet, so that the mesh of a closed part is closed. Needs the extra
+    `mesh`.
+
     Parameters
     ----------
     spline : Spline, optional
         The spline of the samples, if they do not know it; for an offset that of `offset_of`.
     angle : float, optional
         In degrees. Triangles that deviate from a normal at a corner by more are left out, for
-        samples of a part of the surface only.
+        samples of a part of the surface only. Not for CAD parts.
     prefer : {"shape", "normals"}, default "shape"
         - "shape": triangles are Delaunay on the surface, and have angles as large as the
           samples allow. A sample so close to others that a smallest angle stays below 5° is
@@ -150,7 +155,8 @@ def mesh(
           cells, too; samples of ``density="balanced"`` have well-shaped triangles.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction
-          only, and one sample is left out where a triangle would have no area.
+          only, and one sample is left out where a triangle would have no area. Not for CAD
+          parts.
     progress : bool, default False
         Show on a terminal what is done, after the first second.
 
@@ -166,7 +172,17 @@ def mesh(
         the report) need row and column, too.
     InputError
         Without samples or spline, if a sample lies outside its domain, if `angle` leaves no
-        triangle, and, without it, if there are too few samples for a mesh that closes.
+        triangle, and, without it, if there are too few samples for a mesh that closes. Of a CAD
+        part, if there are fewer than its edges need, or its file has no loops of edges.
+    SurfaceError
+        If no face of a CAD part can be meshed.
+    MissingExtraError
+        Of a CAD part, without the extra `mesh`.
+
+    Warns
+    -----
+    GaussmapWarning
+        If faces of a CAD part are missing, see `PartMesh.failed`.
 
     Notes
     -----
@@ -188,6 +204,11 @@ def mesh(
     True
 
     """
+    if isinstance(self.surface, Whole):
+        from .cad.meshing import mesh_of_samples
+
+        with busy("meshing", progress):
+            return mesh_of_samples(cast("Part", self.surface), len(self), angle, prefer)
     from .meshes.meshing import mesh_of
 
     if spline is None and self.offset_of is not None:

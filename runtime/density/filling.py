@@ -29,7 +29,7 @@ from .piece import Piece
 from .relaxation import relax
 from .space import Space
 
-__all__ = ["fields_of", "fill", "spacing", "target_of"]
+__all__ = ["Filling", "fields_of", "fill", "spacing", "target_of"]
 
 # Twice the area of a hexagon of circumradius 1.
 HEXAGON = 3.0 * math.sqrt(3.0)
@@ -133,11 +133,11 @@ class Filling:
         if request.density == "gauss":
             return self._new(self.space, self._at_normals())
         if request.density == "aligned":
-            return cover_on_grid(self._balanced(), request, self._asked, self.show_count)
+            return cover_on_grid(self.balanced(), request, self._asked, self.show_count)
         if request.density in BY_CURVATURE:
             if request.count is None:
                 return self._by_radius()
-            cover = self._by_count(self._balanced(capped=True), request.count)
+            cover = self._by_count(self.balanced(capped=True), request.count)
             asked = request.coverage
             if asked is None or self.reached(cover) <= asked * self.space.unit:
                 return cover
@@ -155,7 +155,7 @@ class Filling:
 
     # --- the target density -----------------------------------------------------------------------
 
-    def _balanced(self, *, capped: bool = False) -> Space:
+    def balanced(self, *, capped: bool = False) -> Space:
         """Return the space with the floor of "balanced", and, if it is capped, a ceiling."""
         request = self.request
         # Normals and angles are absolute: flat parts then count as parts of a sphere.
@@ -196,7 +196,7 @@ class Filling:
 
     def _by_radius(self) -> Cover:
         """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""
-        request, space, asked = self.request, self._balanced(), self._asked
+        request, space, asked = self.request, self.balanced(), self._asked
         if request.angle is not None:
             frequency_within(request.angle)  # or InputError
             radius = WIDER * math.radians(request.angle)

@@ -16,7 +16,7 @@ from ...runtime.samples.fields import EDGE_NAMES, INTEGER_NAMES, dtype_of, row_s
 from .edges import Edges, Sides, edges_of, exact_places, sides_at
 from .results import PartSpace
 
-__all__ = ["with_edges"]
+__all__ = ["step_of", "with_edges"]
 
 # Steps are measured between this many places of an edge, or more.
 PLACES = 32
@@ -57,7 +57,7 @@ def _on_edges(space: PartSpace, count: int) -> dict[str, NDArray[Any]]:
     If the part has a reach, both normals of each are in it.
     """
     edges = edges_of(space)
-    owner, places, ends = _spaced(edges, _step(space, count), max(count, 1))
+    owner, places, ends = _spaced(edges, step_of(space, count), max(count, 1))
     sides, rows = exact_places(edges, owner, places)
     size = space.size / space.unit
     solids = np.array([x.face.solid_index for x in space.pieces])[sides.pieces[:, 0]]
@@ -69,7 +69,7 @@ def _on_edges(space: PartSpace, count: int) -> dict[str, NDArray[Any]]:
     return _arrays(space, sides[kept])
 
 
-def _step(space: PartSpace, count: int) -> float:
+def step_of(space: PartSpace, count: int) -> float:
     """Return the distance between neighbours among `count` samples where the density is 1."""
     integral = space.integral
     if not (count and integral > 0.0):

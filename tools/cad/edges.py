@@ -5,15 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.kernels.refine import evaluate_jets
 from .faces import own_parameters
+from .part import Part
 from .results import PartSpace
 
-__all__ = ["Edges", "Sides", "edges_of", "exact_places", "sides_at"]
+__all__ = [
+    "Edges",
+    "Places",
+    "Sides",
+    "at_places",
+    "between_two",
+    "edges_of",
+    "exact_places",
+    "sides_at",
+]
 
 # Edges are sharp where the normals of their two faces differ by more than this, in degrees.
 SHARP = 1.0
@@ -58,17 +69,43 @@ class Edges:
 
 
 def edges_of(space: PartSpace) -> Edges:
-    """Return the edges between the pieces of a space."""
-    arrays = space.pieces[0].face.part.arrays
-    known = np.full(len(arrays["area"]), -1)
+    """Return the edges between two different pieces of a space."""
+    part = space.pieces[0].face.part
+    known = np.full(len(part), -1)
     known[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))
-    pieces, counts = known[arrays["edge_faces"]], np.diff(arrays["edge_point_starts"])
-    owner, points = np.repeat(np.arange(len(counts)), counts), arrays["edge_points"]
+    faces, points, starts = between_two(part)
+    pieces, counts = known[faces], np.diff(starts)
+    owner = np.repeat(np.arange(len(counts)), counts)
     finite = np.bincount(owner, np.isfinite(points).all(axis=1), len(counts)) == counts
     usable = (pieces >= 0).all(axis=1) & (counts >= 2) & finite
     starts = np.concatenate([[0], np.cumsum(counts[usable])])
     return Edges(
         space, pieces[usable], _of_surfaces(space, pieces[owner], points)[usable[owner]], starts
+    )
+
+
+def between_two(part: Part) -> tuple[Indices, Array, Indices]:
+    """Return the edges with a different face at either side: these faces (E, 2), and points.
+
+    The points of edge i are u, v on the first and on the second face, (k, 4), from starts[i] to
+    starts[i + 1].
+    """
+    arrays = part.arrays
+    first, faces = arrays["edge_side_starts"], arrays["side_faces"]
+    both = first[:-1][(np.diff(first) == 2) & ~arrays["edge_degenerate"]]
+    both = both[faces[both] != faces[both + 1]]
+    starts = arrays["side_point_starts"]
+    counts = np.diff(starts)[both]
+    ends = np.cumsum(counts)
+    number = np.arange(counts.sum()) - np.repeat(ends - counts, counts)
+    points = [
+        arrays["side_points"][np.repeat(starts[both + side], counts) + number, :2]
+        for side in (0, 1)
+    ]
+    return (
+        np.stack([faces[both], faces[both + 1]], axis=1),
+        np.concatenate(points, axis=1),
+        np.concatenate([[0], ends]),
     )
 
 
@@ -138,8 +175,31 @@ class Sides:
 
 def sides_at(space: PartSpace, pieces: Indices, uv: Array) -> Sides:
     """Return what is known of both faces at places (M,)."""
-    owner = pieces.ravel()
-    places, scales = _inside(space, owner, uv.reshape(-1, 2)), np.array([space.unit, 1.0, 1.0])
+    found = at_places(space, pieces.ravel(), uv.reshape(-1, 2))
+    return Sides(
+        pieces,
+        found.uv.reshape(-1, 4),
+        found.vectors[:, 0].reshape(-1, 2, 3),
+        found.vectors[:, 1:].reshape(-1, 2, 2, 3),
+        found.normals.reshape(-1, 2, 3),
+        found.curvatures.reshape(-1, 2, 2),
+        found.collapsed.reshape(-1, 2),
+    )
+
+
+class Places(NamedTuple):
+    """What `Sides` has of both faces, at places (M,) on one; `vectors` (M, 3, 3): x, x_u, x_v."""
+
+    uv: Array
+    vectors: Array
+    normals: Array
+    curvatures: Array
+    collapsed: Flags
+
+
+def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
+    """Return what is known of pieces (M,) at u, v (M, 2) of their surfaces."""
+    places, scales = _inside(space, owner, uv), np.array([space.unit, 1.0, 1.0])
     vectors, normals = np.empty((len(owner), 3, 3)), np.empty((len(owner), 3))
     curvatures = np.empty((len(owner), 2))
     for k, rows in _grouped(owner):
@@ -153,15 +213,7 @@ def sides_at(space: PartSpace, pieces: Indices, uv: Array) -> Sides:
     collapsed = lengths.min(axis=1) * COLLAPSED <= lengths.max(axis=1)
     balls = np.array([x.face.kind == "sphere" for x in space.pieces])
     normals[collapsed & ~balls[owner]] = 0.0
-    return Sides(
-        pieces,
-        places.reshape(-1, 4),
-        vectors[:, 0].reshape(-1, 2, 3),
-        vectors[:, 1:].reshape(-1, 2, 2, 3),
-        normals.reshape(-1, 2, 3),
-        curvatures.reshape(-1, 2, 2),
-        collapsed.reshape(-1, 2),
-    )
+    return Places(places, vectors, normals, curvatures, collapsed)
 
 
 def _inside(space: PartSpace, owner: Indices, places: Array) -> Array:

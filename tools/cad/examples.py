@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 
+from .faces import face_surface
 from .part import Part, part_of
 from .records import EdgeRecord, FaceRecord, Geometry, Net, PartRecord
 
@@ -22,9 +24,19 @@ def box(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> Part:
     (Part(box: 6 faces, 1 solid, mm), 22.0)
 
     """
-    faces = box_faces(width, depth, height)
-    edges = box_edges(width, depth, height)
-    return part_of(PartRecord("box", "mm", 1e-3, True, faces, ["box"], edges))
+    faces, edges = box_faces(width, depth, height), box_edges(width, depth, height)
+    corners = np.array([[k >> axis & 1 for axis in range(3)] for k in range(8)])
+    vertices = corners * [width, depth, height]
+    known = {x.vertices: k for k, x in enumerate(edges)}
+    for k, face in enumerate(faces):
+        across, along, far = (k // 2 + 1) % 3, (k // 2 + 2) % 3, (k % 2) << k // 2
+        around = [far, far | 1 << across, far | 1 << across | 1 << along, far | 1 << along]
+        wire = []
+        for first, last in zip(around, [*around[1:], far], strict=True):
+            edge = known[min(first, last), max(first, last)]
+            wire.append((edge, edges[edge].faces.index(k), first > last))
+        faces[k] = replace(face, wires=[wire])
+    return part_of(PartRecord("box", "mm", 1e-3, True, faces, ["box"], edges, vertices))
 
 
 def box_faces(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[FaceRecord]:
@@ -51,7 +63,10 @@ def box_faces(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> li
 
 
 def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[EdgeRecord]:
-    """Return the twelve sharp edges between the faces of `box_faces`."""
+    """Return the twelve sharp edges between the faces of `box_faces`.
+
+    The bits of the number of a vertex say at which end of the axes it is.
+    """
     size, found = np.array([width, depth, height]), []
     for first, second in itertools.combinations(range(3), 2):
         for far in itertools.product((False, True), repeat=2):
@@ -60,7 +75,9 @@ def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> li
             ends[:, [first, second]] = size[[first, second]] * far
             columns = [(k + step) % 3 for k in (first, second) for step in (1, 2)]
             faces = 2 * first + far[0], 2 * second + far[1]
-            found.append(EdgeRecord(faces, ends[:, columns]))
+            low = (far[0] << first) + (far[1] << second)
+            vertices = low, low + (1 << 3 - first - second)
+            found.append(EdgeRecord(faces, ends[:, columns], vertices=vertices))
     return found
 
 
@@ -89,8 +106,14 @@ def all_kinds() -> Part:
         Geometry("extrusion", z, curve),
         Geometry("offset", np.array([0.1]), basis=Geometry("nurbs", net=nets[1])),
     ]
-    angles = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    angles = np.linspace(0.0, 2.0 * np.pi, 25)
     circle = 0.5 + 0.4 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    ends = (0.1, 0.9)
-    faces = [FaceRecord(x, (ends, ends), loops=[circle], area=0.5) for x in geometries]
-    return part_of(PartRecord("kinds", "mm", 1e-3, False, faces))
+    slopes = 0.8 * np.pi * np.stack([-np.sin(angles), np.cos(angles)], axis=1)
+    ends, faces, edges, vertices = (0.1, 0.9), [], [], []
+    for k, geometry in enumerate(geometries):
+        loops, wires = [circle[:-1]], [[(k, 0, False)]]
+        faces.append(FaceRecord(geometry, (ends, ends), loops=loops, area=0.5, wires=wires))
+        edges.append(EdgeRecord((k,), circle, slopes, vertices=(k, k)))
+        vertices.append(face_surface(geometry, (ends, ends)).jets(*circle[:1].T)[0, 0])
+    found = PartRecord("kinds", "mm", 1e-3, False, faces, (), edges, np.array(vertices))
+    return part_of(found)

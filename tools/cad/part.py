@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -51,7 +52,7 @@ class Part(Methods, Whole):
     >>> part.solids, part.oriented, part.area, part.failed, part.warnings
     ((Solid(0 'box': 6 faces),), True, 22.0, (), ())
     >>> part.arrays["area"].shape, part.about["version"]
-    ((6,), 1)
+    ((6,), 2)
     >>> gm.sample(part, 100).weights().sum().round(9)
     np.float64(22.0)
 
@@ -301,6 +302,22 @@ class Face:
         first, last = arrays["face_loops"][self.index : self.index + 2].tolist()
         starts = arrays["loop_point_starts"]
         return tuple(arrays["loop_points"][starts[k] : starts[k + 1]] for k in range(first, last))
+
+    @property
+    def wires(self) -> tuple[tuple[tuple[int, bool], ...], ...]:
+        """The edges along each loop, in turn, as places in the sides of edges of `part.arrays`.
+
+        And whether each is passed from its end to its beginning. The face lies at their left, seen
+        from where x_u × x_v points; () if the file of the part has no wires.
+        """
+        arrays = self.part.arrays
+        first, last = arrays["face_wires"][self.index : self.index + 2].tolist()
+        sides, backwards = arrays["wire_sides"], arrays["wire_reversed"]
+        ends = arrays["wire_side_starts"][first : last + 1].tolist()
+        return tuple(
+            tuple(zip(sides[a:b].tolist(), backwards[a:b].tolist(), strict=True))
+            for a, b in itertools.pairwise(ends)
+        )
 
     @cached_property
     def surface(self) -> Surface:

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from .records import KINDS, FaceRecord, Geometry, Net, PartRecord
 
-__all__ = ["FORMAT", "VERSION", "geometry_of", "packed"]
+__all__ = ["FORMAT", "VERSION", "differences", "geometry_of", "packed"]
 
 FORMAT = "gaussmap part"
 # Raised when the arrays change such that older versions of gaussmap would misread them.
-VERSION = 1
+VERSION = 2
 
 Arrays = dict[str, NDArray[Any]]
 NAMES = tuple(KINDS)
@@ -41,8 +41,8 @@ def packed(part: PartRecord) -> Arrays:
         **_rows("number", [np.asarray(x.numbers) for x in geometries], ()),
         **_nets(nets),
         **_loops(faces),
-        "edge_faces": np.array([x.faces for x in part.edges], dtype=np.int64).reshape(-1, 2),
-        **_rows("edge_point", [x.parameters for x in part.edges], (4,)),
+        **_edges(part),
+        **_wires(part),
     }
 
 
@@ -135,6 +135,44 @@ def _loops(faces: Sequence[FaceRecord]) -> Arrays:
     counts = np.cumsum([0, *(len(x.loops) for x in faces)])
     loops = [loop for x in faces for loop in x.loops]
     return {"face_loops": counts.astype(np.int64), **_rows("loop_point", loops, (2,))}
+
+
+def _edges(part: PartRecord) -> Arrays:
+    """Return all vertices and edges, and where these lie on faces."""
+    edges, sides = part.edges, []
+    for edge in edges:
+        places = np.asarray(edge.parameters, dtype=np.float64)
+        slopes = differences(places) if edge.slopes is None else edge.slopes
+        sides += [
+            np.concatenate([places[:, k : k + 2], slopes[:, k : k + 2]], axis=1)
+            for k in range(0, 2 * len(edge.faces), 2)
+        ]
+    return {
+        "vertices": np.array(part.vertices, dtype=np.float64).reshape(-1, 3),
+        "edge_vertices": np.array([x.vertices for x in edges], dtype=np.int64).reshape(-1, 2),
+        "edge_degenerate": np.array([x.degenerate for x in edges], dtype=np.bool_),
+        "edge_side_starts": np.cumsum([0, *(len(x.faces) for x in edges)], dtype=np.int64),
+        "side_faces": np.array([k for x in edges for k in x.faces], dtype=np.int64),
+        **_rows("side_point", sides, (4,)),
+    }
+
+
+def differences(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the derivatives (k, …) of points at equal steps from 0 to 1, by differences."""
+    return np.gradient(points, axis=0) * (len(points) - 1) if len(points) > 1 else 0.0 * points
+
+
+def _wires(part: PartRecord) -> Arrays:
+    """Return which sides of edges follow one another along the loops of all faces."""
+    starts = np.cumsum([0, *(len(x.faces) for x in part.edges)]).tolist()
+    wires = [wire for x in part.faces for wire in x.wires]
+    steps = [step for wire in wires for step in wire]
+    return {
+        "wire_sides": np.array([starts[edge] + side for edge, side, _ in steps], dtype=np.int64),
+        "wire_reversed": np.array([backwards for *_, backwards in steps], dtype=np.bool_),
+        "wire_side_starts": np.cumsum([0, *map(len, wires)], dtype=np.int64),
+        "face_wires": np.cumsum([0, *(len(x.wires) for x in part.faces)], dtype=np.int64),
+    }
 
 
 def _rows(name: str, parts: Iterable[NDArray[Any]], shape: tuple[int, ...]) -> Arrays:

@@ -65,6 +65,8 @@ class FaceRecord:
 
     `domain` is ((u0, u1), (v0, v1)), the bounds of the loops; `periods` are those of the surface in
     u and v, 0 where it has none. `loops` are closed polygons (k, 2), the first point not repeated.
+    `wires` are the edges along each loop, in turn: (edge, which of its sides, whether it is passed
+    from its end to its beginning). The face lies at their left where x_u × x_v points up.
     """
 
     geometry: Geometry
@@ -77,21 +79,33 @@ class FaceRecord:
     color: Sequence[float] | None = None
     solid_index: int = -1
     reason: str = ""
+    wires: Sequence[Sequence[tuple[int, int, bool]]] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class EdgeRecord:
-    """An edge between two faces: parameters (k, 4) along it, u and v on each of them."""
+    """An edge: where it lies on the faces at its sides, and the vertices at its ends.
 
-    faces: tuple[int, int]
+    `faces` are those of its m sides: two as a rule, one at a border, the same one twice at a seam.
+    `parameters` (k, 2 m) are u and v on each of them at equal steps of a parameter of the edge, NaN
+    where they are not known, and `slopes` (k, 2 m) their derivatives by this parameter, which goes
+    from 0 to 1; by default differences of the parameters. `vertices` are the places of those at its
+    beginning and its end; −1 if they are not known. It is `degenerate` if it is a point, as a pole.
+    """
+
+    faces: tuple[int, ...]
     parameters: Array
+    slopes: Array | None = None
+    vertices: tuple[int, int] = (-1, -1)
+    degenerate: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class PartRecord:
     """A part; `metres` is the length of its unit, `oriented` whether all normals point outward.
 
-    `source_indices` are the places of the faces in the part that they were selected from.
+    `vertices` (V, 3) are the points at the ends of edges. `source_indices` are the places of the
+    faces in the part that they were selected from.
     """
 
     name: str
@@ -101,5 +115,6 @@ class PartRecord:
     faces: Sequence[FaceRecord]
     solid_names: Sequence[str] = ()
     edges: Sequence[EdgeRecord] = ()
+    vertices: Array = field(default_factory=lambda: np.empty((0, 3)))
     warnings: Sequence[str] = ()
     source_indices: Sequence[int] = ()

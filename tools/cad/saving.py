@@ -1,4 +1,4 @@
-"""Parts in files: NumPy archives of some 20 arrays, which need no CAD library to be read again.
+"""Parts in files: NumPy archives of some 30 arrays, which need no CAD library to be read again.
 
 Nothing is pickled. For F faces, and S ≥ F surfaces of which the first F are those of the faces:
 
@@ -27,9 +27,20 @@ loop_points (k, 2), loop_point_starts (L + 1,) int64, face_loops (F + 1,) int64
     The loops of face i are face_loops[i] to face_loops[i + 1] − 1, closed polygons in u and v; the
     first point is not repeated. A point is inside by the even-odd rule over all loops of a face, in
     any turn; loops run along seams, so that u and v are not taken modulo the periods.
-edge_faces (E, 2) int64, edge_points (k, 4), edge_point_starts (E + 1,) int64
-    The edges between two faces: these, and points along the edge, as u, v on the first and u, v on
-    the second face. (Version 0.1 has kept those only at which the normals differ.)
+vertices (V, 3), edge_vertices (E, 2) int64, edge_degenerate (E,) bool
+    The points at the ends of edges; of each edge those at its beginning and its end, −1 if they are
+    not known; whether it is a point, as a pole is.
+edge_side_starts (E + 1,) int64, side_faces (U,) int64, side_points (k, 4), side_point_starts
+    (U + 1,) int64. The sides of edge i are edge_side_starts[i] to edge_side_starts[i + 1] − 1: one
+    at a border, two between faces and at seams, which are twice on the same face. Of each the face,
+    and u, v and their derivatives at equal steps of a parameter of the edge that goes from 0 to 1;
+    NaN where they are not known. All sides of an edge have as many points.
+wire_sides (k,) int64, wire_reversed (k,) bool, wire_side_starts (W + 1,) int64, face_wires (F + 1,)
+    The wires of face i are face_wires[i] to face_wires[i + 1] − 1 (int64): the sides of edges along
+    each of its loops, in turn, and whether they are passed from the end of the edge to its
+    beginning. The face lies at their left where x_u × x_v points up.
+
+Version 1 has had only the edges between two faces, without vertices and wires: `earlier` reads it.
 
 A placement is the origin o and three orthonormal axes X, Y, Z, 12 numbers; Y may be −Z × X. With
 c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,
@@ -59,6 +70,7 @@ from numpy.typing import NDArray
 from ..files.archives import archive_of
 from ..files.paths import PathLike, atomic_path, checked_path, known_suffix
 from ..files.reading import UnusableError, opened
+from .earlier import is_of_first, names_of_first, of_second
 from .part_arrays import FORMAT, VERSION, packed
 from .records import KINDS, PartRecord
 
@@ -93,9 +105,17 @@ SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "loop_points": ("d", ("*", 2)),
     "loop_point_starts": ("q", ("L+1",)),
     "face_loops": ("q", ("F+1",)),
-    "edge_faces": ("q", ("E", 2)),
-    "edge_points": ("d", ("*", 4)),
-    "edge_point_starts": ("q", ("E+1",)),
+    "vertices": ("d", ("V", 3)),
+    "edge_vertices": ("q", ("E", 2)),
+    "edge_degenerate": ("?", ("E",)),
+    "edge_side_starts": ("q", ("E+1",)),
+    "side_faces": ("q", ("U",)),
+    "side_points": ("d", ("*", 4)),
+    "side_point_starts": ("q", ("U+1",)),
+    "wire_sides": ("q", ("R",)),
+    "wire_reversed": ("?", ("R",)),
+    "wire_side_starts": ("q", ("W+1",)),
+    "face_wires": ("q", ("F+1",)),
 }
 MOST_DEGREE = 25
 # Of faces that are not usable, with the others of the part left as they are.
@@ -128,13 +148,14 @@ def read_arrays(path: PathLike) -> tuple[dict[str, NDArray[Any]], dict[str, Any]
 
 def _read(file: BufferedReader) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     with archive_of(file) as archive:
-        missing = [name for name in dtypes() if name not in archive.names]
-        if missing:
-            raise UnusableError(f"is no part that gaussmap saved: it lacks {missing[0]!r}.")
         if archive.unpacked > MOST_BYTES:
             raise UnusableError("says that it holds more than 4 GB, and is not read.")
-        arrays = {name: archive.read(name) for name in dtypes()}
-    return checked_arrays(arrays)
+        names = names_of_first(dtypes()) if is_of_first(archive.names) else dtypes()
+        missing = [name for name in names if name not in archive.names]
+        if missing:
+            raise UnusableError(f"is no part that gaussmap saved: it lacks {missing[0]!r}.")
+        arrays = {name: archive.read(name) for name in names}
+    return checked_arrays(of_second(arrays) if is_of_first(tuple(arrays)) else arrays)
 
 
 def dtypes() -> tuple[str, ...]:
@@ -164,7 +185,10 @@ def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
         ("knot_starts", len(found["knots"])),
         ("net_point_starts", len(found["net_points"])),
         ("loop_point_starts", len(found["loop_points"])),
-        ("edge_point_starts", len(found["edge_points"])),
+        ("edge_side_starts", len(found["side_faces"])),
+        ("side_point_starts", len(found["side_points"])),
+        ("wire_side_starts", len(found["wire_sides"])),
+        ("face_wires", len(found["wire_side_starts"]) - 1),
         ("face_loops", len(found["loop_point_starts"]) - 1),
     ):
         array = found[starts]
@@ -174,7 +198,7 @@ def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
     faces = len(found["area"])
     solids = max(len(about.get("solid_names", ())), 1) if faces else 0
     _require(_within(found["solid_index"], -1, max(faces, solids)), "solid_index")
-    _require(_within(found["edge_faces"], 0, faces), "edge_faces")
+    _check_edges(found)
     _require(_are_indices(about.get("source_indices", []), faces), "about")
     return found, {**about, "reasons": {**_not_finite(found), **_texts(about, "reasons")}}
 
@@ -229,6 +253,20 @@ def _check_nets(arrays: Arrays) -> None:
     _require((np.diff(arrays["net_point_starts"]) == shapes.prod(axis=1)).all(), "net_points")
     wanted = along_u + np.where(curves, 0, along_v)
     _require((np.diff(arrays["knot_starts"]) == wanted).all(), "knots")
+
+
+def _check_edges(arrays: Arrays) -> None:
+    """Sides of edges are on faces, and wires are made of sides on their face."""
+    faces, sides = len(arrays["area"]), arrays["side_faces"]
+    _require(_within(sides, 0, faces), "side_faces")
+    _require(_within(arrays["edge_vertices"], -1, len(arrays["vertices"])), "edge_vertices")
+    counts, starts = np.diff(arrays["side_point_starts"]), arrays["edge_side_starts"]
+    first = np.repeat(starts[:-1], np.diff(starts))
+    _require((counts == counts[first]).all(), "side_point_starts")
+    _require(_within(arrays["wire_sides"], 0, len(sides)), "wire_sides")
+    owner = np.repeat(np.arange(faces), np.diff(arrays["face_wires"]))
+    on_face = np.repeat(owner, np.diff(arrays["wire_side_starts"]))
+    _require((sides[arrays["wire_sides"]] == on_face).all(), "wire_sides")
 
 
 def _not_finite(arrays: Arrays) -> dict[str, str]:

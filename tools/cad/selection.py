@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
@@ -164,35 +165,51 @@ def _part(part: Part, chosen: list[int]) -> Part:
     faces = [part.faces[k] for k in chosen]
     solids = sorted({x.solid_index for x in faces} - {-1})
     new = {old: k for k, old in enumerate(solids)}
+    edges, places = _edges(part, chosen)
     return part_of(
         PartRecord(
             part.name,
             part.unit,
             part.metres,
             part.oriented,
-            [_record(x, new.get(x.solid_index, -1)) for x in faces],
+            [_record(x, new.get(x.solid_index, -1), places) for x in faces],
             [part.solids[k].name for k in solids],
-            _edges(part, chosen),
+            edges,
+            part.arrays["vertices"],
             part.warnings,
             [x.source_index for x in faces],
         )
     )
 
 
-def _record(face: Face, solid: int) -> FaceRecord:
+def _record(face: Face, solid: int, places: dict[int, tuple[int, int]]) -> FaceRecord:
+    """Return the record of a face, with its solid, and the new places of sides of edges."""
+    wires = [[(*places[x], backwards) for x, backwards in wire] for wire in face.wires]
     return FaceRecord(
-        face.geometry, face.domain, face.periods, face.loops, face.reversed, face.area, face.name,
-        face.color, solid, face.reason,
+        face.geometry, face.domain, face.periods, face.loops, face.reversed, face.area,
+        face.name, face.color, solid, face.reason, wires,
     )  # fmt: skip
 
 
-def _edges(part: Part, chosen: list[int]) -> list[EdgeRecord]:
-    """Return the edges between two of the faces, which are numbered anew."""
+def _edges(part: Part, chosen: list[int]) -> tuple[list[EdgeRecord], dict[int, tuple[int, int]]]:
+    """Return the edges of some faces, which are numbered anew, and of each side the new place."""
     new = np.full(len(part), -1)
     new[chosen] = np.arange(len(chosen))
-    faces, starts = new[part.arrays["edge_faces"]], part.arrays["edge_point_starts"]
-    return [
-        EdgeRecord((first, second), part.arrays["edge_points"][starts[k] : starts[k + 1]])
-        for k, (first, second) in enumerate(faces.tolist())
-        if first >= 0 and second >= 0
-    ]
+    arrays, found, places = part.arrays, list[EdgeRecord](), dict[int, tuple[int, int]]()
+    faces, starts = new[arrays["side_faces"]].tolist(), arrays["side_point_starts"]
+    for k, (first, last) in enumerate(itertools.pairwise(arrays["edge_side_starts"].tolist())):
+        sides = [x for x in range(first, last) if faces[x] >= 0]
+        if not sides:
+            continue
+        places |= {x: (len(found), place) for place, x in enumerate(sides)}
+        points = [arrays["side_points"][starts[x] : starts[x + 1]] for x in sides]
+        found.append(
+            EdgeRecord(
+                tuple(faces[x] for x in sides),
+                np.concatenate([x[:, :2] for x in points], axis=1),
+                np.concatenate([x[:, 2:] for x in points], axis=1),
+                tuple(arrays["edge_vertices"][k].tolist()),
+                bool(arrays["edge_degenerate"][k]),
+            )
+        )
+    return found, places

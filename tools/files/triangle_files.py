@@ -24,13 +24,14 @@ _STL_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribu
 def write_obj(mesh: Mesh, path: Path) -> None:
     """Write text: vertices, texture coordinates, normals, and triangles that name all three."""
     # Not trimesh: it writes a fixed number of digits behind the point, none of small numbers.
-    texture = split_at_seams(mesh.uv, mesh.triangles, mesh.domain, mesh.boundary)
+    split = mesh.split  # with a normal of its own for each face around
+    texture = split_at_seams(split.uv, split.triangles, split.domain, split.boundary)
     with open(path, "wb") as file:
         file.write(b"# written by gaussmap\n")
         write_rows(file, "v {} {} {}\n", [*mesh.vertices.T])
         write_rows(file, "vt {} {}\n", [*texture.places.T])
-        write_rows(file, "vn {} {} {}\n", [*mesh.normals.T])
-        corners = np.stack([mesh.triangles, texture.corners, mesh.triangles], axis=2) + 1
+        write_rows(file, "vn {} {} {}\n", [*split.normals.T])
+        corners = np.stack([mesh.triangles, texture.corners, split.triangles], axis=2) + 1
         write_rows(file, "f {}/{}/{} {}/{}/{} {}/{}/{}\n", [*corners.reshape(-1, 9).T])
 
 
@@ -54,8 +55,9 @@ def write_stl(mesh: Mesh, path: Path) -> None:
 def write_glb(mesh: Mesh, path: Path) -> None:
     """Write triangles, vertices, normals and texture coordinates, in single precision.
 
-    The first vertices are those of the mesh. Others have the same points and normals as one of
-    them, and texture coordinates for triangles across a seam or at a pole.
+    The first vertices are those of the mesh, on a CAD part one for each normal there. Others have
+    the same points and normals as one of them, and texture coordinates for triangles across a seam
+    or at a pole.
     """
     trimesh = from_extra("trimesh", "trimesh", "a .glb file")
     if np.abs(mesh.vertices).max() > np.finfo(np.float32).max:
@@ -63,11 +65,12 @@ def write_glb(mesh: Mesh, path: Path) -> None:
             "a .glb file holds single precision, for which these vertices are too large; choose "
             "another unit of length, or write a .ply file."
         )
-    texture = split_at_seams(mesh.uv, mesh.triangles, mesh.domain, mesh.boundary)
+    split = mesh.split
+    texture = split_at_seams(split.uv, split.triangles, split.domain, split.boundary)
     made = trimesh.Trimesh(
-        mesh.vertices[texture.vertex],
+        split.vertices[texture.vertex],
         texture.corners,
-        vertex_normals=mesh.normals[texture.vertex],
+        vertex_normals=split.normals[texture.vertex],
         visual=trimesh.visual.TextureVisuals(uv=texture.places),
         process=False,
     )

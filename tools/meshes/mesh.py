@@ -72,8 +72,8 @@ class Mesh(Methods):
     ((200, 3), (200, 3), (200, 2), (400, 3))
     >>> bool((mesh.sample_index >= 0).all()), bool((mesh.sides == 1).all()), mesh.name
     (True, True, 'torus')
-    >>> mesh.faces is mesh.triangles
-    True
+    >>> mesh.faces is mesh.triangles, mesh.split is mesh
+    (True, True)
     >>> len(mesh.edges), len(mesh.boundary_edges), mesh.euler_characteristic
     (600, 0, 0)
     >>> mesh.left_out, mesh.domain == gm.surfaces.torus().domain, mesh.boundary[0]
@@ -132,6 +132,14 @@ class Mesh(Methods):
         return self.triangles
 
     @cached_property
+    def split(self) -> Mesh:
+        """The same triangles, with a vertex for each normal that there is at a point.
+
+        This is another mesh only where normals jump, on meshes of CAD parts.
+        """
+        return self
+
+    @cached_property
     def _edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The edges (E, 2), and in how many triangles each of them is."""
         count = max(len(self.vertices), 1)
@@ -178,7 +186,8 @@ class Mesh(Methods):
 
         In degrees; 180 for a triangle without area.
         """
-        cosines = cosines_of(self.vertices, self.normals, self.triangles, self.sides)
+        split = self.split
+        cosines = cosines_of(split.vertices, split.normals, split.triangles, split.sides)
         return np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))
 
     @cached_property

@@ -49,7 +49,7 @@ def test_sample(saved, capsys, main):
         (["sample", "part.npz", "--set", "a=1", "-o", "o.ply"], "--set is for surfaces"),
         (["sample", "part.npz", "--on", "spline", "-o", "o.ply"], 'on="spline" is for surfaces'),
         (["sample", "part.npz", "-o", "part.npz"], "'part.npz' is read"),
-        (["mesh", "part.npz", "-o", "o.ply"], "these are of a CAD part"),
+        (["mesh", "part.npz", "-o", "o.ply"], "does not say how its edges go around its faces"),
         (["faces", "none.npz"], "'none.npz' cannot be read"),
         (["faces", "part.txt"], "is no STEP, IGES or BREP file"),
     ],

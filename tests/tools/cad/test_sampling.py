@@ -305,7 +305,7 @@ def test_samples_in_files_and_other_methods(cylinder, tmp_path):
     assert few.surface is cylinder
     assert len(gm.Samples.concatenate([few, few]).solid_index) == 10
     assert pickle.loads(pickle.dumps(samples)).surface.name == "cylinder"
-    with pytest.raises(gm.errors.InputError, match="of a CAD part"):
+    with pytest.raises(gm.errors.InputError, match="does not say how its edges go around"):
         samples.mesh()
     with pytest.raises(gm.errors.InputError, match="of CAD parts only"):
         gm.sample("torus", 10, cells=(8, 8), fields=("face_index",))

@@ -1,13 +1,17 @@
 """Parts in files: the same again, and one sentence for anything else."""
 
 import io
+import json
 import pickle
 import zipfile
 from contextlib import suppress
+from dataclasses import replace
 
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.cad.earlier import OF_SECOND
+from gaussmap.tools.cad.examples import box, box_edges
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import EdgeRecord, FaceRecord, Geometry, Net
 from gaussmap.tools.cad.saving import write_arrays
@@ -38,8 +42,15 @@ def everything(made) -> Part:
     ]
     faces = [FaceRecord(x, ((0, 1), (0, 1)), loops=square, area=1.0) for x in geometries]
     faces[-1] = FaceRecord(geometries[-1], reason="it has no surface")
-    edge = EdgeRecord((0, 2), np.arange(12.0).reshape(3, 4))
-    return made.part([*made.box_faces(), *faces], "all", False, solid_names=["bolt"], edges=[edge])
+    edges = [
+        EdgeRecord((0, 2), np.arange(12.0).reshape(3, 4), vertices=(1, 0)),
+        EdgeRecord((0, 0), np.zeros((2, 4)), np.ones((2, 4)), degenerate=True),
+    ]
+    box = made.box_faces()
+    box[0] = replace(box[0], wires=[[(0, 0, True), (1, 1, False)], [(1, 0, True)]])
+    return made.part(
+        [*box, *faces], "all", False, solid_names=["bolt"], edges=edges, vertices=np.eye(3)[:2]
+    )
 
 
 def same(one: Part, other: Part) -> bool:
@@ -54,6 +65,54 @@ def test_read_again(everything, tmp_path):
     again = gm.read_part(tmp_path / "part.npz")
     assert same(everything, again)
     assert same(everything, pickle.loads(pickle.dumps(everything)))
+
+
+def test_wires_of_faces(everything):
+    assert everything.faces[0].wires == (((0, True), (3, False)), ((2, True),))
+    assert everything.faces[1].wires == ()
+    np.testing.assert_allclose(everything.arrays["side_points"][:3, 2:], 8.0)  # by differences
+
+
+@pytest.fixture
+def first_version(made, tmp_path):
+    """Write a box as version 1 has, and return its arrays."""
+    arrays = dict(box().arrays)
+    edges = box_edges()
+    about = {**box().about, "version": 1}
+    arrays = {name: x for name, x in arrays.items() if name not in OF_SECOND}
+    arrays["about"] = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
+    arrays["edge_faces"] = np.array([x.faces for x in edges])
+    arrays["edge_points"] = np.concatenate([x.parameters for x in edges])
+    arrays["edge_point_starts"] = 2 * np.arange(len(edges) + 1)
+    return arrays
+
+
+def test_the_first_version_is_read(first_version, tmp_path):
+    np.savez(tmp_path / "first.npz", **first_version)
+    part = gm.read_part(tmp_path / "first.npz")
+    assert part.about["version"] == 2
+    assert all(x.wires == () for x in part.faces)
+    samples, wanted = (gm.sample(x, 60, edges=True) for x in (part, box()))
+    for name, array in samples.arrays().items():
+        assert array.tobytes() == getattr(wanted, name).tobytes()
+    part.save(tmp_path / "second.npz")
+    assert same(part, gm.read_part(tmp_path / "second.npz"))
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("edge_point_starts", lambda x: x[::-1].copy()),
+        ("edge_point_starts", lambda x: x[1:]),
+        ("edge_points", lambda x: x[:, :3]),
+        ("edge_faces", lambda x: x + 10**6),
+        ("edge_faces", lambda x: x.astype(np.float64)),
+    ],
+)
+def test_damaged_arrays_of_the_first_version(first_version, tmp_path, name, change):
+    np.savez(tmp_path / "part.npz", **{**first_version, name: change(first_version[name])})
+    with pytest.raises(gm.errors.FileError, match=r"part\.npz' is damaged"):
+        gm.read_part(tmp_path / "part.npz")
 
 
 def test_geometries_are_unpacked(everything):
@@ -131,7 +190,11 @@ def test_numbers_that_are_not_finite_fail_one_face(everything, tmp_path):
         ("net_degrees", lambda x: x + 10**9),
         ("net_shapes", lambda x: x + 1),
         ("knots", lambda x: x[1:]),
-        ("edge_faces", lambda x: x + 10**6),
+        ("side_faces", lambda x: x + 10**6),
+        ("side_point_starts", lambda x: np.r_[x[:1], x[1:-1] + 1, x[-1:]]),
+        ("edge_vertices", lambda x: x + 10**6),
+        ("wire_sides", lambda x: x + 1),
+        ("wire_sides", lambda x: x + 10**6),
         ("solid_index", lambda x: x + 10**6),
         ("area", lambda x: x[1:]),
         ("domain", lambda x: x.reshape(-1, 4)),

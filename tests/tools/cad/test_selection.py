@@ -6,6 +6,7 @@ import pickle
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.cad.edges import between_two
 from gaussmap.tools.cad.examples import all_kinds, box
 from gaussmap.tools.cad.records import FaceRecord, Geometry
 
@@ -73,7 +74,10 @@ def test_the_trim_counts_and_poles_do_not_hurt(made):
 def test_samples_and_edges_of_a_selection():
     part = box(1.0, 2.0, 3.0).select(index=[0, 2, 5])
     assert (part.unit, part.solids[0].name, part.area) == ("mm", "box", 6 + 3 + 2)
-    assert part.arrays["edge_faces"].tolist() == [[0, 1], [0, 2], [1, 2]]  # one of 3 has no edge
+    assert between_two(part)[0].tolist() == [[0, 1], [0, 2], [1, 2]]
+    assert len(part.arrays["edge_vertices"]) == 9  # six borders, too
+    on_faces = part.arrays["side_faces"][part.arrays["wire_sides"]]
+    assert on_faces.tolist() == [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2]
     samples = gm.sample(part, 60, edges=True)
     assert samples.report is not None
     assert samples.report.edge_samples

@@ -1,78 +1,147 @@
-"""Edges between two faces, as parameters on both of them; which are sharp is found by sampling."""
+"""The edges of all faces, as parameters on each of them, and the loops that they make."""
 
 # pyright: reportMissingImports=false
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
+from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS
 
 from ..records import EdgeRecord, FaceRecord
 from ..units import scaled_parameters
-from .p_curves import PCurve, curve_of
+from .loops import edges_of
+from .p_curves import PCurve
 from .shapes import Key, parts_of
 from .solids import PlacedFace
 
-__all__ = ["shared_edges"]
+__all__ = ["Topology", "topology_of"]
 
 Array = NDArray[np.float64]
+Wires = list[list[tuple[int, int, bool]]]
 
 # The points of a p-curve that is not straight: an angle between those of circles, a number for each
 # piece of others, and the least and the largest number.
 ANGLE, POINTS_A_PIECE, LEAST, MOST = 0.15, 4, 9, 1025
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
+EDGE, WIRE = TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_WIRE
 
 
-def shared_edges(
+@dataclass(frozen=True)
+class Topology:
+    """The edges between faces, the vertices (V, 3) at their ends, and the wires of each face."""
+
+    edges: list[EdgeRecord]
+    vertices: Array
+    wires: list[Wires]
+
+
+@dataclass
+class Known:
+    """An edge: the faces at its sides, the p-curves there, and the edge as each face has it."""
+
+    edge: Any
+    faces: list[int] = field(default_factory=list)
+    curves: list[PCurve | None] = field(default_factory=list)
+    turns: list[Any] = field(default_factory=list)
+
+    def side(self, face: int, turn: Any) -> int:  # noqa: ANN401
+        """Return the place of a side among those of the edge."""
+        pairs = zip(self.faces, self.turns, strict=True)
+        return next(k for k, pair in enumerate(pairs) if pair == (face, turn))
+
+
+def topology_of(
     placed: Sequence[PlacedFace], faces: Sequence[FaceRecord], factor: float
-) -> list[EdgeRecord]:
-    """Return the edges between two faces.
+) -> Topology:
+    """Return all edges of faces, and how they follow one another around each.
 
-    What the file says of their smoothness is often wrong, and is not asked. Borders, edges of three
-    faces or more, and those that a face has on both sides, such as seams, are left out. Parameters
-    that are lengths are multiplied by `factor`, as those of the faces will be.
+    What the file says of their smoothness is often wrong, and is not asked. Faces that failed, and
+    those of whose edges one has no p-curve, have no wires. Parameters that are lengths are
+    multiplied by `factor`, as those of the faces will be.
     """
-    found = []
-    for sides in _shared(placed, faces):
-        if BRep_Tool.Degenerated_s(sides[0][1]):
-            continue
-        try:
-            curves = [
-                curve_of(edge, TopoDS.Face(placed[k].sewn.Oriented(FORWARD))) for k, edge in sides
-            ]
-        except Exception:  # of Open CASCADE: without a p-curve, there is nothing to say
-            continue
-        shares = np.linspace(0.0, 1.0, max(map(_points, curves)))
-        parameters = np.concatenate([_uv(x, shares) for x in curves], axis=1)
-        if np.isfinite(parameters).all():
-            (i, _), (k, _) = sides
-            scales = [scaled_parameters(faces[x].geometry, factor) for x in (i, k)]
-            found.append(EdgeRecord((i, k), parameters * np.concatenate(scales)))
-    return found
-
-
-def _shared(
-    placed: Sequence[PlacedFace], faces: Sequence[FaceRecord]
-) -> Iterator[list[tuple[int, Any]]]:
-    """Yield the edges that two usable faces share: of each face its place, and its edge."""
-    users: dict[Key, list[tuple[int, Any]]] = {}
+    known: dict[Key, Known] = {}
+    ordered = []
     for k, (face, record) in enumerate(zip(placed, faces, strict=True)):
-        for edge in parts_of(face.sewn.Oriented(FORWARD), TopAbs_ShapeEnum.TopAbs_EDGE):
-            user = -1 if record.reason else k, TopoDS.Edge(edge)
-            users.setdefault(Key(edge), []).append(user)
-    for known in users.values():
-        if len(known) != 2 or known[0][0] == known[1][0] or min(known[0][0], known[1][0]) < 0:
-            continue
-        # Edges inside of a face, which bound nothing, have other orientations.
-        if all(x.Orientation() in (FORWARD, REVERSED) for _, x in known):
-            yield known
+        forward = TopoDS.Face(face.sewn.Oriented(FORWARD))
+        ordered.append([] if record.reason else _ordered(forward))
+        curves = {(Key(x), x.Orientation()): curve for wire in ordered[-1] for x, curve in wire}
+        for edge in parts_of(forward, EDGE):
+            key, turn = Key(edge), edge.Orientation()
+            at = known.setdefault(key, Known(TopoDS.Edge(edge.Oriented(FORWARD))))
+            at.faces.append(k)
+            at.turns.append(turn)
+            at.curves.append(curves.get((key, turn)))
+    scales = [scaled_parameters(x.geometry, factor) for x in faces]
+    vertices = _Vertices()
+    edges = [_record(x, scales, vertices) for x in known.values()]
+    places = {key: place for place, key in enumerate(known)}
+    wires = [
+        [
+            [
+                (places[Key(x)], known[Key(x)].side(k, x.Orientation()), curve.reversed)
+                for x, curve in wire
+            ]
+            for wire in found
+        ]
+        for k, found in enumerate(ordered)
+    ]
+    return Topology(edges, factor * vertices.points, wires)
+
+
+def _ordered(face: Any) -> list[list[tuple[Any, PCurve]]]:  # noqa: ANN401
+    """Return the edges of each wire of a face, in turn, with their p-curves."""
+    try:
+        return [edges_of(TopoDS.Wire(x), face) for x in parts_of(face, WIRE)]
+    except Exception:  # of Open CASCADE: without p-curves there is nothing to say
+        return []
+
+
+def _record(known: Known, scales: list[Array], vertices: _Vertices) -> EdgeRecord:
+    """Return an edge; places on a side are NaN where there is no p-curve."""
+    shares = np.linspace(0.0, 1.0, max((_points(x) for x in known.curves if x), default=2))
+    nothing = np.full((len(shares), 4), np.nan)
+    sides = [nothing if x is None else _uv(x, shares) for x in known.curves]
+    sides = [x * np.tile(scales[k], 2) for k, x in zip(known.faces, sides, strict=True)]
+    return EdgeRecord(
+        tuple(known.faces),
+        np.concatenate([x[:, :2] for x in sides], axis=1),
+        np.concatenate([x[:, 2:] for x in sides], axis=1),
+        (vertices.place(TopExp.FirstVertex_s(known.edge)),
+         vertices.place(TopExp.LastVertex_s(known.edge))),
+        bool(BRep_Tool.Degenerated_s(known.edge)),
+    )  # fmt: skip
+
+
+class _Vertices:
+    """The vertices that edges have, each once."""
+
+    def __init__(self) -> None:
+        self._places: dict[Key, int] = {}
+        self._points: list[tuple[float, float, float]] = []
+
+    @property
+    def points(self) -> Array:
+        return np.array(self._points, dtype=np.float64).reshape(-1, 3)
+
+    def place(self, vertex: Any) -> int:  # noqa: ANN401
+        """Return the place of a vertex; −1 for none."""
+        if vertex.IsNull():
+            return -1
+        key = Key(vertex)
+        if key not in self._places:
+            self._places[key] = len(self._points)
+            point = BRep_Tool.Pnt_s(vertex)
+            self._points.append((point.X(), point.Y(), point.Z()))
+        return self._places[key]
 
 
 def _points(curve: PCurve) -> int:
@@ -87,9 +156,12 @@ def _points(curve: PCurve) -> int:
 
 
 def _uv(curve: PCurve, shares: Array) -> Array:
-    """Return u and v (k, 2) at shares (k,) of a curve, from 0 to 1 in its own range."""
+    """Return u, v and their derivatives (k, 4) by shares (k,) of a curve, 0 to 1 in its range."""
     first, last = curve.ends[0], curve.ends[-1]
     if curve.pieces:
-        return curve.evaluate(first + (last - first) * shares)[:, :2]
+        found = curve.evaluate(first + (last - first) * shares)
+        found[:, 2:] *= last - first
+        return found
     ends = curve.evaluate(np.array([first, last]))[:, :2]
-    return ends[0] + shares[:, None] * (ends[1] - ends[0])
+    along = ends[1] - ends[0]
+    return np.concatenate([ends[0] + shares[:, None] * along, np.tile(along, (len(shares), 1))], 1)

@@ -16,7 +16,7 @@ from .curves import UnusableError
 from .p_curves import PCurve, curve_of
 from .shapes import parts_of
 
-__all__ = ["loops_of"]
+__all__ = ["edges_of", "loops_of"]
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def loops_of(face: Any) -> list[Array]:  # noqa: ANN401
     size = bounds[1] - bounds[0]
     if not (size > 0.0).all():
         raise UnusableError("its area is zero")
-    wires = [_curves_of(TopoDS.Wire(x), face) for x in parts_of(face, WIRE)]
+    wires = [[x for _, x in edges_of(TopoDS.Wire(wire), face)] for wire in parts_of(face, WIRE)]
     if not wires:
         return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
     loops = _polygons(wires, size, OF_BOX)
@@ -84,21 +84,23 @@ def _mean_width(loops: list[Array], size: Array) -> float:
     return abs(area) / length if length else 0.0
 
 
-def _curves_of(wire: Any, face: Any) -> list[PCurve]:  # noqa: ANN401
-    """Return the p-curves of a wire, one after another."""
+def edges_of(wire: Any, face: Any) -> list[tuple[Any, PCurve]]:  # noqa: ANN401
+    """Return the edges of a wire and their p-curves, one after another."""
     explorer, edges = BRepTools_WireExplorer(wire, face), []
     while explorer.More():
         edges.append(explorer.Current())
         explorer.Next()
     every = [x for x in parts_of(wire, EDGE) if x.Orientation() in (FORWARD, REVERSED)]
     if len(edges) == len(every):
-        return [curve_of(x, face) for x in edges]
+        return [(x, curve_of(x, face)) for x in edges]
     # Where edges do not share their vertices, the explorer stops.
-    return _chained([curve_of(TopoDS.Edge(x), face) for x in every])
+    edges = [TopoDS.Edge(x) for x in every]
+    curves = [curve_of(x, face) for x in edges]
+    return [(edges[k], curves[k]) for k in _chained(curves)]
 
 
-def _chained(curves: list[PCurve]) -> list[PCurve]:
-    """Return curves in an order in which each begins close to where the one before ends."""
+def _chained(curves: list[PCurve]) -> list[int]:
+    """Return an order of curves in which each begins close to where the one before ends."""
     ends = [x.evaluate(np.array(x.ends))[:, :2] for x in curves]
     ends = [x[::-1] if curve.reversed else x for x, curve in zip(ends, curves, strict=True)]
     order, left = [0], set(range(1, len(curves)))
@@ -106,4 +108,4 @@ def _chained(curves: list[PCurve]) -> list[PCurve]:
         here = ends[order[-1]][1]
         order.append(min(sorted(left), key=lambda k: float(np.abs(ends[k][0] - here).max())))
         left.remove(order[-1])
-    return [curves[k] for k in order]
+    return order

@@ -13,7 +13,7 @@ from ..damaged_step import LostFace, Source
 from ..inspection import BadFileError, faces_said
 from ..records import FaceRecord, Geometry, PartRecord
 from ..units import with_unit
-from .edges import shared_edges
+from .edges import topology_of
 from .faces import FaceReader
 from .files import read_file
 from .shapes import Key
@@ -47,7 +47,8 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         )
     in_unit = unit or document.unit
     factor = METRES["mm"] / METRES[in_unit]
-    edges = shared_edges(found.faces, faces, factor)
+    topology = topology_of(found.faces, faces, factor)
+    faces = [replace(x, wires=wires) for x, wires in zip(faces, topology.wires, strict=True)]
     return PartRecord(
         name,
         in_unit,
@@ -55,7 +56,8 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         found.closed,
         [*(with_unit(x, factor) for x in faces), *map(_lost_face, lost)],
         found.solid_names,
-        edges,
+        topology.edges,
+        topology.vertices,
         document.warnings,
     )
 

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("OCP")
 
-from gaussmap.tools.cad.edges import edges_of, sides_at
+from gaussmap.tools.cad.edges import between_two, edges_of, sides_at
 from gaussmap.tools.cad.faces import own_parameters
 from gaussmap.tools.cad.opencascade.shapes import parts_of
 from gaussmap.tools.cad.part import part_of
@@ -133,9 +133,57 @@ def test_samples_lie_on_both_faces(name, write, read):
     pairs = set(zip(edge.face_index, edge.other_face_index, strict=True))
     sharp = sharp_edges(part)
     assert len(sharp) == count
-    assert pairs == {tuple(part.arrays["edge_faces"][k]) for k in sharp}
+    assert pairs == {tuple(between_two(part)[0][k]) for k in sharp}
     assert (samples.report.edge_samples > 0) == (count > 0)
     checked(samples, part, shape, COMPUTED.get(name, 0.0))
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_wires_close_and_lie_on_their_faces(name, write, read):
+    """Each edge has the same points on all of its faces, and loops are those of wires."""
+    part = part_of(read(write(SHAPES[name][0](), "part.brep")))
+    arrays, size = part.arrays, np.linalg.norm(np.ptp(part.bounds, axis=0))
+    owner = np.repeat(np.arange(len(arrays["edge_vertices"])), np.diff(arrays["edge_side_starts"]))
+    assert sorted(arrays["wire_sides"].tolist()) == list(range(len(owner)))  # each side once
+    tolerance = max(COMPUTED.get(name, 0.0), 1e-9 * size)
+    for face in part.faces:
+        assert len(face.wires) == len(face.loops)
+        for wire, loop in zip(face.wires, face.loops, strict=True):
+            ends, area = [], 0.0
+            for side, backwards in wire:
+                first, last = arrays["side_point_starts"][side : side + 2]
+                uv = arrays["side_points"][first:last, :2]
+                points = uv[::-1] if backwards else uv
+                nearest = np.linalg.norm(points[:, None] - loop, axis=2).min(axis=1)
+                assert nearest[[0, -1]].max() <= 1e-9 * np.ptp(loop, axis=0).max()
+                vertices = arrays["edge_vertices"][owner[side]]
+                own = own_parameters(face.surface, uv[[0, -1]], is_reversed=face.reversed)
+                low, high = np.array(face.surface.domain).T
+                found = face.surface.jets(*np.clip(own, low, high).T.copy())[:, 0]
+                assert np.abs(found - arrays["vertices"][vertices]).max() <= tolerance
+                ends.append(vertices[::-1] if backwards else vertices)
+                x, y = (points - loop[0]).T
+                area += (x[:-1] * np.diff(y) - y[:-1] * np.diff(x)).sum() / 2.0
+            assert all(x[1] == y[0] for x, y in zip(ends, [*ends[1:], ends[0]], strict=True))
+            x, y = (loop - loop[0]).T
+            wanted = (x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2.0
+            assert area == pytest.approx(wanted, rel=0.05)  # the same way around
+    degenerate = arrays["edge_vertices"][arrays["edge_degenerate"]]
+    assert (degenerate[:, 0] == degenerate[:, 1]).all()
+
+
+def test_units_scale_vertices_and_parameters(write, read):
+    path = write(BRepPrimAPI_MakeCylinder(10.0, 20.0).Shape(), "part.brep")
+    in_mm, in_cm = part_of(read(path)), part_of(read(path, "cm"))
+    assert np.allclose(in_cm.arrays["vertices"], in_mm.arrays["vertices"] / 10.0, rtol=1e-15)
+    for name in ("in_mm", "in_cm"):
+        part, factor = (in_mm, 1.0) if name == "in_mm" else (in_cm, 10.0)
+        points = part.arrays["side_points"]
+        side = part.arrays["side_faces"]
+        counts = np.diff(part.arrays["side_point_starts"])
+        on_side = np.repeat(side, counts) == [x.kind for x in part.faces].index("cylinder")
+        assert np.abs(points[on_side, 1]).max() * factor == pytest.approx(20.0, rel=1e-14)
+        assert np.abs(points[on_side, 2]).max() == pytest.approx(2 * np.pi, rel=1e-14)
 
 
 def test_loose_faces_are_sewn_and_borders_are_no_edges(write, read):

@@ -289,12 +289,13 @@ def test_a_face_of_no_area_fails(write, read):
     assert [x.reason for x in part.faces if x.reason] == ["its area is zero"]
 
 
-# --- sharp edges ----------------------------------------------------------------------------------
+# --- edges ----------------------------------------------------------------------------------------
 
 
-def test_sharp_edges_are_the_same_points_on_both_faces(write, read):
+def test_edges_are_the_same_points_on_both_faces(write, read):
     part = read(write(drilled_box()), unit="in")
-    assert len(part.edges) == 14
+    assert len([x for x in part.edges if len(set(x.faces)) == 2]) == 14
+    assert len(part.edges) == 15  # and a seam
     for edge in part.edges:
         first, second = (part.faces[k].geometry for k in edge.faces)
         one = points_of(first, edge.parameters[:, :2])
@@ -302,9 +303,13 @@ def test_sharp_edges_are_the_same_points_on_both_faces(write, read):
         np.testing.assert_allclose(one, other, atol=1e-6)
 
 
-def test_smooth_edges_are_not_sharp(write, read):
+def test_a_sphere_has_a_seam_and_two_poles(write, read):
     part = read(write(BRepPrimAPI_MakeSphere(5.0).Shape()))
-    assert len(part.edges) == 0
+    assert [x.faces for x in part.edges if not x.degenerate] == [(0, 0)]
+    assert [x.faces for x in part.edges if x.degenerate] == [(0,), (0,)]
+    assert np.abs(part.vertices[:, 2]).tolist() == [5.0, 5.0]
+    assert len(part.faces[0].wires) == 1
+    assert len(part.faces[0].wires[0]) == 4
 
 
 def test_sequences_are_those_of_either_version():

@@ -1,0 +1,289 @@
+"""Meshes of parts made of numbers: closed, oriented, with exact normals and counts."""
+
+# pyright: reportAttributeAccessIssue=false
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.cad.examples import all_kinds, box
+from gaussmap.tools.cad.part import Part
+from gaussmap.tools.cad.part_mesh import PartMesh
+
+SIZES = np.array([1.0, 2.0, 3.0])
+
+
+def meshed(part: Part, count: int) -> PartMesh:
+    mesh = gm.sample(part, count).mesh()
+    assert isinstance(mesh, PartMesh)
+    return mesh
+
+
+def sound(mesh: PartMesh, count: int) -> PartMesh:
+    """Check what holds of each mesh, open or closed, of smooth faces and enough vertices."""
+    assert len(mesh.vertices) == count
+    assert (np.bincount(mesh.triangles.ravel(), minlength=count) > 0).all()
+    assert (mesh.sample_index == -1).all()
+    assert mesh.angles.max() < 60.0  # and so none is inverted
+    np.testing.assert_allclose(np.linalg.norm(mesh.corner_normals, axis=2), 1.0, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-12)
+    ways = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+    assert len(np.unique(ways, axis=0)) == len(ways)  # each edge is passed once in each direction
+    assert mesh.failed == {}
+    return mesh
+
+
+@pytest.mark.parametrize("count", [8, 9, 20, 21, 100, 1000, 1001])
+def test_a_box(count):
+    mesh = sound(meshed(box(*SIZES), count), count)
+    assert mesh.closed
+    assert mesh.euler_characteristic == 2
+    assert len(mesh.boundary_edges) == 0
+    assert mesh.volume == pytest.approx(6.0, rel=1e-12)
+    assert (mesh.angles < 1e-6).all()
+    corners = ((mesh.vertices == 0.0) | (mesh.vertices == SIZES)).all(axis=1)
+    assert corners.sum() == 8
+    for k in range(6):
+        here = mesh.face_index == k
+        outward = np.eye(3)[k // 2] * (2 * (k % 2) - 1)
+        assert np.array_equal(
+            mesh.corner_normals[here], np.broadcast_to(outward, (here.sum(), 3, 3))
+        )
+        on_face = mesh.vertices[mesh.triangles[here]][..., k // 2]
+        assert np.abs(on_face - SIZES[k // 2] * (k % 2)).max() <= 1e-15
+    for line in mesh.lines:
+        along = np.diff(mesh.vertices[line], axis=0)
+        assert ((along > 0.0).sum(axis=1) == 1).all()
+        assert ((along == 0.0).sum(axis=1) == 2).all()
+    assert mesh.summary().startswith(f"{count:,} vertices, {2 * count - 4:,} triangles, closed; ")
+    assert repr(mesh) == f"PartMesh({count:,} vertices, {2 * count - 4:,} triangles on box)"
+
+
+def test_triangles_of_a_box_are_even():
+    mesh = meshed(box(*SIZES), 1000)
+    assert mesh.smallest_angles.min() > 20.0
+    lengths = np.linalg.norm(np.diff(mesh.vertices[mesh.edges], axis=1)[:, 0], axis=1)
+    assert lengths.max() < 4.0 * lengths.min()
+
+
+@pytest.mark.parametrize("count", [200, 2000])
+def test_a_cylinder_is_exact_though_its_circles_have_few_points(made, count):
+    """A circle of a plane is a cubic of nine points; the seam and both circles are shared."""
+    part = made.cylinder()
+    mesh = sound(meshed(part, count), count)
+    assert mesh.closed
+    assert mesh.euler_characteristic == 2
+    assert mesh.volume == pytest.approx(part.volume, rel=20.0 / count)
+    assert mesh.volume < part.volume
+    side = mesh.face_index == 0
+    points = mesh.vertices[mesh.triangles]
+    radii = np.hypot(points[..., 0], points[..., 1])
+    np.testing.assert_allclose(radii[side], 1.0, atol=1e-14)
+    normals = points[side] * [1.0, 1.0, 0.0]
+    np.testing.assert_allclose(mesh.corner_normals[side], normals, atol=1e-13)
+    assert (np.abs(mesh.corner_normals[~side][..., 2]) == 1.0).all()
+    assert (points[mesh.face_index == 1][..., 2] == 0.0).all()
+    assert (points[mesh.face_index == 2][..., 2] == 2.0).all()
+    assert [len(x) > 1 for x in mesh.lines] == [True, True, True]
+    assert mesh.lines[0][0] == mesh.lines[0][-1] == mesh.lines[2][0]
+
+
+@pytest.mark.parametrize("count", [150, 1500])
+def test_a_ball_has_one_vertex_at_each_pole(made, count):
+    mesh = sound(meshed(made.ball(2.0), count), count)
+    assert mesh.closed
+    assert mesh.euler_characteristic == 2
+    np.testing.assert_allclose(np.linalg.norm(mesh.vertices, axis=1), 2.0, atol=1e-14)
+    at_pole = np.abs(mesh.vertices[mesh.triangles][..., 2]) == 2.0
+    away = np.abs(mesh.corner_normals - mesh.vertices[mesh.triangles] / 2.0).max(axis=2)
+    assert away[~at_pole].max() <= 1e-13
+    assert away[at_pole].max() <= 1e-6
+    assert (np.abs(mesh.vertices[:, 2]) == 2.0).sum() == 2
+    assert mesh.volume == pytest.approx(32.0 / 3.0 * np.pi, rel=20.0 / count)
+    assert [len(x) > 0 for x in mesh.lines] == [False, False, True]
+
+
+def test_faces_of_all_kinds_are_open():
+    part = all_kinds()
+    mesh = sound(meshed(part, 2000), 2000)
+    assert not mesh.closed
+    assert np.isnan(mesh.volume)
+    assert mesh.euler_characteristic == len(part.faces)  # disks
+    assert set(mesh.face_index.tolist()) == set(range(len(part.faces)))
+    border = {tuple(x) for x in mesh.boundary_edges.tolist()}
+    lines = {tuple(sorted(x)) for y in mesh.lines for x in np.stack([y[:-1], y[1:]], 1).tolist()}
+    assert border == lines
+    assert "edges on borders" in mesh.summary()
+    for face in part.faces:
+        here = mesh.face_index == face.index
+        corners = mesh.triangles[here]
+        x, x_u, x_v = face.surface.jets(*mesh.uv[corners].reshape(-1, 2).T.copy())[:, :3].transpose(
+            1, 0, 2
+        )
+        np.testing.assert_allclose(x, mesh.vertices[corners].reshape(-1, 3), atol=1e-13)
+        N = np.cross(x_u, x_v)
+        n = N / np.linalg.norm(N, axis=1, keepdims=True)
+        np.testing.assert_allclose(n, mesh.corner_normals[here].reshape(-1, 3), atol=1e-12)
+
+
+def test_open_shells():
+    part = box(*SIZES).select(index=[0, 1, 2, 4, 5])
+    mesh = sound(meshed(part, 300), 300)
+    assert not mesh.closed
+    assert mesh.euler_characteristic == 1
+    on_border = mesh.vertices[mesh.boundary_edges]
+    assert (on_border[..., 1] == SIZES[1]).all()  # of the face that is missing
+
+
+def test_a_hole(made):
+    """A plate with a hole, of two loops: none of the triangles is in the hole."""
+    square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]
+    hole = [(1.0, 1.0), (1.0, 3.0), (3.0, 3.0), (3.0, 1.0)]
+    edges, wires = [], []
+    for first, loop in ((0, square), (4, hole)):
+        wires.append([(first + k, 0, False) for k in range(4)])
+        for k in range(4):
+            ends = loop[k], loop[(k + 1) % 4]
+            edges.append(made.edge((0,), [made.side(ends)], (first + k, first + (k + 1) % 4)))
+    loops = [np.array(square), np.array(hole)]
+    face = made.face(
+        "plane", made.placement(), (0.0, 4.0), (0.0, 4.0), 12.0, loops=loops, wires=wires
+    )
+    vertices = np.array([(*x, 0.0) for x in square + hole])
+    part = made.part([face], "plate", False, edges=edges, vertices=vertices)
+    mesh = sound(meshed(part, 300), 300)
+    assert mesh.euler_characteristic == 0
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+    assert np.cross(b - a, c - a)[:, 2].sum() / 2.0 == pytest.approx(12.0, rel=1e-12)
+
+
+def ring(made, inner: float) -> Part:
+    """Return a flat ring of radii 1 and `inner`, whose circles begin at opposite sides."""
+    u = np.linspace(0.0, made.TURN, 33)
+    edges, loops, wires = [], [], []
+    for k, (radius, start) in enumerate(((1.0, 0.0), (inner, np.pi))):
+        circle = radius * np.stack([np.cos(u + start), np.sin(u + start)], axis=1)
+        slopes = made.TURN * np.stack([-circle[:, 1], circle[:, 0]], axis=1)
+        edges.append(made.edge((0,), [made.side(circle, slopes)], (k, k)))
+        turn = np.linspace(0.0, made.TURN, 1440, endpoint=False)
+        loops.append(radius * np.stack([np.cos(turn), np.sin(turn)], axis=1))
+        wires.append([(k, 0, k == 1)])
+    ends, area = (-1.0, 1.0), np.pi * (1.0 - inner**2)
+    face = made.face("plane", made.placement(), ends, ends, area, loops=loops, wires=wires)
+    vertices = np.array([(1.0, 0.0, 0.0), (-inner, 0.0, 0.0)])
+    return made.part([face], "ring", False, edges=edges, vertices=vertices)
+
+
+@pytest.mark.parametrize("inner", [0.9, 0.995, 0.999])
+def test_edges_are_divided_until_they_do_not_cross(made, inner):
+    """The polygons of two circles that are close cross each other unless they are fine."""
+    part = ring(made, inner)
+    mesh = meshed(part, 600)
+    assert len(mesh.vertices) == 600
+    assert mesh.failed == {}
+    assert mesh.euler_characteristic == 0
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)[:, 2] / 2.0
+    assert across.min() > 0.0
+    assert across.sum() == pytest.approx(part.area, rel=0.02)
+
+
+def test_counts_below_what_edges_need_are_refused(made):
+    for part in (box(*SIZES), made.cylinder(), all_kinds()):
+        with pytest.raises(gm.errors.InputError, match="at least, for its edges") as caught:
+            gm.sample(part, 4).mesh()
+        least = int(str(caught.value).split(" needs ")[1].split()[0].replace(",", ""))
+        assert len(meshed(part, least).vertices) == least
+        with pytest.raises(gm.errors.InputError, match=f"needs {least:,} vertices"):
+            gm.sample(part, least - 1).mesh()
+
+
+# --- what fails -----------------------------------------------------------------------------------
+
+
+def test_a_face_whose_border_crosses_itself_is_missing(made):
+    """The other faces are there, and the mesh never says that it is closed."""
+    whole = box(*SIZES)
+    starts = whole.arrays["side_point_starts"]
+    side, _ = whole.faces[5].wires[0][0]
+    points = whole.arrays["side_points"][starts[side] : starts[side + 1]]
+    points[:, :2] = [(0.9, 1.9), (0.1, 1.9)]
+    points[:, 2:] = points[1, :2] - points[0, :2]
+    with pytest.warns(gm.GaussmapWarning, match="lacks 1 face of 6: of face 5 .* crosses itself"):
+        mesh = gm.sample(whole, 400).mesh()
+    assert list(mesh.failed) == [5]
+    assert not mesh.closed
+    assert set(mesh.face_index.tolist()) == {0, 1, 2, 3, 4}
+    assert mesh.euler_characteristic == 1
+    assert "1 face missing" in mesh.summary()
+    assert len(mesh.vertices) == 400
+
+
+def test_edges_without_places_leave_their_faces_out():
+    whole = box(*SIZES)
+    side, _ = whole.faces[2].wires[0][1]
+    whole.arrays["side_points"][whole.arrays["side_point_starts"][side]] = np.nan
+    with pytest.warns(gm.GaussmapWarning, match="lacks 1 face of 6: face 2 .* are not known"):
+        mesh = gm.sample(whole, 100).mesh()
+    assert list(mesh.failed) == [2]
+    assert len(mesh.boundary_edges)
+
+
+def test_parts_without_loops_of_edges(made):
+    with pytest.raises(gm.errors.InputError, match="read the CAD file again"):
+        gm.sample(made.part(made.box_faces()), 100).mesh()
+
+
+@pytest.mark.parametrize(
+    ("how", "match"), [({"angle": 10.0}, "angle="), ({"prefer": "normals"}, "prefer=")]
+)
+def test_what_parts_do_not_have(how, match):
+    with pytest.raises(gm.errors.InputError, match=match):
+        gm.sample(box(), 100).mesh(**how)
+
+
+# --- files ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb", "vtu"])
+def test_files(made, tmp_path, suffix):
+    mesh = meshed(made.cylinder(), 300)
+    path = tmp_path / f"part.{suffix}"
+    mesh.write(path)
+    if suffix == "vtu":
+        assert path.stat().st_size
+        return
+    trimesh = pytest.importorskip("trimesh")
+    if suffix == "glb":
+        (again,) = trimesh.load_scene(path, process=False).geometry.values()
+    else:
+        again = trimesh.load_mesh(path, process=suffix != "obj")
+    if suffix == "glb":
+        assert len(again.vertices) == len(mesh.split.vertices) == 300 + 2 * (len(mesh.lines[0]) - 1)
+        np.testing.assert_allclose(again.vertex_normals, mesh.split.normals, atol=1e-6)
+        again.merge_vertices(merge_norm=True)
+    if suffix != "obj":
+        assert again.is_watertight
+        assert len(again.vertices) == 300
+        assert again.volume == pytest.approx(mesh.volume, rel=1e-5)
+
+
+def test_obj_files_have_a_normal_at_each_corner(made, tmp_path):
+    mesh = meshed(made.cylinder(), 300)
+    mesh.write(tmp_path / "part.obj")
+    rows = [x.split() for x in (tmp_path / "part.obj").read_text().splitlines()]
+    vertices = np.array([x[1:] for x in rows if x[0] == "v"], float)
+    normals = np.array([x[1:] for x in rows if x[0] == "vn"], float)
+    corners = np.array([[y.split("/")[::2] for y in x[1:]] for x in rows if x[0] == "f"], int) - 1
+    assert np.array_equal(vertices, mesh.vertices)
+    assert np.array_equal(corners[..., 0], mesh.triangles)
+    np.testing.assert_allclose(normals[corners[..., 1]], mesh.corner_normals, atol=1e-9)
+
+
+def test_command_line(tmp_path, monkeypatch, capsys, main):
+    monkeypatch.chdir(tmp_path)
+    box().save("box.npz")
+    assert main(["mesh", "box.npz", "--count", "300", "-o", "box.stl"]) == 0
+    assert "300 vertices, 596 triangles, closed" in capsys.readouterr().out
+    assert (tmp_path / "box.stl").stat().st_size == 84 + 50 * 596
+    assert main(["mesh", "box.npz", "--count", "7", "-o", "no.stl"]) == 2
+    assert "needs 8 vertices at least" in capsys.readouterr().err

@@ -1,0 +1,219 @@
+"""Edges and vertices of a part as those of a mesh: sampled once, for all faces around them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Flags, Indices
+from .edge_sampling import step_of
+from .edges import at_places
+from .faces import own_parameters
+from .part import Face
+from .results import PartSpace
+
+__all__ = ["MeshEdges", "SampledEdges"]
+
+# Steps of edges are measured between this many places, at equal parameters.
+PLACES = 64
+# Steps are so many times shorter at most where an edge is curved more than the faces around.
+BENT = 2.0
+# An edge that ends where it begins has at least so many steps.
+CLOSED = 3
+# Ends of an edge without vertices that are closer than this part of the size are one.
+SAME = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class SampledEdges:
+    """Vertices on edges: points (M, 3), in L; of each edge their numbers and their shares, 0 to 1.
+
+    And of each side u, v.
+
+    These are on the surfaces of pieces of the space, in the direction of the edge, which `edges`
+    has for each side.
+    """
+
+    points: Array
+    numbers: dict[int, Indices]
+    shares: dict[int, Array]
+    uv: dict[int, Array]
+    edges: dict[int, int]
+
+
+@dataclass(eq=False)
+class MeshEdges:
+    """All edges around the pieces of a space, and into how many steps they are divided.
+
+    `sides` (S,) are places in the sides of edges of the part; `owner` (S,) are their edges,
+    `pieces` (S,) their pieces. `more` are shares of edges at which there are further vertices.
+    """
+
+    space: PartSpace
+    sides: Indices
+    owner: Indices
+    pieces: Indices
+    more: dict[int, Array]
+
+    @classmethod
+    def of(cls, space: PartSpace) -> MeshEdges:
+        """Return the edges whose places are known on a piece."""
+        arrays = space.pieces[0].face.part.arrays
+        edges = len(arrays["edge_vertices"])
+        owner = np.repeat(np.arange(edges), np.diff(arrays["edge_side_starts"]))
+        piece_of = np.full(len(arrays["area"]), -1)
+        piece_of[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))
+        pieces = piece_of[arrays["side_faces"]]
+        counts = np.diff(arrays["side_point_starts"])
+        rows = np.repeat(np.arange(len(counts)), counts)
+        finite = np.isfinite(arrays["side_points"]).all(axis=1)
+        known = np.bincount(rows, finite, len(counts)) == counts
+        in_wire = np.isin(np.arange(len(owner)), arrays["wire_sides"])
+        sides = np.flatnonzero((pieces >= 0) & known & (counts >= 2) & in_wire)
+        sides = sides[np.argsort(pieces[sides], kind="stable")]
+        return cls(space, sides, owner[sides], pieces[sides], {})
+
+    @property
+    def arrays(self) -> dict[str, Indices]:
+        """The arrays of the part."""
+        return self.space.pieces[0].face.part.arrays
+
+    def is_known(self, face: Face) -> bool:
+        """Return whether a face has wires, and the places of all edges along them are known."""
+        sides = [side for wire in face.wires for side, _ in wire]
+        return bool(sides) and bool(np.isin(sides, self.sides).all())
+
+    # --- numbers ----------------------------------------------------------------------------------
+
+    @property
+    def least(self) -> int:
+        """The number of vertices of edges that are divided as little as they may be."""
+        return self._count(0)
+
+    def _count(self, spaced: int) -> int:
+        """Return how many vertices edges have that are spaced as in a mesh of `spaced` vertices."""
+        steps = self._steps(spaced)[self.used & ~self.arrays["edge_degenerate"]]
+        more = sum(map(len, self.more.values()))
+        return len(self._vertices[0]) + int((steps - 1).sum()) + more
+
+    def _spaced(self, count: int) -> int:
+        """Return the largest number, up to a count, with which edges do not exceed that count."""
+        if self._count(count) <= count:
+            return count
+        low, high = 0, count
+        while high - low > 1:
+            middle = (low + high) // 2
+            low, high = (middle, high) if self._count(middle) <= count else (low, middle)
+        return low
+
+    @cached_property
+    def used(self) -> Flags:
+        """Which edges (E,) of the part have a side here."""
+        return self.around > 0
+
+    @cached_property
+    def around(self) -> Indices:
+        """The numbers of sides (E,) that edges of the part have here."""
+        return np.bincount(self.owner, minlength=len(self.arrays["edge_vertices"]))
+
+    def _steps(self, spaced: int) -> Indices:
+        """Return the numbers of steps (E,) of edges spaced as in a mesh of `spaced` vertices."""
+        ends = self._vertices[1]
+        least = np.where(ends[:, 0] == ends[:, 1], CLOSED, 1)
+        wanted = np.ceil(self._costs[:, -1] / step_of(self.space, spaced)).astype(np.int64)
+        return np.where(self.arrays["edge_degenerate"], 1, np.maximum(wanted, least))
+
+    @cached_property
+    def _vertices(self) -> tuple[Array, Indices]:
+        """The vertices (V, 3) that are used, and those at the ends of edges (E, 2)."""
+        points, ends = list(self.arrays["vertices"]), self.arrays["edge_vertices"].copy()
+        for row in np.flatnonzero(self.used & (ends < 0).any(axis=1)).tolist():
+            side = int(np.flatnonzero(self.owner == row)[0])
+            uv = self._uv(side, np.array([0.0, 1.0]))
+            there = at_places(self.space, self.pieces[[side, side]], uv).vectors[:, 0]
+            closed = np.linalg.norm(there[1] - there[0]) <= SAME * self.space.size / self.space.unit
+            ends[row] = len(points), len(points) + (not closed)
+            points += list(there[: 2 - closed])
+        numbers, places = np.unique(ends[self.used], return_inverse=True)
+        ends[self.used] = places.reshape(-1, 2)
+        return np.array(points).reshape(-1, 3)[numbers], ends
+
+    def refine(self, sampled: SampledEdges, segments: dict[int, Flags]) -> None:
+        """Add a vertex in the middle of some segments between the vertices of edges."""
+        for edge, chosen in segments.items():
+            if not self.arrays["edge_degenerate"][edge]:
+                at = sampled.shares[edge]
+                middles = (at[1:] + at[:-1])[chosen] / 2.0
+                self.more[edge] = np.concatenate([self.more.get(edge, at[:0]), middles])
+
+    # --- places -----------------------------------------------------------------------------------
+
+    @cached_property
+    def _costs(self) -> Array:
+        """The lengths (E, PLACES + 1) of edges up to places, in units of the sizing function.
+
+        It is the smaller one of those of the faces around. Where an edge is curved more than they
+        are, as the border of a plane, steps are shorter, by the factor BENT at most.
+        """
+        shares = np.linspace(0.0, 1.0, PLACES + 1)
+        uv = [self._uv(k, shares) for k in range(len(self.sides))]
+        owner = np.repeat(self.pieces, len(shares))
+        places = at_places(self.space, owner, np.concatenate([np.empty((0, 2)), *uv])).uv
+        rows = self.space.at(owner, places, keep=True).rows.reshape(-1, len(shares), 8)
+        steps = np.diff(rows[:, :, :3], axis=1)
+        lengths = np.linalg.norm(steps, axis=2)
+        rates = np.sqrt(rows[:, :, 6])
+        costs = np.maximum(rates[:, 1:], rates[:, :-1]) * lengths
+        along = steps / np.where(lengths > 0.0, lengths, 1.0)[..., None]
+        turns = np.linalg.norm(np.diff(along, axis=1), axis=2) / 2.0
+        bends = np.pad(turns, ((0, 0), (0, 1))) + np.pad(turns, ((0, 0), (1, 0)))
+        costs = np.maximum(costs, np.minimum(bends, BENT * costs))
+        found = np.zeros((len(self.around), PLACES))
+        np.maximum.at(found, self.owner, costs)
+        return np.pad(np.cumsum(found, axis=1), ((0, 0), (1, 0)))
+
+    def _uv(self, k: int, shares: Array) -> Array:
+        """Return u, v (M, 2) on its surface at shares (M,) of an edge, on side k of these."""
+        from scipy.interpolate import CubicHermiteSpline
+
+        side, face = self.sides[k], self.space.pieces[self.pieces[k]].face
+        first, last = self.arrays["side_point_starts"][side : side + 2]
+        points = self.arrays["side_points"][first:last]
+        curve = CubicHermiteSpline(np.linspace(0.0, 1.0, len(points)), points[:, :2], points[:, 2:])
+        return own_parameters(face.surface, curve(shares), is_reversed=face.reversed)
+
+    def sampled(self, count: int) -> SampledEdges:
+        """Return the vertices on edges in a mesh of a count, `least` or more.
+
+        Where edges as fine as the inside of faces would have more than these, they are coarser.
+        """
+        points, ends = self._vertices
+        steps, first = self._steps(self._spaced(count)), len(points)
+        shares, numbers = {}, {}
+        even = np.linspace(0.0, 1.0, PLACES + 1)
+        for edge in np.flatnonzero(self.used).tolist():
+            costs, at = self._costs[edge], np.linspace(0.0, 1.0, int(steps[edge]) + 1)
+            at[1:-1] = np.interp(at * costs[-1], costs, even)[1:-1] if costs[-1] > 0.0 else at[1:-1]
+            shares[edge] = np.sort(np.concatenate([at, self.more.get(edge, at[:0])]))
+            inner = np.arange(first, first + len(shares[edge]) - 2)
+            numbers[edge] = np.concatenate([ends[edge, :1], inner, ends[edge, 1:]])
+            first += len(inner)
+        edges = dict(zip(self.sides.tolist(), self.owner.tolist(), strict=True))
+        uv = {side: self._uv(k, shares[edge]) for k, (side, edge) in enumerate(edges.items())}
+        return SampledEdges(self._points(points, first, numbers, uv), numbers, shares, uv, edges)
+
+    def _points(
+        self, vertices: Array, count: int, numbers: dict[int, Indices], uv: dict[int, Array]
+    ) -> Array:
+        """Return the points of vertices, of inner ones those of the first face of their edge."""
+        found = np.concatenate([vertices, np.empty((count - len(vertices), 3))])
+        firsts = np.sort(np.unique(self.owner, return_index=True)[1])
+        rows = [numbers[int(self.owner[k])][1:-1] for k in firsts]
+        inner = [uv[int(self.sides[k])][1:-1] for k in firsts]
+        owner = np.repeat(self.pieces[firsts], [len(x) for x in rows])
+        if len(owner):
+            places = at_places(self.space, owner, np.concatenate(inner))
+            found[np.concatenate(rows)] = places.vectors[:, 0]
+        return found

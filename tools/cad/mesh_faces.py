@@ -1,0 +1,90 @@
+"""The triangles of one face of a part, between vertices on its edges and inside of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Indices
+from ...runtime.base.extras import from_extra
+from .face_pieces import FacePiece
+from .mesh_edges import SampledEdges
+
+__all__ = ["EXTRA", "Crossing", "FaceBorder", "triangles_of"]
+
+# Shapely's constrained triangulations have no points inside; SciPy's have no constraints; the
+# library `triangle` is not free for all uses. Predicates of this one are exact.
+EXTRA = "pythoncdt", "mesh", "a mesh of a CAD part"
+# Places are one if they are as close as this part of the face.
+SAME = 1e-11
+
+
+class Crossing(Exception):  # noqa: N818 - it says what was found
+    """The border of a face crosses itself, or has nothing inside; `face` is its index if known."""
+
+    face = -1
+
+
+@dataclass(frozen=True, eq=False)
+class FaceBorder:
+    """The border of a face: places (k, 2), the numbers (k,) of vertices there, and segments (k, 2).
+
+    Segments join places, by their number; `edges` (k,) are the edges of the part they are on.
+    """
+
+    uv: Array
+    numbers: Indices
+    segments: Indices
+    edges: Indices
+
+    @classmethod
+    def of(cls, piece: FacePiece, sampled: SampledEdges) -> FaceBorder:
+        """Return the border of a piece, whose wires are known."""
+        uv, numbers, segments, edges, first = [], [], [], [], 0
+        for wire in piece.face.wires:
+            start = first
+            for side, backwards in wire:
+                edge = sampled.edges[side]
+                way = slice(None, None, -1 if backwards else 1)
+                uv.append(sampled.uv[side][way][:-1])
+                numbers.append(sampled.numbers[edge][way][:-1])
+                edges.append(np.full(len(uv[-1]), edge))
+                first += len(uv[-1])
+            around = np.arange(start, first)
+            segments.append(np.stack([around, np.roll(around, -1)], axis=1))
+        low, high = np.array(piece.domain).T
+        places = np.clip(np.concatenate(uv), low, high)
+        return cls(places, np.concatenate(numbers), np.concatenate(segments), np.concatenate(edges))
+
+
+def triangles_of(border: FaceBorder, inner: Array, lengths: Array) -> tuple[Indices, Indices]:
+    """Return triangles (k, 3) between places of the border and inner ones, which follow them.
+
+    They run counterclockwise. And the segments (m, 2) between these vertices that are constraints.
+    `lengths` (2,) are those of x_u and x_v. Of places that are one, the first is a vertex. Raises
+    Crossing if the border crosses itself.
+    """
+    cdt = from_extra(*EXTRA)
+    places = np.concatenate([border.uv, inner]) * lengths
+    low = places.min(axis=0)
+    size = float(np.ptp(places, axis=0).max())
+    keys = np.round((places - low) / (SAME * size))
+    _, firsts, same = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(firsts)  # vertices in their own order
+    firsts, rank = firsts[order], np.argsort(order)
+    segments = rank[same.ravel()[border.segments]]
+    segments = np.unique(np.sort(segments[segments[:, 0] != segments[:, 1]], axis=1), axis=0)
+    made = cdt.Triangulation(
+        cdt.VertexInsertionOrder.AUTO, cdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
+    )
+    try:
+        made.insert_vertices(np.ascontiguousarray(places[firsts] - low))
+        made.insert_edges(segments.astype(np.uint32))
+        made.erase_outer_triangles_and_holes()
+    except RuntimeError as error:
+        raise Crossing("the border crosses itself") from error
+    found = np.asarray(made.triangles_array()["vertices"]).astype(np.int64).reshape(-1, 3)
+    if not len(found):
+        raise Crossing("the border has nothing inside")
+    return firsts[found], firsts[segments]

@@ -1,0 +1,381 @@
+"""Meshes of parts: edges first, then the inside of faces, then triangles between them.
+
+All vertices and edges are sampled once, and shared by the faces around them. With these given, the
+cover that samples parts fills the faces. Each face is triangulated in a plane of its parameters,
+scaled by its mean lengths, and edges are flipped in space.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.errors import GaussmapWarning, InputError, SurfaceError
+from ...runtime.base.extras import check_extra
+from ...runtime.base.memory import check_memory
+from ...runtime.base.wording import plural
+from ...runtime.density.cells import Cells, by_piece
+from ...runtime.density.cover import Cover
+from ...runtime.density.filling import Filling, target_of
+from ...runtime.density.grid import Grid
+from ...runtime.density.space import Space
+from ...runtime.samples.request import checked_request
+from ..kernels.flips import flip_edges
+from ..meshes.links import edge_numbers, neighbours
+from ..meshes.mesh import scaled
+from ..meshes.triangulated import LARGEST_DEVIATION, checked_prefer
+from .edges import Places, at_places
+from .mesh_edges import MeshEdges, SampledEdges
+from .mesh_faces import EXTRA, Crossing, FaceBorder, triangles_of
+from .part import Part
+from .part_mesh import PartMesh
+from .results import PartSpace, space_of
+
+__all__ = ["mesh_of_samples"]
+
+# Where a face has no normal, that at this part of the way into the triangle is taken.
+INSIDE = 1e-6
+# Edges are divided further so many times, until faces and their triangles are proper; samples that
+# fell outside of the polygons around faces are replaced so many times.
+ROUNDS, REFILLS = 5, 8
+
+
+def mesh_of_samples(part: Part, count: int, angle: float | None, prefer: str) -> PartMesh:
+    """Return what `Samples.mesh` returns for a count of samples of a part."""
+    if checked_prefer(prefer) != "shape" or angle is not None:
+        what = 'prefer="normals"' if angle is None else "angle=..."
+        raise InputError(f"{what} is for meshes of surfaces, and these samples are of a CAD part.")
+    check_extra(*EXTRA)
+    check_memory("mesh", count)
+    if not any(x.wires for x in part.faces):
+        raise InputError(
+            f"part {part.name!r} does not say how its edges go around its faces, as those in files "
+            "of older versions of gaussmap; read the CAD file again."
+        )
+    whole = space_of(
+        part, None, target_of(checked_request(None, count, None, None, "balanced", 0, None))
+    )
+    known = MeshEdges.of(whole)
+    failed = dict(whole.failed) | {
+        x.face.index: f"{x.label} has edges whose places on it are not known."
+        for x in whole.pieces
+        if not known.is_known(x.face)
+    }
+    while True:
+        meshing = Meshing.of(part, whole, count, failed)
+        crossing = meshing.refine()
+        if not crossing:
+            try:
+                mesh, wrong = meshing.mesh()
+                break
+            except Crossing as error:  # by rounding
+                crossing = {error.face: f"of face {error.face}, {error}."}
+        failed |= crossing
+    if failed:
+        text = (
+            f"lacks {plural(len(failed), 'face')} of {len(part):,}: {next(iter(failed.values()))}"
+        )
+        warnings.warn(f"the mesh of part {part.name!r} {text}", GaussmapWarning, stacklevel=4)
+    if wrong:
+        text = f"has {plural(wrong, 'edge')} in more or fewer triangles than faces are there"
+        warnings.warn(
+            f"the mesh of part {part.name!r} {text}; take more samples.",
+            GaussmapWarning,
+            stacklevel=4,
+        )
+    return mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """Triangles (T, 3) of all faces between places (C,), each of which is on one face.
+
+    `pieces` (C,) are these, `numbers` (C,) the vertices at places, and `known` what else is known
+    of places. `fixed` (m, 2) are segments between places that stay.
+    """
+
+    pieces: Indices
+    numbers: Indices
+    known: Places
+    triangles: Indices
+    fixed: Indices
+
+    def flipped(self, points: Array) -> Indices:
+        """Return better shaped triangles between places with points (C, 3), by flips of edges.
+
+        Triangles at places without a normal, as at tips, stay as they are.
+        """
+        count, normals = len(self.pieces), self.known.normals
+        triangles = self.triangles.copy()
+        adjacent = neighbours(triangles, np.ones(count, dtype=np.bool_))[0]
+        numbers = edge_numbers(triangles, count)
+        without = ~np.asarray(normals.any(axis=1))[triangles].all(axis=1)
+        stay = np.concatenate([np.sort(self.fixed, axis=1) @ [count, 1], numbers[without].ravel()])
+        adjacent[np.isin(numbers, stay)] = -1
+        flip_edges(
+            scaled(points), normals, triangles, np.ones_like(triangles), adjacent, True,
+            math.cos(math.radians(LARGEST_DEVIATION)),
+            np.arange(len(triangles)), np.ones(len(triangles), dtype=np.bool_),
+        )  # fmt: skip
+        return triangles
+
+    def normals(self, space: PartSpace, triangles: Indices) -> Array:
+        """Return unit normals (T, 3, 3) at the corners of triangles.
+
+        Where a face has none, and is one point all along a parameter, that from inside of the
+        triangle is taken: at its middle by this parameter, and close to the corner by the other.
+        """
+        uv, found = self.known.uv, self.known.normals[triangles]
+        rows, corner = np.nonzero(~found.any(axis=2))
+        at = triangles[rows, corner]
+        toward = (uv[triangles[rows]].sum(axis=1) - uv[at]) / 2.0
+        lengths = np.linalg.norm(self.known.vectors[at, 1:], axis=2) * space.sizes[self.pieces[at]]
+        ways = np.where(lengths == lengths.min(axis=1, keepdims=True), 1.0, INSIDE)
+        inside = uv[at] + ways * (toward - uv[at])
+        found[rows, corner] = at_places(space, self.pieces[at], inside).normals
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Meshing:
+    """A mesh of a part that is being made; `failed` are the faces that it lacks, with reasons."""
+
+    part: Part
+    space: PartSpace
+    edges: MeshEdges
+    count: int
+    failed: dict[int, str]
+
+    @classmethod
+    def of(cls, part: Part, whole: PartSpace, count: int, failed: dict[int, str]) -> Meshing:
+        """Return the beginning of a mesh of the pieces of a space that have not failed."""
+        pieces = tuple(x for x in whole.pieces if x.face.index not in failed)
+        if not pieces:
+            raise SurfaceError(f"no face of part {part.name!r} can be meshed: {failed[0]}")
+        space: Space = replace(whole, pieces=pieces, _held={})
+        request = checked_request(None, count, None, None, "balanced", 0, None)
+        space = Filling(space, request, False, lambda number: None).balanced(capped=True)
+        assert isinstance(space, PartSpace)
+        return cls(part, space, MeshEdges.of(space), count, failed)
+
+    def refine(self) -> dict[int, str]:
+        """Divide edges until no border crosses itself; return the faces for which that fails."""
+        crossing, rounds = self._crossing(), 1
+        while crossing and rounds < ROUNDS:
+            sampled = self._sampled()
+            owner = np.unique(np.concatenate([border.edges for _, border, _ in crossing]))
+            all_of = {
+                k: np.ones(len(sampled.shares[k]) - 1, dtype=np.bool_) for k in owner.tolist()
+            }
+            if not self._refine(sampled, all_of):
+                break
+            crossing, rounds = self._crossing(), rounds + 1
+        return {k: text for k, _, text in crossing}
+
+    def _crossing(self) -> list[tuple[int, FaceBorder, str]]:
+        """Return the faces whose borders cross themselves, these, and what is wrong."""
+        found = []
+        for piece, border in zip(self.space.pieces, self._borders(self._sampled()), strict=True):
+            try:
+                triangles_of(border, np.empty((0, 2)), np.ones(2))
+            except Crossing as error:
+                found.append((piece.face.index, border, f"of {piece.label}, {error}."))
+        return found
+
+    def mesh(self) -> tuple[PartMesh, int]:
+        """Return the mesh, and the number of its edges that are wrong.
+
+        Edges are divided where they are, and where triangles point inward, as long as that helps.
+        Raises Crossing if the border of a face crosses itself.
+        """
+        best, least, rounds = None, (0, 0), 0
+        while True:
+            sampled, rounds = self._sampled(), rounds + 1
+            try:
+                mesh = self._made(sampled)
+            except Crossing:
+                if best is None:
+                    raise
+                return best, least[0]
+            wrong, inverted = _wrong(sampled, mesh, self.edges), _inverted(mesh)
+            if best is None or (len(wrong), len(inverted)) < least:
+                best, least = _without_unused(mesh), (len(wrong), len(inverted))
+            coarse = _between(np.concatenate([wrong, inverted]), sampled)
+            if not coarse or rounds == ROUNDS or not self._refine(sampled, coarse):
+                return best, least[0]
+
+    def _refine(self, sampled: SampledEdges, segments: dict[int, Flags]) -> bool:
+        """Divide segments of edges, if there are vertices enough for that; return whether."""
+        before = dict(self.edges.more)
+        self.edges.refine(sampled, segments)
+        if self.edges.least <= self.count:
+            return True
+        self.edges.more = before
+        return False
+
+    def _sampled(self) -> SampledEdges:
+        if self.edges.least > self.count:
+            raise InputError(
+                f"a mesh of part {self.part.name!r} needs {self.edges.least:,} vertices at "
+                f"least, for its edges, and not {self.count:,}; take more samples."
+            )
+        return self.edges.sampled(self.count)
+
+    def _borders(self, sampled: SampledEdges) -> list[FaceBorder]:
+        return [FaceBorder.of(x, sampled) for x in self.space.pieces]
+
+    def _made(self, sampled: SampledEdges) -> PartMesh:
+        """Return a mesh, whose edges may still be wrong; its vertices are numbered as edges say."""
+        borders = self._borders(sampled)
+        cover = self._cover(sampled, borders)
+        first, rounds = len(sampled.points), 0
+        while True:
+            corners = self._corners(borders, cover.added[cover.fixed :], first)
+            used, rounds = np.unique(corners.numbers[corners.triangles]), rounds + 1
+            lacking = self.count - first - int(np.count_nonzero(used >= first))
+            if lacking <= 0 or rounds == REFILLS:
+                return self._mesh(sampled, corners)
+            cover.fill_up(cover.count + lacking)
+
+    def _cover(self, sampled: SampledEdges, borders: list[FaceBorder]) -> Cover:
+        """Return the cover of faces: samples at vertices on edges, and others inside."""
+        pieces = np.repeat(np.arange(len(borders)), [len(x.uv) for x in borders])
+        cells = self.space.at(pieces, np.concatenate([x.uv for x in borders]))
+        cells = cells[np.asarray(cells.rows[:, 3:6].any(axis=1))]
+        none = np.full(len(cells), -1)
+        cover = Cover(self.space, grid=Grid(cells, none, none, (0, 0)))
+        inside = self.count - len(sampled.points)
+        if inside:
+            cover.to_count(len(cells) + inside)
+        return cover
+
+    def _corners(self, borders: list[FaceBorder], added: Cells, first: int) -> Corners:
+        """Return the triangles between vertices on edges and added ones, numbered from `first`."""
+        order = np.argsort(added.pieces, kind="stable")
+        cells = added[order]
+        rows = dict(by_piece(cells))
+        inner = [cells.places[rows.get(k, slice(0, 0))] for k in range(len(borders))]
+        numbers = [first + order[rows.get(k, slice(0, 0))] for k in range(len(borders))]
+        counts = [len(x.uv) + len(y) for x, y in zip(borders, inner, strict=True)]
+        pieces, starts = np.repeat(np.arange(len(borders)), counts), np.cumsum([0, *counts])
+        both = zip(borders, inner, strict=True)
+        known = at_places(
+            self.space, pieces, np.concatenate([x for b, y in both for x in (b.uv, y)])
+        )
+        triangles, fixed = [], []
+        for k, border in enumerate(borders):
+            vectors = known.vectors[starts[k] : starts[k + 1], 1:]
+            lengths = np.sqrt((vectors**2).sum(axis=2).mean(axis=0))
+            lengths = np.where(lengths > 0.0, lengths, 1.0)
+            try:
+                found, segments = triangles_of(border, inner[k], lengths)
+            except Crossing as error:
+                error.face = self.space.pieces[k].face.index
+                raise
+            triangles.append(starts[k] + found)
+            fixed.append(starts[k] + segments)
+        at = np.concatenate(
+            [x for b, y in zip(borders, numbers, strict=True) for x in (b.numbers, y)]
+        )
+        found = np.concatenate(triangles)
+        a, b, c = at[found].T  # at a pole, two may be one
+        proper = (a != b) & (b != c) & (c != a)
+        return Corners(pieces, at, known, found[proper], np.concatenate(fixed))
+
+    def _mesh(self, sampled: SampledEdges, corners: Corners) -> PartMesh:
+        count = max(int(corners.numbers.max()) + 1, len(sampled.points))
+        points, uv = np.zeros((count, 3)), np.zeros((count, 2))
+        points[corners.numbers[::-1]] = corners.known.vectors[::-1, 0]
+        points[: len(sampled.points)] = sampled.points
+        uv[corners.numbers[::-1]] = corners.known.uv[::-1]
+        triangles = corners.flipped(points[corners.numbers])
+        vertices, normals = corners.numbers[triangles], corners.normals(self.space, triangles)
+        at_vertices = np.zeros((count, 3))
+        np.add.at(at_vertices, vertices, normals)
+        faces = np.array([x.face.index for x in self.space.pieces])
+        return PartMesh(
+            points, _unit(at_vertices), uv, vertices, np.full(count, -1), self.part.name,
+            corner_normals=normals, face_index=faces[corners.pieces[triangles[:, 0]]],
+            lines=tuple(self._lines(sampled)), failed=self.failed,
+        )  # fmt: skip
+
+    def _lines(self, sampled: SampledEdges) -> Iterator[Indices]:
+        degenerate = self.edges.arrays["edge_degenerate"].tolist()
+        for edge, is_point in enumerate(degenerate):
+            nothing = is_point or edge not in sampled.numbers
+            yield np.empty(0, dtype=np.int64) if nothing else sampled.numbers[edge]
+
+
+def _unit(vectors: Array) -> Array:
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(lengths > 0.0, lengths, 1.0)
+
+
+# --- what is wrong --------------------------------------------------------------------------------
+
+
+def _wrong(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:
+    """Return the edges (k, 2) of a mesh that are not in as many triangles as they are to be.
+
+    These are two, or, along edges of a part, as many as these have faces around.
+    """
+    count = len(mesh.vertices)
+    numbers, times = np.unique(edge_numbers(mesh.triangles, count), return_counts=True)
+    along, sides = [np.empty((0, 2), dtype=np.int64)], [np.empty(0, dtype=np.int64)]
+    for edge, line in enumerate(mesh.lines):
+        if len(line):
+            along.append(np.sort(np.stack([line[:-1], line[1:]], axis=1), axis=1))
+            sides.append(np.full(len(line) - 1, edges.around[edge]))
+    segments, rows = np.unique(np.concatenate(along) @ [count, 1], return_index=True)
+    wanted = np.concatenate(sides)[rows]
+    expected = np.full(len(numbers), 2)
+    at = np.searchsorted(segments, numbers)
+    on = at < len(segments)
+    on[on] = segments[at[on]] == numbers[on]
+    expected[on] = wanted[at[on]]
+    lost = segments[~np.isin(segments, numbers)]
+    found = np.concatenate([numbers[times != expected], lost])
+    return np.stack(np.divmod(found, count), axis=1)
+
+
+def _inverted(mesh: PartMesh) -> Indices:
+    """Return the edges (k, 2) of triangles that point away from a normal at a corner."""
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    products = np.einsum("tx,tkx->tk", across, mesh.corner_normals)
+    found = mesh.triangles[(products < 0.0).any(axis=1)]
+    return found[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+
+
+def _between(pairs: Indices, sampled: SampledEdges) -> dict[int, Flags]:
+    """Return the segments of edges of a part between the vertices of pairs (k, 2)."""
+    at: dict[int, dict[int, list[int]]] = {x: {} for x in np.unique(pairs).tolist()}
+    for edge, line in sampled.numbers.items():
+        for place in np.flatnonzero(np.isin(line, pairs)).tolist():
+            at[int(line[place])].setdefault(edge, []).append(place)
+    found: dict[int, Flags] = {}
+    for a, b in pairs.tolist():
+        for edge in at[a].keys() & at[b].keys():
+            places = [sorted(x) for x in itertools.product(at[a][edge], at[b][edge])]
+            low, high = min(places, key=lambda x: x[1] - x[0])
+            nothing = np.zeros(len(sampled.numbers[edge]) - 1, dtype=np.bool_)
+            found.setdefault(edge, nothing)[low:high] = True
+    return found
+
+
+def _without_unused(mesh: PartMesh) -> PartMesh:
+    """Return a mesh with those vertices only that its triangles have."""
+    used = np.zeros(len(mesh.vertices), dtype=np.bool_)
+    used[mesh.triangles] = True
+    new = np.cumsum(used) - 1
+    return replace(
+        mesh, vertices=mesh.vertices[used], normals=mesh.normals[used], uv=mesh.uv[used],
+        triangles=new[mesh.triangles], sample_index=mesh.sample_index[used],
+        lines=tuple(new[x] if used[x].all() else x[:0] for x in mesh.lines),
+    )  # fmt: skip
