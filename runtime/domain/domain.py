@@ -25,6 +25,7 @@ __all__ = [
     "checked_boundary",
     "checked_domain",
     "checked_interval",
+    "checked_sides",
     "closes",
     "domain_text",
 ]
@@ -70,8 +71,24 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
 
     And for u and v whether open ends were assumed: `periodic` has False, and not "open".
     """
+    boundary = checked_sides(periodic)
+    for name, other, ends, around in (("u", "v", *boundary), ("v", "u", *boundary[::-1])):
+        if "pole" in ends and around != ("periodic", "periodic"):
+            raise InputError(f'a "pole" of {name} needs {other} to be periodic ("periodic").')
+    assumed_u, assumed_v = (isinstance(x, bool | np.bool_) and not x for x in _entries(periodic))
+    return boundary, (assumed_u, assumed_v)
+
+
+def checked_sides(periodic: Periodic) -> Boundary:
+    """Return the conditions of all sides, of which any may be a pole; InputError if one is none."""
+    along_u, along_v = _entries(periodic)
+    return _pair(along_u, "u"), _pair(along_v, "v")
+
+
+def _entries(periodic: Periodic) -> tuple[Periodicity, Periodicity]:
+    """Return the entries of u and v."""
     if isinstance(periodic, bool | np.bool_):
-        periodic = bool(periodic), bool(periodic)
+        return bool(periodic), bool(periodic)
     try:
         along_u, along_v = periodic
     except (TypeError, ValueError):
@@ -79,12 +96,7 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
             "periodic must be a pair, one entry for u and one for v, or True or False for both, "
             f"not {shown(periodic)}."
         ) from None
-    boundary = _pair(along_u, "u"), _pair(along_v, "v")
-    for name, other, ends, around in (("u", "v", *boundary), ("v", "u", *boundary[::-1])):
-        if "pole" in ends and around != ("periodic", "periodic"):
-            raise InputError(f'a "pole" of {name} needs {other} to be periodic ("periodic").')
-    assumed_u, assumed_v = (isinstance(x, bool | np.bool_) and not x for x in (along_u, along_v))
-    return boundary, (assumed_u, assumed_v)
+    return along_u, along_v
 
 
 def closes(ends: Sequence[str]) -> bool:

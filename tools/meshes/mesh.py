@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...runtime.base.checks import checked_array, text, whole_number
 from ...runtime.base.errors import InputError
 from ...runtime.base.scales import scale_to_one
-from ...runtime.domain.domain import Boundary, Domain, checked_domain
+from ...runtime.domain.domain import Boundary, Domain, checked_domain, checked_sides
 from ...runtime.spline.spline import short_label
 from ..kernels.flips import smallest_cosines, smallest_tangents
 from .links import edge_numbers
@@ -118,7 +118,7 @@ class Mesh(Methods):
         if self.domain is not None:
             object.__setattr__(self, "domain", checked_domain(self.domain))
         if self.boundary is not None:
-            object.__setattr__(self, "boundary", tuple(map(tuple, self.boundary)))
+            object.__setattr__(self, "boundary", checked_sides(self.boundary))
 
     def __repr__(self) -> str:
         return (
