@@ -52,7 +52,6 @@ def sample(
     threads: int | None = None,
     progress: bool = False,
     edges: bool = False,
-    out: Samples | None = None,
 ) -> Samples:
     """Return points of a surface with their normals, dense where it is curved.
 
@@ -104,10 +103,6 @@ def sample(
     edges : bool, default False
         Add samples on the sharp edges of a CAD part, where the normals of two faces differ by more
         than 1°. They come last, and in addition to the others.
-    out : Samples, optional
-        Samples of an earlier call that are no longer needed: their memory is used again for samples
-        of a spline at normals. That is faster for millions of samples. What is read from `out`
-        afterwards, and from other samples with the same arrays, is not defined.
 
     Returns
     -------
@@ -201,11 +196,6 @@ def sample(
     >>> torus = gm.surfaces.torus(major=1.0, minor=0.35)
     >>> gm.sample(torus, normals=[[1, 0, 0], [0, 1, 1]]).normal_index.tolist().count(1)
     2
-    >>> spline = gm.fit(torus)
-    >>> samples = gm.sample(spline, normals=gm.icosphere(20))
-    >>> again = gm.sample(spline, normals=gm.icosphere(20), out=samples)
-    >>> again.points.base is samples.points
-    True
     >>> tilted = gm.sample(torus, 200, reach=((0, 0, 1), 30.0))  # within 30° of upwards
     >>> len(tilted), bool(tilted.normals[:, 2].min() >= 0.866)
     (200, True)
@@ -229,7 +219,6 @@ def sample(
             threads=threads,
             progress=progress,
             edges=edges,
-            out=out,
         )[0]
 
 
@@ -244,7 +233,6 @@ def sample_and_normals(
     dtype: DTypeLike = np.float64,
     on: str | None = None,
     edges: bool = False,
-    out: Samples | None = None,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return what `sample` returns, and the unit normals that were searched."""
     samples, normals = unwarned(
@@ -257,7 +245,6 @@ def sample_and_normals(
         dtype=dtype,
         on=on,
         edges=edges,
-        out=out,
     )
     filled = request.density != "gauss"
     warn_of(samples.report, request.count, 4, coverage=request.coverage, filled=filled)
@@ -284,7 +271,8 @@ def unwarned(
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return the same, without warnings of what is missing.
 
-    `geometries` are those of the surface if they are known already.
+    `geometries` are those of the surface if they are known already, and `out` holds memory for
+    samples of a spline at normals, see `GaussMap.points`.
     """
     edges = yes_or_no(edges, "edges")
     if not isinstance(out, Samples | None):

@@ -271,7 +271,7 @@ def test_command_line(tmp_path, monkeypatch, capsys, main):
 
 def test_out_is_written_again():
     opposite = gm.sample(SPLINE, normals=-NORMALS)
-    again = gm.sample(SPLINE, normals=NORMALS, out=opposite)
+    again = gm.GaussMap(SPLINE).points(NORMALS, out=opposite)
     for name in ARRAY_NAMES:
         assert np.shares_memory(getattr(again, name), getattr(opposite, name))
         assert getattr(again, name).tobytes() == getattr(FULL, name).tobytes()
@@ -284,11 +284,11 @@ def test_out_that_does_not_fit_is_left_alone():
     fixed.points.flags.writeable = False
     for held in (few, single, fixed):
         before = held.points.tobytes()
-        again = gm.sample(SPLINE, normals=NORMALS, out=held)
+        again = gm.GaussMap(SPLINE).points(NORMALS, out=held)
         assert held.points.tobytes() == before
         assert again.points.tobytes() == FULL.points.tobytes()
 
 
 def test_out_must_be_samples():
     with pytest.raises(gm.errors.InputError, match="out must be Samples of an earlier call, not 3"):
-        gm.sample(SPLINE, normals=NORMALS, out=3)  # pyright: ignore[reportArgumentType]
+        gm.GaussMap(SPLINE).points(NORMALS, out=3)  # pyright: ignore[reportArgumentType]
