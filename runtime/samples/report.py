@@ -212,6 +212,8 @@ class SamplingReport:
     (None, None, None)
     >>> report.estimated_faces is None
     True
+    >>> report
+    SamplingReport(surface='torus', normals=2, samples=4, patches=16384, ..., apexes=0)
     >>> report.density is report.edge_samples is report.crs is report.origin is None
     True
     >>> report.developable_share, report.apexes, report.index
@@ -257,6 +259,11 @@ class SamplingReport:
             value = getattr(self, name)
             if value is not None or name in KNOWN:
                 object.__setattr__(self, name, check(value, name))
+
+    def __repr__(self) -> str:
+        known = ((x.name, getattr(self, x.name)) for x in fields(self))
+        shown = ", ".join(f"{name}={value!r}" for name, value in known if value is not None)
+        return f"SamplingReport({shown})"
 
 
 def sampling_report(
@@ -314,7 +321,7 @@ def _unseen(report: SamplingReport) -> list[str]:
     if share > WORTH_A_WARNING:
         return [
             f"{100 * share:.0f} % of its area is flat or developable (K = 0), which no set "
-            "of normals samples"
+            "of normals can sample"
         ]
     if report.samples == 0 and report.developable_patches == report.patches:
         return ["it is flat or developable up to the rounding of its coordinates"]

@@ -101,11 +101,11 @@ class Samples(SampleArrays, Methods):
     >>> import numpy as np
     >>> samples = gm.sample("torus", 200, cells=(16, 16))
     >>> samples
-    Samples(200 points on torus: 125 dome-shaped, 75 saddle-shaped)
+    Samples(200 points on torus: 125 with K > 0, 75 with K < 0)
     >>> samples[samples.elliptic][:10]
-    Samples(10 points on torus: 10 dome-shaped)
+    Samples(10 points on torus: 10 with K > 0)
     >>> samples[0], [len(one) for one in samples[:3]]
-    (Samples(1 point on torus: 1 dome-shaped), [1, 1, 1])
+    (Samples(1 point on torus: 1 with K > 0), [1, 1, 1])
     >>> np.asarray(samples) is samples.points
     True
     >>> samples.points.shape, samples.normals.shape, samples.uv.shape
@@ -153,7 +153,7 @@ class Samples(SampleArrays, Methods):
         --------
         >>> import gaussmap as gm
         >>> gm.sample("torus", normals=[[1, 0, 0], [0, 1, 1]], cells=(16, 16)).summary()
-        '4 samples at 2 prescribed normals, exactly 2 each (2 dome-shaped, ...); complete: ...'
+        '4 samples at 2 prescribed normals, exactly 2 each (2 with K > 0, ...); proved ...'
 
         """
         return summary_of(self)

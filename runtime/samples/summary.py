@@ -15,9 +15,7 @@ if TYPE_CHECKING:
 
 __all__ = ["kinds_of_points", "misfit_clause", "summary_of"]
 
-# Terms of the glossary in plain words: K = 0 (developable, parabolic), and a graded grid.
-FLAT = "flat or curved one way only"
-GRID = "a grid that follows the curvature"
+GRID = "a grid that follows the curvature"  # a graded grid, in plain words
 
 
 def summary_of(samples: SampleArrays) -> str:
@@ -27,7 +25,8 @@ def summary_of(samples: SampleArrays) -> str:
     if len(samples) != report.samples:
         line = f"{len(samples):,} of {report.samples:,}" + line.removeprefix(f"{len(samples):,}")
     if report.proved is not None and report.normals:
-        line += f"; complete: proved for {report.proved:,} of {plural(report.normals, 'normal')}"
+        line += f"; proved to be complete for {report.proved:,} of "
+        line += plural(report.normals, "normal")
     if report.angle is not None:
         line += f"; every normal is within {report.angle:.3g}° of that of a sample"
     if report.coverage is not None:
@@ -35,7 +34,8 @@ def summary_of(samples: SampleArrays) -> str:
     if report.developable_share is not None and not _filling(samples):
         share = f"{100.0 * report.developable_share:.2f}"
         if share != "0.00":
-            line += f"; {share} % of the surface is {FLAT}, where normals find no samples"
+            line += f"; {share} % of the surface is flat or developable (K = 0), which no set of "
+            line += "normals can sample"
     if report.on == "spline":
         line += misfit_clause(report)
     if report.faces is not None:
@@ -136,9 +136,8 @@ def _infinite(samples: SampleArrays) -> str:
 
 
 def kinds_of_points(samples: SampleArrays) -> str:
-    """Return the numbers of points of each kind, or which fields there are.
+    """Return the numbers of points by the sign of K, or which fields there are.
 
-    Those that are elliptic (K > 0) are called dome-shaped, bowls included, as sides are arbitrary.
     Parabolic points are counted as such, and not by the sign bit of K.
     """
     if "gaussian_curvature" not in samples.fields:
@@ -146,6 +145,6 @@ def kinds_of_points(samples: SampleArrays) -> str:
     parabolic, negative = samples.parabolic, samples.hyperbolic
     zero, hyperbolic = (int(np.count_nonzero(x)) for x in (parabolic, negative & ~parabolic))
     elliptic = len(samples) - hyperbolic - zero
-    numbers = {"dome-shaped": elliptic, "saddle-shaped": hyperbolic, FLAT: zero}
-    said = [f"{number:,} {kind}" for kind, number in numbers.items() if number]
+    numbers = {">": elliptic, "<": hyperbolic, "=": zero}
+    said = [f"{number:,} with K {sign} 0" for sign, number in numbers.items() if number]
     return f": {', '.join(said or ['none'])}"

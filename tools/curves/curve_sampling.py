@@ -196,7 +196,7 @@ class CurveSamples:
         )
         if report.proved is None:
             return line
-        return f"{line}; complete: proved for {report.proved:,} of {report.normals:,} normals"
+        return f"{line}; proved to be complete for {report.proved:,} of {report.normals:,} normals"
 
     def __len__(self) -> int:
         return len(self.support)

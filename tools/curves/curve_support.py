@@ -96,8 +96,18 @@ class SupportFunction(ABC):
     >>> h, other = map(gm.curves.SupportFunction.of_spline, (circle, ellipse))
     >>> (h + other.offset(0.5)).branches([[1, 0]]).support.round(3)
     array([3.5])
+    >>> h, h + other.offset(0.5)
+    (SupportFunction(curve), SupportFunction(curve + curve, moved))
 
     """
+
+    @property
+    @abstractmethod
+    def _label(self) -> str:
+        """What the function is of."""
+
+    def __repr__(self) -> str:
+        return f"SupportFunction({self._label})"
 
     @staticmethod
     def of_spline(curve: CurveSpline | Curve, pieces: int | None = None) -> SupportFunction:
@@ -317,11 +327,15 @@ class SupportFunction(ABC):
         return Moved(self, turn=-np.eye(2), growth=-1.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class OfSpline(SupportFunction):
     """The support functions of all arcs of a spline."""
 
     spline: CurveSpline
+
+    @property
+    def _label(self) -> str:
+        return self.spline.name
 
     def _at(self, normals: Array) -> CurveBranches:
         samples = filled(self.spline, normals, find(self.spline, normals))
@@ -334,12 +348,16 @@ class OfSpline(SupportFunction):
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sum(SupportFunction):
     """h₁ + h₂: points and radii of curvature add, for all pairs of branches of a normal."""
 
     first: SupportFunction
     second: SupportFunction
+
+    @property
+    def _label(self) -> str:
+        return f"{self.first._label} + {self.second._label}"
 
     def _at(self, normals: Array) -> CurveBranches:
         one, two = self.first._at(normals), self.second._at(normals)
@@ -353,7 +371,7 @@ class Sum(SupportFunction):
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Moved(SupportFunction):
     """That of the points M x + t + d n, with the normals of x after `turn`.
 
@@ -366,6 +384,10 @@ class Moved(SupportFunction):
     shift: Array = field(default_factory=partial(np.zeros, 2))
     distance: float = 0.0
     growth: float = 1.0
+
+    @property
+    def _label(self) -> str:
+        return f"{self.of._label}, moved"
 
     def _at(self, normals: Array) -> CurveBranches:
         branches = self.of._at(normals @ self.turn)

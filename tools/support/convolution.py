@@ -55,7 +55,7 @@ class Convolution:
     >>> ball = gm.surfaces.ellipsoid(a=0.2, b=0.1, c=0.1)
     >>> sums = gm.convolve("torus", ball, [[1, 0, 0], [0, 1, 1]], cells=(16, 16))
     >>> sums[sums.samples.elliptic]
-    Convolution(Samples(2 points on torus + ellipsoid: 2 dome-shaped))
+    Convolution(Samples(2 points on torus + ellipsoid: 2 with K > 0))
     >>> i, j = sums.rows.T
     >>> np.allclose(sums.samples.points, sums.first.points[i] + sums.second.points[j])
     True

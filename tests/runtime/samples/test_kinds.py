@@ -22,7 +22,7 @@ def test_planes_and_cylinders_are_parabolic(name, shift, factor, cells):
     )
     samples = gm.sample(gm.fit(moved, cells), 100)
     assert samples.parabolic.all()
-    assert "(100 flat or curved one way only)" in samples.summary()
+    assert "(100 with K = 0)" in samples.summary()
     assert (samples.elliptic ^ samples.hyperbolic).all()
 
 

@@ -23,7 +23,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 REPORT = SamplingReport("torus", 8, 12, 4, 0.125, 1)
-FLAT = "of the surface is flat or curved one way only, where normals find no samples"
+FLAT = "of the surface is flat or developable (K = 0), which no set of normals can sample"
 
 
 def torus(count: Any = 12, **changes: Any) -> Samples:
@@ -367,7 +367,7 @@ class TestText:
 
     def test_repr(self):
         assert repr(self.samples()) == (
-            "Samples(10,012 points on torus: 5,012 dome-shaped, 5,000 saddle-shaped)"
+            "Samples(10,012 points on torus: 5,012 with K > 0, 5,000 with K < 0)"
         )
 
     def test_repr_of_parabolic_samples(self):
@@ -375,9 +375,7 @@ class TestText:
         samples = curved([0.0, -0.0, 1e-12, -1e-12, 1e-3, -1e-3], np.ones(6))
         assert samples.hyperbolic.tolist() == [False, True, False, True, False, True]
         assert samples.parabolic.tolist() == [True, True, True, True, False, False]
-        assert repr(samples).endswith(
-            ": 1 dome-shaped, 1 saddle-shaped, 4 flat or curved one way only)"
-        )
+        assert repr(samples).endswith(": 1 with K > 0, 1 with K < 0, 4 with K = 0)")
 
     def test_repr_stays_one_short_line(self):
         samples = torus(report=replace(REPORT, surface="x**2 +\n y**2 " * 20))
@@ -388,9 +386,9 @@ class TestText:
 
     def test_summary(self):
         assert self.samples().summary() == (
-            "10,012 samples at 1,234,567 prescribed normals (5,012 dome-shaped, "
-            "5,000 saddle-shaped); 3.12 % of the surface is flat or curved one way only, "
-            "where normals find no samples"
+            "10,012 samples at 1,234,567 prescribed normals (5,012 with K > 0, "
+            "5,000 with K < 0); 3.12 % of the surface is flat or developable "
+            "(K = 0), which no set of normals can sample"
         )
 
     @pytest.mark.parametrize(
@@ -412,8 +410,7 @@ class TestText:
         samples = self.samples()
         samples = replace(samples, report=replace(samples.report, developable_share=share))
         start = (
-            "10,012 samples at 1,234,567 prescribed normals "
-            "(5,012 dome-shaped, 5,000 saddle-shaped)"
+            "10,012 samples at 1,234,567 prescribed normals (5,012 with K > 0, 5,000 with K < 0)"
         )
         assert samples.summary() == start + end
 
@@ -441,13 +438,13 @@ class TestText:
         samples = replace(self.samples(), normal_index=np.maximum(indices, -1))
         assert samples.summary() == (
             "10,012 samples: 5,000 at 1,234,567 prescribed normals, 5,012 filling gaps "
-            "(5,012 dome-shaped, 5,000 saddle-shaped)"
+            "(5,012 with K > 0, 5,000 with K < 0)"
         )
         assert samples[:5012].summary() == (
-            "5,012 of 10,012 samples filling gaps (12 dome-shaped, 5,000 saddle-shaped)"
+            "5,012 of 10,012 samples filling gaps (12 with K > 0, 5,000 with K < 0)"
         )
         without = replace(samples, report=replace(samples.report, normals=0))
-        assert without[:10].summary() == "10 of 10,012 samples (10 saddle-shaped)"
+        assert without[:10].summary() == "10 of 10,012 samples (10 with K < 0)"
 
     @pytest.mark.parametrize(
         ("changes", "text"),
@@ -492,7 +489,7 @@ class TestText:
             replace(self.samples(), report=report)
             .summary()
             .endswith(
-                "saddle-shaped); 1,234 samples could not be moved to the surface: there normals "
+                "with K < 0); 1,234 samples could not be moved to the surface: there normals "
                 "and curvatures are those of its spline"
             )
         )
@@ -517,18 +514,19 @@ class TestText:
         known = {"fit_distance": 1.0696e-5, "fit_rms": 6.0347e-6, "fit_angle": angle}
         report = replace(self.samples().report, developable_share=0.0, on=on, **known)
         summary = replace(self.samples(), report=report).summary()
-        assert summary.endswith("5,000 saddle-shaped)" + end)
+        assert summary.endswith("5,000 with K < 0)" + end)
 
     def test_summary_of_a_part(self):
         assert self.samples()[:10].summary() == (
-            "10 of 10,012 samples at 1,234,567 prescribed normals (10 saddle-shaped); "
-            "3.12 % of the surface is flat or curved one way only, where normals find no samples"
+            "10 of 10,012 samples at 1,234,567 prescribed normals (10 with K < 0); "
+            "3.12 % of the surface is flat or developable (K = 0), which no set of normals can "
+            "sample"
         )
 
     def test_summary_of_what_is_unknown(self):
         report = SamplingReport("an unknown surface", None, 10012, None, None, None)
         samples = replace(self.samples(), report=report)
-        assert samples.summary() == "10,012 samples (5,012 dome-shaped, 5,000 saddle-shaped)"
+        assert samples.summary() == "10,012 samples (5,012 with K > 0, 5,000 with K < 0)"
 
 
 def test_write(tmp_path):

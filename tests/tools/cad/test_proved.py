@@ -188,7 +188,7 @@ def test_planes_cylinders_and_cones_have_lines_of_points(made, is_reversed):
         samples = gm.sample(part, normals=normals)
     assert len(samples) == 0
     assert samples.report.proved == 3
-    assert "complete: proved for 3 of 6 normals" in samples.summary()
+    assert "proved to be complete for 3 of 6 normals" in samples.summary()
     assert [(x.normal, x.face, x.kind) for x in samples.report.undecided] == [
         (k, k, "continuum") for k in range(3)
     ]

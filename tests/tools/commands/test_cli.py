@@ -78,7 +78,7 @@ def test_sample_a_surface_by_name() -> None:
     assert (done.returncode, done.stderr) == (0, "")
     assert re.fullmatch(
         r"torus\.ply: 10,000 samples: [\d,]+ at [\d,]+ prescribed normals, [\d,]+ filling gaps "
-        r"\([\d,]+ dome-shaped, [\d,]+ saddle-shaped\)\n",
+        r"\([\d,]+ with K > 0, [\d,]+ with K < 0\)\n",
         done.stdout,
     )
     samples = gm.read_samples("torus.ply")

@@ -423,5 +423,5 @@ def test_words() -> None:
     assert repr(samples) == f"CurveSamples({len(samples)} points on eight)"
     assert samples.summary() == (
         f"{len(samples)} samples at 10 prescribed normals; 2 inflections; "
-        "0.15 % of the curve is straight; complete: proved for 10 of 10 normals"
+        "0.15 % of the curve is straight; proved to be complete for 10 of 10 normals"
     )
