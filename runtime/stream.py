@@ -100,8 +100,8 @@ def sample_stream(
     request = checked_request(normals, count, None, None, "gauss", 0, threads)
     if pieces := pieces_to_sample(surface):
         raise InputError(
-            f"surface {surface.name!r} has {len(pieces)} pieces between lines where its normal "
-            "turns; stream each of surface.pieces(), or gm.fit(surface), which rounds these lines."
+            f"surface {surface.name!r} has {len(pieces)} smooth pieces between creases; "
+            "stream each of surface.pieces(), or gm.fit(surface), which rounds the creases."
         )
     if request.normals is not None:  # the caller may change them before the last chunk
         request = replace(request, normals=request.normals.copy())

@@ -143,7 +143,7 @@ def mesh(
     Parameters
     ----------
     spline : Spline, optional
-        The spline of the samples, if they do not know it; for an offset that of `offset_of`.
+        The spline of the samples, if they do not hold it; for an offset that of `offset_of`.
     angle : float, optional
         In degrees. Triangles that deviate from a normal at a corner by more are left out, for
         samples of a part of the surface only. Not for CAD parts.
@@ -381,7 +381,7 @@ def plot(
     Parameters
     ----------
     surface : Surface, Spline or Part, optional
-        What the samples are on, if they do not know it.
+        What the samples are on, if they do not hold it.
     color, view, axes, normals : optional
         As in `plot`: what the colours show, elevation and azimuth in degrees, axes of your own,
         the prescribed normals.
@@ -423,7 +423,7 @@ def view(
     path : str or os.PathLike
         Name of the file, with the suffix `.html` or `.htm`. It is written whole or not at all.
     surface : Surface, Spline or Part, optional
-        What the samples are on, if they do not know it.
+        What the samples are on, if they do not hold it.
 
     Raises
     ------

@@ -22,8 +22,8 @@ CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp", ".rle")
 RASTER_SUFFIXES = (".tif", ".tiff")
 _MESH_SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".3mf", ".vtk", ".vtu", ".vtp")
 NO_MESHES = (
-    "meshes are not taken, because triangles have no curvature; give the CAD file that it was made "
-    "of (.step, .iges), points in a grid (m, n, 3), or a formula"
+    "meshes are not taken, because triangles have no curvature; give the CAD file from which it "
+    "was made (.step, .iges), points in a grid (m, n, 3), or a formula"
 )
 NO_CLOUDS = (
     "points (N, 3) in no order are not taken, because they do not say which are neighbours; give "

@@ -88,8 +88,9 @@ def check_memory(request: str, number: float, row: float = 0.0) -> None:
         return
     things, *_, instead = COSTS[request]
     raise InputError(
-        f"{number:,.0f} {things} need about {needed / GIB:,.1f} GiB of memory, and "
-        f"{max(free, 0.0) / GIB:,.1f} GiB are free, a quarter of it for other programs; {instead}."
+        f"{number:,.0f} {things} need about {needed / GIB:,.1f} GiB of memory; "
+        f"{max(free, 0.0) / GIB:,.1f} GiB are free, a quarter of which is left to other programs; "
+        f"{instead}."
     )
 
 

@@ -42,9 +42,9 @@ def pieces_to_sample(surface: object) -> tuple[Surface, ...]:
     pieces = surface.pieces() if isinstance(surface, Surface) else ()
     if len(pieces) > MOST_PIECES and isinstance(surface, Surface):
         raise InputError(
-            f"surface {surface.name!r} has {len(pieces):,} pieces between lines where its normal "
-            f"turns, and at most {MOST_PIECES:,} are sampled as one; gm.fit(surface) gives one "
-            "spline, which rounds these lines."
+            f"surface {surface.name!r} has {len(pieces):,} smooth pieces between creases, "
+            f"and at most {MOST_PIECES:,} are sampled as one; gm.fit(surface) gives one "
+            "spline, which rounds the creases."
         )
     return pieces if len(pieces) > 1 else ()
 

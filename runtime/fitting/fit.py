@@ -286,6 +286,6 @@ def _close(surface: Surface, vertices: NDArray[np.float64]) -> None:
         for end, place, row in zip(ends, surface.domain[axis], (0, -1), strict=True):
             if end == "pole" and apart(rows[row], rows[row, :1], vertices):
                 raise SurfaceError(
-                    f"surface {surface.name!r} has no pole at {along} = {place}: it is not "
-                    "one point there."
+                    f"surface {surface.name!r} has no pole at {along} = {place}: this side "
+                    "of its domain is not one point."
                 )

@@ -97,9 +97,7 @@ def checked_request(
     if steps > MOST_STEPS:
         raise InputError(f"relax must be at most {MOST_STEPS}, not {steps}.")
     if kind == "gauss" and steps:
-        raise InputError(
-            'relax moves samples that normals did not ask for; density="gauss" has none.'
-        )
+        raise InputError('relax moves the samples that fill gaps, and density="gauss" has none.')
     cap = checked_reach(reach)
     if cap is not None and kind == "aligned":
         raise InputError(
@@ -140,6 +138,6 @@ def _check_that_they_fit(density: str | float, given: list[str]) -> None:
     if given not in fitting:
         shown = f'"{density}"' if isinstance(density, str) else density
         raise InputError(
-            f"density={shown} cannot be asked for by {' and '.join(f'{x}=...' for x in given)}; "
+            f"density={shown} does not go with {' and '.join(f'{x}=...' for x in given)}; "
             f"use {' or '.join(f'{x[0]}=...' for x in fitting if len(x) == 1)}."
         )

@@ -174,7 +174,7 @@ def spline_or(samples: Samples, spline: Spline | None) -> Spline:
         )
     if spline is None:
         raise InputError(
-            "these samples do not know the spline that was sampled (those from a file, of an "
+            "these samples do not hold the spline that was sampled (those from a file, of an "
             "offset and of several pieces do not); give it, as in "
             "samples.mesh(gm.fit(surface)), or sample each of surface.pieces()."
         )

@@ -106,8 +106,8 @@ class Child:
         except EOFError:
             _end(process)
             raise FileError(
-                f"the process that samples does not start (exit code {process.returncode}); look "
-                "at what it says, or raise memory_limit."
+                f"the process for sampling did not start (exit code {process.returncode}); see "
+                "its messages, or raise memory_limit."
             ) from None
         return process
 

@@ -73,7 +73,7 @@ def run_on_cluster(
     except (CancelledError, distributed.scheduler.KilledWorker) as error:
         raise FileError(
             f"the cluster has lost shards ({type(error).__name__}): its scheduler has ended, or "
-            "workers end again and again; what is done is kept, run the same again."
+            "workers end again and again; what is done is kept: run the same again."
         ) from error
 
 

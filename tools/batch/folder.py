@@ -192,8 +192,8 @@ def replaced(folder: Path, path: Path) -> Iterator[Path]:
         os.replace(temporary, path)
     except OSError as error:
         raise FileError(
-            f"'{path}' cannot be written: {reason_of(error)}; what is done is kept, run the same "
-            "again when that is mended."
+            f"'{path}' cannot be written: {reason_of(error)}; what is done is kept: correct "
+            "this, and run the same again."
         ) from error
     finally:
         with suppress(OSError):

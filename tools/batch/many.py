@@ -234,7 +234,7 @@ def sample_many(
     request = checked_request(normals, count, angle, coverage, density, relax, threads, reach)
     shows = yes_or_no(progress, "progress")
     if isinstance(surfaces, str | bytes) or not _iterates(surfaces):
-        raise InputError(f"sample_many takes surfaces to go through, not {shown(surfaces)}.")
+        raise InputError(f"sample_many takes an iterable of surfaces, not {shown(surfaces)}.")
     of_data_sets = {
         "workers": workers, "scheduler": scheduler, "memory_limit": memory_limit, "files": files
     }  # fmt: skip

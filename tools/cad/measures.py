@@ -31,7 +31,7 @@ def volume_of(part: Part) -> float:
     """Return the volume, in L³; SurfaceError if the faces are not known to enclose solids."""
     if not part.oriented or part.failed or part.about.get("source_indices"):
         lack = "some of its faces cannot be used" if part.failed else "its faces enclose no solids"
-        raise SurfaceError(f"part {part.name!r} has no volume that is known: {lack}.")
+        raise SurfaceError(f"the volume of part {part.name!r} is not known: {lack}.")
     space = space_of(part, None)
     if space.failed:
         raise SurfaceError(next(iter(space.failed.values())))

@@ -222,8 +222,8 @@ class Meshing:
     def _sampled(self) -> SampledEdges:
         if self.edges.least > self.count:
             raise InputError(
-                f"a mesh of part {self.part.name!r} needs {self.edges.least:,} vertices at "
-                f"least, for its edges, and not {self.count:,}; take more samples."
+                f"a mesh of part {self.part.name!r} needs at least {self.edges.least:,} "
+                f"vertices for its edges, and there are {self.count:,} samples; take more."
             )
         return self.edges.sampled(self.count)
 

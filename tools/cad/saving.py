@@ -149,7 +149,7 @@ def read_arrays(path: PathLike) -> tuple[dict[str, NDArray[Any]], dict[str, Any]
 def _read(file: BufferedReader) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     with archive_of(file) as archive:
         if archive.unpacked > MOST_BYTES:
-            raise UnusableError("says that it holds more than 4 GB, and is not read.")
+            raise UnusableError("claims to hold more than 4 GB, and is not read.")
         names = names_of_first(dtypes()) if is_of_first(archive.names) else dtypes()
         missing = [name for name in names if name not in archive.names]
         if missing:

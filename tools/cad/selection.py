@@ -113,7 +113,9 @@ def _colour(color: str | ArrayLike) -> Array:
     if not isinstance(color, str):
         return finite_array(color, (3,), "color")
     if not re.fullmatch("#[0-9a-fA-F]{6}", color):
-        raise InputError(f'color must be as "#ff8000", or three numbers, not {shown(color)}.')
+        raise InputError(
+            f'color must be a text such as "#ff8000", or three numbers, not {shown(color)}.'
+        )
     return np.array(list(bytes.fromhex(color[1:]))) / 255.0
 
 
@@ -121,7 +123,7 @@ def _at(index: ArrayLike, count: int) -> Flags:
     """Return which of so many faces are at some places; InputError for others."""
     places, chosen = np.atleast_1d(np.asarray(index)), np.zeros(count, dtype=np.bool_)
     if places.dtype.kind not in "iu" or places.ndim != 1:
-        raise InputError(f"index must be places of faces, whole numbers, not {shown(index)}.")
+        raise InputError(f"index must be whole numbers, places in part.faces, not {shown(index)}.")
     bad = places[(places < 0) | (places >= count)]
     if len(bad):
         raise InputError(f"index holds {bad[0]}, and the faces are 0 to {count - 1:,}.")

@@ -111,5 +111,5 @@ def _rows(options: SimpleNamespace, tally: Tally, seconds: float) -> list[tuple[
         rows += [(f"  {name}", error) for name, error in tally.failures]
         if tally.failed > len(tally.failures):
             rows.append(("  …", f"and {tally.failed - len(tally.failures):,} more"))
-        rows.append(("next", "mend these and run the same again, with --retry-failed"))
+        rows.append(("next", "correct these, and run the same again with --retry-failed"))
     return rows

@@ -58,7 +58,7 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
 def _named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
     """Return the normals that are named or in a file; None if a number says how many samples."""
     if options.seed is not None and options.random is None:
-        raise InputError("--seed is for --random COUNT, which is not there.")
+        raise InputError("--seed goes with --random COUNT only.")
     if options.frequency is not None:
         return directions.icosphere(options.frequency)
     if options.healpix is not None:

@@ -80,7 +80,8 @@ MESH_EXAMPLES = """\
 examples:
   gaussmap mesh torus --count 5000 -o torus.obj
   gaussmap mesh heights.npy --spacing 30 30 --count 50000 -o terrain.ply
-  gaussmap mesh torus --normals cap.npy --deviation 20 -o part.stl
+  gaussmap mesh torus --normals cap.npy --deviation 20 -o cap.stl
+  gaussmap mesh part.step --count 8000 -o part.stl
 """
 
 PLOT_EXAMPLES = """\
@@ -156,7 +157,7 @@ def _sample() -> Command:
         "sample",
         "Sample a surface and write the samples to a file: points with normals, parameters and "
         "curvatures. Samples are the points that have prescribed normals, and samples that fill "
-        "the gaps between these, where the surface is flat or developable.",
+        "the gaps between these, such as where the surface is flat or developable.",
         *_sampling(default_count=10_000),
         _output(".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .las or .laz"),
         Option("--edges", edges, group="the surface"),
@@ -169,7 +170,7 @@ def _sample() -> Command:
 def _mesh() -> Command:
     deviation = (
         "Leave out triangles whose normal deviates by more from a normal at their corners; for "
-        "samples of a part of the surface."
+        "samples that leave out some of the surface."
     )
     prefer = (
         "shape (default): triangles with large angles; samples very close to others are left out. "
@@ -179,7 +180,7 @@ def _mesh() -> Command:
     return _command(
         "mesh",
         "Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
-        "points on open borders and at poles.",
+        "points on open borders and at poles; of a CAD part, as many points of its own.",
         *_sampling(default_count=10_000),
         _output(".ply, .obj, .stl, .vtk, .vtu, .vtp or .glb"),
         Option("--deviation DEGREES", deviation, number),
@@ -217,7 +218,7 @@ def _batch() -> Command:
     data, run = "the data set", "the run"
     workers = "How many processes sample (default: one for each core)."
     scheduler = (
-        "The address of a scheduler of Dask, such as tcp://host:8786, whose workers sample, and "
+        "The address of a scheduler of Dask, such as tcp://host:8786; its workers sample, and must "
         "see the folder by the same path. Needs pip install 'gaussmap[cluster]'."
     )
     parts = "A file with a part in each line, a name or a path; - for standard input."
@@ -230,7 +231,7 @@ def _batch() -> Command:
     return _command(
         "batch",
         "Sample many parts into a data set: by several processes, into a folder of Parquet files, "
-        "points with normals and curvatures, and a manifest that says of each part how it went. A "
+        "points with normals and curvatures, and a manifest with the outcome for each part. A "
         "part that fails does not end the run. If the run is stopped, the same command goes on "
         "with what is missing. PARTS are surfaces and files as `gaussmap sample` takes them, "
         "patterns and folders; the options hold for all of them. The exit code is 3 if parts "
@@ -260,7 +261,7 @@ def _batch() -> Command:
 def _surfaces() -> Command:
     return _command(
         "surfaces",
-        "List the surfaces of the catalogue, or explain one: with NAME, its parameters.",
+        "List the surfaces of the catalogue, or describe one: with NAME, its parameters.",
         click.Argument(["name"], required=False, shell_complete=surface_names),
     )
 
@@ -286,7 +287,7 @@ def _formulas() -> Command:
     )
     return _command(
         "formulas",
-        "List the formulas that the program computes with, or show one: with NAME, that.",
+        "List the formulas that the program computes with, or show one: that named NAME.",
         click.Argument(["name"], required=False, shell_complete=formula_names),
         Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
         Option("--html FILE.html", page, FILE, exclusive=True),
@@ -298,7 +299,7 @@ def _warm() -> Command:
         "warm",
         "Compile the kernels that the installation lacks: they are kept on disk, so that neither "
         "other commands nor Python programs wait for the compiler on this computer. Wheels have "
-        "all kernels compiled; where these do not fit, it takes minutes.",
+        "all kernels compiled; where these are for another version of Numba, it takes minutes.",
         _quiet(),
     )
 
@@ -306,8 +307,8 @@ def _warm() -> Command:
 def _completion() -> Command:
     return _command(
         "completion",
-        "Let a shell complete commands, surfaces and files: print what bash, zsh or fish has to "
-        "run in order to complete these, options and formulas.",
+        "Let a shell complete commands, surfaces and files: print the script by which bash, zsh or "
+        "fish completes these, options and formulas.",
         click.Argument(["shell"], type=click.Choice(SHELLS)),
         epilog=COMPLETION_EXAMPLES,
     )
@@ -377,10 +378,10 @@ def _distribution() -> list[Option]:
     return [
         Option(
             "--density HOW",
-            "gauss: proportional to |K|, prescribed normals only. balanced (default): that, with "
-            "samples that fill the gaps. aligned: on a grid of lines u = const and v = const, "
-            "spaced by how fast the normal turns. uniform: the same everywhere. A number A: "
-            "proportional to |K|^A.",
+            "balanced (default): higher where a principal curvature is larger, by prescribed "
+            "normals and samples that fill the gaps. gauss: proportional to |K|, prescribed "
+            "normals only. aligned: on a grid of lines u = const and v = const, spaced by how fast "
+            "the normal turns. uniform: the same everywhere. A number A: proportional to |K|^A.",
             density,
             group="how dense",
             default="balanced",

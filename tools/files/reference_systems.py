@@ -46,7 +46,7 @@ def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any: 
     """
     if target is not None and target.is_geographic:
         raise InputError(
-            f"crs={crs_text(target)} has degrees, and normals need lengths; say one in metres, such"
+            f"crs={crs_text(target)} has degrees, and normals need lengths; use one in metres, such"
             " as that of UTM, EPSG:326NN north and 327NN south of the equator for zone NN."
         )
     if target is not None or source is None or not source.is_geographic:
@@ -59,8 +59,8 @@ def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any: 
         number = POLAR[south]
     elif float(np.ptp(x)) > WIDEST_ZONE:
         raise InputError(
-            f"{name} spans {float(np.ptp(x)):.0f} degrees of longitude, too many for UTM; say a "
-            "projection, as in crs='EPSG:3035', or crop it."
+            f"{name} spans {float(np.ptp(x)):.0f} degrees of longitude, too many for UTM; give "
+            "a projection, as in crs='EPSG:3035', or crop it."
         )
     else:
         number = (32701 if south else 32601) + int((middle + 180.0) % 360.0 // 6.0)
@@ -77,7 +77,7 @@ def projected(source: Any, target: Any, x: Array, y: Array, name: str) -> tuple[
         found[:, part] = warp.transform(source, target, flat_x[part], flat_y[part])[:2]
     if not np.isfinite(found).all():
         raise InputError(
-            f"{name} has places that {crs_text(target)} does not hold; say another crs."
+            f"{name} has places outside the range of {crs_text(target)}; use another crs."
         )
     return found[0].reshape(x.shape), found[1].reshape(x.shape)
 

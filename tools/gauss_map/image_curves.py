@@ -235,7 +235,7 @@ def _tracings(gauss_map: GaussMap) -> list[Tracing]:
 def _geometries(gauss_map: GaussMap) -> Sequence[OnSpline]:
     if gauss_map._geometries is None:
         raise InputError(
-            "folds and borders are those of surfaces: ask for those of a face.surface."
+            "folds, borders and margins are for surfaces, not for parts; take a face.surface."
         )
     return gauss_map._geometries
 

@@ -206,7 +206,7 @@ def _checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64
     if none and len(samples):
         return np.empty((0, 3))
     if none:
-        raise InputError("there are no samples to draw; give the normals that they were to have.")
+        raise InputError("there are no samples to draw, and no normals.")
     directions = as_normals(normals)
     if len(samples) and int(samples.normal_index.max()) >= len(directions):
         raise InputError("the samples do not belong to these normals: there are too few normals.")

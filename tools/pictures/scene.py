@@ -118,7 +118,7 @@ def scene_of_samples(
     if base is not None and base.spline is not None:
         return scene_of(base.spline, seen_from, base.distance)
     raise InputError(
-        "these samples do not know their surface (those from a file do not); give it, as in "
+        "these samples do not hold their surface (those from a file do not); give it, as in "
         "samples.plot(surface)."
     )
 

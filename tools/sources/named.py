@@ -45,7 +45,7 @@ class Named:
 
     def __post_init__(self) -> None:
         if self.domain is not None and self.formula is None:
-            raise InputError("--domain is for --formula, which is not there.")
+            raise InputError("--domain goes with --formula only.")
         if self.tolerance is not None and self.cells is not None:
             raise InputError("--tolerance and --cells do not go together; give one of them.")
 

@@ -160,7 +160,7 @@ def _of_raster(raster: Raster, spacing: Sequence[float] | None, path: Path) -> t
         return of_transform(raster.transform, _shape(raster.heights))
     if spacing is None:
         raise InputError(
-            f"'{path}' is not georeferenced; say the size of its pixels by spacing=(dx, dy) "
+            f"'{path}' is not georeferenced; give the size of its pixels by spacing=(dx, dy) "
             "(--spacing DX DY), dy < 0 if rows run from north to south."
         )
     return of_spacing(spacing, _shape(raster.heights))
@@ -242,6 +242,6 @@ def _check_unit(unit: str, system: Any, name: str) -> None:  # noqa: ANN401
     along, factor = system.linear_units_factor
     if abs(factor / METRES[known] - 1.0) > SAME_UNIT:
         raise InputError(
-            f"{name} has heights in {unit} and x, y in {along}: normals need one unit; say a CRS "
+            f"{name} has heights in {unit} and x, y in {along}: normals need one unit; give a CRS "
             f"in {unit} by crs=... (--crs), to which x and y are projected."
         )

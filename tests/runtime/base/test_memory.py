@@ -136,8 +136,8 @@ def test_bounds_on_parts(
 # --- what is refused ------------------------------------------------------------------------------
 
 REFUSED = (
-    r"^[\d,]+ \w[\w ]* need about [\d,]+\.\d GiB of memory, and 1\.0 GiB are free, "
-    r"a quarter of it for other programs; .*\.$"
+    r"^[\d,]+ \w[\w ]* need about [\d,]+\.\d GiB of memory; 1\.0 GiB are free, "
+    r"a quarter of which is left to other programs; .*\.$"
 )
 
 
@@ -300,7 +300,7 @@ def test_limits_of_the_shell(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(resource, "getrlimit", lambda kind: (2**24, resource.RLIM_INFINITY))
     assert memory.memory_limit() == 2.0**24
     assert memory.free_memory() < 0.0  # all of it and more is used
-    with pytest.raises(gm.errors.InputError, match=r"and 0\.0 GiB are free"):
+    with pytest.raises(gm.errors.InputError, match=r"; 0\.0 GiB are free"):
         gm.fibonacci(10**6)
 
 

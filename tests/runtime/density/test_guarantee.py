@@ -300,7 +300,7 @@ def test_coverage_needs_points_and_the_spline(tmp_path):
     samples.write(tmp_path / "a.npz")
     again = gm.read_samples(tmp_path / "a.npz")
     assert again.coverage(spline) == samples.coverage()
-    with pytest.raises(gm.errors.InputError, match="do not know the spline"):
+    with pytest.raises(gm.errors.InputError, match="do not hold the spline"):
         again.coverage()
     with pytest.raises(gm.errors.MissingFieldError, match="'points'"):
         gm.sample(spline, count=50, fields=("uv",)).coverage()

@@ -62,11 +62,11 @@ def test_the_name_of_an_earlier_version():
     ],
 )
 def test_what_a_density_cannot_be_asked_for(asked: dict[str, Any], use: str):
-    refused("cannot be asked for by .*; use .*" + use.replace(".", r"\."), **asked)
+    refused("does not go with .*; use .*" + use.replace(".", r"\."), **asked)
 
 
 def test_relaxing_needs_samples_that_may_move():
-    refused("relax moves samples that normals did not ask for", normals=[[0, 0, 1]], relax=1)
+    refused("relax moves the samples that fill gaps", normals=[[0, 0, 1]], relax=1)
     refused("relax moves samples", count=10, density="gauss", relax=1)
     bad: list[Any] = [-1, 1.0, "1", True, None]
     for steps in bad:

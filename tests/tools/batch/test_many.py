@@ -91,7 +91,7 @@ def test_other_errors_go_through():
 @pytest.mark.parametrize("surfaces", [TORUS, None, "torus", 5])
 def test_what_is_not_several_surfaces(surfaces):
     with pytest.raises(
-        gm.errors.InputError, match="sample_many takes surfaces to go through, not "
+        gm.errors.InputError, match="sample_many takes an iterable of surfaces, not "
     ):
         many(surfaces, count=10)
 

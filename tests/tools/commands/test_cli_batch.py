@@ -58,7 +58,7 @@ def test_a_run_and_the_same_again(capfd: pytest.CaptureFixture[str]) -> None:
         (["--list", "missing.txt", "-o", "set"], "'missing.txt' cannot be read"),
         (["*.step", "-o", "set"], "matches no files"),
         (["folder", "-o", "set"], "has no files of parts"),
-        (["torus", "-o", "set", "--domain", "0", "1", "0", "1"], "--domain is for --formula"),
+        (["torus", "-o", "set", "--domain", "0", "1", "0", "1"], "--domain goes with --formula"),
         (["torus", "-o", "set", "--spacing", "1", "1"], "--spacing is for elevations in a file"),
         (["sphere", "-o", "set", "--set", "minor=1"], "no sphere parameter"),
         (["-o", "set", "--formula", "u", "v", "u*v"], "add --domain"),

@@ -686,7 +686,7 @@ class TestOffsets:
 
     def test_an_unknown_offset_has_no_mesh(self, tmp_path):
         gm.sample(gm.surfaces.torus(), count=100).offset(0.1).write(tmp_path / "a.npz")
-        with pytest.raises(gm.errors.InputError, match="do not know the spline"):
+        with pytest.raises(gm.errors.InputError, match="do not hold the spline"):
             gm.read_samples(tmp_path / "a.npz").mesh()
         with pytest.raises(gm.errors.InputError, match="offset_of must be an OffsetOf or None"):
             gm.Samples(

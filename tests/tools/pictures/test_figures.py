@@ -177,7 +177,7 @@ def test_errors(samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyP
         gm.plot("sphere", 5)  # pyright: ignore[reportArgumentType]
     samples.write(tmp_path / "a.npz")
     read = gm.read_samples(tmp_path / "a.npz")
-    with pytest.raises(gm.errors.InputError, match="do not know their surface"):
+    with pytest.raises(gm.errors.InputError, match="do not hold their surface"):
         read.plot()
     assert len(drawn(read.plot(samples.spline))) > 100
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
