@@ -140,9 +140,9 @@ def sample(
     borders gaps between normals are up to half as wide again.
 
     "balanced" has fewer normals, and samples that fill the gaps: no point is farther from a sample
-    than r/κ, nor than r/√λ. κ is the larger principal curvature, so that normals of neighbours
-    differ by about r, which is twice the angle. λ is 0.8 times the mean of κ², or follows from
-    `coverage`; with a count or a coverage, κ counts up to 20 √λ.
+    than r/κ, nor than r/√λ. κ is the larger of |κ₁| and |κ₂|, so that normals of neighbouring
+    samples differ by about r radians; with `angle`, r is twice the angle. λ is 0.8 times the mean
+    of κ², or follows from `coverage`; with a count or a coverage, κ counts up to 20 √λ.
 
     "aligned" is for `count`, `angle` and `coverage`. Its lines u = const and v = const are spaced
     by how fast the normal turns across them. That takes fewer samples for the same angles where
@@ -157,32 +157,32 @@ def sample(
 
     **On the surface.** All points with prescribed normals are found, with a proof, where the
     derivatives of the surface can be bounded: those of the catalogue, of SymPy expressions, of
-    callables made of NumPy functions, of NURBS without poles, of affine images of these, and of
-    faces of parts. The report says for how many normals the points are `proved` to be all, and
-    lists the others in
-    `undecided`; see `SamplingReport`. What is found out about the last eight surfaces is kept, so
-    that the function of a surface must return the same points each time; `GaussMap` keeps it as
-    long as it is wanted. On other surfaces, and at normals that were not prescribed, a sample is
-    moved by Newton's method from the spline to the point with its normal. Where there is none near
-    by, it stays on the spline and is marked, see `Samples.on_surface`. Samples that fill gaps are
-    evaluated at their parameters.
+    callables made of NumPy functions, of NURBS without a smooth pole (a side that is one point), of
+    affine images of these, and of faces of parts. The report says for how many normals the points
+    are `proved` to be all, and lists the others in `undecided`; see `SamplingReport`. What is found
+    out about the last eight surfaces is kept, so that the function of a surface must return the
+    same points each time; `GaussMap` keeps it as long as it is wanted. On other surfaces, and at
+    normals that were not prescribed, a sample is moved by Newton's method from the spline to the
+    point with its normal. Where there is none near by, it stays on the spline and is marked, see
+    `Samples.on_surface`. Samples that fill gaps are evaluated at their parameters.
 
     **Parts and pieces.** All faces of a part, and all smooth pieces of a surface, have one target
-    density, and one count; angle and coverage hold for the whole. Pieces that are to have a tenth
-    of all samples at normals or more have a lattice of normals; if any of several has none, 5 % of
-    a count go where normals are farthest from those of all samples. Every face has a sample if
-    there are at least twice as many samples as faces. A sample represents only places whose normals
-    are within 60° of its own. Pieces share `cells` in proportion to their parameters, and `spline`
-    of the samples is None. Of parts, `density` is "balanced", "uniform", a number, or "gauss" with
-    `normals`; `cells` and `on` are not for parts.
+    density, and one count; angle and coverage hold for the whole. A piece has samples at normals if
+    these are a tenth of all samples or more; if one of several has none, 5 % of a count go where
+    normals are farthest from those of all samples. Every face has a sample if there are at least
+    twice as many samples as faces. A sample represents only places whose normals are within 60° of
+    its own. Pieces share `cells` in proportion to their parameters, and `spline` of the samples is
+    None. Of parts, `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells`
+    and `on` are not for parts.
 
     **Edges.** Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
     `other_normals`. They are on both faces exactly, or, where the faces of the file do not meet, on
     the first one and as near to the other as in the file. However few samples there are, each edge
-    has some at both ends and one or more in between, such that the normals of neither face turn by
-    more than between neighbours elsewhere, about, and gaps are no wider than in flat regions. A
-    corner has one sample, with the normals of the edge that is sharpest there. Borders of open
-    shells have one face only, and are no edges. `Samples.weights` are 0 on edges.
+    has some at both ends and one or more in between. Between neighbours on an edge the normals of
+    each face differ by about as much as between neighbours elsewhere, or less, and gaps are no
+    wider than in flat regions. A corner has one sample, with the normals of the edge that is
+    sharpest there. Borders of open shells have one face only, and are no edges. `Samples.weights`
+    are 0 on edges.
 
     The samples of a spline at a normal have Σ sign K = χ/2, for every normal of every closed
     surface, those at poles included; χ is the Euler characteristic.

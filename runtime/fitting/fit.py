@@ -73,12 +73,12 @@ def fit(
     The quasi-interpolant (paper, Sect. 3.1) is exact on quadratics. The error of positions falls
     with the third power of the cell size, that of normals with the second (13). It is measured at
     thousands of places that the fit does not use, among them lines of hundreds of places along u
-    and along v, and is the `misfit` of the spline. A spline rounds lines where the normal of a
-    NURBS turns: fit its pieces one by one (see `Surface.pieces`).
+    and along v, and is the `misfit` of the spline. A spline rounds the creases of a NURBS: fit its
+    pieces one by one (see `Surface.pieces`).
 
     Sides of the domain that are one point become poles where the surface goes on smoothly, unless
-    it was said how they end (see `Surface.assumed_open`). There the spline has one normal. Next to
-    it, in a few cells, errors of normals fall with the first power of the cell size only.
+    `periodic` says how they end (see `Surface.assumed_open`). There the spline has one normal. Next
+    to it, in a few cells, errors of normals fall with the first power of the cell size only.
 
     Parameters
     ----------
@@ -101,8 +101,8 @@ def fit(
     Returns
     -------
     Spline
-        The spline, with four quadratic patches in each cell. Its `misfit` tells how far it is from
-        the surface.
+        The spline, with four quadratic patches in each cell. Its `misfit` is its distance from the
+        surface.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def fit(
     UnknownNameError
         If there is no surface of that name.
     SurfaceError
-        If the surface cannot be evaluated, or does not close where its ends say so.
+        If the surface cannot be evaluated, or does not close where its boundary conditions say so.
 
     Warns
     -----

@@ -255,7 +255,8 @@ def from_nets(
     Returns
     -------
     NetSpline
-        The spline. What takes a `Spline` takes it, but for what needs a grid of cells.
+        The spline. Functions that take a `Spline` take it, except those that need a grid of
+        cells.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The smooth pieces of a surface that has lines where its normal turns."""
+"""The smooth pieces of a surface between its creases."""
 
 from __future__ import annotations
 

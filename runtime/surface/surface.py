@@ -396,9 +396,10 @@ class Surface(SurfaceValues):
     def pieces(self) -> tuple[Surface, ...]:
         """Return the smooth pieces of the surface: rectangles of its parameters.
 
-        A NURBS is cut along the lines u = const and v = const where its normal turns by more than
-        0.1° somewhere, or the tangent across the line changes its length more than threefold, so
-        that a spline would fold. Each piece is evaluated from inside on these lines.
+        A NURBS is cut along its creases: the lines u = const and v = const where its normal jumps
+        by more than 0.1° somewhere, or the length of the tangent across the line jumps by more than
+        a factor of three, so that a spline would fold. Each piece is evaluated from inside on these
+        lines.
 
         Returns
         -------

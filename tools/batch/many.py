@@ -136,8 +136,8 @@ def sample_many(
     """Yield the samples of each of several surfaces, in order; or make a data set of them.
 
     With `out` the parts are sampled by several processes, on this machine or on a cluster, into a
-    folder of Parquet files (docs/datasets.md). What fails is a row of its manifest. If the run is
-    stopped, or killed, the same call goes on with what is missing.
+    folder of Parquet files (docs/datasets.md). A part that fails has a row in its manifest, too. If
+    the run is stopped, or killed, the same call goes on with what is missing.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ class Part(Methods, Whole):
     arrays : dict of str to array
         The numbers of all faces, in the format of the files of `save`.
     about : dict
-        What is no array, such as names.
+        All that is not an array, such as names.
 
     Examples
     --------

@@ -25,7 +25,7 @@ _GIVEN: Any = None
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PartMesh(Mesh):
-    """A mesh of a part; made by `Samples.mesh` from samples of one.
+    """A mesh of a CAD part; made by `Samples.mesh` from samples of a part.
 
     It has all that a `Mesh` has. `normals` are the means of those of the faces around a vertex,
     `uv` the parameters on one of these faces, and `sample_index` is −1: all vertices are new.
@@ -34,8 +34,8 @@ class PartMesh(Mesh):
     ----------
     corner_normals : (T, 3, 3) float64 array
         The unit normals at the corners of triangles, those of the face on which they are. Where a
-        face has none, as at the tip of a cone, those from inside of the triangle; 0 if there are
-        none, either.
+        face has none, as at the tip of a cone, those inside the triangle, and 0 if there are
+        none there, either.
     face_index : (T,) int64 array
         The place in `part.faces` of the face of each triangle.
     lines : tuple of int64 arrays

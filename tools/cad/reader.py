@@ -54,7 +54,7 @@ def read_cad(
     Parameters
     ----------
     path : str or os.PathLike
-        Name of the file. What it is, its content decides.
+        Name of the file. Its content, not its suffix, decides which of these it is.
     unit : str, optional
         The unit L of all lengths of the part: "mm", "cm", "m", "in", "ft", … By default that of
         the file. BREP files have none, and are in mm.

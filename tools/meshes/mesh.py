@@ -27,7 +27,7 @@ _ALL_ALIKE: Any = None
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Mesh(Methods):
-    """A mesh of T triangles between M vertices of a surface; made by `Samples.mesh`.
+    """A mesh of a surface, of T triangles between M vertices; made by `Samples.mesh`.
 
     All arrays are C-contiguous; one that is not is copied.
 
