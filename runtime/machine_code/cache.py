@@ -74,7 +74,7 @@ def say_why() -> None:
     """Warn, once, if the package has machine code that is for other versions than these."""
     if others := shipped.misfit():
         warnings.warn(
-            f"the compiled kernels of this installation are for {others}: others are compiled "
+            f"the compiled kernels of this installation are for {others}: new ones are compiled "
             "here, once, which takes about a minute; install these versions to avoid it.",
             GaussmapWarning,
             stacklevel=2,

@@ -110,7 +110,9 @@ def test_kernels_of_other_sources_are_compiled(package: Path) -> None:
 @pytest.mark.parametrize("name", ["numba", "llvmlite", "python", "platform"])
 def test_other_versions_are_named(name: str, package: Path) -> None:
     rewritten(package, identity=processors.identity() | {name: "0.1"})
-    with pytest.warns(gm.errors.GaussmapWarning, match=rf"are for {name} 0\.1: they are compiled"):
+    with pytest.warns(
+        gm.errors.GaussmapWarning, match=rf"are for {name} 0\.1: new ones are compiled"
+    ):
         assert compiled_by(jit.jit(triple)) == 1
     with warnings.catch_warnings():
         warnings.simplefilter("error")
