@@ -44,6 +44,16 @@ def test_steps_for_a_count_have_it_and_the_smallest_angle():
     assert steps.angle < others[0].angle < others[1].angle
 
 
+@pytest.mark.parametrize("curvature", [0.0, 1.0])
+def test_a_step_spans_half_of_the_domain_at_most(curvature: float):
+    """On a plane, whatever its sides, and on a cylinder, along which no normal changes."""
+    one, zero = np.ones((4, 5)), np.zeros((4, 5))
+    first, third = np.stack([one, zero, one]), np.stack([curvature**2 * one, zero, zero])
+    steps = equal_steps(Forms(third, first, (np.full(4, 3.0), np.full(5, 0.2))), 0.1, 100.0)
+    np.testing.assert_allclose(steps.along[0], 0.2 if curvature > 0.0 else 6.0)
+    np.testing.assert_allclose(steps.along[1], 0.5)
+
+
 @pytest.mark.compiled
 def test_too_small_a_distance_is_made_larger():
     assert steps_for_count(torus_forms(), 100.0, 1e-3).count <= 110.0
