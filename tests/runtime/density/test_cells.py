@@ -3,8 +3,11 @@
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.density import surface_piece
 from gaussmap.runtime.density.cells import Cells
 from gaussmap.runtime.density.methods import space_on
+from gaussmap.runtime.kernels.sizing import TargetDensity
+from gaussmap.runtime.place.on_surface import OnSurface
 
 NAMES = ("torus", "wavy_graph", "ellipsoid", "cone")
 
@@ -94,6 +97,19 @@ def test_derivatives_of_a_spline(name):
     for row, values in enumerate(expected):
         scale = np.abs(values).max() + np.abs(points[0, 0]).max()
         np.testing.assert_allclose(jets[:, row], values, rtol=0, atol=1e-9 * scale)
+
+
+def test_cells_bound_what_the_curvature_of_a_ridge_counts():
+    """Its radius of curvature, 1e-6, is far smaller than a cell: it counts as the width of that."""
+    ridge = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, np.sqrt(u * u + 1e-12)], axis=-1), ((-1, 1), (0, 1))
+    )
+    geometry = OnSurface(gm.fit(ridge, (31, 7)), None, ridge)
+    target = TargetDensity(curvature_weight=1.0)
+    cells = surface_piece.space_of([geometry], None, target).first
+    largest, bound = cells.rows[:, 6].max(), 1.0 / cells.numbers[:, 7] ** 2
+    assert (cells.rows[:, 6] <= bound * (1 + 1e-12)).all()
+    assert largest == pytest.approx(bound[cells.rows[:, 6].argmax()])
 
 
 def test_a_surface_within_a_predicate():

@@ -53,6 +53,17 @@ def test_how_many_normals_share_a_bin_does_not_matter(size, monkeypatch):
             same(gm.sample(SPLINE, normals=normals), usual)
 
 
+def test_samples_of_one_patch_and_of_the_next_have_their_normals():
+    """More than a hundred of each patch; the last are filled with the first of the next one."""
+    spline, normals = gm.fit("torus", (4, 3)), gm.fibonacci(4000)
+    samples = gm.sample(spline, normals=normals)
+    assert np.bincount(samples.patch_index).max() > 200
+    np.testing.assert_array_equal(samples.normals, normals[samples.normal_index])
+    u, v = samples.uv.T
+    np.testing.assert_allclose(spline.evaluate(u, v), samples.points, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(spline.normals(u, v), samples.normals, rtol=0, atol=1e-6)
+
+
 @pytest.mark.parametrize("apart", [1e-12, 0.1])
 def test_one_point_of_the_border_is_one_sample(apart, monkeypatch):
     """Points of the border are found from both sides up to rounding, and no others are near."""
