@@ -8,6 +8,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.density import candidates, space
+from gaussmap.runtime.place.on_spline import OnSpline
 from numpy.typing import NDArray
 
 DENSITIES = ["balanced", "uniform", 0.5, 1.0, 3.0]
@@ -72,6 +73,28 @@ def test_samples_lie_on_the_spline(density):
     np.testing.assert_allclose(lengths, 1.0, rtol=0, atol=4 * np.finfo(float).eps)
     support = (samples.points * samples.normals).sum(axis=1)
     np.testing.assert_allclose(samples.support, support, rtol=0, atol=1e-14)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("density", ["gauss", "uniform"])
+def test_samples_on_a_spline_have_its_curvatures(density):
+    """By its 2-jets, where K has one sign and the other; H is positive where it is convex."""
+    spline = gm.fit(gm.surfaces.torus(major=70.0, minor=20.0), (9, 8))
+    samples = gm.sample(spline, count=300, density=density)
+    s, t = np.modf((samples.uv - spline.frame[:2]) / spline.frame[2:])[0].T
+    inside = np.min([s, t, 1.0 - s, 1.0 - t, abs(s - t), abs(s + t - 1.0)], axis=0) > 1e-6
+    assert inside.sum() > 100  # of a patch: there are two curvatures at an edge
+    samples = samples[inside]
+    (_, x_u, x_v, *seconds) = np.moveaxis(OnSpline(spline, None).jets(*samples.uv.T.copy()), 1, 0)
+    e, f, g = (-np.einsum("kx,kx->k", x, samples.normals) for x in seconds)
+    E, F, G = (np.einsum("kx,kx->k", x, y) for x, y in ((x_u, x_u), (x_u, x_v), (x_v, x_v)))
+    K = (e * g - f * f) / (E * G - F * F)
+    H = (e * G - 2.0 * f * F + g * E) / (2.0 * (E * G - F * F))
+    assert (K > 0.0).any()
+    assert (K < 0.0).any()
+    largest = (H**2 - K).max() + (H**2).max()
+    np.testing.assert_allclose(samples.gaussian_curvature, K, rtol=0, atol=1e-9 * largest)
+    np.testing.assert_allclose(samples.mean_curvature, H, rtol=0, atol=1e-9 * largest**0.5)
 
 
 @pytest.mark.compiled
