@@ -31,6 +31,14 @@ def test_some_samples_are_decided_exactly():
     )
 
 
+@pytest.mark.parametrize("normals", [NORMALS, NORMALS[::-1].copy()])
+def test_samples_are_in_the_order_of_patches_and_normals(normals):
+    """Also those that are decided exactly, among others of their patch."""
+    samples = gm.sample(gm.fit("torus", (4, 4)), normals=normals)
+    pairs = list(zip(samples.patch_index.tolist(), samples.normal_index.tolist(), strict=True))
+    assert pairs == sorted(pairs)
+
+
 def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
     sorted_ = NormalBins(NORMALS)
     hits = find(SPLINE, sorted_)
