@@ -17,7 +17,17 @@ from ..kernels.tape_balls import BALL, bounds_of_boxes
 from ..kernels.tape_rounding import rounding_of_boxes
 from ..kernels.tape_splines import COORDINATES, NO_SPLINE, Polynomials
 
-__all__ = ["TapeWriter", "bounds_over_boxes", "jets_of", "moved_tape", "tape_of_steps", "values_of"]
+__all__ = [
+    "BINARY",
+    "LEAVES",
+    "NEUTRAL",
+    "TapeWriter",
+    "bounds_over_boxes",
+    "jets_of",
+    "moved_tape",
+    "tape_of_steps",
+    "values_of",
+]
 
 Array = NDArray[np.float64]
 Number = tuple[float, float]  # a value, and how far the exact one may be from it

@@ -5,19 +5,28 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 from ...runtime.base.bridge import formula_page
+from ...runtime.base.checks import known_name
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra
-from ...runtime.surface.surfaces import names
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import names, surface
 from ..files.paths import atomic_path, check_target
 from .console import say, table
 from .formula_texts import formulas
+from .tape_texts import tape_text
 
 __all__ = ["run"]
 
+ANYWHERE = ((0.0, 1.0), (0.0, 1.0))  # tapes do not depend on the domain
+
 
 def run(options: SimpleNamespace) -> None:
-    """List all formulas, show one, or write a page of all."""
-    if options.html is not None:
+    """List all formulas, show one, or write a page of all; or show the tape of a surface."""
+    if options.formula is not None and not options.tape:
+        raise InputError("--formula is for --tape, which is not there.")
+    if options.tape:
+        _show_tape(options)
+    elif options.html is not None:
         _write(options)
     elif options.name is not None:
         formula = formulas[options.name]
@@ -38,3 +47,15 @@ def _write(options: SimpleNamespace) -> None:
     with atomic_path(options.html) as temporary:
         temporary.write_text(page, encoding="utf-8", newline="\n")
     say(f"{options.html}: {len(formulas)} formulas and {len(names())} surfaces")
+
+
+def _show_tape(options: SimpleNamespace) -> None:
+    if (options.name is None) == (options.formula is None):
+        raise InputError("--tape needs the name of a surface, or --formula X Y Z.")
+    if options.formula is None:
+        found = surface(known_name(options.name, names(), "surface", "gaussmap surfaces"))
+    else:
+        found = Surface.from_sympy(options.formula, ("u", "v"), ANYWHERE)
+    if found.tape is None:
+        raise InputError("this formula has no tape: it holds what no operation of a tape computes.")
+    say(tape_text(found.tape))

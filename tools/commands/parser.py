@@ -124,6 +124,14 @@ examples:
   gaussmap batch parts/ --scheduler tcp://10.0.0.1:8786 -o /shared/dataset
 """
 
+FORMULAS_EXAMPLES = """\
+\b
+examples:
+  gaussmap formulas support_function
+  gaussmap formulas --tape torus
+  gaussmap formulas --tape --formula u v "sin(u)*v"
+"""
+
 FOLDER = click.Path(file_okay=False, readable=False)
 FILE = click.Path(readable=False)  # for completion; files are checked where they are used
 
@@ -285,12 +293,19 @@ def _formulas() -> Command:
         "Write all formulas, and the surfaces, to one page for browsers. Needs pip install "
         "'gaussmap[html]'."
     )
+    tape = (
+        "Show the operations that compute the surface NAME, or --formula, each on results of "
+        "earlier rows: what samples at given normals are proved with."
+    )
     return _command(
         "formulas",
         "List the formulas that the program computes with, or show one: that named NAME.",
         click.Argument(["name"], required=False, shell_complete=formula_names),
         Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
         Option("--html FILE.html", page, FILE, exclusive=True),
+        Option("--tape", tape, exclusive=True),
+        Option("--formula X Y Z", "With --tape, in place of NAME: texts in u and v."),
+        epilog=FORMULAS_EXAMPLES,
     )
 
 
