@@ -25,9 +25,10 @@ from ..domain.domain import Domain
 from ..kernels.proved_cells import REST_S, REST_T, WIDE, Cells, write_one_cone
 from ..kernels.proved_discs import RINGS, WHOLE, Disc
 from ..kernels.tape import Tape, points_jets
-from ..kernels.tape_balls import BALL, bounds_of_boxes
+from ..kernels.tape_balls import BALL
 from ..kernels.tape_rounding import rounding_of_boxes
 from ..surface.polar_tapes import PolarTapes, polar_tapes
+from ..surface.tapes import bounds_over_boxes
 
 __all__ = ["PoleDisc", "pole_disc"]
 
@@ -77,19 +78,11 @@ def pole_disc(tape: Tape, domain: Domain, angle: int, end: float, radius: float)
 def _is_smooth(tapes: PolarTapes) -> bool:
     """Say whether x_φ and x_φφr + x_r vanish at the pole, for some angles, and x is one point."""
     places = np.column_stack([np.linspace(0.3, 6.1, 7), np.zeros(7)])
-    middle = _balls(tapes.position, places, np.zeros_like(places))[:, 0]
-    slope = _balls(tapes.slope, places, np.zeros_like(places))[:, 0]
+    middle = bounds_over_boxes(tapes.position, places, np.zeros_like(places), 3)[:, 0]
+    slope = bounds_over_boxes(tapes.slope, places, np.zeros_like(places), 3)[:, 0]
     size = np.abs(middle[:, 2]).max()
     rests = (np.ptp(middle[:, 0], axis=0), slope[:, 0], slope[:, 4] + middle[:, 2])
     return bool(size > 0.0 and all(np.abs(x).max() <= SMOOTH * size for x in rests))
-
-
-def _balls(tape: Tape, centres: Array, half_widths: Array) -> Array:
-    """Return midpoints and radii (k, 2, 10, 3) of Taylor coefficients on boxes."""
-    middles, radii = np.empty((2, BALL * (len(tape.operations) + 1)))
-    bounds = np.empty((len(centres), 2, 10, 3))
-    bounds_of_boxes(tape, 3, centres, half_widths, middles, radii, np.empty((2, 4)), bounds)
-    return bounds
 
 
 def _bounds(tapes: PolarTapes, size: float) -> tuple[Array, Array, Array]:
@@ -118,8 +111,8 @@ def _changes(tapes: PolarTapes, reach: float, hessian: Array) -> Array:
     centres = np.column_stack([phi, np.full(SECTORS, 0.5 * reach)])
     half_widths = np.full_like(centres, half * (1.0 + 1e-12))
     half_widths[:, 1] = 0.5 * reach * (1.0 + 1e-12)
-    position = _balls(tapes.position, centres, half_widths)
-    slope = _balls(tapes.slope, centres, half_widths)
+    position = bounds_over_boxes(tapes.position, centres, half_widths, 3)
+    slope = bounds_over_boxes(tapes.slope, centres, half_widths, 3)
     along, mixed = 2.0 * position[:, :, 5], position[:, :, 8] * np.array([[1.0], [3.0]])
     across = along + slope[:, :, 8]
     zero = Vector(0.0, 0.0, 0.0)

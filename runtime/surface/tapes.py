@@ -201,13 +201,13 @@ def _constant_rows(tape: Tape) -> NDArray[np.bool_]:
     return constant
 
 
-def bounds_over_boxes(tape: Tape, centres: Array, half_widths: Array) -> Array:
-    """Return midpoints and radii (k, 2, 10, 3) of Taylor coefficients up to order 2 on boxes."""
+def bounds_over_boxes(tape: Tape, centres: Array, half_widths: Array, order: int = 2) -> Array:
+    """Return midpoints and radii (k, 2, 10, 3) of Taylor coefficients up to an order on boxes."""
     middles, radii = np.empty((2, BALL * (len(tape.operations) + 1)))
     bounds = np.empty((len(centres), 2, 10, 3))
-    centres, half_widths = np.array(centres), np.array(half_widths)
+    centres, half_widths = np.array(centres, order="C"), np.array(half_widths, order="C")
     ends = np.empty((2, 4))
-    bounds_of_boxes(tape, 2, centres, half_widths, middles, radii, ends, bounds)
+    bounds_of_boxes(tape, order, centres, half_widths, middles, radii, ends, bounds)
     return bounds
 
 

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.kernels.tape import Tape
-from ...runtime.kernels.tape_balls import BALL, bounds_of_boxes
 from ...runtime.search.proved import KINDS, Undecided
 from ...runtime.surface.surface import Surface
+from ...runtime.surface.tapes import bounds_over_boxes
 
 __all__ = ["Apex", "apexes_of"]
 
@@ -46,11 +46,8 @@ class Apex:
         if not len(rows):
             return open_
         boxes = open_.boxes[rows].reshape(-1, 2, 2)
-        bounds = np.empty((len(rows), 2, 10, 3))
-        middles, radii = np.empty((2, BALL * (len(self.tape.operations) + 1)))
-        half = np.ascontiguousarray((boxes[:, :, 1] - boxes[:, :, 0]) / 2.0)
-        centres = np.ascontiguousarray(boxes.mean(axis=2))
-        bounds_of_boxes(self.tape, 2, centres, half, middles, radii, np.empty((2, 4)), bounds)
+        half = (boxes[:, :, 1] - boxes[:, :, 0]) / 2.0
+        bounds = bounds_over_boxes(self.tape, boxes.mean(axis=2), half)
         given = normals[open_.numbers[rows]]
         none = np.zeros(len(rows), np.bool_)
         for order in (1 + self.axis, MIXED):
