@@ -107,8 +107,6 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
     if formula is gaussian_image.ARC_ZEROS:  # of 3 (1 - t)² + 10 t (1 - t) + 3 t²
         axes = {"q_x": Fraction(1), "q_y": Fraction(0), "q_z": Fraction(0)}
         return inputs | axes | {"N0_x": Fraction(3), "N1_x": Fraction(5), "N2_x": Fraction(3)}
-    if formula is patch.LARGEST_CURVATURE:
-        return inputs | {"K": inputs["H"] ** 2 - 9}
     if formula is jet.AT_JET:
         return inputs | with_rational_normal(inputs)
     # triangles in a plane with a rational normal
