@@ -1,17 +1,20 @@
-"""Faces of CAD parts: surfaces of revolution, and offset surfaces.
+"""Faces of CAD parts: surfaces of revolution, offset surfaces, and normals of tori.
 
 The other kinds are surfaces of the catalogue that are placed in space, or rational.
 """
 
 from __future__ import annotations
 
+from typing import cast
+
 import sympy as sp
 
 from .formula import BEYOND_THE_PAPER, Formula
 from .notation import Cross, Dot, VectorSymbol, scalar, substitute, vectors
 from .patch import VECTORS, a, b, c, d, e, p
+from .surfaces import TORUS
 
-__all__ = ["FORMULAS", "OFFSET_JET", "REVOLUTION_JET"]
+__all__ = ["FORMULAS", "OFFSET_JET", "REVOLUTION_JET", "TORUS_NORMAL"]
 
 # The derivatives of a surface by u and v, in the order of its 2-jet.
 ORDERS = ("", "u", "v", "uu", "uv", "vv")
@@ -100,4 +103,28 @@ def _offset() -> Formula:
 
 OFFSET_JET = _offset()
 
-FORMULAS = (REVOLUTION_JET, OFFSET_JET)
+
+def _torus_normal() -> Formula:
+    """Divide the normal field of a torus by the unit vector at the same angles."""
+    u, v = TORUS.u, TORUS.v
+    direction = sp.cos(u) * sp.cos(v), sp.sin(u) * sp.cos(v), sp.sin(v)
+    quotients = {
+        sp.factor(sp.simplify(value / part))
+        for value, part in zip(TORUS.normal_field, direction, strict=True)
+    }
+    (quotient,) = cast(set[sp.Expr], quotients)
+    R, r, x = map(scalar, ("R", "r", "x"))
+    major, minor = TORUS.defaults
+    return Formula.build(
+        "torus_normal",
+        "The quotient $q$ of $x_u × x_v$ and the unit vector with the longitude $u$ and the "
+        "latitude $v$, on a torus with the radii $R$ and $r$, a sphere if $R = 0$; $x$ is the "
+        "cosine of $v$.",
+        inputs=[R, r, x],
+        outputs=[("q", substitute(quotient, {major: R, minor: r, sp.cos(v): x}))],
+    )
+
+
+TORUS_NORMAL = _torus_normal()
+
+FORMULAS = (REVOLUTION_JET, OFFSET_JET, TORUS_NORMAL)

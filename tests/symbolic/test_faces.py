@@ -2,7 +2,7 @@
 
 import mpmath
 import sympy as sp
-from gaussmap.symbolic.faces import OFFSET_JET, REVOLUTION_JET
+from gaussmap.symbolic.faces import OFFSET_JET, REVOLUTION_JET, TORUS_NORMAL
 
 u, v = sp.symbols("u v", real=True)
 PLACE = (mpmath.mpf(2) / 7, mpmath.mpf(-3) / 5)
@@ -53,3 +53,21 @@ def test_the_offset_of_a_surface_without_symmetries():
     inputs |= {"L": functions_of([length])[0](*PLACE), "R": distance}
     offset = functions_of(position + distance * field / length)
     compare(OFFSET_JET, inputs, derivatives(offset, {f"y{x}": y for x, y in ORDERS.items()}))
+
+
+def test_the_normal_of_a_torus_that_meets_itself():
+    """At the side of the tube that is across the axis, and at the other one."""
+    for major in (mpmath.mpf(1) / 4, mpmath.mpf(-1) / 4, mpmath.mpf(0)):
+        minor = mpmath.mpf(2) / 3
+        distance = major + minor * sp.cos(v)
+        position = [distance * sp.cos(u), distance * sp.sin(u), minor * sp.sin(v)]
+        known = derivatives(functions_of(position), {"d": (1, 0), "e": (0, 1)})
+        d, e = (sp.Matrix([known[f"{name}_{axis}"] for axis in "xyz"]) for name in "de")
+        longitude, latitude = PLACE
+        direction = sp.Matrix([
+            mpmath.cos(longitude) * mpmath.cos(latitude),
+            mpmath.sin(longitude) * mpmath.cos(latitude),
+            mpmath.sin(latitude),
+        ])  # fmt: skip
+        inputs = {"R": major, "r": minor, "x": mpmath.cos(latitude)}
+        compare(TORUS_NORMAL, inputs, {"q": d.cross(e).dot(direction)})

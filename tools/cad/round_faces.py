@@ -3,8 +3,8 @@
 Normals of the map x → M x + p are M⁻ᵀ m, up to their length, so that n becomes m = Mᵀ n in the
 frame of the face, whatever M is. There, x_u × x_v has the direction of (cos u cos w, sin u cos w,
 sin w), but for a sign: w = v on spheres and tori, and minus the half angle on cylinders and cones.
-The sign is that of ρ, the distance from the axis as the numbers of the face give it, times that of
-the radius of a torus.
+The sign is that of ρ, the distance from the axis as the numbers of the face give it; on spheres and
+tori, that of the formula `torus_normal`.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated.faces import torus_normal
+from ...runtime.base.formula_calls import python_function
 from ...runtime.domain.domain import Domain, Interval
 from ...runtime.search.proved import KINDS
 from .face_places import NOTHING, FacePlaces, joined, undecided
@@ -165,7 +167,7 @@ class RoundFace:
         sides = [math.copysign(1.0, major * minor)] if abs(major) > abs(minor) else [1.0, -1.0]
         for side, sign in itertools.product(sides, (1.0, -1.0)):  # of ρ r and of cos v
             part = self._at_angles(side * own, sign)
-            sizes = side * (major + minor * np.cos(part.v)) * minor
+            sizes = side * python_function(torus_normal)(major, minor, np.cos(part.v))
             noise = 4.0 * self.error * (abs(major) + abs(minor)) * abs(minor)
             on_axis = part.of_u >= TURN
             found += [
