@@ -21,7 +21,7 @@ from ..base.formula_calls import python_function, vector
 from ..base.integers import Integers, integers, integers_by_row, ratio, sign
 from ..base.kept import kept
 from ..base.threads import over_ranges
-from ..base.tolerances import ACCURATE, DATA_ERROR, FORM_ERROR, SINGULAR_POINT
+from ..base.tolerances import ACCURATE, DATA_ERROR, FORM_ERROR
 from ..samples.fields import FLOAT_NAMES
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
@@ -144,16 +144,7 @@ def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -
 
     At a singular point the tangents are perpendicular to a whole circle of directions.
     """
-
-    def normals_at(at: Array) -> Array:
-        patch = spline.patch(patches)
-        return np.stack(python_function(formulas.tangents)(patch, *at.T)[2], axis=1)
-
-    here, centre = normals_at(places), normals_at(np.full_like(places, 1.0 / 3.0))
-    lengths = (np.linalg.norm(x, axis=1) for x in (here, centre))
-    singular = np.less_equal(next(lengths), SINGULAR_POINT * next(lengths))
-    beside = normals_at(places + SINGULAR_POINT * (1.0 / 3.0 - places))
-    N = np.where(singular[:, None], beside, here)
+    N, singular = spline.normals_in_patches(patches, places)
     least = np.where(singular, SAME_NORMAL, 0.0) * np.linalg.norm(N, axis=1)
     return np.einsum("kx,kx->k", N, normals) > least
 
@@ -254,13 +245,13 @@ def fields_in_nets(
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         u, v = (np.array(x) for x in python_function(formulas.parameters)(D, U, V))
         u[found.exact], v[found.exact] = found.local[:, 0], found.local[:, 1]
-        x = np.stack(python_function(formulas.envelope)(patch, u, v), axis=1) / spline.scale
+        uv = np.stack([u, v], axis=1)
+        points = spline.points_in_patches(found.patches, uv)
         K, H = python_function(formulas.curvature_at)(patch, vector(n), u, v)
         K, H = K * spline.scale**2, H * spline.scale
     K[found.exact] = np.copysign(K[found.exact], found.local[:, 2])
-    points = x + spline.control_nets[found.patches, 2]
     arrays = {
-        "points": points, "normals": n, "uv": np.stack([u, v], axis=1),
+        "points": points, "normals": n, "uv": uv,
         "support": np.einsum("kx,kx->k", n, points),
         "gaussian_curvature": K, "mean_curvature": H,
         "normal_index": found.normals, "patch_index": found.patches,

@@ -121,8 +121,11 @@ class Mesh(Methods):
             object.__setattr__(self, "boundary", checked_sides(self.boundary))
 
     def __repr__(self) -> str:
+        return self._named("Mesh")
+
+    def _named(self, kind: str) -> str:
         return (
-            f"Mesh({len(self.vertices):,} vertices, {len(self.triangles):,} triangles on "
+            f"{kind}({len(self.vertices):,} vertices, {len(self.triangles):,} triangles on "
             f"{short_label(self.name)})"
         )
 
@@ -135,7 +138,7 @@ class Mesh(Methods):
     def split(self) -> Mesh:
         """The same triangles, with a vertex for each normal that there is at a point.
 
-        This is another mesh only where normals jump, on meshes of CAD parts.
+        This is another mesh only where normals jump, see `CreasedMesh`.
         """
         return self
 
