@@ -9,7 +9,7 @@ from gaussmap.runtime.spline.nets import NetSpline
 from gaussmap.tools.meshes.creased import CreasedMesh
 from numpy.typing import NDArray
 
-from ...runtime.spline.test_nets import octants, powell_sabin
+from .test_nets import octants, powell_sabin
 
 Array = NDArray[np.float64]
 PARTS = [1, 2, 5]
@@ -19,9 +19,10 @@ def of_fit(name: str) -> NetSpline:
     return gm.Spline.from_nets(gm.fit(name, (8, 6)).control_nets, name=name)
 
 
-def on_patches(spline: NetSpline, mesh: CreasedMesh) -> Array:
-    """Return how far the vertices of each triangle are from the patch that it is said to be of."""
-    uv = np.array([(i, j) for i in range(61) for j in range(61 - i)]) / 60.0
+def from_patches(spline: NetSpline, mesh: CreasedMesh, parts: int) -> Array:
+    """Return how far the corners of each triangle are from points of the patch that it is of."""
+    n = parts + 1
+    uv = np.array([(i, j) for i in range(n) for j in range(n - i)]) / parts
     u, v, w = *uv.T, 1.0 - uv.sum(axis=1)
     weights = np.stack([u * u, v * v, w * w, 2 * u * v, 2 * u * w, 2 * v * w], axis=1)
     points = np.einsum("lk,tkx->tlx", weights, spline.control_nets)[mesh.face_index]
@@ -39,7 +40,7 @@ def test_closed_nets_have_closed_meshes(name: str, characteristic: int, parts: i
     assert len(mesh.triangles) == spline.patches * parts**2 - (16 * parts if characteristic else 0)
     assert len(mesh.split.vertices) == len(mesh.vertices)  # no creases, nor at poles
     assert np.abs(mesh.corner_normals - mesh.normals[mesh.triangles]).max() < 1e-14
-    assert on_patches(spline, mesh).max() < 1e-14
+    assert from_patches(spline, mesh, parts).max() < 1e-14
 
 
 @pytest.mark.parametrize("parts", PARTS)
@@ -73,6 +74,7 @@ def test_normals_are_those_of_the_surface(parts: int) -> None:
     outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
     angles = np.degrees(np.arccos(np.clip((outwards * mesh.normals).sum(axis=1), -1.0, 1.0)))
     assert spline.misfit is not None
+    assert spline.misfit.angle is not None
     assert angles.max() < 1.5 * spline.misfit.angle
     assert np.abs(np.linalg.norm(mesh.normals, axis=1) - 1.0).max() < 1e-14
 
@@ -91,7 +93,7 @@ def test_powell_sabin_splines_are_open(parts: int) -> None:
     ways = np.concatenate([mesh.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
     assert len(np.unique(ways, axis=0)) == len(ways)  # neighbours pass an edge in opposite ways
     assert (mesh.normals[:, 2] > 0.0).all()
-    assert on_patches(spline, mesh).max() < 1e-14
+    assert from_patches(spline, mesh, parts).max() < 1e-14
 
 
 @pytest.mark.parametrize("parts", PARTS)
