@@ -215,7 +215,7 @@ class Mesh(Methods):
         """
         added = int(np.count_nonzero(self.sample_index < 0))
         line = f"{len(self.vertices):,} vertices"
-        line += f" ({added:,} of them added)" if added else ""
+        line += f" ({added:,} of them added)" if 0 < added < len(self.vertices) else ""
         line += f", {self.left_out:,} of the samples left out" if self.left_out else ""
         line += f", {len(self.triangles):,} triangles"
         if not len(self.triangles):

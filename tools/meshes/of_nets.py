@@ -32,7 +32,7 @@ class Parts(NamedTuple):
     @classmethod
     def of(cls, n: int) -> Parts:
         """Return the triangle (0, 0), (1, 0), (0, 1) in n² parts."""
-        i, j = np.array([(i, j) for i in range(n + 1) for j in range(n + 1 - i)]).T
+        i, j = np.nonzero(np.add.outer(np.arange(n + 1), np.arange(n + 1)) <= n)
         number = np.full((n + 1, n + 1), -1)
         number[i, j] = np.arange(len(i))
         ends = np.array([(n, 0), (0, n), (0, 0)])
@@ -70,7 +70,8 @@ def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
     Raises
     ------
     InputError
-        Unless `parts` is a whole number of at least 1.
+        Unless `parts` is a whole number of at least 1, and for a mesh that needs more memory than
+        is free.
 
     Examples
     --------
@@ -81,9 +82,10 @@ def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
     (CreasedMesh(1,152 vertices, 2,304 triangles on torus), True, 0)
 
     """
-    inside = Parts.of(whole_number(parts, "parts"))
-    size = len(inside.places)
+    n = whole_number(parts, "parts")
+    size = (n + 1) * (n + 2) // 2
     check_memory("mesh", self.patches * size)
+    inside = Parts.of(n)
     smooth, joined = _links(self, inside)
     count, vertex = linked(self.patches * size, *joined)
     _, first = np.unique(vertex, return_index=True)

@@ -41,6 +41,7 @@ def test_closed_nets_have_closed_meshes(name: str, characteristic: int, parts: i
     assert len(mesh.split.vertices) == len(mesh.vertices)  # no creases, nor at poles
     assert np.abs(mesh.corner_normals - mesh.normals[mesh.triangles]).max() < 1e-14
     assert from_patches(spline, mesh, parts).max() < 1e-14
+    assert mesh.summary().startswith(f"{len(mesh.vertices):,} vertices, {len(mesh.triangles):,} tr")
 
 
 @pytest.mark.parametrize("parts", PARTS)
@@ -131,3 +132,8 @@ def test_patches_at_the_tip_of_a_cone_have_their_own_normals(parts: int) -> None
 def test_parts_that_are_none(parts: int) -> None:
     with pytest.raises(gm.errors.InputError, match="parts must be a whole number"):
         gm.Spline.from_nets(*octants()).mesh(parts)
+
+
+def test_more_parts_than_memory_holds() -> None:
+    with pytest.raises(gm.errors.InputError, match=r"vertices of a mesh need about .* parts"):
+        gm.Spline.from_nets(*octants()).mesh(10**6)
