@@ -10,7 +10,8 @@ from typing import cast
 import sympy as sp
 
 from .formula import BEYOND_THE_PAPER, Formula
-from .notation import Cross, Dot, VectorSymbol, scalar, substitute, vectors
+from .jet import N_ALONG
+from .notation import Dot, VectorSymbol, derivative, scalar, substitute, vectors
 from .patch import VECTORS, a, b, c, d, e, p
 from .surfaces import TORUS
 
@@ -69,6 +70,8 @@ L, L_u, L_v, L_uu, L_uv, L_vv, R, g = map(
 def _offset() -> Formula:
     """Differentiate N = x_u × x_v and N = L n, with |n| = 1, for the derivatives of n."""
     uuu, uuv, uvv, vvv = THIRD
+    along_u, along_v = N_ALONG
+    by_u, by_v = {d: a, e: b, a: uuu, b: uuv}, {d: b, e: c, a: uuv, b: uvv, c: vvv}
     return Formula.build(
         "offset_jet",
         "The point $y = p + R n$ and the derivatives of the offset of a surface, from the point "
@@ -77,11 +80,11 @@ def _offset() -> Formula:
         inputs=[*VECTORS, p, *THIRD, n, L, R],
         terms=[
             ("g", 1 / L),
-            ("N_u", Cross(a, e) + Cross(d, b)),
-            ("N_v", Cross(b, e) + Cross(d, c)),
-            ("N_uu", Cross(uuu, e) + 2 * Cross(a, b) + Cross(d, uuv)),
-            ("N_uv", Cross(uuv, e) + Cross(a, c) + Cross(d, uvv)),
-            ("N_vv", Cross(uvv, e) + 2 * Cross(b, c) + Cross(d, vvv)),
+            ("N_u", along_u),
+            ("N_v", along_v),
+            ("N_uu", derivative(along_u, by_u)),
+            ("N_uv", derivative(along_u, by_v)),
+            ("N_vv", derivative(along_v, by_v)),
             ("L_u", Dot(N_u, n)),
             ("L_v", Dot(N_v, n)),
             ("n_u", g * (N_u - L_u * n)),

@@ -22,15 +22,35 @@ from itertools import product
 import sympy as sp
 
 from .formula import Formula
-from .notation import Cross, Det, Dot, scalar, vectors
-from .patch import FORM_TERMS, LINEAR_FORMS, SOLUTION, VECTORS, A, B, C, P, Q, a, b, c, d, e, n
+from .notation import Cross, Det, Dot, scalar, substitute, vectors
+from .patch import (
+    FORM_TERMS,
+    LINEAR_FORMS,
+    P_U,
+    P_V,
+    SOLUTION,
+    VECTORS,
+    A,
+    B,
+    C,
+    P,
+    Q,
+    a,
+    b,
+    c,
+    d,
+    e,
+    n,
+    u,
+    v,
+)
 
 __all__ = ["FORMULAS"]
 
 s, t = scalar("s"), scalar("t")
 z0, z1, z2, r = (scalar(x) for x in ("z0", "z1", "z2", "r"))
-p_u, p_v, N, q, n_t, N0, N1, N2, f1, f2, f3 = vectors(
-    ("p_u", "p_v", "N", "q", "n_t", "N0", "N1", "N2", "f1", "f2", "f3")
+p_u, p_v, N, q, n_t, N0, N1, N2, f1, f2, f3, x = vectors(
+    ("p_u", "p_v", "N", "q", "n_t", "N0", "N1", "N2", "f1", "f2", "f3", "x")
 )
 
 
@@ -63,6 +83,38 @@ def _cones() -> Formula:
 
 
 BOUNDARY_CONES = _cones()
+
+
+def _edge_vectors() -> Formula:
+    """Solve p_u = T0, p_v = X0 at (0, 0) and p_u = T1, p_v = X1 at (1, 0) for a, b, d, e."""
+    T0, X0, T1, X1 = tangents = vectors(("T0", "X0", "T1", "X1"))
+    equations = [
+        substitute(field, {u: sp.S(at), v: sp.S.Zero}) - tangent
+        for at, pair in ((0, (T0, X0)), (1, (T1, X1)))
+        for field, tangent in zip((P_U, P_V), pair, strict=True)
+    ]
+    (solution,) = sp.solve(equations, [a, b, d, e], dict=True)
+    if C in SOLUTION.V.free_symbols:
+        raise ArithmeticError("V = 0 depends on more than the edge v = 0")
+    return Formula.build(
+        "edge_vectors",
+        "The vectors of a patch on which its form $V$ depends, from the tangents $T = p_u$ and "
+        "$X = p_v$ at the ends $(0, 0)$ and $(1, 0)$ of the edge $v = 0$: $V = 0$ is the boundary "
+        "cone of this edge.",
+        source="Sect. 3.2",
+        inputs=tangents,
+        outputs=[(z.name, solution[z]) for z in (a, b, d, e)],
+    )
+
+
+EDGE_VECTORS = _edge_vectors()
+
+TANGENTIAL = Formula.build(
+    "tangential",
+    "The part of $x$ perpendicular to $n$, times the square of the length of $n$.",
+    inputs=[x, n],
+    outputs=[("y", Dot(n, n) * x - Dot(x, n) * n)],
+)
 
 ARC_POINT = (1 - t) ** 2 * N0 + 2 * t * (1 - t) * N1 + t**2 * N2
 
@@ -169,6 +221,8 @@ CURVATURE_OF_DERIVATIVES = Formula.build(
 
 FORMULAS = (
     BOUNDARY_CONES,
+    EDGE_VECTORS,
+    TANGENTIAL,
     ARC,
     ARC_ZEROS,
     SOLID_ANGLE,

@@ -15,12 +15,12 @@ from collections.abc import Sequence
 import sympy as sp
 
 from .formula import Formula
-from .notation import Cross, Dot, scalar, substitute, vectors
+from .notation import Cross, Dot, derivative, scalar, substitute, vectors
 from .patch import FORM_TERMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d, e, n, r
 
-__all__ = ["AT_JET", "FORMULAS"]
+__all__ = ["AT_JET", "FORMULAS", "N_ALONG"]
 
-N = vectors("N")[0]
+N, N_u, N_v, w = vectors(("N", "N_u", "N_v", "w"))
 E, F, G, L = (scalar(x) for x in "EFGL")
 
 FIRST_FORM = [("E", Dot(d, d)), ("F", Dot(d, e)), ("G", Dot(e, e))]
@@ -85,6 +85,18 @@ NEWTON = Formula.build(
         ("s", Dot(q, q) / Dot(N, N)),
         ("m", Dot(n, N)),
     ],
+)
+
+# The derivatives of N by u and v.
+N_ALONG = [derivative(Cross(d, e), by) for by in ({d: a, e: b}, {d: b, e: c})]
+
+CONTOUR = Formula.build(
+    "contour",
+    "The normal $N$ of a surface, its product $f$ with $w$, and the derivatives of $f$ by $u$ and "
+    "$v$, from its 2-jet. The zeros of $f$ are the contour generator of the projection along $w$.",
+    inputs=[*VECTORS, w],
+    terms=[("N_u", N_ALONG[0]), ("N_v", N_ALONG[1])],
+    outputs=[("N", Cross(d, e)), ("f", Dot(N, w)), ("f_u", Dot(N_u, w)), ("f_v", Dot(N_v, w))],
 )
 
 
@@ -178,4 +190,4 @@ def _at_pole() -> Formula:
 
 AT_POLE = _at_pole()
 
-FORMULAS = (AT_JET, FORMS_AT_JET, NEWTON, POLAR_CHART, AT_POLE)
+FORMULAS = (AT_JET, FORMS_AT_JET, NEWTON, CONTOUR, POLAR_CHART, AT_POLE)

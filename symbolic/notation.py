@@ -18,6 +18,7 @@ __all__ = [
     "TaylorSymbol",
     "VectorSymbol",
     "components",
+    "derivative",
     "dot",
     "flat",
     "named",
@@ -135,6 +136,25 @@ def dot(left: sp.Matrix, right: sp.Matrix) -> sp.Expr:
 def substitute(expression: sp.Expr, values: Mapping[Any, sp.Expr]) -> sp.Expr:
     """Replace symbols (or other parts) by expressions, all at once."""
     return cast(sp.Expr, expression.xreplace(values))
+
+
+def derivative(expression: sp.Expr, by: Mapping[VectorSymbol, VectorSymbol]) -> sp.Expr:
+    """Return the derivative of products of vectors, by the derivatives of these; others are 0."""
+    zero: sp.Expr = sp.S.Zero
+    if isinstance(expression, VectorProduct):
+        factors = [cast(VectorSymbol, x) for x in expression.args]
+        changed = (
+            [*factors[:k], by[x], *factors[k + 1 :]] for k, x in enumerate(factors) if x in by
+        )
+        # A cross product or determinant with the same vector twice vanishes.
+        some = (x for x in changed if isinstance(expression, Dot) or len({*x}) == len(x))
+        return sum((expression.func(*x) for x in some), start=zero)
+    if isinstance(expression, sp.Add):
+        return sum((derivative(cast(sp.Expr, x), by) for x in expression.args), start=zero)
+    factor, rest = expression.as_coeff_Mul()
+    if factor == 1:
+        raise TypeError(f"{expression} is no sum of multiples of products of vectors")
+    return factor * derivative(rest, by)
 
 
 def is_vector(expression: sp.Basic) -> bool:

@@ -66,7 +66,7 @@ COSTS: dict[str, Cost] = {
     "relaxed part": Cost("samples", 25e3, 0.0, "use fewer, or relax=0, which takes a third"),
     "curve": Cost("samples", 420.0, 0.0, "use fewer"),
     # 450 in arrays, and what Qhull takes.
-    "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples"),
+    "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples, or parts of patches"),
     "cells": Cost("cells", 120.0, 0.0, "use fewer, or tolerance=..., which chooses them"),
     "heights": Cost(
         "heights", 250.0, 0.0,

@@ -15,13 +15,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ...generated import gaussian_image
 from ...generated import patch as formulas
+from ...generated.vectors import Vector
 from ..base.aliases import Array, Flags, Indices
-from ..base.formula_calls import python_function, vector
+from ..base.formula_calls import patch, python_function, vector
 from ..base.integers import Integers, integers, integers_by_row, ratio, sign
 from ..base.kept import kept
 from ..base.threads import over_ranges
-from ..base.tolerances import ACCURATE, DATA_ERROR, FORM_ERROR, SINGULAR_POINT
+from ..base.tolerances import ACCURATE, DATA_ERROR, FORM_ERROR
 from ..samples.fields import FLOAT_NAMES
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
@@ -33,6 +35,10 @@ __all__ = ["Cones", "Found", "edge_signs", "fields_in_nets", "find_in_nets"]
 PAIRS_AT_A_TIME = 1 << 22
 # Cones are wider than the control normals by this, in cosine: more than their rounding.
 COSINE_ERROR = 1e-12
+# The rows of nets, turned so that the edges u = 0, v = 0, w = 0 become v = 0, from start to end.
+TURNED = tuple(
+    (x.end, k, x.start, x.end_beside, x.middle, x.start_beside) for k, x in enumerate(EDGES)
+)
 # The least cosine of a normal and that of the patch at its point, or next to it.
 SAME_NORMAL = 0.999
 
@@ -144,16 +150,7 @@ def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -
 
     At a singular point the tangents are perpendicular to a whole circle of directions.
     """
-
-    def normals_at(at: Array) -> Array:
-        patch = spline.patch(patches)
-        return np.stack(python_function(formulas.tangents)(patch, *at.T)[2], axis=1)
-
-    here, centre = normals_at(places), normals_at(np.full_like(places, 1.0 / 3.0))
-    lengths = (np.linalg.norm(x, axis=1) for x in (here, centre))
-    singular = np.less_equal(next(lengths), SINGULAR_POINT * next(lengths))
-    beside = normals_at(places + SINGULAR_POINT * (1.0 / 3.0 - places))
-    N = np.where(singular[:, None], beside, here)
+    N, singular = spline.normals_in_patches(patches, places)
     least = np.where(singular, SAME_NORMAL, 0.0) * np.linalg.norm(N, axis=1)
     return np.einsum("kx,kx->k", N, normals) > least
 
@@ -206,26 +203,25 @@ def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
 def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
     """Return the signs (k,) of U, V or W, on the side of edges, at normals (k, 3); never 0.
 
-    An edge j of patch p has the row 3 p + j. With tangents T and vectors X along the next row of
-    the net, 0 at the start and 1 at the end of the edge, its form is (n·X₁)(n·T₀) − (n·T₁)(n·X₀):
-    that of V for d = T₀, a = T₁ − T₀, e = X₀, b = X₁ − X₀. T and X are projected onto the plane
-    perpendicular to the normal that all patches share at that end. The form of the other patch of a
-    joint is its negative.
+    An edge j of patch p has the row 3 p + j. Its form is V of the patch turned so that the edge is
+    v = 0, with the tangents at its ends projected onto the planes perpendicular to the normals that
+    all patches share there. The form of the other patch of a joint is its negative.
     """
     topology = spline.topology
     owner, side = (x[rows] for x in topology.owner)
-    patch, edge = np.divmod(owner, 3)
-    nets, _ = integers(spline.control_nets[patch])
-    net = nets[np.arange(len(rows))[:, None], np.array(EDGES)[edge]]  # (k, 5, 3)
-    start, middle, end, start_beside, end_beside = np.moveaxis(net, 1, 0)
+    patches, edge = np.divmod(owner, 3)
+    nets, _ = integers(spline.control_nets[patches])
+    turned = nets[np.arange(len(rows))[:, None], np.array(TURNED)[edge]]
+    vectors = np.asarray(vectors_of_nets(np.asarray(turned, dtype=object)), dtype=object)
     shared, fan = topology.corners
-    first, last = (
-        np.asarray(integers(shared[fan[patch, (edge + k) % 3]])[0], dtype=object) for k in (1, 2)
-    )
-    T0, X0 = (_projected(x - start, first) for x in (middle, start_beside))
-    T1, X1 = (_projected(x - middle, last) for x in (end, end_beside))
-    vectors = np.stack([T1 - T0, X1 - X0, 0 * T0, T0, X0])
-    vectors = np.moveaxis(vectors, 1, -1)
+    ends = []
+    for at in (0, 1):
+        corner = fan[patches, (edge + at + 1) % 3]
+        normal, _ = integers(shared[corner])
+        tangents = python_function(formulas.tangents)(patch(vectors), at, 0)
+        ends += [_tangential(x, np.asarray(normal, dtype=object)) for x in tangents[:2]]
+    a, b, d, e = python_function(gaussian_image.edge_vectors)(*ends)
+    vectors = np.array([a, b, [0 * x for x in a], d, e], dtype=object)
     n, _ = integers_by_row(normals)
     n = n * leading_sign(n)
     signs = sign(exact_forms(vectors, n)[2])
@@ -235,14 +231,11 @@ def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.i
     return signs * side
 
 
-def _projected(x: Integers, normal: Integers) -> Integers:
-    """Return the part of vectors (k, 3) perpendicular to normals, times their squared lengths.
-
-    Vectors with the normal 0 stay as they are.
-    """
-    square = (normal * normal).sum(axis=1, keepdims=True)
-    product = (x * normal).sum(axis=1, keepdims=True)
-    return np.where(square == 0, x, x * square - product * normal)
+def _tangential(x: Vector, normals: Integers) -> Vector:
+    """Return the part of x perpendicular to normals (k, 3), times their squares; x for 0."""
+    found = python_function(gaussian_image.tangential)(x, vector(normals))
+    none = np.asarray((normals == 0).all(axis=1, keepdims=True), dtype=bool)
+    return vector(np.where(none, np.stack(x, axis=1), np.stack(found, axis=1)))
 
 
 def fields_in_nets(
@@ -254,13 +247,13 @@ def fields_in_nets(
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         u, v = (np.array(x) for x in python_function(formulas.parameters)(D, U, V))
         u[found.exact], v[found.exact] = found.local[:, 0], found.local[:, 1]
-        x = np.stack(python_function(formulas.envelope)(patch, u, v), axis=1) / spline.scale
+        uv = np.stack([u, v], axis=1)
+        points = spline.points_in_patches(found.patches, uv)
         K, H = python_function(formulas.curvature_at)(patch, vector(n), u, v)
         K, H = K * spline.scale**2, H * spline.scale
     K[found.exact] = np.copysign(K[found.exact], found.local[:, 2])
-    points = x + spline.control_nets[found.patches, 2]
     arrays = {
-        "points": points, "normals": n, "uv": np.stack([u, v], axis=1),
+        "points": points, "normals": n, "uv": uv,
         "support": np.einsum("kx,kx->k", n, points),
         "gaussian_curvature": K, "mean_curvature": H,
         "normal_index": found.normals, "patch_index": found.patches,

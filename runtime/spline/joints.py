@@ -15,7 +15,7 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.errors import InputError
 from ..base.trees import tree_of
 
-__all__ = ["EDGES", "Edge", "Joints", "Topology", "merged_points"]
+__all__ = ["EDGES", "Edge", "Joints", "Topology", "linked", "merged_points"]
 
 
 class Edge(NamedTuple):
@@ -94,6 +94,19 @@ def merged_points(points: Array) -> tuple[Array, Indices]:
     return points[firsts], inverse.ravel()
 
 
+def linked(count: int, one: Indices, other: Indices) -> tuple[int, Indices]:
+    """Return how many groups 0, …, count − 1 are if `one` and `other` (k,) are linked, and which.
+
+    Groups are numbered by their first members.
+    """
+    from scipy.sparse import coo_array  # loaded late: most splines have a grid
+    from scipy.sparse.csgraph import connected_components
+
+    links = coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
+    number, group = connected_components(links, directed=False)
+    return number, group.astype(np.int64)
+
+
 @dataclass(frozen=True, eq=False)
 class Topology:
     """Nets (T, 6, 3) with the numbers (T, 6) of their points, and control normals (T, 6, 3).
@@ -148,7 +161,7 @@ class Topology:
         return Joints(pairs // 3, pairs % 3, angles, angles <= self.smooth)
 
     @cached_property
-    def _is_point(self) -> Flags:
+    def is_point(self) -> Flags:
         """Which edges (3 T,) are one point."""
         return (self._ends[:, :1] == self._ends[:, 1:]).all(axis=1)
 
@@ -159,10 +172,10 @@ class Topology:
         They are those of the smooth joints, and the other two edges of a patch with one edge that
         is a point: its normals are those of these edges.
         """
-        rows = np.flatnonzero(self._is_point)
+        rows = np.flatnonzero(self.is_point)
         patch, edge = np.divmod(rows, 3)
         beside = np.stack([3 * patch + (edge + k) % 3 for k in (1, 2)], axis=1)
-        beside = beside[~self._is_point[beside].any(axis=1)]
+        beside = beside[~self.is_point[beside].any(axis=1)]
         return np.concatenate([self.pairs[self.joints.smooth], beside])
 
     @cached_property
@@ -178,7 +191,7 @@ class Topology:
     @cached_property
     def on_border(self) -> Flags:
         """Which edges (3 T,) are on no smooth joint; not those that are one point."""
-        free = ~self._is_point
+        free = ~self.is_point
         free[self.smooth_pairs.ravel()] = False
         return free
 
@@ -188,18 +201,13 @@ class Topology:
 
         They are 0 where no patch has one.
         """
-        from scipy.sparse import coo_array  # loaded late: most splines have a grid
-        from scipy.sparse.csgraph import connected_components
-
         pairs = self.smooth_pairs
         # Edge j runs from corner j + 1 to corner j + 2.
         patch, edge = pairs // 3, pairs % 3
         start, end = 3 * patch + (edge + 1) % 3, 3 * patch + (edge + 2) % 3
         one = np.concatenate([start[:, 0], end[:, 0]])
         other = np.concatenate([end[:, 1], start[:, 1]])
-        count = 3 * len(self.nets)
-        links = coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
-        number, fan = connected_components(links, directed=False)
+        number, fan = linked(3 * len(self.nets), one, other)
         own = _unit(self.normals[:, CORNER_NORMALS].reshape(-1, 3))
         shared = np.zeros((number, 3))
         known = np.flatnonzero(own.any(axis=1))[::-1]

@@ -1,4 +1,4 @@
-"""What `Spline` has from modules that import it; `methods.py` loads it."""
+"""What `Spline` and `NetSpline` have from modules above; `methods.py` loads it."""
 
 from numpy.typing import ArrayLike
 
@@ -13,3 +13,6 @@ class Methods:
         name: str = "nets",
         smooth: float = 0.01,
     ) -> NetSpline: ...
+
+class NetMethods:
+    from ...tools.meshes.of_nets import mesh as mesh

@@ -16,9 +16,11 @@ from ..base.checks import finite_array, finite_number, text
 from ..base.errors import InputError, SurfaceError
 from ..base.formula_calls import python_function, vector
 from ..base.scales import scale_to_one
+from ..base.tolerances import SINGULAR_POINT
 from .developable import CellMeasure
 from .inside import subcentroids
 from .joints import Joints, Topology, merged_points
+from .methods import NetMethods
 from .spline import Spline, short_label
 
 __all__ = ["NetSpline", "from_nets", "vectors_of_nets"]
@@ -31,7 +33,7 @@ GRID = (
 )
 
 
-class NetSpline(Spline):
+class NetSpline(Spline, NetMethods):
     """A spline of T quadratic Bézier triangles on any triangulation; made by `Spline.from_nets`.
 
     The parameters `uv` of its samples are those in the triangle of their patch, u, v ≥ 0 and
@@ -52,6 +54,8 @@ class NetSpline(Spline):
     (NetSpline(1,024 patches of torus), (1024, 6, 3), (1024, 6))
     >>> len(gm.sample(torus, normals=[[1, 0, 0], [0, 0.6, 0.8]]))
     4
+    >>> torus.mesh()
+    CreasedMesh(512 vertices, 1,024 triangles on torus)
 
     """
 
@@ -178,6 +182,30 @@ class NetSpline(Spline):
         a, b, c, d, e = np.moveaxis(self.vectors[rows], 1, 0)
         zero = np.zeros_like(a)
         return Patch(vector(a), vector(b), vector(c), vector(d), vector(e), vector(zero))
+
+    def points_in_patches(self, patches: NDArray[np.int64], places: Array) -> Array:
+        """Return the points (k, 3) of patches (k,) at places u, v (k, 2)."""
+        x = python_function(formulas.envelope)(self.patch(patches), *places.T)
+        return np.stack(x, axis=1) / self.scale + self.control_nets[patches, 2]
+
+    def normals_in_patches(
+        self, patches: NDArray[np.int64], places: Array
+    ) -> tuple[Array, NDArray[np.bool_]]:
+        """Return normals (k, 3) of any length of patches (k,) at places u, v (k, 2).
+
+        At a singular point, where there is none, it is that next to it, towards the centre; the
+        second array (k,) says where.
+        """
+        patch = self.patch(patches)
+
+        def normals_at(at: Array) -> Array:
+            return np.stack(python_function(formulas.tangents)(patch, *at.T)[2], axis=1)
+
+        here, centre = normals_at(places), normals_at(np.full_like(places, 1.0 / 3.0))
+        lengths = (np.linalg.norm(x, axis=1) for x in (here, centre))
+        singular = np.less_equal(next(lengths), SINGULAR_POINT * next(lengths))
+        beside = normals_at(places + SINGULAR_POINT * (1.0 / 3.0 - places))
+        return np.where(singular[:, None], beside, here), singular
 
     @property
     def cap(self) -> tuple[Array, float]:

@@ -5,8 +5,9 @@ from typing import Any
 import pytest
 import sympy as sp
 from gaussmap.symbolic import Formula, formulas
-from gaussmap.symbolic.jet import AT_JET, AT_POLE, NEWTON, POLAR_CHART
-from gaussmap.symbolic.notation import scalar, substitute
+from gaussmap.symbolic.jet import AT_JET, AT_POLE, CONTOUR, NEWTON, POLAR_CHART
+from gaussmap.symbolic.notation import Cross, Det, Dot, derivative, scalar, substitute
+from gaussmap.symbolic.notation import vectors as vector_symbols
 
 diff: Any = sp.diff
 s, t, phi, r = sp.symbols("s t phi r", real=True)
@@ -32,7 +33,7 @@ def jet(x: Any, u: sp.Symbol, v: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
 
 
 def test_they_are_formulas():
-    assert [formulas[x.name] for x in (AT_JET, NEWTON)] == [AT_JET, NEWTON]
+    assert [formulas[x.name] for x in (AT_JET, NEWTON, CONTOUR)] == [AT_JET, NEWTON, CONTOUR]
 
 
 def test_a_sphere_with_outward_normals():
@@ -58,6 +59,30 @@ def test_newtons_step_is_exact_on_a_quadratic_patch():
     here = diff(x, s).cross(diff(x, t)).subs(origin)
     assert found["s"] == normal.cross(here).dot(normal.cross(here)) / here.dot(here)
     assert found["m"] == normal.dot(here)
+
+
+def test_the_contour_is_where_the_normal_is_perpendicular():
+    """f is N·w, and its derivatives are those of that function."""
+    along = sp.Matrix([2, -1, 3])
+    N = diff(GRAPH, s).cross(diff(GRAPH, t))
+    found = evaluated(CONTOUR, jet(GRAPH, s, t) | vectors(w=along))
+    f = N.dot(along)
+    for name, wanted in {"f": f, "f_u": diff(f, s), "f_v": diff(f, t)}.items():
+        assert sp.expand(found[name] - wanted) == 0
+    for name, wanted in zip("xyz", N, strict=True):
+        assert sp.expand(found[f"N_{name}"] - wanted) == 0
+
+
+def test_the_product_rule():
+    a, b, c, d = vector_symbols("abcd")
+    by = {a: c, b: d}
+    assert derivative(Dot(a, b), by) == Dot(c, b) + Dot(a, d)
+    assert derivative(Dot(a, a), {a: a}) == 2 * Dot(a, a)
+    assert derivative(3 * Cross(a, d) - Cross(a, c), by) == 3 * Cross(c, d)  # c × c = 0
+    assert derivative(Det(a, b, c), {a: b, b: d}) == Det(a, d, c)  # the same vector twice
+    assert derivative(Cross(c, d), by) == 0
+    with pytest.raises(TypeError, match="no sum of multiples"):
+        derivative(Dot(a, b) * Dot(a, c), by)
 
 
 @pytest.mark.parametrize("direction", [(1, 0), (sp.Rational(3, 5), sp.Rational(-4, 5))])

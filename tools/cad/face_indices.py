@@ -28,8 +28,6 @@ CELLS = (4, 4)
 # Ends of a side are looked at if their distance is less than this part of the largest one.
 CLOSE = 1e-3
 SINGULAR = KINDS.index("singular")
-# Places along a side of a box at which it is looked how an offset is turned.
-PLACES = 3
 
 
 def face_index(
@@ -108,21 +106,17 @@ class Offset:
         ])  # fmt: skip
 
     def _turned(self, found: FacePlaces, normals: Array, sign: float) -> FacePlaces:
-        """Return those of places of the other surface at which normals have a sign."""
+        """Return those of places of the other surface at which normals have a sign.
+
+        Boxes that are open there stay open: the sign may change inside of them.
+        """
         sides = sign * self._sides(found.uv, normals[found.numbers])
         keep, lost = sides > 0.5, np.abs(sides) <= 0.5
-        boxes = found.undecided
-        shares = np.linspace(0.0, 1.0, PLACES)
-        grid = np.stack(np.meshgrid(shares, shares, indexing="ij"), axis=-1).reshape(-1, 1, 2)
-        low, high = boxes.boxes[:, ::2], boxes.boxes[:, 1::2]
-        places = (low + grid * (high - low)).reshape(-1, 2)
-        of_boxes = self._sides(places, np.tile(normals[boxes.numbers], (PLACES**2, 1)))
-        open_ = (sign * of_boxes.reshape(PLACES**2, -1) >= -0.5).any(axis=0)
         u, v, of_u, of_v = np.concatenate([found.uv, found.radius], axis=1)[lost].T
         small = np.stack([u - of_u, u + of_u, v - of_v, v + of_v], axis=1)
         singular = undecided(found.numbers[lost], small, SINGULAR, border=False)
         both = Undecided._make(
-            np.concatenate([x[open_], y]) for x, y in zip(boxes, singular, strict=True)
+            np.concatenate([x, y]) for x, y in zip(found.undecided, singular, strict=True)
         )
         return FacePlaces(
             found.numbers[keep], found.uv[keep], found.radius[keep], sign * found.sign[keep], both

@@ -27,6 +27,7 @@ from ...runtime.density.grid import Grid
 from ...runtime.density.space import Space
 from ...runtime.samples.request import checked_request
 from ..kernels.flips import flip_edges
+from ..meshes.creased import mean_normals
 from ..meshes.links import edge_numbers, neighbours
 from ..meshes.mesh import scaled
 from ..meshes.triangulated import LARGEST_DEVIATION, checked_prefer
@@ -296,11 +297,10 @@ class Meshing:
         uv[corners.numbers[::-1]] = corners.known.uv[::-1]
         triangles = corners.flipped(points[corners.numbers])
         vertices, normals = corners.numbers[triangles], corners.normals(self.space, triangles)
-        at_vertices = np.zeros((count, 3))
-        np.add.at(at_vertices, vertices, normals)
         faces = np.array([x.face.index for x in self.space.pieces])
         return PartMesh(
-            points, _unit(at_vertices), uv, vertices, np.full(count, -1), self.part.name,
+            points, mean_normals(vertices, normals, count), uv, vertices,
+            np.full(count, -1), self.part.name,
             corner_normals=normals, face_index=faces[corners.pieces[triangles[:, 0]]],
             lines=tuple(self._lines(sampled)), failed=self.failed,
         )  # fmt: skip
@@ -310,11 +310,6 @@ class Meshing:
         for edge, is_point in enumerate(degenerate):
             nothing = is_point or edge not in sampled.numbers
             yield np.empty(0, dtype=np.int64) if nothing else sampled.numbers[edge]
-
-
-def _unit(vectors: Array) -> Array:
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return vectors / np.where(lengths > 0.0, lengths, 1.0)
 
 
 # --- what is wrong --------------------------------------------------------------------------------

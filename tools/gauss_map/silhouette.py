@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from ...generated.jet import contour
 from ...runtime.base.checks import whole_number
+from ...runtime.base.formula_calls import patch, python_function, vector
 from ...runtime.base.threads import thread_count
 from ...runtime.base.tolerances import NORMAL_ERROR
 from ...runtime.density.chosen_normals import NEAR_ENOUGH, NORMALS_PER_SAMPLE
@@ -33,6 +35,8 @@ __all__ = ["Silhouette", "great_circle", "silhouette"]
 
 # Fields that say which normal a sample has, and where it was found.
 KEYS = ("normal_index", "patch_index")
+# Where x_uu, x_uv, x_vv, x_u, x_v are in jets: the vectors of the patch that osculates.
+SECOND_JET = (3, 4, 5, 1, 2)
 # The steps of Newton's method, and how far they may lead, in cells.
 MOST_STEPS, FARTHEST = 12, 2.0
 # The largest number of attempts to meet `count` by changing the number of normals.
@@ -204,15 +208,10 @@ def _move_others(
     steps, start = geometry.spline.frame[2:], places[rows]
     uv, near = start.copy(), np.zeros(len(rows), dtype=bool)
     for _ in range(MOST_STEPS):
-        _, x_u, x_v, x_uu, x_uv, x_vv = np.moveaxis(surface.jets(*uv.T.copy()), 1, 0)
-        N = np.cross(x_u, x_v)
-        value = N @ axis
-        along_u, along_v = (
-            np.cross(x_u_w, x_v) + np.cross(x_u, x_v_w)
-            for x_u_w, x_v_w in ((x_uu, x_uv), (x_uv, x_vv))
-        )
-        gradient = steps * np.stack([along_u @ axis, along_v @ axis], axis=1)
-        near = np.abs(value) <= NORMAL_ERROR * np.linalg.norm(N, axis=1)
+        jets = surface.jets(*uv.T.copy())[:, SECOND_JET]
+        N, value, *slopes = python_function(contour)(patch(jets), vector(axis))
+        gradient = steps * np.stack(slopes, axis=1)
+        near = np.abs(value) <= NORMAL_ERROR * np.linalg.norm(N, axis=0)
         squares = np.square(gradient).sum(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             move = -steps * gradient * (value / squares)[:, None]

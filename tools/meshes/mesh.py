@@ -121,8 +121,11 @@ class Mesh(Methods):
             object.__setattr__(self, "boundary", checked_sides(self.boundary))
 
     def __repr__(self) -> str:
+        return self._named("Mesh")
+
+    def _named(self, kind: str) -> str:
         return (
-            f"Mesh({len(self.vertices):,} vertices, {len(self.triangles):,} triangles on "
+            f"{kind}({len(self.vertices):,} vertices, {len(self.triangles):,} triangles on "
             f"{short_label(self.name)})"
         )
 
@@ -135,7 +138,7 @@ class Mesh(Methods):
     def split(self) -> Mesh:
         """The same triangles, with a vertex for each normal that there is at a point.
 
-        This is another mesh only where normals jump, on meshes of CAD parts.
+        This is another mesh only where normals jump, see `CreasedMesh`.
         """
         return self
 
@@ -212,7 +215,7 @@ class Mesh(Methods):
         """
         added = int(np.count_nonzero(self.sample_index < 0))
         line = f"{len(self.vertices):,} vertices"
-        line += f" ({added:,} of them added)" if added else ""
+        line += f" ({added:,} of them added)" if 0 < added < len(self.vertices) else ""
         line += f", {self.left_out:,} of the samples left out" if self.left_out else ""
         line += f", {len(self.triangles):,} triangles"
         if not len(self.triangles):

@@ -272,6 +272,29 @@ def test_what_is_made_of_a_silhouette() -> None:
     assert lean.fields == ("points",)
 
 
+@compiled
+@pytest.mark.parametrize("distance", [0.1, -0.2])
+def test_the_offset_of_a_silhouette_is_that_of_the_offset(distance: float) -> None:
+    """On the torus whose tube is thicker by the distance, in the order of the same polylines."""
+    direction, minor = [1, 2, 3], MINOR + distance
+    outline = gm.silhouette(TORUS, direction, count=200)
+    moved = outline.offset(distance)
+    x, y, z = moved.points.T
+    assert np.abs(np.hypot(np.hypot(x, y) - MAJOR, z) - minor).max() < 1e-12
+    assert np.abs(moved.normals @ unit(direction)).max() < 1e-12
+    assert (moved.normals == outline.normals).all()
+    assert moved.offset_of is not None
+    assert (moved.offset_of.surface, moved.offset_of.distance) == (TORUS, distance)
+    cosine = (np.hypot(x, y) - MAJOR) / minor
+    across = cosine / (MAJOR + minor * cosine)
+    assert np.abs(moved.gaussian_curvature - across / minor).max() < 1e-9
+    assert np.abs(moved.mean_curvature - (across + 1 / minor) / 2).max() < 1e-9
+    direct = gm.silhouette(gm.surfaces.torus(major=MAJOR, minor=minor), direction, count=200)
+    for line in outline.polylines:
+        steps = np.linalg.norm(moved.points[line][:, None] - direct.points[None], axis=2)
+        assert steps.min(axis=1).max() < 1e-9  # normals of both are the same
+
+
 # --- count, fields, warnings ----------------------------------------------------------------------
 
 

@@ -1,0 +1,115 @@
+"""A mesh on which normals may jump: its vertices are shared, its normals belong to corners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.checks import checked_array
+from .mesh import Mesh
+
+__all__ = ["CreasedMesh", "mean_normals", "unit"]
+
+# Decimal places to which normals at a point differ.
+DIGITS = 9
+# Fields that have defaults only because those of `Mesh` do.
+_GIVEN: Any = None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CreasedMesh(Mesh):
+    """A mesh of faces that meet at creases: those of a part, or the patches of a spline of nets.
+
+    It has all that a `Mesh` has. `normals` are the means of those of the faces around a vertex,
+    `uv` the parameters on one of these faces, and `sample_index` is −1: no vertex is a sample.
+
+    Attributes
+    ----------
+    corner_normals : (T, 3, 3) float64 array
+        The unit normals at the corners of triangles, those of the face on which they are. Where a
+        face has none, as at the tip of a cone, those from inside of the face; 0 if there are
+        none, either.
+    face_index : (T,) int64 array
+        The face of each triangle: its place in `part.faces`, or the number of the patch.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> points = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, 0, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0)]
+    >>> below = [(-1, 0, 0), (1, 0, 0), (0, 0, -1), (0, 0, 0), (-0.5, 0, -0.5), (0.5, 0, -0.5)]
+    >>> mesh = gm.Spline.from_nets([points, below], name="bent").mesh()
+    >>> mesh, mesh.split
+    (CreasedMesh(4 vertices, 2 triangles on bent), Mesh(6 vertices, 2 triangles on bent))
+    >>> mesh.corner_normals.shape, mesh.face_index, mesh.closed
+    ((2, 3, 3), array([0, 1]), False)
+
+    """
+
+    corner_normals: NDArray[np.float64] = _GIVEN
+    face_index: NDArray[np.int64] = _GIVEN
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        count = len(self.triangles)
+        for name, shape, dtype in (
+            ("corner_normals", (count, 3, 3), np.float64),
+            ("face_index", (count,), np.int64),
+        ):
+            array = checked_array(name, getattr(self, name), shape, np.dtype(dtype))
+            object.__setattr__(self, name, array)
+
+    def __repr__(self) -> str:
+        return self._named("CreasedMesh")
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether each edge is in two triangles, which pass it in opposite directions."""
+        count = max(len(self.vertices), 1)
+        one, other = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
+        ways = np.sort(one * count + other)
+        back = np.sort(other * count + one)
+        twice = (ways[1:] == ways[:-1]).any()
+        return bool(len(ways) and not twice and (ways == back).all())
+
+    @property
+    def volume(self) -> float:
+        """The volume that the triangles enclose, in L³; NaN unless the mesh is `closed`."""
+        if not self.closed:
+            return float("nan")
+        corners = self.vertices[self.triangles] - self.vertices.mean(axis=0)
+        return float(np.linalg.det(corners).sum() / 6.0)
+
+    @cached_property
+    def split(self) -> Mesh:
+        """The same triangles, with a vertex for each normal that there is at a point."""
+        normals = self.corner_normals.reshape(-1, 3).round(DIGITS)
+        rows = np.column_stack([self.triangles.ravel(), normals])
+        _, first, places = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+        at = self.triangles.ravel()[first]
+        return Mesh(
+            self.vertices[at],
+            self.corner_normals.reshape(-1, 3)[first],
+            self.uv[at],
+            places.reshape(-1, 3).astype(np.int64),
+            self.sample_index[at],
+            name=self.name,
+        )
+
+
+def mean_normals(
+    triangles: NDArray[np.int64], corner_normals: NDArray[np.float64], count: int
+) -> NDArray[np.float64]:
+    """Return unit means (count, 3) of the normals (T, 3, 3) at each vertex; 0 if they cancel."""
+    total = np.zeros((count, 3))
+    np.add.at(total, triangles, corner_normals)
+    return unit(total)
+
+
+def unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return vectors (…, 3) of unit length, 0 for 0."""
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / np.where(lengths > 0.0, lengths, 1.0)

@@ -1,0 +1,150 @@
+"""Meshes of splines of nets: the triangles of the patches, or equal parts of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.checks import whole_number
+from ...runtime.base.memory import check_memory
+from ...runtime.spline.joints import linked
+from .creased import CreasedMesh, mean_normals, unit
+
+if TYPE_CHECKING:
+    from ...runtime.spline.nets import NetSpline
+
+__all__ = ["mesh"]
+
+
+class Parts(NamedTuple):
+    """A triangle in equal parts: L places u, v (L, 2), corners (3,), edges (3, n + 1), triangles.
+
+    These are numbers of places, counterclockwise; edges are those of `runtime.spline.joints`.
+    """
+
+    places: Array
+    corners: Indices
+    edges: Indices
+    triangles: Indices
+
+    @classmethod
+    def of(cls, n: int) -> Parts:
+        """Return the triangle (0, 0), (1, 0), (0, 1) in n² parts."""
+        i, j = np.nonzero(np.add.outer(np.arange(n + 1), np.arange(n + 1)) <= n)
+        number = np.full((n + 1, n + 1), -1)
+        number[i, j] = np.arange(len(i))
+        ends = np.array([(n, 0), (0, n), (0, 0)])
+        start, end = np.roll(ends, -1, axis=0), np.roll(ends, -2, axis=0)
+        step = np.arange(n + 1)[:, None, None]
+        along = (start * (n - step) + end * step) // n
+        edges = number[along[..., 0], along[..., 1]].T
+        (a, b), (c, d) = ((x[y], z[y]) for x, z, y in ((i, j, i + j < n), (i, j, i + j < n - 1)))
+        upright = np.stack([number[a + 1, b], number[a, b + 1], number[a, b]], axis=1)
+        inverted = np.stack([number[c, d + 1], number[c + 1, d], number[c + 1, d + 1]], axis=1)
+        places = np.stack([i, j], axis=1) / n
+        return cls(places, number[tuple(ends.T)], edges, np.concatenate([upright, inverted]))
+
+
+def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
+    """Return a mesh whose triangles are those of the patches.
+
+    Its vertices are the corners of the patches, each once. Neighbouring patches share the points on
+    their joint, so that the mesh is closed where the nets are, and the normals there if the joint
+    is smooth.
+
+    Parameters
+    ----------
+    parts : int, default 1
+        Into how many parts each edge of a patch is divided, at equal steps of the parameters; a
+        patch gives the square of this number of triangles. All vertices are points of the spline.
+
+    Returns
+    -------
+    CreasedMesh
+        The vertices, triangles, and normals: `normals` at vertices, `corner_normals` at corners of
+        triangles, which differ at creases. `face_index` are the patches of triangles. Those that
+        are an edge or a point, next to an edge that is one point, are left out.
+
+    Raises
+    ------
+    InputError
+        Unless `parts` is a whole number of at least 1, and for a mesh that needs more memory than
+        is free.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> torus = gm.Spline.from_nets(gm.fit("torus", (8, 8)).control_nets, name="torus")
+    >>> mesh = torus.mesh(parts=3)
+    >>> mesh, mesh.closed, mesh.euler_characteristic
+    (CreasedMesh(1,152 vertices, 2,304 triangles on torus), True, 0)
+
+    """
+    n = whole_number(parts, "parts")
+    size = (n + 1) * (n + 2) // 2
+    check_memory("mesh", self.patches * size)
+    inside = Parts.of(n)
+    smooth, joined = _links(self, inside)
+    count, vertex = linked(self.patches * size, *joined)
+    _, first = np.unique(vertex, return_index=True)
+    patches = np.repeat(np.arange(self.patches), size)
+    uv = np.tile(inside.places, (self.patches, 1))
+    normals = _normals(self, patches, uv, smooth)
+    rows = (inside.triangles + size * np.arange(self.patches)[:, None, None]).reshape(-1, 3)
+    a, b, c = vertex[rows].T  # next to an edge that is one point, two may be one
+    proper = (a != b) & (b != c) & (c != a)
+    rows = rows[proper]
+    return CreasedMesh(
+        self.points_in_patches(patches[first], uv[first]),
+        mean_normals(vertex[rows], normals[rows], count),
+        uv[first], vertex[rows], np.full(count, -1), self.name,
+        corner_normals=normals[rows], face_index=patches[rows[:, 0]],
+    )  # fmt: skip
+
+
+Links = tuple[Indices, Indices]
+
+
+def _links(spline: NetSpline, inside: Parts) -> tuple[Links, Links]:
+    """Return pairs of places of patches, L k + l, that have the same normal, and the same point."""
+    topology, size = spline.topology, len(inside.places)
+    first = size * np.arange(spline.patches)[:, None]
+    edges = (first[:, None] + inside.edges).reshape(3 * spline.patches, -1)
+    point = edges[topology.is_point]
+
+    def across(pairs: Indices) -> Indices:
+        """Link edges (J, 2) in opposite directions, and all places of those that are one point."""
+        along = np.stack([edges[pairs[:, 0]], edges[pairs[:, 1], ::-1]]).reshape(2, -1)
+        return np.concatenate([along, np.stack([point[:, 1:], point[:, :-1]]).reshape(2, -1)], 1)
+
+    corners = (first + inside.corners).ravel()
+    _, known, number = np.unique(topology.numbers[:, :3], return_index=True, return_inverse=True)
+    same = np.stack([corners, corners[known[number.ravel()]]])
+    one, other = across(topology.pairs[topology.joints.smooth])
+    all_one, all_other = np.concatenate([across(topology.pairs), same], axis=1)
+    return (one, other), (all_one, all_other)
+
+
+def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> Array:
+    """Return the unit normals (L T, 3) of patches at places; those that are linked share one.
+
+    Where all patches around are singular they share one only if theirs agree.
+    """
+    N, singular = spline.normals_in_patches(patches, uv)
+    own = unit(N)
+    count, group = linked(len(own), *smooth)
+    regular = _any(count, group, ~singular)
+    total = np.zeros((count, 3))
+    some = np.flatnonzero(~singular | ~regular[group])
+    np.add.at(total, group[some], own[some])
+    shared = unit(total)[group]
+    chord = 2.0 * np.sin(0.5 * np.radians(spline.smooth))
+    apart = _any(count, group, np.linalg.norm(own - shared, axis=1) > chord) & ~regular
+    return np.where(apart[group, None], own, shared)
+
+
+def _any(count: int, group: Indices, flags: Flags) -> Flags:
+    """Return in which groups (count,) any of the members has a flag."""
+    return np.bincount(group[flags], minlength=count) > 0
