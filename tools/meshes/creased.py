@@ -31,8 +31,8 @@ class CreasedMesh(Mesh):
     ----------
     corner_normals : (T, 3, 3) float64 array
         The unit normals at the corners of triangles, those of the face on which they are. Where a
-        face has none, as at the tip of a cone, those from inside of the face; 0 if there are
-        none, either.
+        face has none, as at the tip of a cone, those inside the triangle or patch, and 0 if
+        there are none there, either.
     face_index : (T,) int64 array
         The face of each triangle: its place in `part.faces`, or the number of the patch.
 

@@ -1,13 +1,12 @@
 """Cells make up their pieces, lie within their radii, and bound the normals in them."""
 
+from dataclasses import replace
+
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density import surface_piece
 from gaussmap.runtime.density.cells import Cells
 from gaussmap.runtime.density.methods import space_on
-from gaussmap.runtime.kernels.sizing import TargetDensity
-from gaussmap.runtime.place.on_surface import OnSurface
 
 NAMES = ("torus", "wavy_graph", "ellipsoid", "cone")
 
@@ -104,9 +103,9 @@ def test_cells_bound_what_the_curvature_of_a_ridge_counts():
     ridge = gm.Surface.from_callable(
         lambda u, v: np.stack([u, v, np.sqrt(u * u + 1e-12)], axis=-1), ((-1, 1), (0, 1))
     )
-    geometry = OnSurface(gm.fit(ridge, (31, 7)), None, ridge)
-    target = TargetDensity(curvature_weight=1.0)
-    cells = surface_piece.space_of([geometry], None, target).first
+    space = space_on(gm.fit(ridge, (31, 7)), ridge, None)
+    target = space.target._replace(floor=0.0, curvature_weight=1.0)
+    cells = replace(space, target=target).first
     largest, bound = cells.rows[:, 6].max(), 1.0 / cells.numbers[:, 7] ** 2
     assert (cells.rows[:, 6] <= bound * (1 + 1e-12)).all()
     assert largest == pytest.approx(bound[cells.rows[:, 6].argmax()])
