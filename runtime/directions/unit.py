@@ -34,7 +34,7 @@ def as_normals(
     """
     if hasattr(normals, "normals"):  # samples: as an array they are points
         raise InputError(
-            f"normals are directions, not {type(normals).__name__}; its .normals may be meant."
+            f"normals are directions, not {type(normals).__name__}; give its .normals."
         )
     array = real_values(normals, "normals")
     if array.ndim != 2 or array.shape[1] != dimension or array.shape[0] == 0:

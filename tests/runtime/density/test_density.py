@@ -8,7 +8,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.density import candidates, space
-from gaussmap.runtime.place.on_spline import OnSpline
+from gaussmap.runtime.density.methods import space_on
 from numpy.typing import NDArray
 
 DENSITIES = ["balanced", "uniform", 0.5, 1.0, 3.0]
@@ -85,7 +85,8 @@ def test_samples_on_a_spline_have_its_curvatures(density):
     inside = np.min([s, t, 1.0 - s, 1.0 - t, abs(s - t), abs(s + t - 1.0)], axis=0) > 1e-6
     assert inside.sum() > 100  # of a patch: there are two curvatures at an edge
     samples = samples[inside]
-    (_, x_u, x_v, *seconds) = np.moveaxis(OnSpline(spline, None).jets(*samples.uv.T.copy()), 1, 0)
+    (piece,) = space_on(spline, None, None).pieces
+    (_, x_u, x_v, *seconds) = np.moveaxis(piece.jets(*samples.uv.T.copy()), 1, 0)
     e, f, g = (-np.einsum("kx,kx->k", x, samples.normals) for x in seconds)
     E, F, G = (np.einsum("kx,kx->k", x, y) for x, y in ((x_u, x_u), (x_u, x_v), (x_v, x_v)))
     K = (e * g - f * f) / (E * G - F * F)

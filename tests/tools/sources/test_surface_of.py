@@ -70,7 +70,7 @@ def test_surfaces(known: dict[str, Any], expected: gm.Surface) -> None:
         ({"surface": "missing.txt"}, "does not exist"),
         ({"surface": "missing.step", "cells": (8, 8)}, "--cells is for surfaces"),
         ({"formula": ("u", "v", "u*v")}, "add --domain"),
-        ({"domain": ("0", "1", "0", "1"), "surface": "torus"}, "--domain is for --formula"),
+        ({"domain": ("0", "1", "0", "1"), "surface": "torus"}, "--domain goes with --formula only"),
         ({"surface": "torus", "cells": (8, 8), "tolerance": 0.1}, "do not go together"),
     ],
 )
