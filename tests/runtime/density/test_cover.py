@@ -40,6 +40,7 @@ def test_candidates_for_a_count_are_evaluated_once(name, density, monkeypatch):
     assert len(taken) == 1
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("width", [1e-9, 1e-4])
 @pytest.mark.parametrize("count", [10, 50, 200])
 def test_samples_of_a_narrow_strip_stand_in_a_row(width, count, monkeypatch):
