@@ -37,6 +37,7 @@ def counted(tangents: Callable[[Array], Array], normals: Array, turn: float) -> 
     return found
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize(("lobes", "depth"), [(5, 0.3), (7, 0.1), (3, 0.9)])
 def test_every_point_of_a_star(lobes: int, depth: float) -> None:
     curve, normals = star(lobes, depth), gm.directions.circle(500)

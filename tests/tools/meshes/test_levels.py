@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph"])
 def test_levels_are_nested_and_good_meshes(name: str) -> None:
     samples = gm.sample(name, 2000, cells=(24, 24))

@@ -25,6 +25,7 @@ def klein_bottle() -> gm.Surface:
 SURFACES = ["torus", "sphere", "moebius_band", "cylinder", "wavy_graph", "cone", klein_bottle()]
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("surface", SURFACES, ids=lambda x: getattr(x, "name", x))
 def test_texture_coordinates_do_not_jump(surface: gm.Surface | str) -> None:
     mesh = gm.sample(surface, 1500, cells=(24, 24)).mesh()
