@@ -78,7 +78,7 @@ def fill_places(
 
     places (k, 6) are those of a search, numbers (k,) those of their unit normals (S, 3). `scales` =
     (size, du, dv): `size` times the surface has cells du × dv of about the size 1. `frame` are u₀,
-    v₀, du, dv of the spline, which has so many `cells`.
+    v₀, du, dv of the spline, which has m × n `cells`.
     """
     x, y, z = POINT * tape.outputs[0], POINT * tape.outputs[1], POINT * tape.outputs[2]
     u0, v0, du, dv = frame[0], frame[1], frame[2], frame[3]

@@ -201,11 +201,12 @@ def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
 
 
 def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
-    """Return the signs (k,) of U, V or W, on the side of edges, at normals (k, 3); never 0.
+    """Return the signs (k,) of U, V or W, on the side of edges, at normals (k, 3).
 
     An edge j of patch p has the row 3 p + j. Its form is V of the patch turned so that the edge is
     v = 0, with the tangents at its ends projected onto the planes perpendicular to the normals that
-    all patches share there. The form of the other patch of a joint is its negative.
+    all patches share there. The form of the other patch of a joint is its negative. They are 0 on
+    edges that are one point only.
     """
     topology = spline.topology
     owner, side = (x[rows] for x in topology.owner)

@@ -21,7 +21,7 @@ __all__ = ["Apex", "apexes_of"]
 Array = NDArray[np.float64]
 
 SINGULAR = KINDS.index("singular")
-# Places on a side at which it is looked whether it is one point, up to so many roundings.
+# A side is one point if its points at so many places are equal up to so many roundings.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the place of the coefficient of u v in Taylor polynomials; those of u and v are 1 and 2
 

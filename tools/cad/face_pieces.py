@@ -89,7 +89,7 @@ class FacePiece(Piece):
 
     @cached_property
     def _share(self) -> float:
-        """The part of the face whose normals are in the reach, as a raster tells it."""
+        """The part of the area whose normals are in the reach, measured on a raster."""
         if self.reach is None:
             return 1.0
         n = max(2, math.ceil(RASTER / math.sqrt(len(self.boxes))))

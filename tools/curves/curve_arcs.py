@@ -23,7 +23,7 @@ from ...runtime.kernels.tape import Tape
 from ...runtime.surface.tapes import bounds_over_boxes, jets_of
 from ...runtime.surface.traced import traced_tape
 from .curve import Curve
-from .curve_spline import angles_of
+from .turning import Turning
 
 __all__ = ["CurveArcs", "arcs_of"]
 
@@ -40,7 +40,7 @@ CERTAIN, UNCERTAIN, SINGULAR = range(3)
 
 
 @dataclass(frozen=True, eq=False)
-class CurveArcs:
+class CurveArcs(Turning):
     """The arcs of a curve: P + 1 parameters of joints, and the kinds (P,) of arcs.
 
     What the search asks is named as in `CurveSpline`.
@@ -50,6 +50,7 @@ class CurveArcs:
     tape: Tape
     joints: Array
     kinds: NDArray[np.int8]
+    periodic: bool
 
     @property
     def name(self) -> str:
@@ -60,11 +61,6 @@ class CurveArcs:
     def domain(self) -> tuple[float, float]:
         """The interval of the parameter."""
         return self.curve.domain
-
-    @property
-    def periodic(self) -> bool:
-        """Whether the curve is closed."""
-        return self.curve.periodic
 
     @property
     def pieces(self) -> int:
@@ -94,27 +90,6 @@ class CurveArcs:
     def noise(self) -> float:
         """A bound of the rounding of `joint_normals`."""
         return 4.0 * float(np.finfo(np.float64).eps)
-
-    @cached_property
-    def angles(self) -> tuple[Array, NDArray[np.int64]]:
-        """Angles of the normals at the joints and full turns, as in `CurveSpline`."""
-        angles = angles_of(self.joint_normals)
-        if self.periodic:
-            angles[-1] = angles[0]
-        steps = np.diff(angles)
-        turns = np.cumsum((steps < -np.pi).astype(np.int64) - (steps > np.pi))
-        return angles, np.concatenate([[0], turns])
-
-    @property
-    def turning_angles(self) -> Array:
-        """The angle (P,) by which the normal turns on each arc."""
-        angles, turns = self.angles
-        return np.diff(angles) + 2 * np.pi * np.diff(turns)
-
-    @property
-    def turning_number(self) -> int | None:
-        """The number of turns of the normal along a closed curve; None for an open curve."""
-        return int(self.angles[1][-1]) if self.periodic else None
 
     @cached_property
     def inflections(self) -> Array:
@@ -215,7 +190,9 @@ def _arcs_of(curve: Curve) -> CurveArcs | None:
                                 np.column_stack([middle, rest[:, 1]])])  # fmt: skip
     done.sort()
     starts, kinds = zip(*done, strict=True)
-    return CurveArcs(curve, tape, np.array([*starts, high]), np.array(kinds, dtype=np.int8))
+    return CurveArcs(
+        curve, tape, np.array([*starts, high]), np.array(kinds, dtype=np.int8), curve.periodic
+    )
 
 
 def _kinds(tape: Tape, intervals: Array) -> NDArray[np.int8]:

@@ -30,8 +30,9 @@ from ...runtime.directions.unit import as_normals
 from ...runtime.samples.report import WORTH_A_WARNING
 from .curve import Curve
 from .curve_arcs import CurveArcs, arcs_of
-from .curve_spline import CurveSpline, angles_of
+from .curve_spline import CurveSpline
 from .fitting import fit
+from .turning import angles_of
 
 __all__ = ["CurveReport", "CurveSamples", "filled", "find", "sample"]
 

@@ -17,14 +17,15 @@ from ...runtime.base.scales import scale_to_one
 from ...runtime.base.tolerances import DIFFERENCE_ERROR
 from ...runtime.domain.domain import Interval, checked_interval
 from ...runtime.spline.spline import short_label
+from .turning import Turning
 
-__all__ = ["CurveSpline", "angles_of"]
+__all__ = ["CurveSpline"]
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CurveSpline:
+class CurveSpline(Turning):
     """A planar C¹ quadratic spline with P equal pieces of the parameter; made by `fit`.
 
     Joint k is the beginning of piece k.
@@ -213,34 +214,6 @@ class CurveSpline:
         return np.stack(normals, axis=-1)
 
     @cached_property
-    def angles(self) -> tuple[Array, NDArray[np.int64]]:
-        """Angles of the normals at the joints, and full turns: (P + 1,) float64 and int64 arrays.
-
-        Angles are in radians, in −π … π. The sum angle + 2π turns follows the curve: on an arc it
-        changes by less than π.
-        """
-        angles = angles_of(self.joint_normals)
-        if self.periodic:
-            angles[-1] = angles[0]
-        steps = np.diff(angles)
-        turns = np.cumsum((steps < -np.pi).astype(np.int64) - (steps > np.pi))
-        return angles, np.concatenate([[0], turns])
-
-    @cached_property
-    def turning_angles(self) -> Array:
-        """(P,) float64 array: the angle by which the normal turns on each arc, in radians.
-
-        Its sign is that of κ there.
-        """
-        angles, turns = self.angles
-        return np.diff(angles) + 2 * np.pi * np.diff(turns)
-
-    @property
-    def turning_number(self) -> int | None:
-        """The number of turns of the normal along a closed curve; None for an open curve."""
-        return int(self.angles[1][-1]) if self.periodic else None
-
-    @cached_property
     def noise(self) -> float:
         """A bound of the rounding of the coordinates in a vector of `joint_normals`."""
         return DIFFERENCE_ERROR * float(np.spacing(np.abs(self.coefficients).max())) * self.scale
@@ -317,11 +290,6 @@ class CurveSpline:
                 f"t = {t[worst]} lies outside the domain {self.domain} of {self.name!r}."
             )
         return places
-
-
-def angles_of(vectors: Array) -> Array:
-    """Return the angles of vectors (k, 2) in −π … π, where −0.0 is 0.0."""
-    return np.arctan2(vectors[:, 1] + 0.0, vectors[:, 0] + 0.0)
 
 
 def _lengths(vectors: Array) -> Array:

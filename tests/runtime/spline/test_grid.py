@@ -389,7 +389,7 @@ def test_points_too_large_to_compute_with(periodic):
 
 @pytest.mark.parametrize(("part", "repeats"), [(0.5e-3, True), (2e-3, False)])
 def test_first_points_nearly_repeated_at_the_end(part, repeats):
-    """They are, if they are as near as a thousandth of the distance of two rows."""
+    """They are one if their distance is a thousandth of that of two rows."""
     angles = np.linspace(0.0, 2.0 * np.pi, 13)
     angles[-1] -= part * angles[1]
     rings = np.stack([np.cos(angles), np.sin(angles)], axis=-1)[:, None]

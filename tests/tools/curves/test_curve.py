@@ -153,7 +153,7 @@ def test_unusable_points(points, complaint):
 
 @pytest.mark.parametrize(("part", "repeats"), [(0.5e-3, True), (2e-3, False)])
 def test_closed_points_that_nearly_repeat_the_first(part, repeats):
-    """They do if they are as near as a thousandth of the distance of two points."""
+    """They do if their distance is a thousandth of that of two points."""
     points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, part]])
     if repeats:
         with pytest.raises(gm.errors.InputError, match="repeats its first point"):
