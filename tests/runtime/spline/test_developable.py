@@ -73,6 +73,22 @@ def test_a_slanted_plane_and_a_slanted_graph_over_it():
     assert developable_share(gm.fit(rolled), DENSE) > 0.9
 
 
+@pytest.mark.filterwarnings("ignore:surface:gaussmap.GaussmapWarning")
+def test_surfaces_may_bend_along_any_axis():
+    """The second derivatives have one component; K is the rounding of their products."""
+
+    def developable_patches(axes):
+        surface = gm.Surface.from_callable(
+            lambda u, v: np.stack([u, v, np.sin(u + 2 * v)], axis=-1)[..., axes], ((-1, 1), (-1, 1))
+        )
+        samples = gm.sample(surface, normals=gm.fibonacci(10), cells=(8, 8), on="spline")
+        return samples.report.developable_patches
+
+    assert developable_patches([0, 1, 2]) > 0
+    assert developable_patches([2, 0, 1]) == developable_patches([0, 1, 2])
+    assert developable_patches([1, 2, 0]) == developable_patches([0, 1, 2])
+
+
 @pytest.mark.parametrize("share", [0.25, 0.5, 0.75])
 @pytest.mark.parametrize("flat", ["flat", "rolled"])
 def test_surfaces_that_are_developable_in_part(share, flat):
