@@ -25,9 +25,9 @@ __all__ = ["PoleChart", "pole_charts"]
 # cell away from those of the surface. With one cell samples are lost; more than three change
 # roundings only.
 POLE_CELLS = 6
-# Nearer to a pole than this part of the domain the 2-jet of the pole is continued: there the error
-# of that is as small as the rounding of derivatives by the angle, divided by the distance.
-NEAR = 2.0**-27
+# Nearer to a pole than this part r of the domain the 2-jet of the pole is continued. That has an
+# error of r, and derivatives by the angle have one of up to ε/r², where coordinates cancel.
+NEAR = 2.0**-20
 
 
 @dataclass(frozen=True, eq=False)
