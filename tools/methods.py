@@ -62,8 +62,10 @@ def write(
           back bit for bit. Indices are 32-bit. Needs the field `points`.
         - `.csv`: a header row and one row a sample; as many digits as it takes to read the same
           numbers again. Where the unit of length is known, of parts and of terrain with a
-          reference system, columns of lengths and curvatures name it: `x [mm]`. With the extra
-          "tables" Polars writes the file, ten times as fast.
+          reference system, columns of lengths and curvatures name it: `x [mm]`. Of a CAD part
+          there are `source_index`, `face_name`, `face_kind` and `face_radius` of the face, too,
+          if the samples have `face_index` and know their part. With the extra "tables" Polars
+          writes the file, ten times as fast.
         - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and
           `normals`.
         - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`.

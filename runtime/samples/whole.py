@@ -11,7 +11,19 @@ from numpy.typing import DTypeLike, NDArray
 if TYPE_CHECKING:
     from .request import Request
 
-__all__ = ["NormalDeviation", "Whole"]
+__all__ = ["FaceColumn", "NormalDeviation", "Whole"]
+
+
+class FaceColumn(NamedTuple):
+    """A column of tables that says something of faces: its type, and a value for each face.
+
+    None stands for no value. `unit` is that of lengths, L, or empty.
+    """
+
+    name: str
+    dtype: type[int] | type[float] | type[str]
+    values: Sequence[float | str | None]
+    unit: str = ""
 
 
 class NormalDeviation(NamedTuple):
@@ -55,4 +67,8 @@ class Whole:
 
     def _space(self, threads: int | None) -> Any:  # noqa: ANN401
         """Return the `Space` of what is sampled."""
+        raise NotImplementedError
+
+    def _face_columns(self) -> list[FaceColumn]:
+        """Return what tables of samples say of their faces."""
         raise NotImplementedError

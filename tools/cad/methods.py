@@ -20,6 +20,8 @@ class Methods:
     plot = Later(PLOT, "plot_part")
     select = Later(SELECTION)
 
+    _face_columns = Later("gaussmap.tools.cad.face_columns", "face_columns")
+
     _bounds_of = Later(MEASURES, "bounds_of")
     _volume_of = Later(MEASURES, "volume_of")
 

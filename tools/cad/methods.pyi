@@ -2,6 +2,7 @@
 
 class Methods:
     from ..pictures.plot import plot_part as plot
+    from .face_columns import face_columns as _face_columns
     from .measures import bounds_of as _bounds_of
     from .measures import volume_of as _volume_of
     from .results import space_of as _space

@@ -13,6 +13,7 @@ from ...runtime.samples.fields import COLUMNS, columns_of
 from ...runtime.samples.samples import Samples
 from .content import report_to_json
 from .lengths import unit_of, units_of
+from .of_faces import columns_of_faces
 
 __all__ = ["write_arrow", "write_parquet"]
 
@@ -44,7 +45,12 @@ def _table(samples: Samples, path: Path) -> Any:  # noqa: ANN401
         for name, array in samples.arrays().items()
         for column in COLUMNS[name]
     ]
+    columns = [arrow.array(np.ascontiguousarray(x)) for x in columns_of(samples.arrays()).values()]
+    kinds = {int: arrow.int64(), float: arrow.float64(), str: arrow.string()}
+    for x in columns_of_faces(samples):
+        field = arrow.field(x.name, kinds[x.dtype])
+        fields.append(field.with_metadata({"unit": x.unit}) if x.unit else field)
+        columns.append(arrow.array(x.values, field.type).take(arrow.array(samples.face_index)))
     about = {"gaussmap": __version__, "report": report_to_json(samples.report)}
     about |= {} if unit is None else {"unit_of_length": unit}
-    columns = [arrow.array(np.ascontiguousarray(x)) for x in columns_of(samples.arrays()).values()]
     return arrow.table(columns, schema=arrow.schema(fields, metadata=about))

@@ -7,7 +7,7 @@ from ...runtime.samples.fields import COLUMNS, UNITS
 from ...runtime.samples.samples import Samples
 from ...runtime.samples.whole import Whole
 
-__all__ = ["METRES", "names_with_units", "unit_named", "unit_of", "units_of"]
+__all__ = ["METRES", "names_with_units", "unit_named", "unit_of", "units_of", "whole_of"]
 
 # The length of each unit in metres.
 METRES: dict[str, float] = {
@@ -49,13 +49,21 @@ def unit_named(name: str) -> str | None:
     return NAMES.get(name.strip().lower())
 
 
+def whole_of(samples: Samples) -> Whole | None:
+    """Return the part on which samples are, or from which they were moved; None without one."""
+    base = samples.offset_of
+    surface = samples.surface if base is None else base.surface
+    return surface if isinstance(surface, Whole) else None
+
+
 def unit_of(samples: Samples) -> str | None:
     """Return the unit of length of samples: that of their part, or of their reference system.
 
     None if it is not known. Reference systems are read by rasterio, if it is installed.
     """
-    if isinstance(samples.surface, Whole):
-        return samples.surface.unit or None
+    part = whole_of(samples)
+    if part is not None:
+        return part.unit or None
     crs = samples.report.crs
     rasterio = None if crs is None else if_installed("rasterio.crs")
     if rasterio is None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ...runtime.base.extras import from_extra
 from ...runtime.samples.fields import columns_of
+from .of_faces import columns_of_faces
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]
@@ -44,7 +45,10 @@ def to_dataframe(self: Samples) -> pandas.DataFrame:
     """
     columns = columns_of(self.arrays())
     pandas = from_extra("pandas", "pandas", "this")
-    return pandas.DataFrame({name: column.copy() for name, column in columns.items()})
+    table = pandas.DataFrame({name: column.copy() for name, column in columns.items()})
+    for x in columns_of_faces(self):
+        table[x.name] = pandas.array(x.values, dtype=x.dtype)[self.face_index]
+    return table
 
 
 def to_pyvista(self: Samples) -> pyvista.PolyData:

@@ -15,11 +15,12 @@ from ...runtime.base.extras import if_installed
 from ...runtime.samples.fields import columns_of
 from ...runtime.samples.samples import Samples
 from .lengths import names_with_units
+from .of_faces import columns_of_faces, texts_of
 
 __all__ = ["write_csv", "write_rows", "write_xyz"]
 
 # As many digits as it takes to read the same numbers again.
-_DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%.17g"}
+_DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%.17g", "O": "%s"}
 _ROWS = 4096
 # Fewer rows are written before Polars is imported; more at once take memory and save no time.
 WORTH_AN_IMPORT, ROWS_OF_POLARS = 20_000, 1 << 18
@@ -27,10 +28,13 @@ WORTH_AN_IMPORT, ROWS_OF_POLARS = 20_000, 1 << 18
 
 def write_csv(samples: Samples, path: Path) -> None:
     """Write a line of names, with units of length where these are known; one for each sample."""
-    columns = columns_of(samples.arrays())
+    columns, names = [*columns_of(samples.arrays()).values()], names_with_units(samples)
+    for x in columns_of_faces(samples):
+        columns.append(texts_of(x, samples))
+        names.append(f"{x.name} [{x.unit}]" if x.unit else x.name)
     with open(path, "wb") as file:
-        file.write((",".join(names_with_units(samples)) + "\n").encode("ascii"))
-        write_rows(file, ",".join(["{}"] * len(columns)) + "\n", list(columns.values()))
+        file.write((",".join(names) + "\n").encode("ascii"))
+        write_rows(file, ",".join(["{}"] * len(columns)) + "\n", columns)
 
 
 def write_xyz(samples: Samples, path: Path) -> None:
@@ -40,7 +44,7 @@ def write_xyz(samples: Samples, path: Path) -> None:
 
 
 def write_rows(file: BinaryIO, line: str, columns: Sequence[NDArray[Any]]) -> None:
-    """Write columns as lines, in which their numbers take the places of the braces.
+    """Write columns as lines, in which their numbers and texts take the places of the braces.
 
     Words are separated by spaces or by commas. Polars writes many rows ten times as fast as Python,
     in as few digits as it takes to read the same numbers again, if it is installed.
@@ -63,13 +67,16 @@ def _formatted(line: str, columns: Sequence[NDArray[Any]]) -> Iterator[bytes]:
     for start in range(0, len(columns[0]), _ROWS):
         block = [column[start : start + _ROWS].tolist() for column in columns]
         numbers = tuple(chain.from_iterable(zip(*block, strict=True)))
-        yield (pattern * len(block[0]) % numbers).encode("ascii")
+        yield (pattern * len(block[0]) % numbers).encode()
 
 
 def _table(polars: Any, words: Sequence[str], columns: Sequence[NDArray[Any]]) -> Any:  # noqa: ANN401
     """Return a column for each word of a line."""
     waiting = iter(f"n{k}" for k in range(len(columns)))
-    numbers = {f"n{k}": np.ascontiguousarray(column) for k, column in enumerate(columns)}
+    numbers = {
+        f"n{k}": x.tolist() if x.dtype == object else np.ascontiguousarray(x)
+        for k, x in enumerate(columns)
+    }
     expressions = []
     for k, word in enumerate(words):
         names = [next(waiting) for _ in re.findall(r"{}", word)]

@@ -1,0 +1,27 @@
+"""What tables of samples say of the face that each sample lies on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ...runtime.samples.whole import FaceColumn
+
+if TYPE_CHECKING:
+    from .part import Part
+
+__all__ = ["face_columns"]
+
+
+def face_columns(part: Part) -> list[FaceColumn]:
+    """Return the number in the file, the name, the kind and the radius of all faces.
+
+    The radius is that of cylinders and spheres, and of tori the smaller one.
+    """
+    sizes = (x.dimensions for x in part.faces)
+    radii = [x.get("radius", x.get("minor_radius")) for x in sizes]
+    return [
+        FaceColumn("source_index", int, [x.source_index for x in part.faces]),
+        FaceColumn("face_name", str, [x.name for x in part.faces]),
+        FaceColumn("face_kind", str, [x.kind for x in part.faces]),
+        FaceColumn("face_radius", float, radii, "L"),
+    ]

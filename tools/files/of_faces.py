@@ -1,0 +1,37 @@
+"""Columns of tables that say on which face of a part a sample lies."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.samples.samples import Samples
+from ...runtime.samples.whole import FaceColumn
+from .lengths import whole_of
+
+__all__ = ["columns_of_faces", "texts_of"]
+
+
+def columns_of_faces(samples: Samples) -> list[FaceColumn]:
+    """Return the columns, with their units; none unless samples know their part and faces."""
+    part = whole_of(samples)
+    if part is None or samples.face_index is None:
+        return []
+    return [x._replace(unit=x.unit.replace("L", part.unit)) for x in part._face_columns()]
+
+
+def texts_of(column: FaceColumn, samples: Samples) -> NDArray[Any]:
+    """Return what a .csv file has in a column, for samples (N,)."""
+    return np.array([_text(x) for x in column.values], dtype=object)[samples.face_index]
+
+
+def _text(value: float | str | None) -> str:
+    if isinstance(value, float):
+        return f"{value:.17g}"
+    line = io.StringIO()
+    csv.writer(line, lineterminator="").writerow(["" if value is None else value, ""])
+    return line.getvalue()[:-1]
