@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Literal, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..runtime.base.checks import known_name, listed, whole_number
+from ..runtime.base.checks import known_name, listed, positive_number, whole_number
 from ..runtime.base.errors import InputError, shown
 from ..runtime.base.progress import busy
 from ..runtime.samples.samples import spline_or
 from ..runtime.samples.whole import Whole
 
 if TYPE_CHECKING:
+    import trimesh
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -34,10 +35,13 @@ __all__ = [
     "mesh",
     "offset",
     "plot",
+    "unobstructed",
     "view",
     "weights",
     "write",
 ]
+
+OBSTACLE = 20_000  # vertices of the mesh of a part that rays are tested against
 
 
 def write(
@@ -367,6 +371,74 @@ def offset(self: Samples, distance: float) -> Samples:
     from .support.offset import offset as moved_along_normals
 
     return moved_along_normals(self, distance)
+
+
+def unobstructed(
+    self: Samples, distance: float, *, by: Part | Mesh | trimesh.Trimesh | None = None
+) -> NDArray[np.bool_]:
+    """Return which samples a probe reaches along their normals from a distance.
+
+    The straight way from the sample to the point x + d n of `offset` must not run into the part,
+    or into another obstacle. A probe has a width: for a ball of radius r, take the samples
+    ``offset(r)``, which are its centres, too. Rays are tested against a mesh of the obstacle, so
+    that ways that pass it at the distance between mesh and surface may be wrong.
+
+    Parameters
+    ----------
+    distance : float
+        The distance d, in L.
+    by : Part, Mesh or trimesh.Trimesh, optional
+        The obstacle: by default the part or surface of the samples. A part becomes a mesh of
+        20,000 vertices, as ``gm.sample(part, 20_000).mesh()``. For samples of a `Part.select` give
+        the whole part, for a clamp or a table its mesh.
+
+    Returns
+    -------
+    (N,) bool array
+        Whether the way is free.
+
+    Raises
+    ------
+    InputError
+        Unless the distance is positive, and the mesh closed with its normals outwards; for what is
+        no obstacle; and as `mesh`.
+    MissingFieldError
+        Unless the samples have the fields points and normals.
+    MissingExtraError
+        Without the extra `rays`, of a part also without the extra `mesh`.
+
+    See Also
+    --------
+    offset : the points from which the way begins.
+
+    Examples
+    --------
+    In the hole of a torus, whose radius is 0.65, ways end at the opposite side:
+
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", normals=[[1, 0, 0]])
+    >>> samples.points.round(2) + 0.0
+    array([[ 1.35,  0.  ,  0.  ],
+           [-0.65,  0.  ,  0.  ]])
+    >>> torus = gm.sample("torus", 2000).mesh()
+    >>> samples.unobstructed(1.2, by=torus), samples.unobstructed(1.4, by=torus)
+    (array([ True,  True]), array([ True, False]))
+
+    """
+    from .files.lengths import whole_of
+    from .meshes.rays import check_rays
+    from .meshes.rays import unobstructed as are_free
+
+    far = positive_number(distance, "distance")
+    check_rays()
+    if by is None:
+        by = cast("Part | None", whole_of(self)) or self.mesh()
+    if isinstance(by, Whole):
+        from .cad.meshing import mesh_of_samples
+
+        by = mesh_of_samples(cast("Part", by), OBSTACLE, None, "shape")
+    points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
+    return are_free(points, normals, far, by)
 
 
 def plot(

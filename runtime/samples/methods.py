@@ -31,6 +31,7 @@ class Methods:
     to_open3d = Later(OTHERS)
     to_pyvista = Later(OTHERS)
     to_trimesh = Later(OTHERS)
+    unobstructed = Later(TOOLS)
     view = Later(TOOLS)
     weights = Later(TOOLS)
     write = Later(TOOLS)

@@ -9,6 +9,7 @@ class Methods:
     from ...tools.methods import mesh as mesh
     from ...tools.methods import offset as offset
     from ...tools.methods import plot as plot
+    from ...tools.methods import unobstructed as unobstructed
     from ...tools.methods import view as view
     from ...tools.methods import weights as weights
     from ...tools.methods import write as write

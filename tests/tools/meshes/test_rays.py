@@ -1,0 +1,70 @@
+"""Which samples a probe reaches along their normals, without running into obstacles."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+
+trimesh = pytest.importorskip("trimesh")
+pytest.importorskip("rtree")
+pytestmark = pytest.mark.compiled
+
+
+@pytest.fixture(scope="module")
+def bracket() -> gm.Samples:
+    pytest.importorskip("pythoncdt")
+    return gm.sample(gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz"), 300)
+
+
+def test_walls_of_holes_block_beyond_their_diameter(bracket):
+    faces = [bracket.surface.faces[k] for k in bracket.face_index]
+    holes = np.array([x.kind == "cylinder" and x.dimensions["radius"] == 3.5 for x in faces])
+    assert holes.sum() >= 8
+    holes, mesh = bracket[holes], gm.sample(bracket.surface, 6000).mesh()
+    assert holes.unobstructed(6.9, by=mesh).all()
+    assert not holes.unobstructed(7.1, by=mesh).any()
+    centres = holes.offset(1.0)
+    assert centres.unobstructed(5.9, by=mesh).all()
+    assert not centres.unobstructed(6.1).any()  # by the mesh of the part
+
+
+def test_what_is_free_of_the_bracket(bracket):
+    free, faces = bracket.unobstructed(1000.0), bracket.surface.faces
+    low, high = bracket.surface.bounds
+    outer = ((bracket.points - low < 1e-9) & (bracket.normals < -0.999)) | (
+        (high - bracket.points < 1e-9) & (bracket.normals > 0.999)
+    )
+    assert outer.any()
+    assert free[outer.any(axis=1)].all()
+    hollow = np.array([faces[k].dimensions.get("hollow", False) for k in bracket.face_index])
+    bores = np.array([faces[k].kind == "cylinder" for k in bracket.face_index]) & hollow
+    assert not free[bores & (np.abs(bracket.normals[:, 0]) < 1e-9)].all()
+    mesh = gm.sample(bracket.surface, 4000).mesh()
+    np.testing.assert_array_equal(bracket.unobstructed(1000.0, by=mesh), free)
+
+
+def test_a_clamp(parts):
+    """A box of 1 × 2 × 3, and a clamp 0.5 above a part of its top, in contact with one side."""
+    samples = gm.sample(parts.box(1.0, 2.0, 3.0), 400)
+    clamp = trimesh.creation.box(bounds=[[0.2345, -1.0, 3.5], [0.7654, 1.0123, 4.0]])
+    wall = trimesh.creation.box(bounds=[[1.0, -1.0, -1.0], [2.0, 3.0, 5.0]])
+    x, y, z = samples.points.T
+    under = (z == 3.0) & (x > 0.2345) & (x < 0.7654) & (y < 1.0123) & (samples.normals[:, 2] > 0.5)
+    assert 0 < under.sum() < (z == 3.0).sum()
+    np.testing.assert_array_equal(samples.unobstructed(0.6, by=clamp), ~under)
+    assert samples.unobstructed(0.4, by=clamp).all()
+    np.testing.assert_array_equal(samples.unobstructed(0.4, by=wall), samples.normals[:, 0] < 0.5)
+
+
+def test_what_is_refused(parts, monkeypatch):
+    samples = gm.sample(parts.box(), 60)
+    open_box = trimesh.creation.box()
+    open_box.update_faces(np.arange(12) > 0)
+    with pytest.raises(gm.errors.InputError, match="this one is open"):
+        samples.unobstructed(1.0, by=open_box)
+    with pytest.raises(gm.errors.InputError, match="distance must be"):
+        samples.unobstructed(-1.0)
+    with pytest.raises(gm.errors.InputError, match=r"trimesh\.Trimesh, not str"):
+        samples.unobstructed(1.0, by="table")
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(gm.errors.MissingExtraError, match=r"needs trimesh.*gaussmap\[rays\]"):
+        samples.unobstructed(1.0)

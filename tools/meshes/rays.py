@@ -1,0 +1,64 @@
+"""Which samples have nothing in front of them: rays along normals against a closed mesh."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Flags
+from ...runtime.base.errors import InputError
+from ...runtime.base.extras import check_extra, from_extra
+from .mesh import Mesh
+
+__all__ = ["check_rays", "unobstructed"]
+
+PURPOSE = "a test with rays"
+# Rays begin this far below the surface, relative to the obstacle's size: one in contact is met.
+BELOW = 1e-9
+RAYS = 4096  # at once
+
+
+def check_rays() -> None:
+    """Raise MissingExtraError without what rays need."""
+    check_extra("trimesh", "rays", PURPOSE)
+    check_extra("rtree", "rays", PURPOSE)
+
+
+def unobstructed(points: Array, normals: Array, distance: float, obstacle: object) -> Flags:
+    """Return where (N,) no ray of this length enters the obstacle, a closed mesh.
+
+    A ray that leaves it passes the surface on which its own point is: a mesh has chords there, on
+    one side of the surface or the other.
+    """
+    solid = _solid(obstacle)
+    step = BELOW * float(np.abs(solid.bounds).max())
+    free = np.ones(len(points), dtype=np.bool_)
+    for first in range(0, len(points), RAYS):
+        along = normals[first : first + RAYS]
+        begins = points[first : first + RAYS] - step * along
+        triangles, rays, places = solid.ray.intersects_id(
+            begins, along, multiple_hits=True, return_locations=True
+        )
+        along = along[rays]
+        far = np.einsum("kx,kx->k", np.reshape(places, (-1, 3)) - begins[rays], along)
+        enters = np.einsum("kx,kx->k", solid.face_normals[triangles], along) < 0.0
+        free[first + rays[enters & (far <= distance + step)]] = False
+    return free
+
+
+def _solid(obstacle: object) -> Any:  # noqa: ANN401
+    """Return a mesh as one of trimesh that takes rays in double precision; InputError if open."""
+    trimesh = from_extra("trimesh", "rays", PURPOSE)
+    corners: Any = obstacle
+    if not isinstance(obstacle, Mesh | trimesh.Trimesh):
+        kind = type(obstacle).__name__
+        raise InputError(f"by must be a part, a Mesh or a trimesh.Trimesh, not {kind}.")
+    triangles = corners.triangles if isinstance(obstacle, Mesh) else corners.faces
+    solid = trimesh.Trimesh(corners.vertices, triangles, process=False, use_embree=False)
+    if not (solid.is_watertight and solid.is_winding_consistent):
+        raise InputError(
+            "rays need a closed mesh of the obstacle, whose triangles say which side is outside, "
+            "and this one is open; give a closed one, as in samples.unobstructed(5.0, by=mesh)."
+        )
+    return solid
