@@ -20,6 +20,7 @@ from .tools import gauss_map as gauss_map
 from .tools.batch.dataset import Dataset as Dataset
 from .tools.batch.dataset import open_dataset as open_dataset
 from .tools.batch.many import sample_many as sample_many
+from .tools.cad.part import Part as Part
 from .tools.cad.part import read_part as read_part
 from .tools.cad.reader import read_cad as read_cad
 from .tools.commands.formula_texts import formulas as formulas

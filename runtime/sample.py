@@ -60,9 +60,9 @@ def sample(
     Parameters
     ----------
     surface : Surface, Spline, Part or str
-        The surface, or its name in the catalogue (see `gaussmap.surfaces`). All faces of a CAD part
-        (see `read_part`), and all smooth pieces of a NURBS (see `Surface.pieces`), are sampled as
-        one surface.
+        The surface, or its name in the catalogue (see `gaussmap.surfaces`). All faces of a part, as
+        a CAD file (see `read_part`) or several surfaces (see `Part`) have them, and all smooth
+        pieces of a NURBS (see `Surface.pieces`), are sampled as one surface.
     count : int, optional
         The number of samples. It is met exactly; with ``density="gauss"`` within 2 % or 5 samples.
     normals : (S, 3) array_like, optional

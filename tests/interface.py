@@ -8,7 +8,6 @@ from typing import Any
 import gaussmap as gm
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.runtime.spline.misfit import Misfit
-from gaussmap.tools.cad.part import Part
 from gaussmap.tools.support.branches import Branches
 from gaussmap.tools.support.convolution import Convolution
 
@@ -18,7 +17,6 @@ RETURNED = {
     "Branches": Branches,
     "Convolution": Convolution,
     "Misfit": Misfit,
-    "Part": Part,
     "SamplingReport": SamplingReport,
 }
 

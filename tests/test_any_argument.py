@@ -238,6 +238,7 @@ SPECIAL: dict[str, list[dict[str, Any]]] = {
         }
     ],
     "Mesh.write": [{"path": "new.ply"}],
+    "Part": [{"surfaces": Listed("torus")}],
     "Part.plot": [{"samples": Of("part_samples")}],
     "Part.save": [{"path": "new part.npz"}],
     "Samples": [
@@ -321,7 +322,7 @@ UNUSABLE_FILES = {"read_cad", "read_part", "sample_many"}
 UNTRIED = {("sample_many", "out"): str | Path, ("sample_many", "scheduler"): object}
 # The classes whose objects users may make by themselves.
 MADE = (
-    "GaussMap", "Mesh", "Samples", "Spline", "SupportFunction", "Surface", "curves.Curve",
+    "GaussMap", "Mesh", "Part", "Samples", "Spline", "SupportFunction", "Surface", "curves.Curve",
     "curves.CurveSpline", "gauss_map.GaussianImage", "gauss_map.GaussianImages",
 )  # fmt: skip
 ALL = {

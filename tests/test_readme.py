@@ -25,7 +25,7 @@ CELLS = blocks("{code-cell} ipython3", MORE)
 def test_the_readme_is_short() -> None:
     assert len(README.splitlines()) <= 180
     assert len(blocks("python")) == 4
-    assert len(CELLS) == 8
+    assert len(CELLS) == 9
 
 
 @pytest.mark.compiled

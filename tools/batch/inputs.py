@@ -102,6 +102,8 @@ def content_of(source: Surface | Spline | Part | Path) -> str:
     elif isinstance(source, Part):
         for name in sorted(source.arrays):
             _add_array(digest, source.arrays[name])
+        for held in source.surfaces.values():
+            _add_surface(digest, held)
     elif isinstance(source, Spline):
         _add_array(digest, source.coefficients)
         digest.update(repr((source.domain, source.boundary)).encode())

@@ -68,12 +68,12 @@ class Edges:
         return self.points[first] + share * (self.points[first + 1] - self.points[first])
 
 
-def edges_of(space: PartSpace) -> Edges:
-    """Return the edges between two different pieces of a space."""
+def edges_of(space: PartSpace, *, seams: bool = False) -> Edges:
+    """Return the edges between two pieces of a space; with `seams`, also of one with itself."""
     part = space.pieces[0].face.part
     known = np.full(len(part), -1)
     known[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))
-    faces, points, starts = between_two(part)
+    faces, points, starts = between_two(part, seams=seams)
     pieces, counts = known[faces], np.diff(starts)
     owner = np.repeat(np.arange(len(counts)), counts)
     finite = np.bincount(owner, np.isfinite(points).all(axis=1), len(counts)) == counts
@@ -84,8 +84,10 @@ def edges_of(space: PartSpace) -> Edges:
     )
 
 
-def between_two(part: Part) -> tuple[Indices, Array, Indices]:
-    """Return the edges with a different face at either side: these faces (E, 2), and points.
+def between_two(part: Part, *, seams: bool = False) -> tuple[Indices, Array, Indices]:
+    """Return the edges with a face at either side: these faces (E, 2), and points.
+
+    The faces are different ones, but for `seams`.
 
     The points of edge i are u, v on the first and on the second face, (k, 4), from starts[i] to
     starts[i + 1].
@@ -93,7 +95,7 @@ def between_two(part: Part) -> tuple[Indices, Array, Indices]:
     arrays = part.arrays
     first, faces = arrays["edge_side_starts"], arrays["side_faces"]
     both = first[:-1][(np.diff(first) == 2) & ~arrays["edge_degenerate"]]
-    both = both[faces[both] != faces[both + 1]]
+    both = both[seams | (faces[both] != faces[both + 1])]
     starts = arrays["side_point_starts"]
     counts = np.diff(starts)[both]
     ends = np.cumsum(counts)

@@ -45,6 +45,8 @@ ANGLE = 0.25
 PARTS_OF_SPAN = 2
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
+# Of surfaces whose function is not known, the domain is divided into this number of parts.
+PARTS_OF_SURFACE = 16
 # At poles, curvatures are those at this part of the domain from there.
 BESIDE = 1e-6
 CURVATURES = ("gaussian_curvature", "mean_curvature")
@@ -252,6 +254,8 @@ def _lines(face: Face, axis: int, ends: tuple[float, float]) -> Array:
     inside = inside[np.diff(inside, prepend=-np.inf) > slack]
     lines = np.concatenate([[ends[0]], inside, [ends[1]]])
     parts = max(PARTS_OF_SPAN, math.ceil(degree / 2)) if len(knots) else 1
+    if geometry.surface is not None:
+        parts = PARTS_OF_SURFACE
     if ANGLES.get(geometry.kind, (False, False))[axis]:
         parts = math.ceil((ends[1] - ends[0]) / ANGLE)
     between = [np.linspace(a, b, parts + 1)[:-1] for a, b in itertools.pairwise(lines)]

@@ -66,6 +66,9 @@ def face_surface(
     If `is_reversed`, its normals are opposite to x_u × x_v of the geometry, and u is reversed:
     `own_parameters` gives those of the file. Raises InputError for numbers that define no surface.
     """
+    if geometry.surface is not None:  # with its own domain and trim
+        surface = replace(geometry.surface, name=name)
+        return surface.flipped() if is_reversed else surface
     shape = _shape(geometry, checked_domain(domain))
     assumed = (shape.collapses, shape.collapses)
     surface = Surface(name, shape.function, shape.domain, shape.boundary, assumed_open=assumed)

@@ -1,4 +1,4 @@
-"""The box around a part, and the volume of its solids."""
+"""The box around a part, the volume of its solids, and the gaps between its faces."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import numpy as np
 from ...runtime.base.aliases import Array
 from ...runtime.base.errors import SurfaceError
 from ...runtime.density.cells import RADIUS, by_piece
+from .edges import edges_of, sides_at
 from .face_pieces import FacePiece
 from .part import Part
 from .results import space_of
 
-__all__ = ["bounds_of", "volume_of"]
+__all__ = ["bounds_of", "gap_of", "integrals_of", "signs_of", "volume_of"]
 
 # Nodes and weights of Gauss's rule on [0, 1], for each span of a surface and each part of a border.
 NODES, WEIGHTS = (x / 2.0 for x in np.polynomial.legendre.leggauss(5))
@@ -42,19 +43,27 @@ def volume_of(part: Part) -> float:
 def _mean_height(piece: FacePiece, centre: Array) -> float:
     """Return the mean of (x − c)·n over a face.
 
-    By Green's theorem: ∫∫ g du dv over the face is ∮ G dv around it, G the integral of g along u.
     The area is the CAD library's, so that of the polygons of the border need not be exact.
+    """
+    heights, area = integrals_of(piece, centre)
+    return heights / area
+
+
+def integrals_of(piece: FacePiece, centre: Array) -> tuple[float, float]:
+    """Return the integral of (x − c)·n over a face, in L³, and its area, in L².
+
+    By Green's theorem: ∫∫ g du dv over the face is ∮ G dv around it, G the integral of g along u.
     """
     lines = piece.lines(0), piece.lines(1)
     total = np.zeros(2)
-    for polygon, sign in zip(piece.polygons, _signs(piece), strict=True):
+    for polygon, sign in zip(piece.polygons, signs_of(piece), strict=True):
         places, steps = _divided(polygon, lines)
         # Parts of the border along u have no dv.
         places, steps = (x[steps[:, 1] != 0.0] for x in (places, steps))
         ends = (places[:, None] + NODES[:, None] * steps[:, None]).reshape(-1, 2)
         weights = sign * (WEIGHTS * steps[:, 1:]).ravel()
         total += weights @ _along_u(piece, ends, lines[0], centre)
-    return float(total[0] / total[1])
+    return float(total[0]), float(total[1])
 
 
 def _along_u(piece: FacePiece, ends: Array, lines: Array, centre: Array) -> Array:
@@ -62,6 +71,8 @@ def _along_u(piece: FacePiece, ends: Array, lines: Array, centre: Array) -> Arra
     found = np.zeros((len(ends), 2))
     for low, high in itertools.pairwise(lines):
         rows = np.flatnonzero(ends[:, 0] > low)
+        if not len(rows):
+            break
         widths = np.minimum(ends[rows, 0], high) - low
         u = (low + NODES * widths[:, None]).ravel()
         jets = piece.surface.jets(u, np.repeat(ends[rows, 1], len(NODES)))
@@ -73,7 +84,7 @@ def _along_u(piece: FacePiece, ends: Array, lines: Array, centre: Array) -> Arra
     return found
 
 
-def _signs(piece: FacePiece) -> Array:
+def signs_of(piece: FacePiece) -> Array:
     """Return for each polygon 1 if the face lies left of it, else −1."""
     places = []
     for x in piece.polygons:
@@ -172,3 +183,14 @@ def _highest_on_border(piece: FacePiece, starts: Array, steps: Array, direction:
             moved = np.where(bend < 0.0, -slope / bend, np.sign(slope))
         share = np.clip(share + moved[:, None], 0.0, 1.0)
     return starts + share * steps
+
+
+# --- gaps -----------------------------------------------------------------------------------------
+
+
+def gap_of(part: Part) -> float:
+    """Return the largest distance between both sides of an edge, in L."""
+    edges = edges_of(space_of(part, None), seams=True)
+    owner = np.repeat(np.arange(len(edges)), np.diff(edges.starts))
+    sides = sides_at(edges.space, edges.pieces[owner], edges.points)
+    return float(sides.apart.max(initial=0.0))

@@ -11,6 +11,7 @@ __all__ = ["Methods"]
 
 MEASURES, PLOT = "gaussmap.tools.cad.measures", "gaussmap.tools.pictures.plot"
 SELECTION = "gaussmap.tools.cad.selection"
+FROM_SURFACES = "gaussmap.tools.cad.from_surfaces"
 RESULTS, SAMPLING = "gaussmap.tools.cad.results", "gaussmap.tools.cad.sampling"
 
 
@@ -23,6 +24,8 @@ class Methods:
     _face_columns = Later("gaussmap.tools.cad.face_columns", "face_columns")
 
     _bounds_of = Later(MEASURES, "bounds_of")
+    _made_of = Later(FROM_SURFACES, "part_of_surfaces")
+    _gap_of = Later(MEASURES, "gap_of")
     _volume_of = Later(MEASURES, "volume_of")
 
     _sampled = Later(SAMPLING, "sample_part")

@@ -3,7 +3,9 @@
 class Methods:
     from ..pictures.plot import plot_part as plot
     from .face_columns import face_columns as _face_columns
+    from .from_surfaces import part_of_surfaces as _made_of
     from .measures import bounds_of as _bounds_of
+    from .measures import gap_of as _gap_of
     from .measures import volume_of as _volume_of
     from .results import space_of as _space
     from .sampling import sample_part as _sampled

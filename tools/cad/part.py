@@ -1,16 +1,17 @@
-"""A CAD part: its faces, solids and unit, held as arrays only."""
+"""A part: its faces, solids and unit, as a CAD file or several surfaces give them."""
 
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base.errors import SurfaceError
+from ...runtime.base.errors import InputError, SurfaceError
 from ...runtime.base.wording import plural
 from ...runtime.samples.whole import Whole
 from ..files.paths import PathLike
@@ -28,12 +29,29 @@ __all__ = ["Face", "Part", "Solid", "part_of", "read_part"]
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, init=False)
 class Part(Methods, Whole):
-    """A CAD part, as `read_cad` and `read_part` return it.
+    """Several faces as one thing: one count, one density, one orientation, shared edges.
 
-    It holds arrays only: it can be pickled and saved, and needs no CAD library. Lengths are in the
-    unit L of its file. `sample` takes it as a surface.
+    `read_cad` and `read_part` return parts, and `Part([...])` makes one of surfaces. Borders of the
+    surfaces that coincide, wholly or in parts, become edges, which meshes share. Surfaces are
+    flipped where that is needed for normals on one side; those of closed sets point outward, and
+    others are as those of the first surface of each connected set. `warnings` says which are
+    flipped. `gap`, `open_edges` and `closed` say how well the surfaces fit.
+
+    `sample` and `GaussMap` take a part as a surface. Lengths are in the unit L of its file. A part
+    pickles if its callables do, and needs no CAD library.
+
+    Parameters
+    ----------
+    surfaces : sequence of Surface or str
+        The surfaces, or their names in the catalogue. Trims are taken if they are loops; of grids
+        of points, the spline is the surface.
+    tolerance : float, optional
+        Borders coincide if they are nowhere farther apart than this, in L. By default, 1e-6 of the
+        size of the part.
+    name : str, default "part"
+        What messages call it.
 
     Attributes
     ----------
@@ -41,10 +59,42 @@ class Part(Methods, Whole):
         The numbers of all faces, in the format of the files of `save`.
     about : dict
         All that is not an array, such as names.
+    surfaces : dict of int to Surface
+        The surfaces of faces that are not given by numbers, by the index of the face: those of
+        `Part([...])` that are no NURBS.
+
+    Raises
+    ------
+    InputError, UnknownNameError
+        For anything else, for a trim that is no single set of loops in the domain, and if the
+        surfaces cannot have normals on one side, as those of a Möbius band.
+    SurfaceError
+        If a surface cannot be evaluated, or is no larger than the tolerance.
+
+    Warns
+    -----
+    GaussmapWarning
+        If borders are farther apart than the tolerance, and nearly coincide.
 
     Examples
     --------
     >>> import gaussmap as gm
+    >>> import numpy as np
+    >>> tube = gm.Surface.from_sympy(
+    ...     ("cos(u)", "sin(u)", "v"), ("u", "v"), ((0, "2*pi"), (0, 2)), (True, False), name="tube"
+    ... )
+    >>> half = gm.Surface.from_sympy(
+    ...     ("cos(v)*cos(u)", "cos(v)*sin(u)", "-sin(v)"), ("u", "v"), ((0, "2*pi"), (0, "pi/2")),
+    ...     (True, False), name="half",
+    ... )
+    >>> cup = gm.Part([tube, half], name="cup")
+    >>> cup, cup.open_edges, cup.closed, cup.gap < 1e-12, cup.warnings
+    (Part(cup: 2 faces, 0 solids), 1, False, True, ("surface 1 ('half') is flipped.",))
+    >>> len(gm.sample(cup, 200)), round(cup.area / np.pi, 9)
+    (200, 6.0)
+    >>> cup.faces[0].kind, sorted(cup.surfaces)
+    ('surface', [0, 1])
+
     >>> from gaussmap.tools.cad.examples import box
     >>> part = box(1.0, 2.0, 3.0)
     >>> part.name, part.unit, part.metres, len(part.faces), part.faces[0].kind
@@ -60,22 +110,45 @@ class Part(Methods, Whole):
 
     arrays: dict[str, NDArray[Any]]
     about: dict[str, Any]
+    surfaces: Mapping[int, Surface] = field(default_factory=dict)
+
+    def __init__(
+        self,
+        surfaces: Sequence[Surface | str],
+        *,
+        tolerance: float | None = None,
+        name: str = "part",
+    ) -> None:
+        vars(self).update(self._made_of(surfaces, tolerance, name).__getstate__())
+
+    @classmethod
+    def _of(
+        cls,
+        arrays: dict[str, NDArray[Any]],
+        about: dict[str, Any],
+        surfaces: Mapping[int, Surface] | None = None,
+    ) -> Part:
+        """Return the part of arrays, and of surfaces that they do not hold."""
+        part = cls.__new__(cls)
+        vars(part).update(arrays=arrays, about=about, surfaces=dict(surfaces or {}))
+        return part
 
     def __repr__(self) -> str:
         faces, solids = plural(len(self), "face"), plural(len(self.solids), "solid")
-        return f"Part({self.name}: {faces}, {solids}, {self.unit})"
+        unit = f", {self.unit}" if self.unit else ""
+        return f"Part({self.name}: {faces}, {solids}{unit})"
 
     def __len__(self) -> int:
         return len(self.arrays["area"])
 
     @property
     def name(self) -> str:
-        """The name of the file that the part was read from."""
+        """The name of the part: that of the file that it was read from, or one that was given."""
         return str(self.about.get("name", "part"))
 
     @property
     def unit(self) -> str:
-        """The unit L of all lengths, as "mm" or "in"."""
+        """The unit L of all lengths, as "mm" or "in"; empty if it is not known."""
         return str(self.about.get("unit", ""))
 
     @property
@@ -144,6 +217,53 @@ class Part(Methods, Whole):
         return self._volume_of()
 
     @cached_property
+    def gap(self) -> float:
+        """The largest distance between two faces, or ends of one face, along a shared edge, in L.
+
+        It is measured at all places of edges that the part holds; 0 if no edge is shared.
+
+        Examples
+        --------
+        >>> from gaussmap.tools.cad.examples import box
+        >>> box(1.0, 2.0, 3.0).gap
+        0.0
+
+        """
+        return self._gap_of()
+
+    @cached_property
+    def open_edges(self) -> int:
+        """The number of edges with a face on one side only.
+
+        Examples
+        --------
+        >>> from gaussmap.tools.cad.examples import box
+        >>> box().open_edges, box().select(index=[0, 1, 2]).open_edges
+        (0, 8)
+
+        """
+        return int((self._sides_of_edges == 1).sum())
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether each edge has faces on both sides, two and no more.
+
+        Examples
+        --------
+        >>> from gaussmap.tools.cad.examples import box
+        >>> box().closed, box().select(index=[0, 1, 2]).closed
+        (True, False)
+
+        """
+        known = not self.failed and all(x.wires for x in self.faces)
+        return known and bool((self._sides_of_edges == 2).all())
+
+    @property
+    def _sides_of_edges(self) -> NDArray[np.int64]:
+        """The numbers of sides of the edges that are no points."""
+        return np.diff(self.arrays["edge_side_starts"])[~self.arrays["edge_degenerate"]]
+
+    @cached_property
     def solids(self) -> tuple[Solid, ...]:
         """The solids; faces that belong to none are loose."""
         index = self.arrays["solid_index"]
@@ -157,7 +277,7 @@ class Part(Methods, Whole):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What the reader noticed, in sentences."""
+        """What was noticed when the part was read or made, in sentences."""
         return tuple(map(str, self.about.get("warnings", ())))
 
     @cached_property
@@ -178,6 +298,8 @@ class Part(Methods, Whole):
             If the suffix is not `.npz`.
         FileError
             If the file cannot be written.
+        InputError
+            If a face is a surface that no numbers give, see `surfaces`.
 
         Examples
         --------
@@ -188,11 +310,17 @@ class Part(Methods, Whole):
         Part(box: 6 faces, 1 solid, mm)
 
         """
+        if self.surfaces:
+            face = self.faces[min(self.surfaces)]
+            raise InputError(
+                f"{face.label} is a function in memory, which no file holds; only planes, "
+                "cylinders, NURBS and other faces that are given by numbers are saved."
+            )
         write_arrays(self.arrays, path)
 
     def __getstate__(self) -> dict[str, object]:
         """Return what is pickled: the fields, without what is made of them."""
-        return {"arrays": self.arrays, "about": self.about}
+        return {"arrays": self.arrays, "about": self.about, "surfaces": self.surfaces}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -219,7 +347,8 @@ class Face:
     def kind(self) -> str:
         """One of plane, cylinder, cone, sphere, torus, nurbs, revolution, extrusion, offset.
 
-        It is "unknown" for a face that failed before that was found out.
+        It is "surface" for a surface of `Part([...])` that is no NURBS, and "unknown" for a face
+        that failed before its kind was found out.
         """
         return self.geometry.kind
 
@@ -275,7 +404,8 @@ class Face:
     @property
     def geometry(self) -> Geometry:
         """The surface without its trim, as numbers: views of the arrays of the part."""
-        return geometry_of(self.part.arrays, self.index)
+        found, held = geometry_of(self.part.arrays, self.index), self.part.surfaces.get(self.index)
+        return found if held is None else replace(found, surface=held)
 
     @cached_property
     def dimensions(self) -> dict[str, Any]:
@@ -384,7 +514,8 @@ def part_of(record: PartRecord) -> Part:
     from .saving import about_of
 
     arrays = packed(record)
-    return Part(arrays, about_of(arrays))
+    held = {k: x.geometry.surface for k, x in enumerate(record.faces) if x.geometry.surface}
+    return Part._of(arrays, about_of(arrays), held)
 
 
 def read_part(path: PathLike) -> Part:
@@ -426,4 +557,4 @@ def read_part(path: PathLike) -> Part:
     (100, [0, 1, 2, 3, 4, 5])
 
     """
-    return Part(*read_arrays(path))
+    return Part._of(*read_arrays(path))

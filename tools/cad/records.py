@@ -7,16 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from ...runtime.surface.surface import Surface
 
 __all__ = ["KINDS", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord"]
 
 Array = NDArray[np.float64]
 
 # The kinds of faces, with the lengths of their numbers (see `saving`). Append only: files hold
-# places in this list. The last is that of failed faces whose kind is not known.
+# places in this list. "unknown" is that of failed faces whose kind is not known, "surface" that of
+# faces that hold a `Surface` in memory, which no file has.
 KINDS: dict[str, int] = {
     "plane": 12,
     "cylinder": 13,
@@ -28,6 +33,7 @@ KINDS: dict[str, int] = {
     "extrusion": 3,
     "offset": 1,
     "unknown": 0,
+    "surface": 0,
 }
 
 
@@ -50,13 +56,14 @@ class Geometry:
     """A surface without its trim: its kind and what that needs.
 
     `net` is the NURBS, or the curve of a revolution or an extrusion; `basis` is the surface that an
-    offset has its distance from.
+    offset has its distance from. A face of the kind "surface" has a `surface` in place of numbers.
     """
 
     kind: str
     numbers: Array = field(default_factory=lambda: np.empty(0))
     net: Net | None = None
     basis: Geometry | None = None
+    surface: Surface | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -55,6 +55,8 @@ c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,
     extrusion   Z                       the curve of its net at u, plus v Z
     offset      d                       its basis at u, v, plus d (x_u × x_v) / |x_u × x_v|
     unknown     (of faces that failed)
+
+Faces of the kind "surface" are functions in memory, and in no file.
 """
 
 from __future__ import annotations
@@ -228,6 +230,7 @@ def _check_surfaces(arrays: Arrays) -> None:
     kind, net, basis = arrays["kind"], arrays["net"], arrays["basis"]
     names, sizes = list(KINDS), np.array(list(KINDS.values()))
     _require(_within(kind, 0, len(names)), "kind")
+    _require((kind != names.index("surface")).all(), "kind")
     failed = kind == names.index("unknown")
     _require((failed | (np.diff(arrays["number_starts"]) == sizes[kind])).all(), "numbers")
     with_net = np.isin(kind, [names.index(x) for x in ("nurbs", "revolution", "extrusion")])

@@ -1,0 +1,267 @@
+"""A part made of surfaces: their faces, the edges that they share, and one orientation."""
+
+from __future__ import annotations
+
+import warnings
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...runtime.base.aliases import Array
+from ...runtime.base.checks import listed, positive_number, text
+from ...runtime.base.errors import GaussmapWarning, InputError, SurfaceError, shown
+from ...runtime.base.wording import plural
+from ...runtime.domain.domain import closes
+from ...runtime.domain.loops import Loops
+from ...runtime.surface.moved import IDENTITY, Moved, Turned
+from ...runtime.surface.nurbs import Nurbs
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import named
+from .face_pieces import FacePiece, pieces_of
+from .measures import integrals_of, signs_of
+from .part import Part, part_of
+from .records import FaceRecord, Geometry, Net, PartRecord
+from .sewing import Border, Sewn, sewn
+
+__all__ = ["part_of_surfaces"]
+
+# Borders coincide up to this part of the size of all surfaces.
+TOLERANCE = 1e-6
+
+
+def part_of_surfaces(
+    _: Part, surfaces: Sequence[Surface | str], tolerance: float | None, name: str
+) -> Part:
+    """Return what `Part([...])` is to be; raises what that raises."""
+    held = _checked(surfaces)
+    most = None if tolerance is None else positive_number(tolerance, "tolerance")
+    faces = [_face(x) for x in held]
+    # Areas are not known yet, and faces without an area are no pieces.
+    bare = part_of(PartRecord(text(name, "name"), "", 1.0, False, faces))
+    pieces, reasons = pieces_of(bare.faces)
+    if reasons:
+        raise SurfaceError(next(iter(reasons.values())))
+    points = np.concatenate([_corners(x) for x in pieces])
+    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    borders = [border for x in pieces for border in _borders(x)]
+    found = sewn(borders, TOLERANCE * size if most is None else most)
+    if found.apart is not None:
+        warnings.warn(f"{name}: {_of_gap(found.apart)}", GaussmapWarning, stacklevel=3)
+    return _part(bare, faces, pieces, borders, found, points.mean(axis=0))
+
+
+def _checked(surfaces: object) -> list[Surface]:
+    """Return the surfaces, of those that were given by points their splines.
+
+    InputError unless there are some, and they are nothing else.
+    """
+    given = None if isinstance(surfaces, Surface) else listed(surfaces)
+    if not given:
+        raise InputError(
+            f"surfaces must be a list of surfaces, as in Part([first, second]), not "
+            f"{shown(surfaces)}."
+        )
+    found = [named(x) for x in given]
+    for k, surface in enumerate(found):
+        if not isinstance(surface, Surface):
+            raise InputError(
+                f"surface {k} must be a Surface, or the name of one, not {shown(surface)}."
+            )
+    return [replace(x, grid=None) for x in found]
+
+
+# --- faces ----------------------------------------------------------------------------------------
+
+
+def _face(surface: Surface) -> FaceRecord:
+    """Return a surface as a face: a NURBS as its numbers, any other as it is."""
+    loops = _loops(surface)
+    net = _net(surface)
+    geometry = Geometry("surface", surface=surface) if net is None else Geometry("nurbs", net=net)
+    return FaceRecord(geometry, surface.domain, loops=loops, area=1.0, name=surface.name)
+
+
+def _loops(surface: Surface) -> list[Array]:
+    """Return the polygons around a surface; InputError for a trim that has none, or several."""
+    (u0, u1), (v0, v1) = surface.domain
+    if surface.trim is None:
+        return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
+    (part, *others), total = surface.trim.parts, u0 + u1
+    turned = isinstance(part, Turned)
+    loops = part.part if isinstance(part, Turned) else part
+    if others or not isinstance(loops, Loops):
+        raise InputError(
+            f"surface {surface.name!r} is trimmed by a predicate, by missing points or twice; a "
+            "part takes surfaces that are trimmed by loops once."
+        )
+    polygons = [np.stack([total - x[:, 0], x[:, 1]], axis=1) if turned else x
+                for x in loops.polygons]  # fmt: skip
+    low, high = np.array(surface.domain).T
+    around = np.array([closes(ends) for ends in surface.boundary])
+    for x in polygons:
+        if (((x < low) | (x > high)) & around).any():
+            raise InputError(
+                f"a loop of surface {surface.name!r} runs beyond its domain; a part takes loops "
+                "inside of it: cut them at the seam."
+            )
+    return [np.clip(x, low, high) for x in polygons]
+
+
+def _net(surface: Surface) -> Net | None:
+    """Return the numbers of a NURBS that may be moved, None for any other surface."""
+    moved = surface.function if isinstance(surface.function, Moved) else None
+    nurbs = surface.function if moved is None else moved.surface.function
+    if not isinstance(nurbs, Nurbs):
+        return None
+    map_ = IDENTITY if moved is None else moved.map
+    points, weights = map_.points(nurbs.control_points), nurbs.points[:, :, 3:]
+    u, v = nurbs.knots
+    if moved is not None and moved.turned:
+        points, weights, u = points[::-1], weights[::-1], sum(moved.ends) - u[::-1]
+    return Net(nurbs.degrees, (u, v), points, weights[:, :, 0] if weights.size else None)
+
+
+def _corners(piece: FacePiece) -> Array:
+    """Return points (k, 3) all over a surface."""
+    u0, v0, u1, v1 = piece.boxes.T
+    places = np.concatenate([np.stack(x, axis=1) for x in ((u0, v0), (u1, v1))])
+    return piece.jets(*places.T.copy())[:, 0]
+
+
+def _borders(piece: FacePiece) -> list[Border]:
+    """Return the border of a face, which lies at its left."""
+    whole = piece.surface.trim is None
+    found = []
+    for polygon, sign in zip(piece.polygons, signs_of(piece), strict=True):
+        proper = polygon[np.any(polygon != np.roll(polygon, 1, axis=0), axis=1)]
+        way = proper if sign > 0.0 else proper[::-1]
+        found.append(Border(piece.face.index, piece.surface, way, whole))
+    return found
+
+
+# --- orientation ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Shell:
+    """Faces that hang together, with 1 or −1 for those that are flipped; whether it is closed."""
+
+    signs: dict[int, int]
+    closed: bool
+
+    @property
+    def flipped(self) -> Shell:
+        """The same with opposite normals."""
+        return Shell({k: -sign for k, sign in self.signs.items()}, self.closed)
+
+
+def _shells(bare: Part, found: Sewn, borders: Sequence[Border]) -> list[Shell]:
+    """Return the sets of faces that hang together, each with normals on one side.
+
+    Raises InputError if there is a set that has one side only.
+    """
+    passed = defaultdict[int, list[tuple[int, bool]]](list)
+    for border, wire in zip(borders, found.wires, strict=True):
+        for edge, _, backwards in wire:
+            passed[edge].append((border.face, backwards))
+    links, is_open = defaultdict[int, list[tuple[int, int]]](list), set[int]()
+    for edge, sides in passed.items():
+        if found.edges[edge].degenerate:
+            continue
+        if len(sides) != 2:
+            is_open |= {face for face, _ in sides}
+            continue
+        (one, first), (other, second) = sides
+        sign = 1 if first != second else -1
+        links[one].append((other, sign))
+        links[other].append((one, sign))
+    shells, known = [], dict[int, int]()
+    for start in range(len(bare)):
+        if start not in known:
+            signs = _signs(bare, start, links)
+            known |= signs
+            shells.append(Shell(signs, not is_open & signs.keys()))
+    return shells
+
+
+def _signs(bare: Part, start: int, links: dict[int, list[tuple[int, int]]]) -> dict[int, int]:
+    """Return the faces that hang together with one, and the signs of their normals."""
+    signs, waiting = {start: 1}, [start]
+    for face in waiting:  # it grows
+        for other, sign in links.get(face, ()):
+            if other not in signs:
+                signs[other] = sign * signs[face]
+                waiting.append(other)
+            elif signs[other] != sign * signs[face]:
+                raise InputError(
+                    f"surface {other} ({bare.faces[other].name!r}) closes a band that has one side "
+                    "only, as a Möbius band has; the normals of a part have to be on one side."
+                )
+    return signs
+
+
+# --- the part -------------------------------------------------------------------------------------
+
+
+def _part(
+    bare: Part,
+    faces: Sequence[FaceRecord],
+    pieces: Sequence[FacePiece],
+    borders: Sequence[Border],
+    found: Sewn,
+    centre: Array,
+) -> Part:
+    """Return the part of faces whose edges are known."""
+    integrals = [integrals_of(x, centre) for x in pieces]
+    for face, (_, area) in zip(faces, integrals, strict=True):
+        if not area > 0.0:
+            raise SurfaceError(f"surface {face.name!r} has no area.")
+    shells = _shells(bare, found, borders)
+    for k, shell in enumerate(shells):
+        if shell.closed and sum(sign * integrals[f][0] for f, sign in shell.signs.items()) < 0.0:
+            shells[k] = shell.flipped
+    closed = [x for x in shells if x.closed]
+    solid_of = {face: k for k, shell in enumerate(closed) for face in shell.signs}
+    signs = {face: sign for shell in shells for face, sign in shell.signs.items()}
+    wires = defaultdict[int, list[list[tuple[int, int, bool]]]](list)
+    for border, wire in zip(borders, found.wires, strict=True):
+        wires[border.face].append(wire)
+    made = [
+        replace(
+            face,
+            reversed=signs[k] < 0,
+            area=integrals[k][1],
+            solid_index=solid_of.get(k, -1),
+            wires=wires[k],
+        )
+        for k, face in enumerate(faces)
+    ]
+    return part_of(
+        PartRecord(
+            bare.name, "", 1.0, len(closed) == len(shells), made, [""] * len(closed), found.edges,
+            found.vertices, list(_warnings(made, found)),
+        )
+    )  # fmt: skip
+
+
+def _warnings(faces: Sequence[FaceRecord], found: Sewn) -> Iterator[str]:
+    """Yield sentences: which surfaces are flipped, and where these do not fit."""
+    flipped = [k for k, face in enumerate(faces) if face.reversed]
+    if len(flipped) == 1:
+        yield f"surface {flipped[0]} ({faces[flipped[0]].name!r}) is flipped."
+    elif flipped:
+        yield f"{len(flipped):,} surfaces are flipped: {', '.join(map(str, flipped))}."
+    many = sum(len(x.faces) > 2 for x in found.edges)
+    if many:
+        yield f"there {'is' if many == 1 else 'are'} {plural(many, 'edge')} of more than two faces."
+    if found.apart is not None:
+        yield _of_gap(found.apart)
+
+
+def _of_gap(apart: float) -> str:
+    return (
+        f"there are borders that nearly coincide, up to {apart:.3g}, and stay apart; a larger "
+        "tolerance joins them."
+    )
