@@ -17,7 +17,7 @@ from .printer import PositiveFirst
 __all__ = ["latex", "latex_name", "latex_of", "text"]
 
 TEXT_WIDTH = 84
-LATEX_WIDTH = 63
+LATEX_WIDTH = 62
 
 
 class Length(sp.Expr):
