@@ -155,7 +155,7 @@ def _space_of(samples: Samples, spline: Spline | None, threads: int | None) -> S
     """Return what was sampled; without a spline, all pieces of the surface that have an area."""
     surface = samples.surface
     if isinstance(surface, Whole):
-        return surface._space(threads)
+        return surface._space(threads, reach=samples.report._cap)
     if spline is None and samples.spline is None and surface is not None:
         return space_of([OnSurface(fit(x), threads, x) for x in surface.pieces()], threads)
     return space_on(spline_or(samples, spline), surface, threads)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ..base.checks import as_float, known_name, text, whole_number
 from ..base.errors import GaussmapWarning, InputError, shown
 from ..base.georeference import checked_origin
+from ..directions.regions import Cap, checked_reach
 from ..spline.developable import CellMeasure
 from ..spline.spline import Spline
 
@@ -62,6 +63,19 @@ def _number(value: Any, name: str, most: float = math.inf) -> float:  # noqa: AN
         limit = "of at least 0" if math.isinf(most) else f"from 0 to {most:g}"
         raise InputError(f"{name} must be a number {limit}, not {shown(value)}.")
     return min(max(number, 0.0), most)
+
+
+def _reach(values: Any) -> tuple[float, float, float, float]:  # noqa: ANN401
+    """Return the unit vector of an axis and an angle, as plain floats."""
+    try:
+        x, y, z, angle = (float(value) for value in values)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"reach must be an axis and an angle, four numbers, not {shown(values)}."
+        ) from None
+    cap = checked_reach(((x, y, z), angle))
+    assert cap is not None
+    return *cap.axis.tolist(), cap.angle
 
 
 class UndecidedNormal(NamedTuple):
@@ -114,6 +128,7 @@ CHECKS: dict[str, Callable[[Any, str], Any]] = {
     **dict.fromkeys(DISTANCES, _number),
     "developable_share": lambda share, name: _number(share, name, 1.0),
     "origin": lambda origin, _: checked_origin(origin),
+    "reach": lambda reach, _: _reach(reach),
     "undecided": lambda places, _: tuple(UndecidedNormal.of(x) for x in places),
 }
 
@@ -184,6 +199,9 @@ class SamplingReport:
         Of a CAD part: whether its normals are known to point out of solids.
     edge_samples : int or None
         Of a CAD part, with ``edges=True``: how many of the samples are on sharp edges.
+    reach : (float, float, float, float) or None
+        Of a CAD part, with ``reach=(axis, angle)``: the unit vector of the axis, and the angle in
+        degrees. `Samples.coverage`, `normal_deviation` and `weights` are those of what is in reach.
     crs : str or None
         Of a `terrain`: the coordinate reference system of the points, as "EPSG:number" or WKT.
     origin : (float, float, float) or None
@@ -216,6 +234,8 @@ class SamplingReport:
     SamplingReport(surface='torus', normals=2, samples=4, patches=16384, ..., apexes=0)
     >>> report.density is report.edge_samples is report.crs is report.origin is None
     True
+    >>> report.reach is None
+    True
     >>> report.developable_share, report.apexes, report.index
     (0.0, 0, None)
     >>> report.fit_rms < report.fit_distance < 1.1e-3, report.fit_angle < 0.6
@@ -247,6 +267,7 @@ class SamplingReport:
     estimated_faces: int | None = None
     oriented: bool | None = None
     edge_samples: int | None = None
+    reach: tuple[float, float, float, float] | None = None
     crs: str | None = None
     origin: tuple[float, float, float] | None = None
 
@@ -259,6 +280,11 @@ class SamplingReport:
             value = getattr(self, name)
             if value is not None or name in KNOWN:
                 object.__setattr__(self, name, check(value, name))
+
+    @property
+    def _cap(self) -> Cap | None:
+        """The reach as a cap."""
+        return None if self.reach is None else checked_reach((self.reach[:3], self.reach[3]))
 
     def __repr__(self) -> str:
         known = ((x.name, getattr(self, x.name)) for x in fields(self))

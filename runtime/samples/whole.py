@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 if TYPE_CHECKING:
+    from ..directions.regions import Cap
     from .request import Request
 
 __all__ = ["FaceColumn", "NormalDeviation", "Whole"]
@@ -65,8 +66,8 @@ class Whole:
         """Return what `sample` returns, and the unit normals that were searched."""
         raise NotImplementedError
 
-    def _space(self, threads: int | None) -> Any:  # noqa: ANN401
-        """Return the `Space` of what is sampled."""
+    def _space(self, threads: int | None, *, reach: Cap | None = None) -> Any:  # noqa: ANN401
+        """Return the `Space` of what is sampled, or of what is in a `reach`."""
         raise NotImplementedError
 
     def _face_columns(self) -> list[FaceColumn]:

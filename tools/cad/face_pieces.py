@@ -84,10 +84,15 @@ class FacePiece(Piece):
             face=face, surface=surface, reach=reach,
         )  # fmt: skip
 
-    @cached_property
+    @property
     def size(self) -> float:
         """The root of the area, in L."""
-        return math.sqrt(self.face.area * self._share)
+        return math.sqrt(self.area)
+
+    @cached_property
+    def area(self) -> float:
+        """The area of what is in the reach, in L²."""
+        return self.face.area * self._share
 
     @cached_property
     def _share(self) -> float:

@@ -62,8 +62,8 @@ def space_of(
 def weights_of(part: Part, samples: Samples) -> Array:
     """Return what `Samples.weights` returns: the areas (N,) nearest to each on its own face.
 
-    They add up to the area of the face. Of faces without samples, the area is left out; samples on
-    edges have none.
+    They add up to the area of the face, or of its part in the reach of the samples. Of faces
+    without samples, the area is left out; samples on edges have none.
     """
     found, faces = np.zeros(len(samples)), samples.face_index
     if faces is None:
@@ -73,16 +73,16 @@ def weights_of(part: Part, samples: Samples) -> Array:
         )
     on_edge = samples.other_face_index
     inner = np.ones(len(samples), np.bool_) if on_edge is None else on_edge < 0
-    space = space_of(part, None)
+    space = space_of(part, None, reach=samples.report._cap)
     points = space.scaled_points(samples.points)
     cells = space.uniform.cut(math.sqrt(space.area / (CELLS_A_SAMPLE * max(len(samples), 1))))
     for k, rows in by_piece(cells):
-        face = space.pieces[k].face
-        here = np.flatnonzero((faces == face.index) & inner)
+        piece = space.pieces[k]
+        here = np.flatnonzero((faces == piece.face.index) & inner)
         if len(here):
             nearest = tree_of(points[here]).query(cells.rows[rows, :3])[1]
             shares = np.bincount(nearest, cells.numbers[rows, AREA], len(here))
             total = shares.sum()
             equal = np.full(len(here), 1.0 / len(here))
-            found[here] = face.area * (shares / total if total > 0.0 else equal)
+            found[here] = piece.area * (shares / total if total > 0.0 else equal)
     return found

@@ -48,6 +48,8 @@ def sample_part(
     on_faces = [x for x in fields if x not in EDGE_NAMES]
     found = fields_of(cover, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)
     report = _report(part, space, cover, found)
+    if request.reach is not None:
+        report = replace(report, reach=(*request.reach.axis.tolist(), request.reach.angle))
     arrays: dict[str, Any] = {name: found[name] for name in on_faces}
     if edges:
         assert isinstance(cover.space, PartSpace)

@@ -32,6 +32,21 @@ def test_parts_have_samples_on_faces_that_can_be_reached() -> None:
     assert {*(top.face_index if top.face_index is not None else ())} == {5}
 
 
+def test_weights_and_deviation_are_those_of_what_is_in_reach() -> None:
+    """Of a surface of revolution, of which a sixth is in reach."""
+    part, reach = all_kinds().select(kind="revolution"), ((1, 1, 1), 60.0)
+    whole, some = gm.sample(part, 4000), gm.sample(part, 200, reach=reach)
+    within = angles(whole.normals, (1, 1, 1)) <= 60.0
+    assert some.weights().sum() == pytest.approx(whole.weights()[within].sum(), rel=0.02)
+    assert some.report.reach == pytest.approx((3**-0.5, 3**-0.5, 3**-0.5, 60.0))
+    assert whole.report.reach is None
+    # What is outside of the reach is farther away, in space and in normal.
+    left_out = whole.points[~within]
+    farthest = np.linalg.norm(left_out[:, None] - some.points, axis=2).min(axis=1).max()
+    assert some.coverage() < farthest / 2
+    assert some.normal_deviation().normal_space < 10.0
+
+
 def test_edges_are_reached_if_both_faces_are() -> None:
     whole = gm.sample(box(), 100, edges=True)
     sides = gm.sample(box(), 100, edges=True, reach=((1, 1, 0), 50.0))
@@ -39,6 +54,12 @@ def test_edges_are_reached_if_both_faces_are() -> None:
     on_edge = sides.kind == "edge"
     assert sides.other_normals is not None
     assert angles(sides.other_normals[on_edge], (1, 1, 0)).max() <= 50.0 + ROUNDING
+
+
+def test_memory_for_samples_of_a_part_is_refused() -> None:
+    known = gm.GaussMap(all_kinds())
+    with pytest.raises(gm.errors.InputError, match="out=.* holds samples of one spline"):
+        known.points([[0, 0, 1]], out=known.points([[0, 0, 1]]))
 
 
 def test_a_part_without_normals_in_reach_is_refused() -> None:
