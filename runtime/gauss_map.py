@@ -117,9 +117,9 @@ class GaussMap(Methods):
         progress : bool, default False
             Show on a terminal what is done.
         out : Samples, optional
-            Samples of an earlier call that are no longer needed. The memory of those on a spline is
-            used again if it suffices, which is faster for millions of samples. What is read from
-            `out` afterwards, and from other samples with the same arrays, is not defined.
+            Of a map of one spline: samples of an earlier call that are no longer needed. Their
+            memory is used again if it suffices, which is faster for millions of samples. What is
+            read from `out` afterwards, and from other samples with the same arrays, is not defined.
 
         Returns
         -------
@@ -129,7 +129,7 @@ class GaussMap(Methods):
         Raises
         ------
         InputError, UnknownNameError
-            As `sample`.
+            As `sample`; also for `out` if the map is that of a surface or a part.
 
         Examples
         --------

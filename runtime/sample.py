@@ -278,7 +278,13 @@ def unwarned(
     if not isinstance(out, Samples | None):
         raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
     number = checked_dtype(dtype)
+    if isinstance(surface, NetSpline) and request.density != "gauss":
+        raise InputError(
+            f"{surface.name!r} is a spline of nets, which has no parameters in which gaps could be "
+            'filled: use density="gauss", with normals=... or count=....'
+        )
     if isinstance(surface, Whole):
+        _refuse_memory(out)
         at_normals = request.density == "gauss" and request.count is None and not edges
         wanted = checked_fields(fields, True, at_normals, part=True, edges=edges)
         if cells is not None:
@@ -293,12 +299,16 @@ def unwarned(
     may_be_proved = place == "surface" and request.density == "gauss" and request.count is None
     has = {"surface": place == "surface", "grid": request.density == "aligned"}
     wanted = checked_fields(fields, **has, proved=may_be_proved)
+    if place == "surface":
+        _refuse_memory(out)
     memory = {} if out is None else out.arrays()
     if request.count is not None:
         check_memory(request.cost, request.count, bytes_of(wanted, number))
     if geometries is None:
         make = geometries_of if request.normals is None else kept_geometries
         geometries = make(asked, cells, on)
+    if len(geometries) > 1:
+        _refuse_memory(out)
     geometries = [x.used(number, threads, memory).within(request.reach) for x in geometries]
     if may_be_proved and (len(geometries) > 1 or geometries[0].index is None):
         wanted = checked_fields(fields, **has)
@@ -313,6 +323,15 @@ def unwarned(
         chosen = choose(geometries[0], request.normals_or_count, progress)
         samples, normals = samples_at(geometries[0], chosen, wanted, number, progress)
     return (without_lines(samples) if fields is None else samples), normals
+
+
+def _refuse_memory(out: Samples | None) -> None:
+    """Raise InputError if there is memory for samples that would not be used."""
+    if out is not None:
+        raise InputError(
+            "out=... holds samples of one spline; those of a surface or part need new memory: "
+            'leave it out, or make the map with on="spline".'
+        )
 
 
 def _filled(

@@ -289,6 +289,12 @@ def test_out_that_does_not_fit_is_left_alone():
         assert again.points.tobytes() == FULL.points.tobytes()
 
 
+def test_out_is_refused_where_it_would_not_be_used():
+    torus = gm.GaussMap("torus")
+    with pytest.raises(gm.errors.InputError, match="out=.* holds samples of one spline"):
+        torus.points(NORMALS[:1], out=torus.points(NORMALS[:1]))
+
+
 def test_out_must_be_samples():
     with pytest.raises(gm.errors.InputError, match="out must be Samples of an earlier call, not 3"):
         gm.GaussMap(SPLINE).points(NORMALS, out=3)  # pyright: ignore[reportArgumentType]

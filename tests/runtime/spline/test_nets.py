@@ -236,9 +236,8 @@ def test_what_takes_a_spline_takes_it() -> None:
     assert np.allclose(one.support, other.support, atol=1e-12)
     again = pickle.loads(pickle.dumps(nets))
     assert len(gm.sample(again, normals=normals)) == 400
-    for refused in (
-        lambda: nets.evaluate(0.0, 0.0),
-        lambda: gm.sample(nets, 100, density="aligned"),
-    ):
-        with pytest.raises(gm.errors.InputError, match="no grid of cells"):
-            refused()
+    for density in ("balanced", "uniform", "aligned", 0.5):
+        with pytest.raises(gm.errors.InputError, match='spline of nets.*use density="gauss"'):
+            gm.sample(nets, 10, density=density)
+    with pytest.raises(gm.errors.InputError, match="no grid of cells"):
+        nets.evaluate(0.0, 0.0)
