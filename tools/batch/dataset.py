@@ -108,7 +108,7 @@ class Dataset:
 
     @property
     def units(self) -> dict[str, str]:
-        """The units of fields by their names: L is the unit of length of the part."""
+        """The units of fields by their names; L is `unit_of_length` of the part in the manifest."""
         return {name: UNITS[name] for name in self.fields if name in UNITS}
 
     def __len__(self) -> int:

@@ -54,7 +54,7 @@ __all__ = [
 
 SETTINGS, LOCK, NORMALS = "dataset.json", ".lock", "normals.npy"
 POINTS, MANIFEST, PARTIAL, FILES = "points", "manifest", "partial", "files"
-FORMAT = 1
+FORMAT = 2
 TEMPORARY = ".tmp"
 # A shard has at most this many parts, and about this many samples. There are at least so many
 # shards, if there are so many parts, so that all processes have work to the end.

@@ -42,6 +42,7 @@ class ManifestRow:
     status: str = _column('"ok" or "failed"', default=OK)
     attempts: int = _column("how often sampling was tried", default=1)
     samples: int = _column("the number of samples", default=0)
+    unit_of_length: str = _column('L: the unit of lengths, as "mm"; empty if unknown', default="")
     misfit: float | None = _column(
         "the largest distance of the spline from the surface", "L", default=None
     )

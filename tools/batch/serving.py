@@ -162,6 +162,7 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     from ...runtime.sample import sample
     from ...runtime.samples.fields import checked_fields
     from ..cad.part import Part
+    from ..files.lengths import unit_of
     from ..sources.surface_of import with_tolerance
     from .data_files import points_schema, points_table
     from .plan import normals_in
@@ -187,6 +188,7 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     report = samples.report
     about = {
         "samples": len(samples),
+        "unit_of_length": unit_of(samples) or "",
         "misfit": report.fit_distance,
         "coverage": report.coverage,
         "angle": report.angle,

@@ -34,7 +34,7 @@ WRONG: dict[str, tuple[Any, ...]] = {
     "files": (5, [], True),
     "gaussmap": NO_TEXT,
     "formulas": NO_TEXT,
-    "format": (None, "1", 0, 2, [1], True),
+    "format": (None, "2", 0, 1, [2], True),
 }  # fmt: skip
 
 
