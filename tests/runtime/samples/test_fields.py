@@ -291,7 +291,7 @@ def test_out_that_does_not_fit_is_left_alone():
 
 def test_out_is_refused_where_it_would_not_be_used():
     torus = gm.GaussMap("torus")
-    with pytest.raises(gm.errors.InputError, match="out=.* holds samples of one spline"):
+    with pytest.raises(gm.errors.InputError, match=r"out=.* holds samples of one spline"):
         torus.points(NORMALS[:1], out=torus.points(NORMALS[:1]))
 
 

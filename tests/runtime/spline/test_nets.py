@@ -237,7 +237,7 @@ def test_what_takes_a_spline_takes_it() -> None:
     again = pickle.loads(pickle.dumps(nets))
     assert len(gm.sample(again, normals=normals)) == 400
     for density in ("balanced", "uniform", "aligned", 0.5):
-        with pytest.raises(gm.errors.InputError, match='spline of nets.*use density="gauss"'):
+        with pytest.raises(gm.errors.InputError, match=r'spline of nets.*use density="gauss"'):
             gm.sample(nets, 10, density=density)
     with pytest.raises(gm.errors.InputError, match="no grid of cells"):
         nets.evaluate(0.0, 0.0)

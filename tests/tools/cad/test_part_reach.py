@@ -58,7 +58,7 @@ def test_edges_are_reached_if_both_faces_are() -> None:
 
 def test_memory_for_samples_of_a_part_is_refused() -> None:
     known = gm.GaussMap(all_kinds())
-    with pytest.raises(gm.errors.InputError, match="out=.* holds samples of one spline"):
+    with pytest.raises(gm.errors.InputError, match=r"out=.* holds samples of one spline"):
         known.points([[0, 0, 1]], out=known.points([[0, 0, 1]]))
 
 
