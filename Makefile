@@ -162,7 +162,7 @@ errata: $(READY) ## write the errata of the paper (docs/errata.md)
 	$(BIN)/python docs/errata.py > docs/errata.tmp
 	mv docs/errata.tmp docs/errata.md
 
-figures: $(READY) ## draw the animation, and Figs. 2-7 of the paper, again (docs/figures.md)
+figures: $(READY) demo ## draw the pictures of the README, and Figs. 2-7 of the paper, again (docs/figures.md)
 	$(BIN)/python docs/figures.py > docs/figures.tmp
 	mv docs/figures.tmp docs/figures.md
 
@@ -194,7 +194,7 @@ $(VENV)/docs/.ready: $(READY)
 		--requirement $(VENV)/docs/packages
 	touch $@
 
-docs: $(VENV)/docs/.ready ## build the site of the documentation, out/site/index.html
+docs: $(VENV)/docs/.ready compiled ## build the site of the documentation, out/site/index.html
 	mkdir -p out/extra
 	$(GAUSSMAP) view torus --count 2000 --quiet -o out/extra/torus.html
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(VENV)/docs/bin/python -m sphinx --quiet --nitpicky --fail-on-warning --keep-going \

@@ -1,4 +1,4 @@
-"""Draw the animation at the top of the README and of the site: normals become points.
+"""Draw the animation at the top of the README and of the site, light and dark.
 
 Uniform normals on the unit sphere leave it and land on the points of a torus that have them: each
 normal on two points. One normal and its points are marked in the end.
@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import gaussmap as gm
 import numpy as np
+from gaussmap.docs.dark import dark
 from gaussmap.docs.drawing import Floats, Picture
 from gaussmap.tools.files.paths import atomic_path
 from gaussmap.tools.pictures.marked import marked
@@ -24,9 +25,10 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.spatial import KDTree
 
-__all__ = ["FILE", "HOLD", "MOVE", "draw"]
+__all__ = ["DARK", "FILE", "HOLD", "MOVE", "draw", "palette_of", "reduced", "with_palette"]
 
 FILE = Path(__file__).parent / "figures" / "normals.gif"
+DARK = FILE.with_name("normals_dark.gif")
 NORMALS = 1_000
 WIDTH, HEIGHT, DPI = 8.2, 3.6, 100  # inches, and pixels per inch
 SPHERE, TORUS, MIDDLE = -2.7, 1.95, -0.2  # the centres, in inches from that of the picture
@@ -58,8 +60,8 @@ class Actors(NamedTuple):
     order: Any
 
 
-def draw(path: Path) -> None:
-    """Write the animation to a .gif file."""
+def draw(light: Path, in_dark: Path) -> None:
+    """Write the animation to two .gif files, for light and for dark pages."""
     scene = scene_of(gm.surfaces.torus(1.0, 0.4), view(34.0, -60.0))
     samples = gm.sample(gm.surfaces.torus(1.0, 0.4), 2 * NORMALS, density="gauss")
     visible = scene.visible(samples.points)
@@ -73,13 +75,15 @@ def draw(path: Path) -> None:
     arrow = RADIUS * (scene.view @ mark.normal)[:2]
     ends = np.vstack([arrow + np.array([SPHERE, MIDDLE]), actors.points[mark.samples]])
     pictures.append(frame(stage, actors, 1.0, TEXTS[3], ends, arrow))
-    palette = palette_of([pictures[k] for k in (0, FRAMES // 2, -1)])
-    first, *others = (reduced(picture, palette) for picture in pictures)
-    with atomic_path(path) as temporary:
-        first.save(
-            temporary, format="GIF", save_all=True, append_images=others, loop=0, optimize=False,
-            duration=[HOLD[0], *[MOVE] * (FRAMES - 2), *HOLD[1:]],
-        )  # fmt: skip
+    palette = palette_of([pictures[k] for k in (0, FRAMES // 2, -1)], COLOURS)
+    frames = [reduced(picture, palette) for picture in pictures]
+    for path, colours in ((light, palette), (in_dark, dark(palette))):
+        first, *others = (with_palette(x, colours) for x in frames)
+        with atomic_path(path) as temporary:
+            first.save(
+                temporary, format="GIF", save_all=True, append_images=others, loop=0,
+                optimize=False, duration=[HOLD[0], *[MOVE] * (FRAMES - 2), *HOLD[1:]],
+            )  # fmt: skip
 
 
 def actors_of(samples: gm.Samples, scene: Scene, visible: Any) -> Actors:  # noqa: ANN401
@@ -178,20 +182,25 @@ def moved(actors: Actors, moment: float) -> tuple[Floats, Floats]:
     return places, np.hstack([colours, (1.0 - way) * before[:, None] + way * after[:, None]])
 
 
-def palette_of(pictures: list[Image.Image]) -> NDArray[Any]:
-    """Return the colours (k, 3) for all pictures, some of them exact."""
+def palette_of(pictures: list[Image.Image], colours: int) -> NDArray[np.uint8]:
+    """Return colours (k, 3) for all pictures, so many and some exact ones."""
     together = np.concatenate([np.asarray(picture) for picture in pictures])
-    chosen = Image.fromarray(together).quantize(COLOURS, method=Image.Quantize.MEDIANCUT)
+    chosen = Image.fromarray(together).quantize(colours, method=Image.Quantize.MEDIANCUT)
     exact = [to_rgb(name) for name in ("white", MARK, INK, ELLIPTIC, HYPERBOLIC)]
-    rest = np.array(chosen.getpalette(), dtype=np.uint8)[: 3 * COLOURS].reshape(-1, 3)
+    rest = np.array(chosen.getpalette(), dtype=np.uint8)[: 3 * colours].reshape(-1, 3)
     return np.concatenate([np.round(255 * np.array(exact)).astype(np.uint8), rest])
 
 
-def reduced(picture: Image.Image, palette: NDArray[Any]) -> Image.Image:
-    """Return a picture with the nearest colours of a palette; Pillow takes other ones."""
+def reduced(picture: Image.Image, palette: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return the nearest colours of a palette, by their numbers; Pillow takes other ones."""
     pixels = np.asarray(picture)
     found, which = np.unique(pixels.reshape(-1, 3), axis=0, return_inverse=True)
     nearest = np.asarray(KDTree(palette).query(found)[1]).astype(np.uint8)
-    image = Image.fromarray(nearest[which].reshape(pixels.shape[:2]), mode="P")
+    return nearest[which].reshape(pixels.shape[:2])
+
+
+def with_palette(numbers: NDArray[np.uint8], palette: NDArray[np.uint8]) -> Image.Image:
+    """Return the picture that has the colours of a palette by their numbers."""
+    image = Image.fromarray(numbers, mode="P")
     image.putpalette(palette.ravel().tolist())
     return image

@@ -1,4 +1,4 @@
-"""Draw Figs. 2-7 of the paper and the animation into docs/figures/; print docs/figures.md.
+"""Draw the pictures of the README, and Figs. 2-7 of the paper; print docs/figures.md.
 
 Every number on the page is measured here.
 """
@@ -12,12 +12,15 @@ from pathlib import Path
 
 import matplotlib.style
 from gaussmap.docs import animation
+from gaussmap.docs.animation import palette_of, reduced, with_palette
 from gaussmap.docs.curve_figures import figure_4, figure_5
+from gaussmap.docs.dark import dark
 from gaussmap.docs.patch_figures import figure_2, figure_3
 from gaussmap.docs.surface_figures import figure_6, figure_7
 from gaussmap.tools.files.paths import atomic_path
 from gaussmap.tools.pictures.palette import STYLE
 from matplotlib.figure import Figure
+from PIL import Image
 
 FOLDER = Path(__file__).parent / "figures"
 FIGURES: dict[int, Callable[[], tuple[Figure, str]]] = {
@@ -28,6 +31,8 @@ FIGURES: dict[int, Callable[[], tuple[Figure, str]]] = {
     6: figure_6,
     7: figure_7,
 }
+# The pictures that `make demo` draws, and that the README shows with fewer colours.
+DEMO, COLOURS = ("torus", "terrain"), 250
 HEAD = """# The figures of the paper
 
 Written by `make figures`: do not edit. Blue is elliptic (on curves κ > 0), orange hyperbolic
@@ -49,6 +54,18 @@ def page(folder: Path) -> str:
     return "".join(parts)
 
 
+def demo(made: Path, folder: Path) -> None:
+    """Write small copies of the pictures of `make demo` to a folder, light and dark."""
+    for name in DEMO:
+        with Image.open(made / f"{name}.png") as image:
+            picture = image.convert("RGB")
+        palette = palette_of([picture], COLOURS)
+        numbers = reduced(picture, palette)
+        for ending, colours in (("", palette), ("_dark", dark(palette))):
+            with atomic_path(folder / f"{name}{ending}.png") as temporary:
+                with_palette(numbers, colours).save(temporary, format="PNG", optimize=True)
+
+
 def filled(text: str) -> str:
     """Break a text at 100 characters, but not in formulas or links."""
     whole = re.sub(r"\$`.*?`\$", lambda found: found[0].replace(" ", "\0"), text)
@@ -57,5 +74,6 @@ def filled(text: str) -> str:
 
 
 if __name__ == "__main__":
-    animation.draw(animation.FILE)
+    demo(Path("out"), Path(__file__).parent)
+    animation.draw(animation.FILE, animation.DARK)
     print(page(FOLDER), end="")

@@ -123,9 +123,9 @@ def figure_2() -> tuple[Figure, str]:
         picture.label(control_point, text, net.mean(axis=0), gap, 11.0)
     return figure, (
         "A quadratic triangular Bézier patch with its control net; $`\\mathbf b_{ijk}`$ belongs to "
-        "$`u^i v^j w^k`$, and the edges are u = 0 (black), v = 0 (green) and w = 0 (purple). The "
-        "control points are those that formula (12) belongs to; the printed (11) has another "
-        "support function ([errata](errata.md))."
+        "$`u^i v^j w^k`$, and the edges are u = 0 (black; white on dark pages), v = 0 (green) and "
+        "w = 0 (purple). The control points are those that formula (12) belongs to; the printed "
+        "(11) has another support function ([errata](errata.md))."
     )
 
 

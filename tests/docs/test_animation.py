@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gaussmap.docs import animation
+from gaussmap.docs.dark import dark as dark_of
 from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC, INK, MARK
 from matplotlib.colors import to_rgb
 from PIL import Image
@@ -34,6 +35,15 @@ def test_a_dozen_seconds_in_two_megabytes() -> None:
     assert (pictures[0][:2] == 255).all()  # white, also beside the text
 
 
+def test_the_dark_one_differs_by_its_colours_only() -> None:
+    light, dark = (frames(x) for x in (animation.FILE, animation.DARK))
+    assert light[1] == dark[1]
+    for before, after in zip(light[0][::14], dark[0][::14], strict=True):
+        assert (after[:2] == [13, 17, 23]).all()
+        found, which = np.unique(before.reshape(-1, 3), axis=0, return_inverse=True)
+        assert (dark_of(found)[which.ravel()] == after.reshape(-1, 3)).all()
+
+
 def test_normals_leave_the_sphere_and_land_on_the_torus() -> None:
     pictures, _ = frames(animation.FILE)
     left, right = np.s_[40:, :280], np.s_[40:, 400:]
@@ -51,7 +61,7 @@ def test_normals_leave_the_sphere_and_land_on_the_torus() -> None:
 @pytest.mark.slow
 @pytest.mark.compiled
 def test_the_committed_one_is_that_of_a_fresh_run(tmp_path: Path) -> None:
-    animation.draw(tmp_path / "a.gif")
+    animation.draw(tmp_path / "a.gif", tmp_path / "b.gif")
     fresh, committed = (frames(x) for x in (tmp_path / "a.gif", animation.FILE))
     assert fresh[1] == committed[1]
     for left, right in zip(fresh[0], committed[0], strict=True):
