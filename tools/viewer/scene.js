@@ -60,9 +60,9 @@ function ball() {
         lighting: { ambient: 0.85, diffuse: 0.2, specular: 0 } };
 }
 
-// Smaller ones in small frames, where they would hide one another.
-const share = Math.min(byId("surface").clientWidth, byId("surface").clientHeight) / 450;
-const size = Math.min(Math.max(Math.sqrt(30000 / count), 1.4), 4) * Math.min(Math.max(share, 0.45), 1);
+// The diameter of samples in pixels: that of discs that would cover an eighth of the frame.
+const side = Math.min(byId("surface").clientWidth, byId("surface").clientHeight);
+const size = Math.min(Math.max(side * Math.sqrt(0.5 / (Math.PI * count)), 1.4), 4);
 const kinds = EACH.map(ofKind);
 // These traces stay as they are; what is picked is drawn over them, see highlights.js.
 const LIFT = 0.004; // samples are drawn above the triangles, which would hide halves of them
