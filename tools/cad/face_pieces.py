@@ -84,12 +84,12 @@ class FacePiece(Piece):
             face=face, surface=surface, reach=reach,
         )  # fmt: skip
 
-    @property
+    @cached_property
     def size(self) -> float:
         """The root of the area, in L."""
         return math.sqrt(self.area)
 
-    @cached_property
+    @property
     def area(self) -> float:
         """The area of what is in the reach, in L²."""
         return self.face.area * self._share
