@@ -3,6 +3,7 @@
 import re
 import shutil
 import sys
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -75,6 +76,8 @@ nb_merge_streams = True
 # --- the reference ---
 # Sentences do not end there.
 autosummary.WELL_KNOWN_ABBREVIATIONS += ("Sect.", "Sects.", "eq.", "eqs.", "Fig.", "Figs.")
+# Docstrings that formulas inherit from SymPy have sections of their own.
+warnings.filterwarnings("ignore", message="Unknown section Explanation", module="numpydoc")
 autosummary_ignore_module_all = False  # the public names are those of __all__ …
 autosummary_imported_members = True  # … and are imported from where they are defined
 autodoc_preserve_defaults = True

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from gaussmap.tools.batch.inputs import inputs_of
 from gaussmap.tools.batch.plan import file_name
+from gaussmap.tools.cad.examples import box
 
 pytest.importorskip("pyarrow")
 pytest.importorskip("cloudpickle")
@@ -91,6 +92,12 @@ def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
     np.testing.assert_array_equal(data.samples(0).normals, expected.normals)
     with pytest.raises(gm.errors.InputError, match="count=100, not 101"):
         gm.sample_many(parts, 101, out=out, progress=False, **ASKED)
+
+
+def test_units_of_length_are_those_of_the_parts(tmp_path):
+    how: dict[str, Any] = {"density": "uniform", "workers": 1, "progress": False}
+    data = gm.sample_many([box(), "sphere"], 30, out=tmp_path / "set", cells=(8, 8), **how)
+    assert data.manifest(["unit_of_length"])["unit_of_length"].to_pylist() == ["mm", ""]
 
 
 def test_arguments(tmp_path):
