@@ -13,7 +13,9 @@ ROUNDING = 1e-9
 
 
 def angles(normals: np.ndarray, axis: tuple[float, float, float]) -> np.ndarray:
-    return np.degrees(np.arccos(np.clip(normals @ (np.array(axis) / np.linalg.norm(axis)), -1.0, 1.0)))
+    return np.degrees(
+        np.arccos(np.clip(normals @ (np.array(axis) / np.linalg.norm(axis)), -1.0, 1.0))
+    )
 
 
 def test_parts_have_samples_on_faces_that_can_be_reached() -> None:
