@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from gaussmap.tools.batch.inputs import inputs_of
 from gaussmap.tools.batch.plan import file_name
-from gaussmap.tools.cad.examples import box
 
 pytest.importorskip("pyarrow")
 pytest.importorskip("cloudpickle")
@@ -96,8 +95,10 @@ def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
 
 def test_units_of_length_are_those_of_the_parts(tmp_path):
     how: dict[str, Any] = {"density": "uniform", "workers": 1, "progress": False}
-    data = gm.sample_many([box(), "sphere"], 30, out=tmp_path / "set", cells=(8, 8), **how)
+    bracket = gm.read_part(Path(gm.__path__[0]) / "docs" / "gallery" / "bracket.npz")
+    data = gm.sample_many([bracket, "sphere"], 60, out=tmp_path / "set", cells=(8, 8), **how)
     assert data.manifest(["unit_of_length"])["unit_of_length"].to_pylist() == ["mm", ""]
+    assert data.manifest(["status"])["status"].to_pylist() == ["ok", "ok"]
 
 
 def test_arguments(tmp_path):
