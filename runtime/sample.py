@@ -157,10 +157,9 @@ def sample(
 
     **On the surface.** All points with prescribed normals are found, with a proof, where the
     derivatives of the surface can be bounded: those of the catalogue, of SymPy expressions, of
-    callables made of NumPy functions, of NURBS without a smooth pole (a side that is one point), of
-    affine images of these, and of faces of parts. The report says for how many normals the points
-    are `proved` to be all, and lists the others in `undecided`; see `SamplingReport`. What is found
-    out about the last eight surfaces is kept, so that the function of a surface must return the
+    callables made of NumPy functions, of NURBS, of affine images of these, and of faces of parts.
+    The report says for how many normals the points are `proved` to be all, and lists the others in
+    `undecided`; see `SamplingReport`. What is found out about the last eight surfaces is kept, so that the function of a surface must return the
     same points each time; `GaussMap` keeps it as long as it is wanted. On other surfaces, and at
     normals that were not prescribed, a sample is moved by Newton's method from the spline to the
     point with its normal. Where there is none near by, it stays on the spline and is marked, see

@@ -190,4 +190,80 @@ def _at_pole() -> Formula:
 
 AT_POLE = _at_pole()
 
-FORMULAS = (AT_JET, FORMS_AT_JET, NEWTON, CONTOUR, POLAR_CHART, AT_POLE)
+# Any parameters u around a pole and r, 0 at it, make the surface a graph h over its tangent plane,
+# with coordinates q1, q2. There q_u, q_uu and h_r, h_ur vanish with r, and h_u, h_uu with r².
+
+INVERSE = i11, i12, i21, i22 = tuple(scalar(z) for z in ("i11", "i12", "i21", "i22"))
+SLOPES = G1, G2 = scalar("G1"), scalar("G2")
+o1, o2, e1, e2, h1, h2 = (scalar(z) for z in ("o1", "o2", "e1", "e2", "h1", "h2"))
+a1, a2, b1, b2, c1, c2 = (scalar(z) for z in ("a1", "a2", "b1", "b2", "c1", "c2"))
+h11, h12, h22 = (scalar(z) for z in ("h11", "h12", "h22"))
+
+GRAPH_SLOPES = Formula.build(
+    "graph_slopes",
+    "The inverse $i11$, … of the matrix of $o$ and $e$, derivatives of the coordinates $q1$, $q2$ "
+    "of a plane by $u$, over $r$, and by $r$; and the first derivatives $G1$, $G2$ of a graph $h$ "
+    "by $q1$, $q2$, from $h1$ by $u$, over $r$, and $h2$ by $r$.",
+    inputs=[o1, o2, e1, e2, h1, h2],
+    terms=[("d", 1 / (o1 * e2 - o2 * e1))],
+    outputs=[
+        ("i11", scalar("d") * e2),
+        ("i12", -scalar("d") * e1),
+        ("i21", -scalar("d") * o2),
+        ("i22", scalar("d") * o1),
+        ("G1", i11 * h1 + i21 * h2),
+        ("G2", i12 * h1 + i22 * h2),
+    ],
+)
+
+
+def _graph_at_pole() -> Formula:
+    """Write the second derivatives of a graph, and check them by the chain rule.
+
+    Raises ArithmeticError if it gives others.
+    """
+    A, B, C = (scalar(z) for z in "ABC")
+    formula = Formula.build(
+        "graph_at_pole",
+        "The second derivatives $H11$, $H12$, $H22$ of a graph $h$ by the coordinates $q1$, $q2$ "
+        "of its tangent plane, near a pole with the parameters $u$ around it and $r$, $0$ at it. "
+        "With $i11$, … and $G1$, $G2$, those of `graph_slopes` over $r$; the second derivatives of "
+        "$q1$, $q2$: $a$ by $u$, over $r$, $b$ by both, $c$ by $r$; and those of $h$: $h11$ by "
+        "$u$, over $r^2$, $h12$ by both, over $r$, $h22$ by $r$.",
+        inputs=[*INVERSE, *SLOPES, a1, a2, b1, b2, c1, c2, h11, h12, h22, r],
+        terms=[
+            ("A", h11 - G1 * a1 - G2 * a2),
+            ("B", h12 - G1 * b1 - G2 * b2),
+            ("C", h22 - r * (G1 * c1 + G2 * c2)),
+        ],
+        outputs=[
+            ("H11", i11**2 * A + 2 * i11 * i21 * B + i21**2 * C),
+            ("H12", i11 * i12 * A + (i11 * i22 + i12 * i21) * B + i21 * i22 * C),
+            ("H22", i12**2 * A + 2 * i12 * i22 * B + i22**2 * C),
+        ],
+    )
+    jacobian = sp.Matrix([[r * o1, e1], [r * o2, e2]])
+    slopes = jacobian.T.inv() * sp.Matrix([r**2 * h1, r * h2])
+    second = sp.Matrix([[r**2 * h11, r * h12], [r * h12, h22]])
+    second -= slopes[0] * sp.Matrix([[r * a1, b1], [b1, c1]])
+    second -= slopes[1] * sp.Matrix([[r * a2, b2], [b2, c2]])
+    hessian = jacobian.T.inv() * second * jacobian.inv()
+    first = {scalar(name): value for name, value in GRAPH_SLOPES.expanded().items()}
+    for name, (i, j) in {"H11": (0, 0), "H12": (0, 1), "H22": (1, 1)}.items():
+        if sp.cancel(substitute(formula.expanded()[name], first) - hessian[i, j]) != 0:
+            raise ArithmeticError(f"the chain rule does not give {name}")
+    return formula
+
+
+GRAPH_AT_POLE = _graph_at_pole()
+
+FORMULAS = (
+    AT_JET,
+    FORMS_AT_JET,
+    NEWTON,
+    CONTOUR,
+    POLAR_CHART,
+    AT_POLE,
+    GRAPH_SLOPES,
+    GRAPH_AT_POLE,
+)

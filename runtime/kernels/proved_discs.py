@@ -1,7 +1,7 @@
-"""Discs around poles: the places with given normals there, in a chart without a singularity.
+"""Discs around poles: the places with given normals there, in coordinates of the tangent plane.
 
-At a pole the parameters are an angle φ and a distance r. The surface is smooth in s = r cos φ and
-t = r sin φ, which are scaled so that the disc is r ≤ 1. Bounds hold up to r = 2.
+At a pole the parameters are u around it and r, which is 0 at it. The surface is a graph over its
+tangent plane, whose coordinates s and t are scaled so that the disc is within s² + t² ≤ 1.
 """
 
 from __future__ import annotations
@@ -12,35 +12,47 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated.jet import graph_slopes
 from ...generated.patch import eliminated_forms
 from ..machine_code.jit import inline, jit, loop
 from .proved_answers import BORDER, MULTIPLE, add_open
 from .proved_cells import EPS, linear_forms_of, patch_of
 from .proved_pairs import CLOSE, CONTRACTING
 from .tape import POINT, U, V, evaluate_points
-from .vectors import row_vector
+from .vectors import dot, row_vector
 
-__all__ = ["RINGS", "WHOLE", "Disc", "decide_discs"]
+__all__ = ["Disc", "decide_discs"]
 
-# Bounds hold up to this distance, and smaller ones up to halves of it, quarters, …
-WHOLE, RINGS = 2.0, 8
 # Steps towards a place.
 STEPS = 60
+# A step that is longer than this part of the distance from the pole begins at the pole anew.
+LONG = 0.25
+# The numbers of the frame of a disc.
+(
+    FAR_NOISE, NEAR_NOISE, SIZE, START, TURN, END, INWARD, ANGLE, UNIT, WHOLE, BY_U, BY_R, QUOTIENT,
+    SENSE,
+) = range(14)  # fmt: skip
 
 
 class Disc(NamedTuple):
     """The disc around a pole.
 
     hot (1, 15): the vectors a, b, c, d, e of the patch that osculates at the pole, by s and t.
-    changes (RINGS, 3, 3): how far x_ss, x_st, x_tt may be from a, b, c up to r = 2, 1, ½, …
-    frame (8): rounding of x_r and of x_φ; radius of the disc; u or v at φ = 0, and for a full turn;
-    the other one at the pole, whether it grows with r (1 or −1), and the number of the first, 0 or
-    1. With a rounding of inf there are no bounds.
+    changes (m, 3, 3): how far x_ss, x_st, x_tt may be from a, b, c up to `whole`, half of it, …
+    frame (14): the derivatives of h by s and t are computed up to the first one plus the second
+    over r, in units of the size; radius of the disc; first u, and its length; the other parameter
+    at the pole, whether it grows with r (1 or −1), and the number of the first, 0 or 1; the unit of
+    s and t; how far bounds hold; the largest derivatives of r u and of r by the coordinates of the
+    plane; whether the tape is that of (x − p) / r; and 1 if angles in the plane grow with u.
+    basis (3, 3): derivatives of x by the coordinates of the plane and by h.
+    directions (k, 2): angles in the plane at equal steps of u, and distances over r there.
     """
 
     hot: NDArray[np.float64]
     changes: NDArray[np.float64]
     frame: NDArray[np.float64]
+    basis: NDArray[np.float64]
+    directions: NDArray[np.float64]
 
 
 @inline
@@ -72,88 +84,142 @@ def change_in(disc, ring, n, y11, y12, y22):
 
 
 @loop
-def gradient_at(tape, work, phi, r, n):
-    """Return the products of n with x_s and x_t at φ and r, of a tape in polar coordinates."""
-    work.u[0], work.v[0] = phi, r
+def place_towards(disc, s, t):
+    """Return u and r of a place near s, t, or of another one where these are small."""
+    table = disc.directions
+    count = table.shape[0] - 1
+    angle = disc.frame[SENSE] * math.atan2(t, s)
+    turn = table[count, 0] - table[0, 0]
+    angle -= turn * math.floor((angle - table[0, 0]) / turn)
+    low, high = 0, count
+    while high - low > 1:
+        middle = (low + high) // 2
+        if table[middle, 0] <= angle:
+            low = middle
+        else:
+            high = middle
+    part = (angle - table[low, 0]) / (table[low + 1, 0] - table[low, 0])
+    length = table[low, 1] + part * (table[low + 1, 1] - table[low, 1])
+    u = disc.frame[START] + disc.frame[TURN] * (low + part) / count
+    return u, disc.frame[UNIT] * math.hypot(s, t) / length
+
+
+@loop
+def graph_at(tape, work, disc, u, r):
+    """Return s and t at u and r, the derivatives of u and r by these, and those of h, unscaled."""
+    work.u[0], work.v[0] = u, r
     evaluate_points(tape, work.u, work.v, 1, work.registers)
-    around = away = 0.0
-    for x in range(3):
-        at = np.uint64(POINT * tape.outputs[x])
-        around += n[x] * work.registers[at + U]
-        away += n[x] * work.registers[at + V]
-    around /= r
-    x, y = math.cos(phi), math.sin(phi)
-    return x * away - y * around, y * away + x * around
+    x, y, z = (
+        np.uint64(POINT * tape.outputs[0]),
+        np.uint64(POINT * tape.outputs[1]),
+        np.uint64(POINT * tape.outputs[2]),
+    )
+    registers, unit = work.registers, disc.frame[UNIT]
+    q1, q2 = registers[x], registers[y]
+    o1, o2, h1 = registers[x + U], registers[y + U], registers[z + U]
+    e1, e2, h2 = registers[x + V], registers[y + V], registers[z + V]
+    if disc.frame[QUOTIENT] > 0.0:
+        e1, e2, h2 = q1 + r * e1, q2 + r * e2, registers[z] + r * h2
+        q1, q2 = r * q1, r * q2
+    else:
+        o1, o2, h1 = o1 / r, o2 / r, h1 / r
+    i11, i12, i21, i22, g1, g2 = graph_slopes(o1, o2, e1, e2, h1, h2)
+    return (
+        q1 / unit, q2 / unit, i11 * unit / r, i12 * unit / r, i21 * unit, i22 * unit, g1, g2
+    )  # fmt: skip
 
 
 @loop
 def place_in(tape, work, disc, n):
-    """Return s, t, how far the only place with the normal n may be, and the determinant.
+    """Return u, r, how far s and t of the only place with the normal n may be, the determinant.
 
-    The distance is infinite if this is not proved.
+    The distance is infinite if this is not proved, and negative if there is no place in the disc.
     """
-    size = disc.frame[2]
+    frame = disc.frame
     a, b, c, p, q = linear_forms_of(patch_of(disc.hot, 0), n)
     d, u, v, _ = eliminated_forms(a, b, c, p, q)
     y11, y12, y22 = c / d, -b / d, a / d
     rounding = 16.0 * EPS * rows_of(y11, y12, y22, abs(a) + abs(b), abs(b) + abs(c))
     change = change_in(disc, 0, n, y11, y12, y22) + rounding
-    away_noise, around_noise = disc.frame[0] * size, disc.frame[1]
-    if not (change < CONTRACTING and away_noise < math.inf):
+    if not (change < CONTRACTING and frame[FAR_NOISE] < math.inf):
         return 0.0, 0.0, math.inf, d
+    n1, n2, n3 = (
+        dot(row_vector(disc.basis, 0), n),
+        dot(row_vector(disc.basis, 1), n),
+        dot(row_vector(disc.basis, 2), n),
+    )
+    unit, whole = frame[UNIT], frame[WHOLE]
     s, t = u / d, v / d
-    least = math.inf
-    best_s = best_t = 0.0
+    base = rows_of(y11, y12, y22, frame[FAR_NOISE], frame[FAR_NOISE]) / (1.0 - change)
+    if max(abs(s), abs(t)) > 1.0 + change + base:
+        return 0.0, 0.0, -1.0, d  # the step to it from the pole is too long
+    # From the 2-jet at the pole, which may be better than a small circle around it.
+    length, ring = math.hypot(s, t), 0
+    while ring + 1 < disc.changes.shape[0] and 2.0 * length <= whole * 0.5 ** (ring + 1):
+        ring += 1
+    near = change_in(disc, ring, n, y11, y12, y22) + rounding
+    first = (near * length + base) / (1.0 - change) + 4.0 * EPS * length
+    u, r = place_towards(disc, s, t)
+    if length == 0.0:
+        return u, 0.0, first, d
+    least, best_u, best_r, best_length = math.inf, 0.0, 0.0, math.inf
     for step in range(STEPS):
-        r = math.hypot(s, t)
-        base = rows_of(y11, y12, y22, away_noise, away_noise) / (1.0 - change) + 4.0 * EPS * r
+        if math.hypot(s, t) > 0.98 * whole:
+            factor = 0.98 * whole / math.hypot(s, t)
+            s, t = s * factor, t * factor
+            u, r = place_towards(disc, s, t)
+        if not r > 0.0:
+            break
+        here_s, here_t, u_s, u_t, r_s, r_t, g1, g2 = graph_at(tape, work, disc, u, r)
         if step == 0:
-            if max(abs(s), abs(t)) > 1.0 + change + base:
-                return s, t, 0.0, d  # the step to it from the pole is too long
-            # From the 2-jet at the pole, which is better than a small circle around it.
-            ring = 0
-            while ring + 1 < RINGS and r <= WHOLE * 0.5 ** (ring + 1):
-                ring += 1
-            near = change_in(disc, ring, n, y11, y12, y22) + rounding
-            least, best_s, best_t = near * r / (1.0 - change) + base, s, t
-        if r == 0.0 or r >= WHOLE:
+            least = first + max(abs(here_s - s), abs(here_t - t))
+            best_u, best_r, best_length = u, r, math.hypot(here_s, here_t)
+        f, g = unit * (n1 + g1 * n3), unit * (n2 + g2 * n3)
+        noise = frame[FAR_NOISE] + frame[NEAR_NOISE] * frame[SIZE] / r
+        noise = rows_of(y11, y12, y22, noise, noise) / (1.0 - change)
+        s1, t1 = -(y11 * f + y12 * g), -(y12 * f + y22 * g)
+        move = max(abs(s1), abs(t1))
+        distance = move / (1.0 - change) + noise + 4.0 * EPS * length
+        length = math.hypot(here_s, here_t)
+        if not length <= whole:
             break
-        f, g = gradient_at(tape, work, math.atan2(t, s), r * size, n)
-        f, g = size * f, size * g
-        noise = away_noise + around_noise / r + 8.0 * EPS * (abs(f) + abs(g))
-        here = rows_of(y11, y12, y22, noise, noise) / (1.0 - change) + 4.0 * EPS * r
-        s1, t1 = y11 * f + y12 * g, y12 * f + y22 * g
-        distance = max(abs(s1), abs(t1)) / (1.0 - change) + here
         if distance < least:
-            least, best_s, best_t = distance, s, t
-        if distance <= CLOSE * here:
+            least, best_u, best_r, best_length = distance, u, r, length
+        s, t = here_s + s1, here_t + t1
+        if max(abs(s), abs(t)) > 1.0 + change * move / (1.0 - change) + noise + 1e-12:
+            return 0.0, 0.0, -1.0, d
+        if distance <= CLOSE * noise:
             break
-        s, t = s - s1, t - t1
+        if move > LONG * length:
+            u, r = place_towards(disc, s, t)
+        else:
+            u, r = u + u_s * s1 + u_t * t1, r + r_s * s1 + r_t * t1
+            u -= frame[TURN] * math.floor((u - frame[START]) / frame[TURN])
     # The square around the place has to be where bounds hold.
-    if not math.hypot(best_s, best_t) + 1.5 * least <= WHOLE:
+    if not best_length + 1.5 * least <= whole:
         least = math.inf
-    return best_s, best_t, least, d
+    return best_u, best_r, least, d
 
 
 @jit
 def decide_discs(tape, work, disc, normals, numbers, first, last, domain, answers):
     """Find the places in a disc with normals (S, 3) of some numbers; see `decide_normals`.
 
-    The tape is that of the surface in polar coordinates. Returns the next position in `numbers`.
+    The tape is that of the surface by u and r, with the coordinates of the plane and h, or of its
+    quotient by r. Returns the next position in `numbers`.
     """
     answers.counts[0] = answers.counts[1] = 0
     frame = disc.frame
     size, start, turn, end, inward, angle = (
-        frame[2], frame[3], frame[4], frame[5], frame[6], int(frame[7])
+        frame[SIZE], frame[START], frame[TURN], frame[END], frame[INWARD], int(frame[ANGLE])
     )  # fmt: skip
     for k in range(first, last):
         number, at = numbers[k], answers.counts[0]
         if at == answers.numbers.shape[0] or answers.counts[1] == answers.kinds.shape[0]:
             return np.int64(k)
-        s, t, radius, d = place_in(tape, work, disc, row_vector(normals, number))
-        r, error = math.hypot(s, t), 1.4143 * radius
-        other = end + inward * r * size
-        rest = 4.0 * EPS * abs(end)
+        u, r, radius, d = place_in(tape, work, disc, row_vector(normals, number))
+        if radius < 0.0:
+            continue
         if radius == math.inf:
             low, high = min(end, end + inward * size), max(end, end + inward * size)
             if angle == 0:
@@ -161,25 +227,21 @@ def decide_discs(tape, work, disc, normals, numbers, first, last, domain, answer
             else:
                 add_open(answers, number, low, high, start, start + turn, MULTIPLE, domain)
             continue
-        if r > 1.0 + error + rest / size:
+        error = 1.4143 * radius * frame[UNIT]
+        of_r, rest = frame[BY_R] * error, 4.0 * EPS * (abs(end) + r)
+        if r > size + of_r + rest:
             continue
-        phi = math.atan2(t, s)
-        if phi < 0.0:
-            phi += 2.0 * math.pi
-        half = math.pi if error >= r else 1.58 * error / r + 4.0 * EPS * phi
         row = answers.places[at]
-        row[angle], row[1 - angle] = start + turn * (phi / (2.0 * math.pi)), other
-        row[2 + angle] = min(turn * half / (2.0 * math.pi), 0.5 * turn) + 4.0 * EPS * (
-            abs(start) + turn
-        )
-        row[3 - angle] = error * size + rest
+        row[angle], row[1 - angle] = u, end + inward * r
+        row[2 + angle], row[3 - angle] = 0.5 * turn, of_r + rest
+        if 2.0 * of_r < r:
+            row[2 + angle] = min(frame[BY_U] * error / (r - of_r), 0.5 * turn)
+        row[2 + angle] += 4.0 * EPS * (abs(start) + turn)
         row[4] = d
-        # The disc, with all angles.
+        # The disc, with all angles, and beyond the pole.
         row[5 + 2 * angle], row[6 + 2 * angle] = start - 2.0 * turn, start + 3.0 * turn
-        edge = end + inward * WHOLE * size
-        row[7 - 2 * angle], row[8 - 2 * angle] = min(end, edge), max(end, edge)
-        row[7 - 2 * angle] -= size
-        row[8 - 2 * angle] += size
+        edge, beyond = end + inward * frame[WHOLE] * size, end - inward * size
+        row[7 - 2 * angle], row[8 - 2 * angle] = min(edge, beyond), max(edge, beyond)
         row[BORDER] = 0.0
         answers.numbers[at] = number
         answers.counts[0] = at + 1

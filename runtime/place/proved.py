@@ -42,11 +42,7 @@ def index_of(
     if surface.tape is None:
         return None
     index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, cells, threads)
-    if index is None:
-        return None
-    poles = sum(end == "pole" for ends in surface.boundary for end in ends)
-    whole = len(index.discs) == poles and len(index.unbounded) == 0
-    return index if whole else None
+    return index if index is not None and len(index.unbounded) == 0 else None
 
 
 def proved_samples(

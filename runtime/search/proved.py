@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated.elementary import SPLINE
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
 from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
@@ -34,11 +33,13 @@ from ..kernels.proved_sorting import (
     start_normals,
 )
 from ..kernels.tape import LANES, Tape
-from ..kernels.tape_spline_bounds import SLACK
 from .bins import sorted_normals
 from .proved_discs import PoleDisc, pole_disc
+from .proved_lines import lines_of
 
 __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
+
+Array = NDArray[np.float64]
 
 # How often irregular cells are cut into four, and cells without a narrow cone of normals.
 LEVELS = (2, 5)
@@ -172,12 +173,12 @@ class ProvedIndex:
             for (low, high), ends in zip(domain, boundary, strict=True)
         )
         box = np.array([*domain[0], *domain[1], *periods])
-        discs, inside = _discs(tape, domain, boundary, cells)
-        lines = [_lines(tape, k, inside[k], cells[k]) for k in (0, 1)]
+        discs, inside, poles = _discs(tape, domain, boundary, cells)
+        lines = [lines_of(tape, k, inside[k], cells[k]) for k in (0, 1)]
         cut = _cut(tape, lines, threads)
         blind = cut.noise[:, REACH] == 0.0
         u, v, h_u, h_v = cut.place[blind].T
-        unbounded = np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])
+        unbounded = np.vstack([poles, np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])])
         cut = Cells(*(x[~blind] for x in cut))
         sizes = cut.place[:, 2] * cut.place[:, 3]
         if sizes[cut.cone[:, 3] >= OPEN].sum() > MOST_OPEN * sizes.sum():
@@ -337,37 +338,27 @@ class ProvedIndex:
 
 def _discs(
     tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]
-) -> tuple[tuple[PoleDisc, ...], NDArray[np.float64]]:
-    """Return discs around poles, and the rest of the domain (2, 2)."""
-    discs, inside = [], np.array(domain, dtype=np.float64)
+) -> tuple[tuple[PoleDisc, ...], Array, Array]:
+    """Return discs around poles, the rest of the domain (2, 2), and poles without a disc.
+
+    These are boxes (k, 4). Open ends that are a smooth pole have discs, too.
+    """
+    discs, inside, unknown = [], np.array(domain, dtype=np.float64), []
     for axis, ends in enumerate(boundary):
-        row = (domain[axis][1] - domain[axis][0]) / cells[axis]
+        low, high = domain[axis]
+        row = (high - low) / cells[axis]
         for k, end in enumerate(ends):
-            disc = (
-                pole_disc(tape, domain, 1 - axis, domain[axis][k], row) if end == "pole" else None
-            )
+            if end not in ("pole", "open") or boundary[1 - axis][0] != "periodic":
+                continue
+            disc = pole_disc(tape, domain, 1 - axis, domain[axis][k], row)
             if disc is not None:
                 discs.append(disc)
                 inside[axis, k] += disc.radius if k == 0 else -disc.radius
-    return tuple(discs), inside
-
-
-def _lines(tape: Tape, axis: int, ends: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-    """Return the lines of a grid, about `count`, and where second derivatives of a spline jump."""
-    breaks, smooth = tape.spline[axis], tape.spline[2 + axis]
-    jumps = breaks[smooth < 2]
-    (rows,) = np.nonzero(tape.operations[:, 0] == SPLINE)
-    if axis == 0 and len(rows) > 0 and tape.operations[rows[0], 3] == 1:
-        jumps = tape.numbers[rows[0], 0] - jumps  # u is reversed
-    slack = SLACK * np.abs(breaks[[0, -1]]).sum() if len(breaks) > 0 else 0.0
-    jumps = jumps[(jumps > ends[0] + slack) & (jumps < ends[1] - slack)]
-    pieces = np.unique([*ends, *jumps])
-    counts = np.maximum(1, np.round(count * np.diff(pieces) / (ends[1] - ends[0]))).astype(int)
-    parts = [
-        np.linspace(low, high, k + 1)[:-1]
-        for low, high, k in zip(pieces[:-1], pieces[1:], counts, strict=True)
-    ]
-    return np.append(np.concatenate(parts), ends[1])
+            elif end == "pole":
+                sides = [list(x) for x in domain]
+                sides[axis] = [domain[axis][k]] * 2
+                unknown.append([*sides[0], *sides[1]])
+    return tuple(discs), inside, np.array(unknown).reshape(-1, 4)
 
 
 def _cut(tape: Tape, lines: list[NDArray[np.float64]], threads: int | None) -> Cells:

@@ -1,4 +1,8 @@
-"""Tapes of surfaces in polar coordinates at a pole, and of their derivatives by the angle."""
+"""Tapes of surfaces in polar coordinates at a pole, and of what is finite there.
+
+The parameters are u around the pole, one of those of the surface, and the distance r of the other
+one from its value at the pole. All points with r = 0 are one, p.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +12,8 @@ from dataclasses import dataclass
 
 from ...generated import elementary
 from ..base.formula_calls import python_function
-from ..domain.domain import Domain
 from ..kernels.tape import Tape
+from .spline_quotient import spline_quotient
 from .tapes import TapeWriter
 from .traced import Traced
 
@@ -23,33 +27,34 @@ Slope = Traced | float  # the number 0.0 where a row does not depend on the angl
 
 @dataclass(frozen=True)
 class PolarTapes:
-    """The tapes of x(φ, r) and of x_φ, with φ and r in place of u and v."""
+    """The tape of x(u, r), and that of x_u; or that of (x − p) / r, and None.
 
-    position: Tape
-    slope: Tape
+    Bounds hold up to r = `most`.
+    """
+
+    tape: Tape
+    slope: Tape | None
+    most: float
 
 
-def polar_tapes(tape: Tape, domain: Domain, angle: int, end: float) -> PolarTapes | None:
-    """Return the tapes at a pole; None for splines, and for numbers that are not finite.
+def polar_tapes(tape: Tape, angle: int, end: float, inward: float) -> PolarTapes | None:
+    """Return the tapes at a pole; None if there are none, as with numbers that are not finite.
 
-    Parameter number `angle` runs around it, the other one is `end` there: φ = 0 … 2π, r = 0 … .
+    Parameter number `angle` runs around it; the other one is end + inward r, where `inward` is 1 or
+    −1.
     """
     if (tape.operations[:, 0] == elementary.SPLINE).any():
-        return None
+        found = spline_quotient(tape, angle, end, inward)
+        return None if found is None else PolarTapes(found[0], None, found[1])
     writer = TapeWriter()
-    phi, r = (Traced(writer, writer.write(x)) for x in "uv")
-    low, high = domain[angle]
-    turn = (high - low) / (2.0 * math.pi)
-    factor = Traced(writer, writer.constant(turn, 4.0 * math.ulp(turn)))
-    inward = 1.0 if end == domain[1 - angle][0] else -1.0
-    around, away = phi * factor + low, r * inward + end
-    values = [around, away] if angle == 0 else [away, around]
-    slopes = [factor, 0.0] if angle == 0 else [0.0, factor]
-    rows = _with_slopes(writer, tape, values, slopes)
+    u, r = (Traced(writer, writer.write(x)) for x in "uv")
+    values, slopes = [u, r * inward + end], [Traced(writer, writer.constant(1.0)), 0.0]
+    step = 1 if angle == 0 else -1
+    rows = _with_slopes(writer, tape, values[::step], slopes[::step])
     zero = Traced(writer, writer.constant(0.0))
     position = writer.tape([rows[x][0].row for x in tape.outputs])
     slope = writer.tape([(rows[x][1] + zero).row for x in tape.outputs])
-    return None if position is None or slope is None else PolarTapes(position, slope)
+    return None if position is None or slope is None else PolarTapes(position, slope, math.inf)
 
 
 def _with_slopes(

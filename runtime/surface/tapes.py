@@ -52,15 +52,15 @@ class TapeWriter:
         code: int = getattr(codes, name.upper())
         first = PAIRS.get(code, code)
         a, b = (*arguments, 0, 0)[:2]
-        row = self._row(first, a, b)
+        row = self.row(first, a, b)
         for second in (x for x, y in PAIRS.items() if y == first):
-            other = self._row(second, a, b)
+            other = self.row(second, a, b)
             row = row if code == first else other
         return row
 
     def constant(self, value: float, distance: float = 0.0) -> int:
         """Return the row of a number that is exact up to a distance."""
-        return self._row(codes.CONSTANT, number=(value, distance))
+        return self.row(codes.CONSTANT, number=(value, distance))
 
     def spline(self, polynomials: Polynomials, turned: int = 0, number: Number = (0.0, 0.0)) -> int:
         """Return the first of the four rows of a spline.
@@ -68,9 +68,9 @@ class TapeWriter:
         If it is turned then the number in the place of u is total − u, with the error of the total.
         """
         self._spline = polynomials
-        row = self._row(codes.SPLINE, last=turned, number=number)
+        row = self.row(codes.SPLINE, last=turned, number=number)
         for coordinate in range(1, COORDINATES):
-            self._row(codes.COORDINATE, last=coordinate)
+            self.row(codes.COORDINATE, last=coordinate)
         return row
 
     def power(self, row: int, halves: int) -> int:
@@ -104,12 +104,12 @@ class TapeWriter:
                     )
                 )
             elif code == codes.SPLINE and total is not None:
-                rows.append(self._row(code, last=1, number=total))
+                rows.append(self.row(code, last=1, number=total))
             elif code in LEAVES:
-                rows.append(self._row(code, last=last, number=number))
+                rows.append(self.row(code, last=last, number=number))
             else:
                 other = rows[b] if code in BINARY else 0
-                rows.append(self._row(code, rows[a], other, number=number))
+                rows.append(self.row(code, rows[a], other, number=number))
         return [rows[x] for x in tape.outputs]
 
     def tape(self, outputs: Sequence[int]) -> Tape | None:
@@ -122,9 +122,10 @@ class TapeWriter:
         )
         return _folded(tape)
 
-    def _row(
+    def row(
         self, code: int, a: int = 0, b: int = 0, last: int = 0, number: Number = (0.0, 0.0)
     ) -> int:
+        """Return the row of an operation by its code, as tapes hold it."""
         operation = code, a, b, last
         row = self._rows.setdefault((operation, number), len(self._operations))
         if row == len(self._operations):

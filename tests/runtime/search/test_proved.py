@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -267,6 +268,145 @@ def test_points_near_poles(name: str) -> None:
         reach = axes.max() * (found.radius[:, 1] + around * np.minimum(found.radius[:, 0], TAU))
         assert (np.linalg.norm(points - exact, axis=1) <= 2.0 * reach + 1e-15).all()
         assert (np.linalg.norm(points - exact, axis=1) < 1e-9).all()
+
+
+HALF = np.sqrt(0.5)
+SQUARE = np.array(
+    [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)], float
+)
+CIRCLE_KNOTS = np.repeat([0.0, 0.25, 0.5, 0.75, 1.0], [3, 2, 2, 2, 3])
+ARC_KNOTS = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0])
+
+
+@cache
+def spline_ball(scales: tuple[float, ...], shift: float) -> tuple[gm.Surface, Array]:
+    """Return a NURBS that is the image of the unit sphere under a matrix, and the matrix.
+
+    Its parameters are those of circles, rational, and its angles and arcs are not linear in them.
+    """
+    meridian = np.array([(0, -1), (1, -1), (1, 0), (1, 1), (0, 1)], float)
+    points = np.array([[[r * x, r * y, z] for r, z in meridian] for x, y in SQUARE])
+    weights = np.outer([1, HALF] * 4 + [1], [1, HALF, 1, HALF, 1])
+    matrix = rotation() @ np.diag(scales)
+    knots = CIRCLE_KNOTS, np.repeat([0.0, 0.5, 1.0], [3, 2, 3])
+    surface = gm.Surface.from_nurbs((2, 2), knots, points @ matrix.T + shift, weights)
+    return replace(surface, boundary=(("periodic", "periodic"), ("pole", "pole"))), matrix
+
+
+def rotation() -> Array:
+    q, _ = np.linalg.qr(np.random.default_rng(17).normal(size=(3, 3)))
+    return q * np.linalg.det(q)
+
+
+@pytest.mark.parametrize(
+    ("scales", "shift"), [((1.0, 0.7, 1.3), 0.3), ((1e-3, 1e-3, 1e-3), 1.0), ((2.0, 1.0, 9.0), 0.0)]
+)
+def test_points_near_poles_of_splines(scales: tuple[float, ...], shift: float) -> None:
+    surface, matrix = spline_ball(scales, shift)
+    index, rng = new_index(surface), np.random.default_rng(18)
+    assert (len(index.discs), len(index.unbounded)) == (2, 0)
+    for distance in (0.2, 0.06, 1e-2, 1e-3, 1e-4, 1e-8, 1e-12, 1e-15, 0.0):
+        angle, off = rng.uniform(0.1, 0.9, 60), distance * rng.uniform(0.5, 1.0, 60)
+        angle = 0.5 * np.pi * (angle + np.arange(60))
+        up = np.where(np.arange(60) % 8 < 4, 1.0, -1.0)
+        own = np.stack(
+            [np.sin(off) * np.cos(angle), np.sin(off) * np.sin(angle), up * np.cos(off)], axis=1
+        )
+        normals = unit(own @ np.linalg.inv(matrix))
+        found = index.query(normals)
+        assert len(found.undecided.numbers) == 0
+        np.testing.assert_array_equal(counts(found, normals), 1)
+        assert (found.sign == 1).all()
+        exact = unit(normals @ matrix) @ matrix.T + shift
+        points = surface.evaluate(*found.uv.T)
+        assert (np.linalg.norm(points - exact, axis=1) < 1e-11 * (max(scales) + shift)).all()
+        # The exact parameters are within the radii, which are small next to the pole, too.
+        low, high = (found.uv[:, 1] + sign * found.radius[:, 1] for sign in (-1.0, 1.0))
+        heights = [
+            np.abs(unit((surface.evaluate(found.uv[:, 0], np.clip(v, 0.0, 1.0)) - shift)
+            @ np.linalg.inv(matrix).T)[:, 2]) for v in (low, high)
+        ]  # fmt: skip
+        assert (np.minimum(*heights) <= np.cos(off) + 1e-12).all()
+        assert (np.maximum(*heights) >= np.cos(off) - 1e-12).all()
+        assert (found.radius[:, 1] < 1e-6).all()
+
+
+def cap(bump: float, tip: float) -> gm.Surface:
+    """Return a polynomial cap over rings that are no ellipses, with a row of points at the tip."""
+    angle = TAU * np.arange(15) / 12
+    ring = np.stack(
+        [1.3 * np.cos(angle) + bump * np.cos(3 * angle), 0.8 * np.sin(angle) + 0 * angle], axis=1
+    )
+    profile = [(0.0, tip), (0.5, 1.0), (0.9, 0.6), (1.0, 0.1), (1.0, -0.5)]
+    points = np.array([[[r * x, r * y, z] for r, z in profile] for x, y in ring])
+    knots = np.arange(-3, 16) / 12, np.array([0.0, 0.0, 0.0, 0.0, 0.6, 1.0, 1.0, 1.0, 1.0])
+    return gm.Surface.from_nurbs((3, 3), knots, points)
+
+
+def test_poles_of_lofted_caps() -> None:
+    """Second derivatives at the pole depend on the direction, a little."""
+    surface = cap(bump=0.02, tip=1.0)
+    index = new_index(surface)
+    assert len(index.discs) == 1
+    rng = np.random.default_rng(19)
+    u, v = rng.uniform(0.0, 1.0, 300), 10.0 ** rng.uniform(-12.0, -0.2, 300)
+    _, x_u, x_v, *_ = jets_at(surface, u, v)
+    normals = unit(np.cross(x_u / v[:, None], x_v))
+    normals[:50] *= -1.0
+    found = index.query(normals)
+    assert len(found.undecided.numbers) == 0
+    np.testing.assert_array_equal(counts(found, normals), np.repeat([0, 1], [50, 250]))
+    apart = np.abs(found.uv - np.stack([u, v], axis=1)[found.numbers])
+    apart[:, 0] = np.minimum(apart[:, 0], 1.0 - apart[:, 0])
+    # x_u has a rounding, which is large relative to it near the pole.
+    far = v[found.numbers] > 1e-4
+    assert (apart[far] < np.stack([1e-13 / v**2, 1e-12 / v], axis=1)[found.numbers][far]).all()
+
+
+@pytest.mark.parametrize(("bump", "tip"), [(0.02, 1.5), (0.02, 1.0 + 1e-6), (0.5, 1.0)])
+def test_sides_that_are_no_smooth_pole_have_no_disc(bump: float, tip: float) -> None:
+    """Tips of cones, and poles where curvatures depend on the direction too much."""
+    surface = cap(bump, tip)
+    index = new_index(surface, cells=(16, 16))
+    assert index.discs == ()
+    u, v = np.array([0.3, 0.7, 0.01]), np.array([0.5, 0.1, 0.9])
+    found = index.query(normals_at(surface, u, v))
+    np.testing.assert_array_equal(near(surface, found, u, v, 1e-9), 1)
+    assert kinds(found) <= {"singular"}
+    assert (found.undecided.boxes[:, 2] == 0.0).all()
+
+
+@pytest.mark.parametrize("name", ["ball", "cap", "ellipsoid"])
+def test_bounds_of_discs_hold(name: str) -> None:
+    """Gradients over the tangent plane, from points of the surface, have slopes within bounds."""
+    surface = {
+        "ball": lambda: spline_ball((1.0, 0.7, 1.3), 0.3)[0],
+        "cap": lambda: cap(bump=0.02, tip=1.0),
+        "ellipsoid": lambda: surface_of("ellipsoid"),
+    }[name]()
+    for pole in new_index(surface).discs:
+        disc, rng = pole.disc, np.random.default_rng(20)
+        _, _, size, low, turn, end, inward, _, unit_of, whole, *_ = disc.frame
+        normal = disc.basis[2] / np.linalg.norm(disc.basis[2])
+        frame = np.linalg.inv(disc.basis.T)
+        u, r = low + turn * rng.uniform(size=4000), 2.0 * size * rng.uniform(0.2, 1.0, 4000)
+        x, x_u, x_v, *_ = jets_at(surface, u, end + inward * r)
+        middle = jets_at(surface, np.array([low]), np.array([end]))[0]
+        q = (x - middle) @ frame.T / unit_of
+        n = np.cross(x_u, x_v) @ np.linalg.inv(frame)
+        slopes = -unit_of * n[:, :2] / n[:, 2:]
+        a, b, c = disc.hot[0, :9].reshape(3, 3) @ normal
+        rest = slopes - np.stack([a * q[:, 0] + b * q[:, 1], b * q[:, 0] + c * q[:, 1]], axis=1)
+        d_a, d_b, d_c = disc.changes[0] @ np.abs(normal) / (np.abs(normal) ** 2).sum()
+        # Of the origin, and of one another.
+        for step in (0, 1):
+            by = np.abs(q - step * np.roll(q, 1, axis=0))
+            off = np.abs(rest - step * np.roll(rest, 1, axis=0))
+            bound = np.stack([d_a * by[:, 0] + d_b * by[:, 1], d_b * by[:, 0] + d_c * by[:, 1]], 1)
+            inside = np.linalg.norm(q, axis=1) <= whole
+            inside &= np.roll(inside, 1)
+            assert (off <= bound + 1e-12 * np.abs(slopes).max())[inside].all()
+            assert inside.mean() > 0.5
 
 
 # --- folds ----------------------------------------------------------------------------------------

@@ -1,0 +1,74 @@
+"""Arrays of balls: numbers that are known up to a radius, rounding included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Ball"]
+
+Array = NDArray[np.float64]
+
+# The rounding of a midpoint, relative to it, and that of a radius, which has a few operations.
+UNIT, WIDER = 2.0**-53, 1.0 + 2.0**-48
+TINY = 1e-290  # more than what underflows
+
+
+@dataclass(frozen=True, eq=False)
+class Ball:
+    """Numbers between middle − radius and middle + radius; so are results of operations."""
+
+    middle: Array
+    radius: Array
+
+    @classmethod
+    def of(cls, value: Ball | Array | float) -> Ball:
+        """Return exact numbers as balls."""
+        if isinstance(value, Ball):
+            return value
+        return cls(np.asarray(value, np.float64), np.zeros_like(value, np.float64))
+
+    @property
+    def largest(self) -> Array:
+        """The largest absolute values."""
+        return np.abs(self.middle) + self.radius
+
+    @property
+    def least(self) -> Array:
+        """The smallest absolute values."""
+        return np.maximum(np.abs(self.middle) - self.radius, 0.0)
+
+    def __neg__(self) -> Ball:
+        return Ball(-self.middle, self.radius)
+
+    def __add__(self, other: Ball | Array | float) -> Ball:
+        y = Ball.of(other)
+        middle = self.middle + y.middle
+        return Ball(middle, (self.radius + y.radius + UNIT * np.abs(middle)) * WIDER)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Ball | Array | float) -> Ball:
+        return self + -Ball.of(other)
+
+    def __rsub__(self, other: Ball | Array | float) -> Ball:
+        return -self + other
+
+    def __mul__(self, other: Ball | Array | float) -> Ball:
+        y = Ball.of(other)
+        middle = self.middle * y.middle
+        radius = np.abs(self.middle) * y.radius + self.radius * y.largest
+        return Ball(middle, (radius + UNIT * np.abs(middle)) * WIDER + TINY)
+
+    __rmul__ = __mul__
+
+    def __rtruediv__(self, other: Ball | Array | float) -> Ball:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            middle = 1.0 / self.middle
+            radius = self.radius / (np.abs(self.middle) * self.least)
+            radius = (radius + UNIT * np.abs(middle)) * WIDER + TINY
+        unknown = ~np.isfinite(radius)
+        inverse = Ball(np.where(unknown, 0.0, middle), np.where(unknown, np.inf, radius))
+        return inverse * other
