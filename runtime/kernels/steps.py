@@ -8,11 +8,15 @@ from ..machine_code.jit import inline, jit, loop
 
 __all__ = ["shared_steps"]
 
+EPS = 2.0**-52
+
 
 @inline
 def longest_step(e, f, g, a, limit):
     """Return the largest b with e a² + 2 |f| a b + g b² ≤ limit, 0 if there is none."""
     left = limit - e * a * a
+    if f == 0.0 and g == 0.0:
+        return math.inf if left >= -8.0 * EPS * limit else 0.0  # a may have reached the limit
     if left <= 0.0:
         return 0.0
     mixed = abs(f) * a
