@@ -107,6 +107,22 @@ def _offset() -> Formula:
 OFFSET_JET = _offset()
 
 
+OFFSET_SIDE = Formula.build(
+    "offset_side",
+    "A number $D$ with the sign of the product of the normals of a surface and of its offset by "
+    "$R$, from first and second derivatives of the surface and its unit normal $n$: the "
+    "determinant of the first fundamental form less $R$ times the second one.",
+    inputs=[*VECTORS, n, R],
+    outputs=[
+        (
+            "D",
+            (Dot(d, d) - R * Dot(a, n)) * (Dot(e, e) - R * Dot(c, n))
+            - (Dot(d, e) - R * Dot(b, n)) ** 2,
+        )
+    ],
+)
+
+
 def _torus_normal() -> Formula:
     """Divide the normal field of a torus by the unit vector at the same angles."""
     u, v = TORUS.u, TORUS.v
@@ -130,4 +146,4 @@ def _torus_normal() -> Formula:
 
 TORUS_NORMAL = _torus_normal()
 
-FORMULAS = (REVOLUTION_JET, OFFSET_JET, TORUS_NORMAL)
+FORMULAS = (REVOLUTION_JET, OFFSET_JET, OFFSET_SIDE, TORUS_NORMAL)

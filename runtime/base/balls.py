@@ -22,6 +22,7 @@ class Ball:
 
     middle: Array
     radius: Array
+    __array_ufunc__ = None  # arrays leave operations to balls
 
     @classmethod
     def of(cls, value: Ball | Array | float) -> Ball:

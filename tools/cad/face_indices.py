@@ -8,11 +8,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated.faces import offset_side
+from ...generated.vectors import Patch, Vector
+from ...runtime.base.balls import Ball
+from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.domain.domain import Domain
+from ...runtime.kernels.tape import Tape
 from ...runtime.place.proved import index_of
 from ...runtime.search.proved import KINDS, ProvedIndex, Undecided
 from ...runtime.surface.collapsed import found_sides
 from ...runtime.surface.surface import Surface
+from ...runtime.surface.tapes import bounds_over_boxes
 from .apexes import Apex, apexes_of
 from .face_places import FaceIndex, FacePlaces, joined, undecided
 from .faces import face_surface, simplest
@@ -28,6 +34,8 @@ CELLS = (4, 4)
 # Ends of a side are looked at if their distance is less than this part of the largest one.
 CLOSE = 1e-3
 SINGULAR = KINDS.index("singular")
+# The places of Taylor coefficients of bounds.
+U1, V1, U2, U1V1, V2 = range(1, 6)
 
 
 def face_index(
@@ -41,7 +49,10 @@ def face_index(
         return SmoothPieces.of(surface)
     basis = face_surface(simple.basis, domain, is_reversed=is_reversed)
     index = face_index(simple.basis, basis, domain, is_reversed=is_reversed)
-    return None if index is None else Offset(index, surface)
+    if index is None or basis.tape is None:
+        return None
+    distance = float(simple.numbers[0])
+    return Offset(index, basis.tape, -distance if is_reversed else distance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +107,8 @@ class Offset:
     """
 
     basis: FaceIndex
-    surface: Surface
+    tape: Tape  # of the other surface
+    distance: float
 
     def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
         """Return all points with unit normals (S, 3)."""
@@ -110,8 +122,9 @@ class Offset:
 
         Boxes that are open there stay open: the sign may change inside of them.
         """
-        sides = sign * self._sides(found.uv, normals[found.numbers])
-        keep, lost = sides > 0.5, np.abs(sides) <= 0.5
+        sides = self._sides(found, normals[found.numbers])
+        is_known = np.abs(sides.middle) > sides.radius
+        keep, lost = is_known & (sign * sides.middle > 0.0), ~is_known
         u, v, of_u, of_v = np.concatenate([found.uv, found.radius], axis=1)[lost].T
         small = np.stack([u - of_u, u + of_u, v - of_v, v + of_v], axis=1)
         singular = undecided(found.numbers[lost], small, SINGULAR, border=False)
@@ -122,13 +135,19 @@ class Offset:
             found.numbers[keep], found.uv[keep], found.radius[keep], sign * found.sign[keep], both
         )
 
-    def _sides(self, uv: Array, normals: Array) -> Array:
-        """Return products of unit normals (k, 3) and those of the offset; 0 where it has none."""
-        jets = self.surface.jets(uv[:, 0].copy(), uv[:, 1].copy())
-        found = np.cross(jets[:, 1], jets[:, 2])
-        lengths = np.linalg.norm(found, axis=1)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return np.nan_to_num(np.einsum("kx,kx->k", found, normals) / lengths)
+    def _sides(self, found: FacePlaces, normals: Array) -> Ball:
+        """Return bounds (k,) of numbers with the sign of products of both normals.
+
+        That of the other surface is exactly one of normals (k, 3), somewhere within the radii.
+        """
+        bounds = bounds_over_boxes(self.tape, found.uv, found.radius)
+        factors = zip((U2, U1V1, V2, U1, V1), (2.0, 1.0, 2.0, 1.0, 1.0), strict=True)
+        vectors = [
+            Vector._make(factor * Ball(bounds[:, 0, k, x], bounds[:, 1, k, x]) for x in range(3))
+            for k, factor in factors
+        ]
+        patch = Patch._make([*vectors, Vector(0.0, 0.0, 0.0)])
+        return python_function(offset_side)(patch, vector(normals), self.distance)
 
 
 def _has_corners_that_meet(surface: Surface) -> bool:

@@ -346,6 +346,26 @@ def test_points_of_faces_of_splines(made, name, is_reversed):
     assert total > 8
 
 
+def test_where_the_side_of_an_offset_is_open_is_said(made):
+    """An offset to the centre of curvature has no normal there, and opposite ones around it."""
+    net = Geometry("nurbs", net=Net((2, 2), (KNOTS, KNOTS), POINTS))
+    basis = made.part([FaceRecord(net, ((0.0, 1.0), (0.0, 1.0)), area=0.5)]).faces[0].surface
+    x_u, x_v, x_uu, x_uv, x_vv = basis.derivatives(0.4, 0.6)[1:]
+    normal = np.cross(x_u, x_v) / np.linalg.norm(np.cross(x_u, x_v))
+    first = np.array([[x_u @ x_u, x_u @ x_v], [x_u @ x_v, x_v @ x_v]])
+    second = np.array([[x_uu @ normal, x_uv @ normal], [x_uv @ normal, x_vv @ normal]])
+    for curvature in np.linalg.eigvals(np.linalg.solve(first, second)).tolist():
+        for factor, count in ((1.0 - 1e-6, 1), (1.0, 0), (1.0 + 1e-6, 1)):
+            offset = Geometry("offset", np.array([factor / curvature]), basis=net)
+            face = FaceRecord(offset, ((0.0, 1.0), (0.0, 1.0)), area=0.5)
+            samples = gm.GaussMap(made.part([face])).points(np.array([normal, -normal]))
+            near = np.abs(samples.uv - [0.4, 0.6]).max(axis=1) < 1e-9
+            assert near.sum() == count
+            places = [x.box for x in samples.report.undecided if x.kind == "singular"]
+            holds = [u0 <= 0.4 <= u1 and v0 <= 0.6 <= v1 for u0, u1, v0, v1 in places]
+            assert any(holds) == (count == 0)
+
+
 def test_a_triangular_face(made):
     """Its side u = 1 is a point, where x_u × x_v vanishes: only normals beside it are undecided."""
     points = POINTS.copy()
