@@ -93,7 +93,7 @@ for one in np.flatnonzero(near):
     axis.plot(x[0], z[0], "k.", markersize=4)
 mesh = gm.sample(bracket, 6000).mesh()
 for corners in mesh.vertices[mesh.triangles]:
-    height = corners[:, 1] - 8  # above the section, or below it
+    height = corners[:, 1] - 8.01  # no corner is on the section
     ends = [(a, b) for a, b in ((0, 1), (1, 2), (2, 0)) if height[a] * height[b] < 0]
     cut = [(height[b] * corners[a] - height[a] * corners[b])[[0, 2]] for a, b in ends]
     cut = [x / (height[b] - height[a]) for x, (a, b) in zip(cut, ends, strict=True)]

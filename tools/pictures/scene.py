@@ -7,7 +7,7 @@ a mesh of the surface lies between it and the viewer.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,8 +24,10 @@ from ..cad.part import Part
 __all__ = [
     "VIEW",
     "Scene",
+    "divided",
     "front",
     "height_factor",
+    "in_front",
     "quadrangles",
     "scene_of",
     "scene_of_samples",
@@ -39,11 +41,15 @@ MESH, MOST_MESH = 112, 224  # quadrangles along u and v: the number of cells, wi
 ISOLINES = 16  # parameter lines along u and v
 # A surface hides a sample if it is nearer to the viewer by this fraction of its diameter.
 HIDING = 0.01
+# Triangles of a part are divided until their sides are this part of the diameter, and looked at
+# in so many pixels along each side, some of them at once.
+PIECES, PIXELS, AT_ONCE = 40, 400, 4096
 # A ratio of height to width below LOW or above HIGH is changed to about the second number.
 LOW, LOW_WANTED = 0.1, 0.25
 HIGH, HIGH_WANTED = 10.0, 2.0
 # Of parts: grid lines across a plane, across other faces, and across those of parts with many.
 FLAT, CURVED, SMALL, MANY = 2, 40, 12, 60
+SLIVER = 1e-9  # a triangle without an area, relative to the rectangle of parameters
 
 
 def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> Array:
@@ -57,14 +63,16 @@ def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> Array:
 class Scene:
     """A surface as quadrangles (Q, 4, 3) and lines on it, heights are drawn times `factor`.
 
-    The corners of a quadrangle are in cyclic order; that of a triangle repeats the last one. Each
-    line is an array (k, 3). `view` holds the rows right, up, and towards the viewer.
+    The corners of a quadrangle are in cyclic order; that of a triangle repeats the last one, as all
+    of a part do. Each line is an array (k, 3). `view` holds the rows right, up, and towards the
+    viewer.
     """
 
     quadrangles: Array
     lines: tuple[Array, ...] = ()
     factor: float = 1.0
     view: Array = field(default_factory=view)
+    is_part: bool = False
 
     def seen(self, points: Array) -> Array:
         """Return points (..., 3) as right, up, and nearness to the viewer."""
@@ -74,7 +82,8 @@ class Scene:
     def triangles(self) -> Array:
         """The halves (T, 3, 3) of the quadrangles, in the coordinates of `seen`."""
         seen = self.seen(self.quadrangles)
-        return np.concatenate([seen[:, [0, 1, 2]], seen[:, [0, 2, 3]]])
+        second = seen[(seen[:, 2] != seen[:, 3]).any(axis=1)]
+        return np.concatenate([seen[:, [0, 1, 2]], second[:, [0, 2, 3]]])
 
     @cached_property
     def brightness(self) -> Array:
@@ -103,8 +112,25 @@ class Scene:
     def visible(self, points: Array) -> NDArray[np.bool_]:
         """Return which points (P, 3) of the surface are visible, as booleans (P,)."""
         seen = self.seen(points)
-        diameter = float(np.linalg.norm(np.ptp(self.triangles.reshape(-1, 3), axis=0)))
-        return seen[:, 2] >= front(self.triangles, seen[:, :2]) - HIDING * diameter
+        nearest = front(self.triangles, seen[:, :2])
+        return np.greater_equal(seen[:, 2], nearest - HIDING * self._diameter)
+
+    def in_layers(self) -> list[Scene]:
+        """Return scenes that are painted one over the other, as Matplotlib sorts by mean depth.
+
+        That sorts the small quadrangles of a surface well. Those of a part differ in size: they are
+        divided, and those that are hidden come first.
+        """
+        if not self.is_part:
+            return [self]
+        small = divided(self.quadrangles[:, :3], self._diameter / PIECES)
+        visible = in_front(self.seen(small))
+        layers = (small[x][:, [0, 1, 2, 2]] for x in (~visible, visible))
+        return [replace(self, quadrangles=x) for x in layers]
+
+    @cached_property
+    def _diameter(self) -> float:
+        return float(np.linalg.norm(np.ptp(self.triangles.reshape(-1, 3), axis=0)))
 
 
 def scene_of_samples(
@@ -137,7 +163,8 @@ def scene_of(surface: object, seen_from: Array | None = None, distance: float = 
         kind = type(surface).__name__
         raise InputError(f"surface must be a Surface, a Spline or a Part, not {kind}.")
     factor = height_factor(np.ptp(drawn.reshape(-1, 3), axis=0))
-    return Scene(drawn, lines, factor, view() if seen_from is None else seen_from)
+    seen_from = view() if seen_from is None else seen_from
+    return Scene(drawn, lines, factor, seen_from, is_part=isinstance(surface, Part))
 
 
 def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...]]:
@@ -181,7 +208,11 @@ def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
     if trim is not None:
         inner = places[trim.contains(places)]
         places = np.unique(np.concatenate([inner, *(x[:-1] for x in loops)]), axis=0)
-    triangles = Delaunay((places - low) / size, qhull_options="QJ Pp").simplices
+    scaled = (places - low) / size
+    triangles = Delaunay(scaled, qhull_options="QJ Pp").simplices
+    # Qhull joggles points: along straight borders there are triangles without an area.
+    a, b, c = np.moveaxis(scaled[triangles], 1, 0)
+    triangles = triangles[np.abs(_cross(b - a, c - a)) > SLIVER]
     if trim is not None:
         triangles = triangles[trim.contains(places[triangles].mean(axis=1))]
     return surface.evaluate(*places.T)[triangles], [surface.evaluate(*x.T) for x in loops]
@@ -197,6 +228,21 @@ def _divided(loop: Array) -> Array:
     counts = np.maximum(np.ceil(lengths * 4 * CURVED / max(lengths.sum(), 1e-300)), 1)
     corners = np.concatenate([[0.0], np.cumsum(counts)])
     return np.stack([np.interp(np.arange(corners[-1] + 1), corners, x) for x in closed.T], axis=1)
+
+
+def divided(triangles: Array, longest: float) -> Array:
+    """Return parts (k, 3, 3) of triangles (T, 3, 3), with no side longer than that."""
+    done = []
+    while len(triangles):
+        sides = np.linalg.norm(triangles - np.roll(triangles, -1, axis=1), axis=2)
+        large = sides.max(axis=1) > longest
+        done.append(triangles[~large])
+        turns = (sides[large].argmax(axis=1)[:, None] + np.arange(3)) % 3
+        a, b, c = np.moveaxis(np.take_along_axis(triangles[large], turns[..., None], axis=1), 1, 0)
+        middle = (a + b) / 2.0
+        halves = np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)
+        triangles = np.concatenate(halves)
+    return np.concatenate(done)
 
 
 def quadrangles(mesh: Array) -> Array:
@@ -227,14 +273,45 @@ def front(triangles: Array, places: Array) -> Array:
     own = square(places) @ [grid, 1]
     place, k = _runs(starts[own + 1] - starts[own])
     near = triangles[owner[order[starts[own][place] + k]]]
-    a, b, c = np.moveaxis(near[..., :2] - places[place][:, None], 1, 0)
+    inside, depths = _depths(near, places[place])
+    front = np.full(len(places), -np.inf)
+    np.maximum.at(front, place[inside], depths)
+    return front
+
+
+def in_front(triangles: Array) -> NDArray[np.bool_]:
+    """Return which triangles (T, 3, 3) are the front ones at the middle of some pixel."""
+    flat = triangles[..., :2]
+    lowest = flat.min(axis=(0, 1))
+    step = (float(np.ptp(flat, axis=(0, 1)).max()) or 1.0) / PIXELS
+    flat = (flat - lowest) / step - 0.5  # middles of pixels are whole numbers
+    first, last = np.ceil(flat.min(axis=1)), np.floor(flat.max(axis=1))
+    sizes = np.maximum(last - first + 1, 0).astype(np.int64)
+    depths, owners = np.full((PIXELS + 1) ** 2, -np.inf), np.full((PIXELS + 1) ** 2, -1)
+    for start in range(0, len(triangles), AT_ONCE):
+        rows = np.arange(start, min(start + AT_ONCE, len(triangles)))
+        row, k = _runs(sizes[rows].prod(axis=1))
+        row = rows[row]
+        pixels = first[row] + np.stack(np.divmod(k, np.maximum(sizes[row, 1], 1)), axis=1)
+        scaled = np.concatenate([flat[row], triangles[row][..., 2:]], axis=2)
+        inside, found = _depths(scaled, pixels)
+        row, pixel = row[inside], pixels[inside].astype(np.int64) @ [PIXELS + 1, 1]
+        order = np.argsort(found)
+        order = order[found[order] > depths[pixel[order]]]
+        depths[pixel[order]], owners[pixel[order]] = found[order], row[order]  # the last one stays
+    found = np.zeros(len(triangles), dtype=np.bool_)
+    found[owners[owners >= 0]] = True
+    return found
+
+
+def _depths(triangles: Array, places: Array) -> tuple[NDArray[np.bool_], Array]:
+    """Return which triangles (k, 3, 3) have their place (k, 2) inside, and their depths there."""
+    a, b, c = np.moveaxis(triangles[..., :2] - places[:, None], 1, 0)
     weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
     total = weights.sum(axis=1, keepdims=True)
     weights /= np.where(total == 0.0, np.nan, total)
     inside = (weights >= -1e-9).all(axis=1)
-    front = np.full(len(places), -np.inf)
-    np.maximum.at(front, place[inside], np.einsum("ij,ij->i", weights, near[..., 2])[inside])
-    return front
+    return inside, np.einsum("ij,ij->i", weights, triangles[..., 2])[inside]
 
 
 def _runs(counts: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -39,14 +39,15 @@ def draw_surface(
 
     axes.computed_zorder = False
     _frame(axes, scene, view, room)
-    greys = (0.60 + 0.33 * scene.brightness)[:, None] * [0.98, 0.99, 1.0]
-    # Quadrangles are rasterized, also in .pdf and .svg files: seams would show between them.
-    axes.add_collection3d(
-        Poly3DCollection(
-            scene.quadrangles, facecolors=greys, edgecolors=greys, linewidths=0.3,
-            rasterized=True, zorder=1,
-        )
-    )  # fmt: skip
+    for layer in scene.in_layers():
+        greys = (0.60 + 0.33 * layer.brightness)[:, None] * [0.98, 0.99, 1.0]
+        # Quadrangles are rasterized, also in .pdf and .svg files: seams would show between them.
+        axes.add_collection3d(
+            Poly3DCollection(
+                layer.quadrangles, facecolors=greys, edgecolors=greys, linewidths=0.3,
+                rasterized=True, zorder=1,
+            )
+        )  # fmt: skip
     axes.add_collection3d(
         Line3DCollection(scene.visible_lines, colors="white", linewidths=0.4, zorder=2)
     )

@@ -3,7 +3,15 @@ from __future__ import annotations
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.pictures.scene import front, height_factor, scene_of, view
+from gaussmap.tools.pictures import scene
+from gaussmap.tools.pictures.scene import (
+    divided,
+    front,
+    height_factor,
+    in_front,
+    scene_of,
+    view,
+)
 
 pytestmark = pytest.mark.compiled  # every scene evaluates a fine mesh
 
@@ -64,3 +72,61 @@ def test_front_without_area_or_places() -> None:
 )  # fmt: skip
 def test_height_factor(extent: tuple[float, float, float], factor: float) -> None:
     assert height_factor(np.array(extent, dtype=float)) == pytest.approx(factor)
+
+
+def test_triangles_are_divided_and_keep_their_area():
+    triangles = np.random.default_rng(3).random((20, 3, 3)) * [1.0, 5.0, 0.2]
+    small = divided(triangles, 0.3)
+    sides = np.linalg.norm(small - np.roll(small, -1, axis=1), axis=2)
+    assert sides.max() <= 0.3
+
+    def area(x):
+        return np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1).sum() / 2
+
+    assert area(small) == pytest.approx(area(triangles), rel=1e-12)
+    assert len(divided(triangles, 10.0)) == 20
+
+
+def test_the_front_triangles_of_pixels_are_found(monkeypatch):
+    monkeypatch.setattr(scene, "AT_ONCE", 7)  # some of the triangles, in turn
+    monkeypatch.setattr(scene, "PIXELS", 50)
+    triangles = np.random.default_rng(4).random((300, 3, 3))
+    small = (triangles - triangles.mean(axis=1, keepdims=True)) * 0.4 + triangles.mean(
+        axis=1, keepdims=True
+    )
+    low, size = small[..., :2].min(axis=(0, 1)), np.ptp(small[..., :2], axis=(0, 1)).max()
+    middles = (np.arange(scene.PIXELS + 1) + 0.5) * size / scene.PIXELS
+    pixels = low + np.stack(np.meshgrid(middles, middles), axis=2).reshape(-1, 2)
+    depths = front(small, pixels)
+    a, b, c = np.moveaxis(small, 1, 0)
+    seen = np.zeros(300, dtype=bool)
+    for k in range(300):
+        weights = np.linalg.solve(
+            np.stack([(b - a)[k, :2], (c - a)[k, :2]], axis=1), (pixels - a[k, :2]).T
+        )
+        inside = (weights > 0).all(axis=0) & (weights.sum(axis=0) < 1)
+        depth = a[k, 2] + (b - a)[k, 2] * weights[0] + (c - a)[k, 2] * weights[1]
+        seen[k] = (inside & (depth >= depths - 1e-9)).any()
+    found = in_front(small)
+    np.testing.assert_array_equal(found, seen)
+    assert 0 < found.sum() < 300
+
+
+def test_the_back_of_a_thin_plate_is_painted_first(parts):
+    behind, before = scene_of(parts.box(1.0, 1.0, 1e-3)).in_layers()
+    top, bottom = (
+        [x.quadrangles[(x.quadrangles[..., 2] == z).all(axis=1)][:, :3] for x in (behind, before)]
+        for z in (1e-3, 0.0)
+    )
+    assert len(bottom[1]) == 0
+    a, b, c = np.moveaxis(top[1], 1, 0)
+    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 > 0.99
+    assert len(top[0]) < 10  # at corners: no middle of a pixel is in them
+
+
+def test_triangles_of_a_part_have_its_area():
+    part = gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz")
+    a, b, c, _ = np.moveaxis(scene_of(part).quadrangles, 1, 0)
+    assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(
+        part.area, rel=2e-3
+    )
