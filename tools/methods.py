@@ -488,7 +488,8 @@ def view(
     """Write one page for browsers: the surface and the unit sphere, which light up together.
 
     Click a normal on the sphere, and its preimages light up on the surface; click a place on
-    the surface, and the Gaussian image of the region around it lights up on the sphere. With
+    the surface, and the Gaussian image of the region around it lights up on the sphere. Of a
+    CAD part, a click on a face takes all of its samples; faces have the colours of the file. With
     the brush, or the shift key, drag to paint. The page holds all that it needs, 5 MB and more,
     and works without a network.
 

@@ -65,14 +65,14 @@ class Scene:
 
     The corners of a quadrangle are in cyclic order; that of a triangle repeats the last one, as all
     of a part do. Each line is an array (k, 3). `view` holds the rows right, up, and towards the
-    viewer.
+    viewer. `faces` are those (Q,) of a part that quadrangles belong to.
     """
 
     quadrangles: Array
     lines: tuple[Array, ...] = ()
     factor: float = 1.0
     view: Array = field(default_factory=view)
-    is_part: bool = False
+    faces: NDArray[np.int64] | None = None
 
     def seen(self, points: Array) -> Array:
         """Return points (..., 3) as right, up, and nearness to the viewer."""
@@ -113,7 +113,7 @@ class Scene:
         """Return which points (P, 3) of the surface are visible, as booleans (P,)."""
         seen = self.seen(points)
         nearest = front(self.triangles, seen[:, :2])
-        return np.greater_equal(seen[:, 2], nearest - HIDING * self._diameter)
+        return np.asarray(seen[:, 2] >= nearest - HIDING * self._diameter)
 
     def in_layers(self) -> list[Scene]:
         """Return scenes that are painted one over the other, as Matplotlib sorts by mean depth.
@@ -121,12 +121,12 @@ class Scene:
         That sorts the small quadrangles of a surface well. Those of a part differ in size: they are
         divided, and those that are hidden come first.
         """
-        if not self.is_part:
+        if self.faces is None:
             return [self]
         small = divided(self.quadrangles[:, :3], self._diameter / PIECES)
         visible = in_front(self.seen(small))
         layers = (small[x][:, [0, 1, 2, 2]] for x in (~visible, visible))
-        return [replace(self, quadrangles=x) for x in layers]
+        return [replace(self, quadrangles=x, faces=None) for x in layers]
 
     @cached_property
     def _diameter(self) -> float:
@@ -155,16 +155,16 @@ def scene_of(surface: object, seen_from: Array | None = None, distance: float = 
     Raises SurfaceError for a part of which no face can be used, InputError for anything else.
     """
     if isinstance(surface, Part):
-        drawn, lines = _of_part(surface)
+        drawn, lines, faces = _of_part(surface)
     elif isinstance(surface, Surface | Spline):
         # Of several pieces one spline is drawn, which rounds the edges between them.
-        drawn, lines = _of_spline(spline_of(surface, None), distance)
+        (drawn, lines), faces = _of_spline(spline_of(surface, None), distance), None
     else:
         kind = type(surface).__name__
         raise InputError(f"surface must be a Surface, a Spline or a Part, not {kind}.")
     factor = height_factor(np.ptp(drawn.reshape(-1, 3), axis=0))
     seen_from = view() if seen_from is None else seen_from
-    return Scene(drawn, lines, factor, seen_from, is_part=isinstance(surface, Part))
+    return Scene(drawn, lines, factor, seen_from, faces)
 
 
 def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...]]:
@@ -184,18 +184,20 @@ def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...
     return quadrangles(mesh), tuple(lines)
 
 
-def _of_part(part: Part) -> tuple[Array, tuple[Array, ...]]:
-    """Return triangles of the faces of a part, and their borders."""
+def _of_part(part: Part) -> tuple[Array, tuple[Array, ...], NDArray[np.int64]]:
+    """Return triangles of the faces of a part, their borders, and the face of each triangle."""
     fine = SMALL if len(part) > MANY else CURVED
     pieces, _ = pieces_of(part.faces)
     if not pieces:
         raise SurfaceError(f"{part.name!r} has no face that can be drawn.")
     triangles, lines = zip(*(_of_face(piece, fine) for piece in pieces), strict=True)
-    return np.concatenate(triangles)[:, [0, 1, 2, 2]], tuple(x for some in lines for x in some)
+    faces = np.repeat([x.face.index for x in pieces], [len(x) for x in triangles])
+    drawn = np.concatenate(triangles)[:, [0, 1, 2, 2]]
+    return drawn, tuple(x for some in lines for x in some), faces
 
 
 def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
-    """Return triangles (k, 3, 3) of a face, and its border as lines."""
+    """Return triangles (k, 3, 3) of a face, seen counterclockwise from outside, and its border."""
     from scipy.spatial import Delaunay
 
     surface, trim = piece.surface, piece.surface.trim
@@ -212,7 +214,9 @@ def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
     triangles = Delaunay(scaled, qhull_options="QJ Pp").simplices
     # Qhull joggles points: along straight borders there are triangles without an area.
     a, b, c = np.moveaxis(scaled[triangles], 1, 0)
-    triangles = triangles[np.abs(_cross(b - a, c - a)) > SLIVER]
+    twice = _cross(b - a, c - a)
+    triangles = np.where(twice[:, None] < 0.0, triangles[:, ::-1], triangles)
+    triangles = triangles[np.abs(twice) > SLIVER]
     if trim is not None:
         triangles = triangles[trim.contains(places[triangles].mean(axis=1))]
     return surface.evaluate(*places.T)[triangles], [surface.evaluate(*x.T) for x in loops]
@@ -310,7 +314,7 @@ def _depths(triangles: Array, places: Array) -> tuple[NDArray[np.bool_], Array]:
     weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
     total = weights.sum(axis=1, keepdims=True)
     weights /= np.where(total == 0.0, np.nan, total)
-    inside = (weights >= -1e-9).all(axis=1)
+    inside = np.all(weights >= -1e-9, axis=1)
     return inside, np.einsum("ij,ij->i", weights, triangles[..., 2])[inside]
 
 

@@ -1,7 +1,7 @@
 // The page: what is picked on one side lights up on the other one.
 
 const MANY = 60; // points with large dots
-let state = null; // what is picked: {normal} or {sample}
+let state = null; // what is picked: {normal}, {sample} or {face}
 const number = (x) => (Math.abs(x) < 5e-7 ? 0 : x).toPrecision(4).replace(/^-/, "−");
 const triple = (x) => `(${x.map(number).join(", ")})`;
 const many = (n, what) => `${n.toLocaleString("en")} ${what}${n === 1 ? "" : "s"}`;
@@ -16,7 +16,7 @@ function counted(which) {
 function show(members, best, circle) {
     const few = best.length > MANY ? [] : best; // as on planes
     highlight([{ which: members, size: Math.max(2, size) }, { which: few, size: 6 }], circle);
-    window.picked = { members, best, normal: circle && circle.normal }; // for tests
+    window.picked = { members, best, face: state?.face, normal: circle && circle.normal }; // for tests
 }
 
 function update() {
@@ -24,7 +24,7 @@ function update() {
     byId("radius-text").textContent = `radius ${number(radius() * data.diameter)}`;
     const result = byId("result");
     if (state === null) {
-        result.textContent = "Pick a normal on the sphere, or a place on the surface.";
+        result.textContent = `Pick a normal on the sphere, or a ${part ? "face of the part" : "place on the surface"}.`;
         show([], [], null);
     } else if (state.normal) {
         const { members, best, exact } = preimages(state.normal, angle());
@@ -36,6 +36,11 @@ function update() {
                 : `${many(best.length, "point")} ${have} this normal: ${counted(best)} `
                     + `(groups of the ${many(members.length, "sample")} ${within}).`);
         show(members, best, { normal: state.normal, degrees: angle() });
+    } else if (state.face !== undefined) {
+        const members = Array.from(faceOfSample.keys()).filter((i) => faceOfSample[i] === state.face);
+        result.textContent = `${part.labels[state.face]}: ${many(members.length, "sample")}`
+            + (members.length ? ` (${counted(members)}).` : ".");
+        show(members, [], null);
     } else {
         const members = region(state.sample, radius());
         const place = [0, 1, 2].map((k) => data.centre[k] + data.diameter * points[3 * state.sample + k]);
@@ -43,6 +48,12 @@ function update() {
             + `around it (${counted(members)}).`;
         show(members, [state.sample], null);
     }
+}
+
+function pickFace(x, y) {
+    const face = faceAt(byId("surface"), x, y);
+    state = face < 0 ? null : { face };
+    soon();
 }
 
 function pickSample(x, y) {
@@ -84,6 +95,7 @@ function soon() { // at most once a frame
     waiting = true;
 }
 
+byId("region").hidden = Boolean(part); // a click takes a face
 byId("angle").value = data.angle;
 byId("radius").value = data.radius;
 byId("angle").addEventListener("input", soon);
@@ -93,7 +105,7 @@ Promise.all([
     Plotly.newPlot("surface", layers.surface, layout(data.aspect, data.range, EYE), config),
     Plotly.newPlot("sphere", layers.sphere, layout(ROUND, unit, EYE), config),
 ]).then(() => Promise.all([
-    fitted(byId("surface"), decoded(data.vertices, Float32Array), data.aspect),
+    fitted(byId("surface"), vertices, data.aspect),
     fitted(byId("sphere"), normals, ROUND),
 ])).then(() => {
     onTheme(() => {
@@ -102,7 +114,7 @@ Promise.all([
         Plotly.restyle("sphere", { "line.color": theme.lines }, [1]);
         version += 1;
     });
-    onPick(byId("surface"), pickSample);
+    onPick(byId("surface"), part ? pickFace : pickSample);
     onPick(byId("sphere"), pickNormal);
     update();
     watch();

@@ -17,6 +17,26 @@ function sampleAt(plot, x, y) {
     return seen.length ? seen[0][2] : -1;
 }
 
+/** The face of a part whose triangle is in front at these pixels; −1 for none. */
+function faceAt(plot, x, y) {
+    const matrix = camera(plot), box = plot.getBoundingClientRect();
+    const seen = new Float64Array(vertices.length);
+    for (let i = 0; i < vertices.length; i += 3) {
+        seen.set(onScreen(matrix, box, vertices[i], vertices[i + 1], vertices[i + 2]), i);
+    }
+    let front = Infinity, found = -1;
+    for (let t = 0; t < faceOfTriangle.length; t++) {
+        const corners = [0, 1, 2].map((k) => 3 * triangles[3 * t + k]);
+        const [a, b, c] = corners.map((i) => [seen[i] - x, seen[i + 1] - y]);
+        const weights = [[b, c], [c, a], [a, b]].map(([p, q]) => p[0] * q[1] - p[1] * q[0]);
+        const total = weights[0] + weights[1] + weights[2];
+        if (!total || weights.some((w) => w / total < 0)) continue;
+        const depth = corners.reduce((sum, i, k) => sum + seen[i + 2] * weights[k] / total, 0);
+        if (depth < front) [front, found] = [depth, faceOfTriangle[t]];
+    }
+    return found;
+}
+
 function normalAt(plot, x, y) {
     // Newton's method for the place on the front of the sphere that is drawn at these pixels.
     const matrix = camera(plot), box = plot.getBoundingClientRect();

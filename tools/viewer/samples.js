@@ -17,3 +17,7 @@ const kind = decoded(data.kind, Uint8Array); // a place in KINDS, for each sampl
 const count = kind.length;
 const COLOURS = data.colours, PALE = data.pale;
 const KINDS = ["elliptic", "hyperbolic", "parabolic"], EACH = [0, 1, 2];
+const vertices = decoded(data.vertices, Float32Array), triangles = decoded(data.triangles, Int32Array);
+const part = data.part; // of samples of a CAD part
+const faceOfTriangle = part && decoded(part.of_triangles, Int32Array);
+const faceOfSample = part && decoded(part.of_samples, Int32Array);

@@ -16,14 +16,22 @@ function markers([x, y, z], size, color) {
 }
 
 function mesh() {
-    const vertices = decoded(data.vertices, Float32Array);
-    const triangles = decoded(data.triangles, Int32Array);
+    const colours = part && { facecolor: Array.from(faceOfTriangle, (f) => part.colours[f]) };
     return {
-        type: "mesh3d", x: column(vertices, 0), y: column(vertices, 1), z: column(vertices, 2),
+        ...colours, type: "mesh3d", x: column(vertices, 0), y: column(vertices, 1), z: column(vertices, 2),
         i: column(triangles, 0), j: column(triangles, 1), k: column(triangles, 2),
         color: theme.mesh, flatshading: data.flat, hoverinfo: "skip", showlegend: false,
-        lighting: { ambient: 0.65, diffuse: 0.55, specular: 0.05, roughness: 0.9 },
+        lighting: { // without a limit below which triangles have no normal
+            ambient: 0.65, diffuse: 0.55, specular: 0.05, roughness: 0.9, facenormalsepsilon: 1e-15,
+        },
     };
+}
+
+/** The edges of a part: lines with gaps. */
+function edges() {
+    const rows = decoded(part.edges, Float32Array);
+    return { type: "scatter3d", mode: "lines", x: column(rows, 0), y: column(rows, 1), z: column(rows, 2),
+        hoverinfo: "skip", showlegend: false, line: { color: "#333333", width: 2 } };
 }
 
 function globe() {
@@ -65,9 +73,11 @@ const side = Math.min(byId("surface").clientWidth, byId("surface").clientHeight)
 const size = Math.min(Math.max(side * Math.sqrt(0.5 / (Math.PI * count)), 1.4), 4);
 const kinds = EACH.map(ofKind);
 // These traces stay as they are; what is picked is drawn over them, see highlights.js.
-const LIFT = 0.004; // samples are drawn above the triangles, which would hide halves of them
+// Samples are drawn above the triangles, which would hide halves of them; those of parts are coarser.
+const LIFT = part ? 0.012 : 0.004;
 const layers = {
-    surface: [mesh(), ...kinds.map((which, k) => markers(placed(points, which, LIFT), size, PALE[k]))],
+    surface: [mesh(), ...kinds.map((which, k) => markers(placed(points, which, LIFT), size, PALE[k])),
+        ...(part ? [edges()] : [])],
     // Larger ones below: one normal may have samples of both kinds.
     sphere: [ball(), globe(), ...kinds.map((which, k) =>
         markers(placed(normals, which, k && LIFT), k ? size : 1.4 * size, PALE[k]))],

@@ -11,6 +11,7 @@ import base64
 import html
 import json
 import os
+from collections.abc import Sequence
 from importlib.resources import files
 from string import Template
 from typing import Any
@@ -18,14 +19,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...runtime.base.aliases import Array
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra, from_extra
 from ...runtime.base.trees import tree_of
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
-from ..cad.part import Part
+from ..cad.part import Face, Part
 from ..files import paths
+from ..files.lengths import whole_of
 from ..pictures.palette import ELLIPTIC, HYPERBOLIC, PARABOLIC, SCALE
 from ..pictures.scene import Scene, scene_of_samples
 
@@ -41,7 +44,14 @@ PARABOLIC_LEGEND = (
     f'<span class="legend"><span class="dot" style="background:{PARABOLIC}"></span>'
     "parabolic (K = 0)</span>"  # flat, too
 )
+# What a click on a surface does, and on a part.
+HINTS = (
+    "Click a place: its region and their normals light up.",
+    "Click a face: its samples and their normals light up.",
+)
 PALE_PARABOLIC = "#b9b9b9"
+# Of faces whose file gives none; neighbours seldom have the same.
+COLOURS_OF_FACES = ("#c9d6df", "#e3d5bd", "#cfe0cf", "#dfcfdc", "#c8dcdc", "#e0d0c8", "#d3d3e3")
 RADIUS = 10.0  # of the region around a place at first, in per cent of the diameter
 
 
@@ -77,7 +87,7 @@ def page(samples: Samples, surface: Surface | Spline | Part | None = None) -> st
     if not len(samples):
         raise InputError("there are no samples to view.")
     check_count(len(samples))
-    data = _data(samples, scene_of_samples(samples, surface))
+    data = _data(samples, scene_of_samples(samples, surface), surface)
     here = files(__name__.rpartition(".")[0])
     offline = from_extra("plotly.offline", "view", "a page with a picture to turn")
     return Template((here / "page.html").read_text(encoding="utf-8")).substitute(
@@ -88,13 +98,17 @@ def page(samples: Samples, surface: Surface | Spline | Part | None = None) -> st
         plotly=offline.get_plotlyjs().replace("</script", "<\\/script"),
         # A "<" in the text could end the script that it stands in.
         data=json.dumps(data, allow_nan=False).replace("<", "\\u003c"),
+        surface="Part" if data["part"] else "Surface",
+        hint=HINTS[data["part"] is not None],
         elliptic=ELLIPTIC,
         hyperbolic=HYPERBOLIC,
         parabolic_legend=PARABOLIC_LEGEND if samples.parabolic.any() else "",
     )
 
 
-def _data(samples: Samples, scene: Scene) -> dict[str, Any]:
+def _data(
+    samples: Samples, scene: Scene, surface: Surface | Spline | Part | None
+) -> dict[str, Any]:
     """Return what the script reads: coordinates relative to the centre, the diameter being 1."""
     corners = scene.quadrangles.reshape(-1, 3)
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -105,13 +119,14 @@ def _data(samples: Samples, scene: Scene) -> dict[str, Any]:
     a, b, c, d = numbers.reshape(-1, 4).T
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     one, two, three = triangles.T
-    triangles = triangles[(one != two) & (two != three) & (three != one)]
+    proper = (one != two) & (two != three) & (three != one)
+    triangles = triangles[proper]
     factors = np.array([1.0, 1.0, scene.factor])
     reach = 1.04 * np.maximum((high - low) / diameter / 2, 0.02)
     aspect = reach * factors
     points = (samples.points.astype(np.float64) - middle) / diameter
     normals = samples.normals.astype(np.float64)
-    return {
+    found: dict[str, Any] = {
         "points": _encoded(points, np.float32),
         "normals": _encoded(normals, np.float32),
         "kind": _encoded(np.where(samples.parabolic, 2, samples.hyperbolic), np.uint8),
@@ -129,7 +144,48 @@ def _data(samples: Samples, scene: Scene) -> dict[str, Any]:
         "radius": RADIUS,
         "colours": [ELLIPTIC, HYPERBOLIC, PARABOLIC],
         "pale": [SCALE[4], SCALE[2], PALE_PARABOLIC],
+        "part": None,
     }
+    part = whole_of(samples) if surface is None else surface
+    if isinstance(part, Part) and scene.faces is not None and samples.face_index is not None:
+        place = np.tile(scene.faces, 2)[proper], samples.face_index
+        found["part"] = _data_of_part(part, *place, _gaps(scene.lines, middle, diameter))
+    return found
+
+
+def _data_of_part(
+    part: Part, of_triangles: NDArray[np.int64], of_samples: NDArray[np.int64], edges: Array
+) -> dict[str, Any]:
+    """Return the faces of triangles and samples, what is said of each face, and edges."""
+    return {
+        "of_triangles": _encoded(of_triangles, np.int32),
+        "of_samples": _encoded(of_samples, np.int32),
+        "colours": [_colour(x) for x in part.faces],
+        "labels": [_said(x, part.unit) for x in part.faces],
+        "edges": _encoded(edges, np.float32),
+    }
+
+
+def _colour(face: Face) -> str:
+    """Return the colour of a face in the file, or else one that differs from those before."""
+    if face.color is None:
+        return COLOURS_OF_FACES[face.index % len(COLOURS_OF_FACES)]
+    return "#" + bytes(round(255 * x) for x in face.color).hex()
+
+
+def _said(face: Face, unit: str) -> str:
+    """Return what the page says of a face that is picked."""
+    name = f" {face.name!r}" if face.name else ""
+    sizes = {x: y for x, y in face.dimensions.items() if x.endswith("radius")}
+    said = [f"{x.replace('_', ' ')} {y:.6g} {unit}" for x, y in sizes.items()]
+    return ", ".join([f"Face {face.source_index}{name}: {face.kind}", *said])
+
+
+def _gaps(lines: Sequence[Array], middle: Array, diameter: float) -> Array:
+    """Return lines of the page, one after the other, with NaN between them."""
+    apart = np.full((1, 3), np.nan)
+    rows = [y for x in lines for y in ((x - middle) / diameter, apart)]
+    return np.concatenate(rows) if rows else apart
 
 
 def _encoded(array: NDArray[Any], dtype: type[np.generic]) -> str:

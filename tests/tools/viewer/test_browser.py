@@ -94,6 +94,24 @@ def test_a_drag_turns_and_picks_nothing(browser: Any, pages: Path) -> None:
     assert not picked(browser)["best"]
 
 
+def test_a_face_of_a_part(browser: Any, tmp_path: Path, parts: Any) -> None:
+    part = parts.box(1.0, 2.0, 3.0)
+    samples = gm.sample(part, 300)
+    samples.view(tmp_path / "part.html")
+    browser.open(tmp_path / "part.html", 1280, 860)
+    top = next(x.index for x in part.faces if x.dimensions["normal"][2] > 0.5)
+    here = np.flatnonzero(samples.face_index == top)
+    inner = here[np.argmin(np.linalg.norm(samples.points[here] - [0.5, 1.0, 3.0], axis=1))]
+    browser.click(*place_of(browser, "surface", scaled(browser, int(inner))))
+    assert picked(browser)["face"] == top
+    assert picked(browser)["members"] == here.tolist()
+    assert f"Face {top} 'side': plane: {len(here)} samples" in browser.value(
+        "byId('result').textContent"
+    )
+    browser.click(*place_of(browser, "sphere", np.array([0.0, 0.0, 1.0])))
+    assert set(picked(browser)["best"]) == set(here.tolist())
+
+
 def test_a_phone(browser: Any, pages: Path, samples: gm.Samples) -> None:
     browser.open(pages / "torus.html", 390, 844, phone=True)
     assert browser.value("document.documentElement.scrollWidth") == 390

@@ -78,6 +78,30 @@ def test_the_region_is_a_few_per_cent_of_a_sphere_at_first() -> None:
     assert 0.02 < np.mean(apart < data["radius"] / 100.0) < 0.05
 
 
+def test_faces_of_a_part_have_colours_labels_and_edges(parts: ModuleType) -> None:
+    part = parts.all_kinds().select(kind=("plane", "cylinder", "sphere"))
+    samples = gm.sample(part, 100)
+    data = read_page(module.page(samples))
+    found = data["part"]
+    faces = np.frombuffer(base64.b64decode(found["of_triangles"]), "<i4")
+    of_samples = np.frombuffer(base64.b64decode(found["of_samples"]), "<i4")
+    np.testing.assert_array_equal(of_samples, samples.face_index)
+    assert len(faces) == len(data["triangles"]) // 3
+    cylinder = next(x for x in part.faces if x.kind == "cylinder")
+    assert found["labels"][cylinder.index] == "Face 1: cylinder, radius 1 mm"
+    corners = data["vertices"].reshape(-1, 3)[data["triangles"].reshape(-1, 3)].astype(np.float64)
+    a, b, c = np.moveaxis(corners * data["diameter"] + data["centre"], 1, 0)
+    normals = np.cross(b - a, c - a)
+    areas = np.bincount(faces, np.linalg.norm(normals, axis=1) / 2)
+    np.testing.assert_allclose(areas[:2], [x.area for x in part.faces[:2]], rtol=0.01)
+    outward = (a + b + c)[faces == cylinder.index] / 3 * [1.0, 1.0, 0.0]
+    assert (np.einsum("kx,kx->k", outward, normals[faces == cylinder.index]) > 0).all()
+    assert {re.sub("[0-9a-f]", "", x) for x in found["colours"]} == {"#"}
+    edges = np.frombuffer(base64.b64decode(found["edges"]), "<f4").reshape(-1, 3)
+    assert np.isnan(edges).any(axis=1).sum() >= len(part)
+    assert np.nanmax(np.abs(edges)) <= 0.5 + 1e-6
+
+
 def test_the_page_loads_nothing(samples: gm.Samples) -> None:
     text = module.page(samples)
     own = text[: text.index("<script>")] + text[text.index('<script type="application/json"') :]
