@@ -6,17 +6,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from OCP.TopAbs import TopAbs_ShapeEnum as Kinds
 from OCP.TopoDS import TopoDS
 
+from ....runtime.base.wording import plural
 from ...files.lengths import METRES
 from ..damaged_step import LostFace, Source
 from ..inspection import BadFileError, faces_said
 from ..records import FaceRecord, Geometry, PartRecord
 from ..units import with_unit
+from .documents import Document
 from .edges import topology_of
 from .faces import FaceReader
 from .files import read_file
-from .shapes import Key
+from .shapes import Key, parts_of
 from .solids import PlacedFace, gathered
 
 __all__ = ["part_record"]
@@ -31,7 +34,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         raise BadFileError(
             f"is damaged: Open CASCADE can make none of its {said} faces; export it again."
             if said
-            else "has no faces; a part needs solids, shells or faces."
+            else f"has no faces{_others(document)}; a part needs solids, shells or faces."
         )
     reader = FaceReader()
     faces = [_face(x, reader) for x in found.faces]
@@ -60,6 +63,16 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         topology.vertices,
         document.warnings,
     )
+
+
+def _others(document: Document) -> str:
+    """Return what a file without faces has: edges, and points that are at no edge."""
+    every = [x.shape for x in document.pieces]
+    edges = {Key(x) for y in every for x in parts_of(y, Kinds.TopAbs_EDGE)}
+    points = {Key(x) for y in every for x in parts_of(y, Kinds.TopAbs_VERTEX, Kinds.TopAbs_EDGE)}
+    counts = (edges, "edge"), (points, "point")
+    said = ", ".join(plural(len(x), word) for x, word in counts if x)
+    return f": {said}" if said else ""
 
 
 def _face(face: PlacedFace, reader: FaceReader) -> FaceRecord:

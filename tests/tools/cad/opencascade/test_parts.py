@@ -2,6 +2,7 @@
 
 # pyright: reportMissingImports=false
 
+import itertools
 import re
 
 import numpy as np
@@ -13,7 +14,11 @@ from gaussmap.tools.cad.inspection import BadFileError
 from gaussmap.tools.cad.opencascade.shapes import parts_of, sequence
 from OCP.BRep import BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_MakeVertex,
+)
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pln, gp_Pnt, gp_Pnt2d, gp_Trsf, gp_Vec
 from OCP.IntTools import IntTools_FClass2d
@@ -236,8 +241,17 @@ def test_numbers_that_are_none_cost_only_their_faces(number, write, read):
 
 def test_files_without_faces_are_refused(write, read):
     edge = BRepBuilderAPI_MakeEdge(gp_Pnt(0.0, 0.0, 0.0), gp_Pnt(1.0, 2.0, 0.0)).Edge()
-    with pytest.raises(BadFileError, match="has no faces"):
+    with pytest.raises(BadFileError, match="has no faces: 1 edge; a part needs"):
         read(write(edge, "edge.brep"))
+
+
+@pytest.mark.parametrize("suffix", ["step", "iges", "brep"])
+def test_files_without_faces_say_what_they_have(suffix, write, read):
+    ends = [gp_Pnt(float(k), 2.0 * k, k**2) for k in range(4)]
+    edges = [BRepBuilderAPI_MakeEdge(*x).Edge() for x in itertools.pairwise(ends)]
+    points = [BRepBuilderAPI_MakeVertex(gp_Pnt(9.0, 9.0, k)).Vertex() for k in range(2)]
+    with pytest.raises(BadFileError, match="has no faces: 3 edges, 2 points; a part"):
+        read(write(compound(*edges, *points), f"wires.{suffix}"))
 
 
 @pytest.mark.parametrize("suffix", ["step", "iges", "brep"])
