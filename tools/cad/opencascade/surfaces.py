@@ -91,8 +91,8 @@ def _net(surface: Any) -> tuple[Array, Array | None]:  # noqa: ANN401
     """Return the control points (m, n, 3) and the weights (m, n), or None for weights of 1."""
     shape = surface.NbUPoles(), surface.NbVPoles()
     places = [(i + 1, j + 1) for i, j in np.ndindex(*shape)]
-    poles = (surface.Pole(i, j) for i, j in places)
-    points = np.array([(p.X(), p.Y(), p.Z()) for p in poles]).reshape(*shape, 3)
+    pole = surface.Pole  # dense nets are read in the time of these calls
+    points = np.array([pole(i, j).Coord() for i, j in places]).reshape(*shape, 3)
     if not (surface.IsURational() or surface.IsVRational()):
         return points, None
     return points, np.array([surface.Weight(i, j) for i, j in places]).reshape(shape)
