@@ -372,13 +372,17 @@ def parabolic_line(patch, n, s, t):
 @inline
 def gaussian_curvature_of_derivatives(p_u, p_v, a, b, c):
     """The Gaussian curvature of any surface from its first derivatives p_u, p_v and its second
-    derivatives a, b, c (by uu, uv, vv).
+    derivatives a, b, c (by uu, uv, vv), and the components l_uu, l_uv, l_vv of these along the
+    normal p_u × p_v.
 
         N = p_u × p_v
         A = N·a
         B = N·b
         C = N·c
         K = (A*C - B**2)/|N|**4
+        l_uu = A
+        l_uv = B
+        l_vv = C
 
     Source: Sect. 3.2, Remark 3.1; 39 operations as written, 39 here.
     """
@@ -396,4 +400,7 @@ def gaussian_curvature_of_derivatives(p_u, p_v, a, b, c):
     K = (A * C - B * B) / (
         (N_x * N_x + N_y * N_y + N_z * N_z) * (N_x * N_x + N_y * N_y + N_z * N_z)
     )
-    return K
+    l_uu = A
+    l_uv = B
+    l_vv = C
+    return K, l_uu, l_uv, l_vv

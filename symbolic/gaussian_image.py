@@ -212,11 +212,12 @@ PARABOLIC_LINE = Formula.build(
 CURVATURE_OF_DERIVATIVES = Formula.build(
     "gaussian_curvature_of_derivatives",
     "The Gaussian curvature of any surface from its first derivatives $p_u$, $p_v$ and its second "
-    "derivatives $a$, $b$, $c$ (by $uu$, $uv$, $vv$).",
+    "derivatives $a$, $b$, $c$ (by $uu$, $uv$, $vv$), and the components $l_uu$, $l_uv$, $l_vv$ of "
+    "these along the normal $p_u × p_v$.",
     source="Sect. 3.2, Remark 3.1",
     inputs=[p_u, p_v, a, b, c],
     terms=[("N", Cross(p_u, p_v)), ("A", Dot(N, a)), ("B", Dot(N, b)), ("C", Dot(N, c))],
-    outputs=[("K", SOLUTION.D / Dot(N, N) ** 2)],
+    outputs=[("K", SOLUTION.D / Dot(N, N) ** 2), ("l_uu", A), ("l_uv", B), ("l_vv", C)],
 )
 
 FORMULAS = (

@@ -3,8 +3,8 @@
 from .boundary import BoundaryArc
 from .classes import PatchClass, classify_patches
 from .image import GaussianImage, GaussianImages
-from .image_curves import ImageCurve
-from .parabolic import ParabolicCurve, ParabolicPoint, ParabolicPoints, parabolic_points
+from .image_curve import ImageCurve
+from .parabolic import ParabolicPoint, ParabolicPoints, parabolic_points
 from .parabolic_lines import ParabolicLine, Piece, parabolic_lines, split_patch
 
 __all__ = [
@@ -12,7 +12,6 @@ __all__ = [
     "GaussianImage",
     "GaussianImages",
     "ImageCurve",
-    "ParabolicCurve",
     "ParabolicLine",
     "ParabolicPoint",
     "ParabolicPoints",

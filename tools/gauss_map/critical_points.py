@@ -2,105 +2,131 @@
 
 from __future__ import annotations
 
-import math
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .curvature_field import SURE, CurvatureField
+from ...runtime.base.aliases import Array, Flags
 from .sign_grid import SignGrid
 
-__all__ = ["critical_zeros"]
+__all__ = ["CriticalZeros", "critical_zeros"]
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-NEWTON_STEPS = 20
-# Largest distance, in cells, of a critical point from the corners of the cell that may hold it.
-FARTHEST = 2.0
-# Saddles whose distance is less than this, in cells, are the same.
+# Newton's method ends with a step of this size, relative to the domain; it is slow where K is of the
+# order four.
+NEWTON_STEPS, ARRIVED = 40, 1e-10
+# K is zero at a critical point where it would be at this distance, relative to the domain.
+TOUCHING = 1e-7
+# How far a critical point may be from the node next to it, in cells: for Newton's method, and by
+# differences between nodes.
+FARTHEST, FARTHEST_BY_NODES = 2.0, 1.5
+# Critical points whose distance is less than this, in cells, are the same.
 SAME = 1e-2
-# Where K grows slower in one direction by this factor, it is constant there.
-CONSTANT = 1e-5
-# Places along a side of a cell at which a sign is sought that its corners do not have.
-SAMPLES = 8
+# Where K grows slower in one direction by this factor, it is constant there; by differences between
+# nodes, which are not close to the zeros.
+CONSTANT, CONSTANT_BY_NODES = 1e-5, 1e-2
 
 
-def critical_zeros(grid: SignGrid, size: Array) -> tuple[Array, Array, bool]:
-    """Return the places (k, 2) where curves K = 0 cross, and those away from curves that K touches.
+class CriticalZeros(NamedTuple):
+    """Saddles (k, 2), where curves K = 0 cross, and places (m, 2) that K touches away from curves.
 
-    Curves whose distance from a critical point is less than `size` (2,) pass through it. A closed
-    curve K = 0 that is smaller than a cell is a point that K touches, too. The last value says
-    whether there are such curves, or others that are closer to each other than a cell.
+    A closed curve K = 0 that is smaller than a cell is a place that K touches, too; curves are not
+    farther from it than `reach` (m, 2). `unclear` says whether there are such curves, or others
+    that are closer to each other than a cell, or cross in the last cells before a border.
     """
-    field = grid.field
-    may_vanish, may_be_critical = field.bounded(grid.cells)
-    away_from_curves = grid.mask & ~grid.near_curves
-    i, j = np.nonzero(may_be_critical & grid.mask)
-    corners = np.stack([i, j], axis=1) + np.argwhere(np.ones((2, 2)))[:, None]
-    starts = grid.at(np.unique(corners.reshape(-1, 2), axis=0))
-    cell = grid.sizes(grid.cells_at(starts))
-    low, high = np.array([line[[0, -1]] for line in grid.lines]).T
-    ends = np.where(field.wraps, -np.inf, low), np.where(field.wraps, np.inf, high)
-    places = starts
-    for _ in range(NEWTON_STEPS):
-        step = np.clip(_newton_step(field, places), -cell, cell)
-        places = np.clip(places - step, *ends)
-    found = (np.abs(_newton_step(field, places)) <= SAME * cell).all(axis=1)
-    found &= (np.abs(places - starts) <= FARTHEST * cell).all(axis=1)
-    places = np.where(field.wraps, low + np.mod(places - low, high - low), places)[found]
-    cell = cell[found]
-    cells = grid.cells_at(places)
-    K, noise = field.evaluate(places), SURE * field.noise_at(places)
-    hessian = field.hessian(places)
-    near = _half_distance_is_less(size[None], K, hessian) | (np.abs(K) <= noise)
-    # A circle whose radius is half the diagonal of a cell always has a corner inside.
-    close = _half_distance_is_less(math.sqrt(0.5) * cell, K, hessian) & grid.mask[cells]
-    down, up = np.linalg.eigvalsh(hessian * (size[:, None] * size)).T * [[-1], [1]]
-    saddle = np.minimum(down, up) > CONSTANT * np.maximum(down, up)
-    ring = (np.abs(K) > noise) & (K * grid.values[cells] < 0.0)
-    touched = ~saddle & (near | ring) & away_from_curves[cells]
-    unclear = (close | (ring & away_from_curves[cells])) & ~near
-    from scipy.ndimage import maximum_filter
 
-    explained = np.zeros_like(grid.mask)
-    explained[grid.cells_at(places[touched])] = True
-    hidden = may_vanish & away_from_curves & ~maximum_filter(explained, 3).astype(bool)
-    others = _of_other_sign(grid, hidden)
-    same = SAME * cell.min(axis=0, initial=np.inf)
-    return (
-        _different(places[saddle & near], same),
-        np.concatenate([places[touched], others]),
-        bool(unclear.any() or len(others)),
+    saddles: Array
+    touched: Array
+    reach: Array
+    unclear: bool
+
+
+def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
+    """Return the critical points of K where it is zero.
+
+    Curves whose distance from one, relative to the domain, is less than `size` pass through it.
+    """
+    curvature = grid.curvature
+    (low, high), extent = curvature.ends, curvature.extent
+    starts = grid.at(np.argwhere(_may_be_critical(grid)))
+    places, cell = starts.copy(), grid.cell / extent
+    moving = np.arange(len(places))
+    for constant in (CONSTANT_BY_NODES, *[CONSTANT] * NEWTON_STEPS):
+        _, gradient, hessian = curvature.derivatives(places[moving])
+        step = np.clip(_newton_step(gradient, hessian, constant), -cell, cell)
+        places[moving] = np.clip(places[moving] - extent * step, low, high)
+        far = (np.abs(places[moving] - starts[moving]) > FARTHEST * grid.cell).any(axis=1)
+        moving = moving[~far & (np.abs(step) > ARRIVED).any(axis=1)]
+    K, gradient, hessian = curvature.derivatives(places)
+    found = (np.abs(_newton_step(gradient, hessian)) <= SAME * cell).all(axis=1)
+    found &= (np.abs(places - starts) <= FARTHEST * grid.cell).all(axis=1)
+    places, K, hessian = places[found], K[found], hessian[found]
+    places = np.where(curvature.wraps, _wrapped(grid, places), places)
+    cells, error = grid.cells_at(places), curvature.at(places).error
+    down, up = _eigenvalues(hessian) * [[-1.0], [1.0]]
+    zero = ~(np.abs(K) > np.maximum(error, TOUCHING**2 * np.maximum(np.abs(down), np.abs(up))))
+    near = zero | _half_distance_is_less(size, K, hessian)
+    # A circle whose radius is half the diagonal of a cell always has a node inside.
+    close = _half_distance_is_less(np.sqrt(0.5) * cell, K, hessian) & ~grid.unknown[cells]
+    saddle = np.minimum(down, up) > CONSTANT * np.maximum(down, up)
+    away = ~grid.near_curves[cells] & ~grid.flat[cells]
+    ring = ~zero & (K * grid.values[cells] < 0.0)
+    touched = ~saddle & (near | ring) & away
+    from_border = np.minimum(places - low, high - places)
+    beside_border = ((from_border > size * extent) & (from_border < 3.0 * grid.cell)).any(axis=1)
+    curving = np.abs(np.diagonal(hessian, axis1=1, axis2=2)) + 1e-300
+    reach = np.clip(np.sqrt(2.0 * (np.abs(K) + error)[:, None] / curving), 0.5 * size, cell)
+    return CriticalZeros(
+        _different(places[saddle & near & ~grid.flat[cells]], SAME * grid.cell),
+        places[touched],
+        (extent * reach)[touched],
+        bool(((close & ~near) | (ring & away) | (saddle & near & beside_border)).any()),
     )
 
 
-def _half_distance_is_less(size: Array, K: Array, hessian: Array) -> Mask:
+def _may_be_critical(grid: SignGrid) -> Flags:
+    """Return the nodes next to which, by differences, a critical point with K near zero may be."""
+    K = np.where(grid.zero, 0.0, grid.values)
+    lines = [line / cell for line, cell in zip(grid.lines, grid.cell, strict=True)]
+    u, v = np.gradient(K, *lines)
+    (uu, uv), (_, vv) = np.gradient(u, *lines), np.gradient(v, *lines)
+    gradient = np.stack([u, v], axis=-1).reshape(-1, 2)
+    hessian = np.stack([uu, uv, uv, vv], axis=-1).reshape(-1, 2, 2)
+    known = np.isfinite(hessian).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1)
+    hessian, gradient = (np.where(known[:, *[None] * (x.ndim - 1)], x, 0.0) for x in (hessian, gradient))
+    step = _newton_step(gradient, hessian, CONSTANT_BY_NODES)
+    least = K.ravel() - 0.5 * np.einsum("kx,kx->k", gradient, step)
+    near = (np.abs(step) <= FARTHEST_BY_NODES).all(axis=1)
+    near &= _half_distance_is_less(FARTHEST_BY_NODES, least, hessian)
+    flat = np.ones(K.shape, dtype=bool)
+    for i, j in np.argwhere(np.ones((2, 2))):
+        flat[i : i + len(K) - 1, j : j + K.shape[1] - 1] &= grid.flat
+    return (known & near).reshape(K.shape) & ~flat
+
+
+def _wrapped(grid: SignGrid, places: Array) -> Array:
+    """Return places less whole periods, between the first and the last node."""
+    first = np.array([line[0] for line in grid.lines])
+    return first + np.mod(places - first, grid.curvature.extent)
+
+
+def _eigenvalues(hessian: Array) -> Array:
+    """Return the lower and the higher eigenvalue (2, k) of symmetric matrices (k, 2, 2)."""
+    return np.linalg.eigvalsh(hessian).T
+
+
+def _half_distance_is_less(size: float | Array, K: Array, hessian: Array) -> Flags:
     """Return around which critical points half the distance of curves K = 0 is less than `size`.
 
     At a saddle they are the branches of the hyperbola 2 K − λ x² + μ y² = 0.
     """
-    low, high = np.linalg.eigvalsh(hessian * (size[:, :, None] * size[:, None])).T
+    low, high = _eigenvalues(hessian * np.multiply.outer(size, size))
     return 2.0 * np.abs(K) <= np.where(K > 0.0, -low, high)
 
 
-def _newton_step(field: CurvatureField, places: Array) -> Array:
+def _newton_step(gradient: Array, hessian: Array, constant: float = CONSTANT) -> Array:
     """Return the shortest steps that best solve Newton's equations for the gradient of K."""
-    inverse = np.linalg.pinv(field.hessian(places), rcond=CONSTANT, hermitian=True)
-    return np.einsum("kxy,ky->kx", inverse, field.gradient(places))
-
-
-def _of_other_sign(grid: SignGrid, cells: Mask) -> Array:
-    """Return a place (k, 2) in each cell that has another sign than its corners somewhere."""
-    low, high = np.moveaxis(grid.rectangles(cells), 1, 0)
-    share = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, SAMPLES)] * 2), axis=-1).reshape(-1, 2)
-    places = low[:, None] + share * (high - low)[:, None]
-    flat = places.reshape(-1, 2)
-    sign = np.sign(grid.values[:-1, :-1][cells])
-    excess = grid.field.evaluate(flat).reshape(places.shape[:2]) * sign[:, None]
-    excess += SURE * grid.field.noise_at(flat).reshape(places.shape[:2])
-    lowest = excess.argmin(axis=1)
-    rows = np.arange(len(places))
-    return places[rows, lowest][excess[rows, lowest] < 0.0]
+    inverse = np.linalg.pinv(hessian, rcond=constant, hermitian=True)
+    return np.einsum("kxy,ky->kx", inverse, gradient)
 
 
 def _different(places: Array, same: Array) -> Array:

@@ -5,78 +5,47 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated import gaussian_image as formulas
+from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.checks import as_float, pair_of_cells
 from ...runtime.base.errors import GaussmapWarning, InputError, shown
-from ...runtime.base.formula_calls import python_function, vector
-from ...runtime.base.scales import scale_to_one
-from ...runtime.domain.domain import brought_inside
 from ...runtime.fitting.fit import fit, spline_of
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from .classes import PatchClass, classify_patches
-from .curvature_field import CurvatureField
+from .critical_points import critical_zeros
+from .curvature import Curvature
+from .image_curve import ImageCurve, Traced, followed, jets_of_spline
 from .parabolic_spline import polylines_of
-from .parabolic_surface import field_of, search
-from .polylines import refined
 from .rectangles import merged
+from .sign_grid import SignGrid
+from .zero_curves import zero_curves
 
 __all__ = [
-    "ParabolicCurve",
     "ParabolicPoint",
     "ParabolicPoints",
     "checked_tolerance",
-    "curvature",
-    "near_zeros",
-    "onto_zeros",
     "parabolic_points",
-    "points_of_field",
+    "size_of_spline",
+    "traced_curves",
 ]
 
-Array = NDArray[np.float64]
-NEWTON_STEPS = 6
-# K of the surface is compared at places this far apart, relative to the domain; curves of the field
-# are nearer than that to those of the surface.
-STEP, CHORD_STEPS = 1e-6, 2
-MOST_CELLS = 128
+# The numbers of cells of the grid along u and v. It is refined where curves are closer to each
+# other than a cell, or smaller, and where more than this share of its cells is on curves.
+CELLS, MOST_CELLS, CROWDED = 128, 512, 1 / 8
 # A share of the domain that is worth a warning.
 WORTH_A_WARNING = 1e-4
-
-
-@dataclass(frozen=True, eq=False)
-class ParabolicCurve:
-    """A polyline of parabolic points.
-
-    Attributes
-    ----------
-    uv : (k, 2) float64 array
-        Parameters of the vertices. In a periodic direction they continue beyond the end of the
-        domain, without jumps.
-    points : (k, 3) float64 array
-        The vertices in space.
-    closed : bool
-        Whether the curve is closed; its last vertex then repeats the first.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> curve = gm.gauss_map.parabolic_points("torus").curves[0]
-    >>> curve.closed, curve.uv.shape == (len(curve.points), 2)
-    (True, True)
-
-    """
-
-    uv: Array
-    points: Array
-    closed: bool
-
-    def __repr__(self) -> str:
-        return f"ParabolicCurve({'closed' if self.closed else 'open'}, {len(self.uv):,} vertices)"
+# Places that K touches are one if their cells are this near.
+TOGETHER = 4
+# The change of K along the direction in which the normal does not turn, relative to its gradient,
+# below which it is zero: on curves with one normal, such as the top circle of a torus. So is the
+# gradient relative to the largest on the curve, where curves cross.
+NO_CHANGE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +87,7 @@ class ParabolicPoints:
 
     Attributes
     ----------
-    curves : tuple of ParabolicCurve
+    curves : tuple of ImageCurve
         Curves across which the Gaussian curvature changes its sign. They end at the border of the
         surface, at a "mirrored" seam, and where they meet or cross; one may lie on the border.
     isolated : tuple of ParabolicPoint
@@ -140,7 +109,7 @@ class ParabolicPoints:
 
     """
 
-    curves: tuple[ParabolicCurve, ...]
+    curves: tuple[ImageCurve, ...]
     isolated: tuple[ParabolicPoint, ...]
     flat: Array
     developable: bool
@@ -169,9 +138,9 @@ def parabolic_points(
         Largest distance of polylines from the curves in space, and largest size of the rectangles
         that isolate points, relative to the size of the surface and of its domain; 1e-7 to 0.1.
     cells : pair of int, optional
-        Numbers (m, n) of panels on which a smooth surface is interpolated, at most 128 each. By
-        default 8 × 8, or as many as it takes to resolve the surface, at most 64 × 64. For a grid of
-        points, the cells of its spline (see `fit`).
+        The least numbers (m, n) of cells of the grid on which the signs of K show the curves, at
+        most 512 each; there are at least 128 × 128. For a grid of points, the cells of its spline
+        (see `fit`).
 
     Returns
     -------
@@ -189,20 +158,20 @@ def parabolic_points(
     Warns
     -----
     GaussmapWarning
-        If the curvature cannot be computed on more than 0.01 % of the domain (a pole, a crease);
-        these parts are left out.
+        If the curvature cannot be computed on more than 0.01 % of the domain, such as where the
+        surface is singular; these parts are left out.
 
     Notes
     -----
-    A smooth surface is interpolated on each panel by polynomials of degree 15 and differentiated.
-    The error of K is estimated: it is about 1e-9 where the surface is resolved, and up to 1 % of K
-    on the panel where it is not. Where K is less than its error, its sign is not used: such places
-    are `flat`. Zeros of K of higher order are located only as accurately as K is known.
+    The signs of K at the nodes of a grid show the curves; each vertex is then moved to a zero of K.
+    Newton's method finds the critical points of K where it is zero: curves cross there, or K
+    touches zero. Where curves are closer to each other than a cell, or closed and smaller, the grid
+    is refined to at most 512 × 512 cells. Those that are still smaller or closer are `isolated`, or
+    may be joined wrongly.
 
-    The signs of K on a grid of at least 128 × 128 cells, 8 × 8 or more for each panel, show the
-    curves. Bounds of K tell where other curves may be; where they are closer to each other than a
-    cell, or closed and smaller, the grid is refined to at most 512 × 512 cells. Those that are
-    still smaller or closer are `isolated`, or may be joined wrongly.
+    K has the derivatives of the surface, or those of the NumPy functions that a callable is made
+    of. Other callables are differentiated by differences of points, and the error of K is
+    estimated. Where K is less than its error, its sign is not used: such places are `flat`.
 
     Examples
     --------
@@ -212,132 +181,164 @@ def parabolic_points(
 
     """
     limit, surface = checked_tolerance(tolerance), named(surface)
+    if isinstance(surface, Surface) and surface.grid is not None:
+        surface, cells = fit(surface, cells), None
     if isinstance(surface, Spline):
         return _of_spline(spline_of(surface, cells), limit)
     if not isinstance(surface, Surface):
         raise InputError(
             f"parabolic_points takes a Surface or a Spline, not {type(surface).__name__}."
         )
-    if surface.grid is not None:
-        return _of_spline(fit(surface, cells), limit)
-    return points_of_field(surface, field_of(surface, _panels(cells)), limit)
+    return _Zeros(surface, limit, _checked_cells(cells)).points()
+
+
+def traced_curves(surface: Surface | Spline, tolerance: float) -> list[Traced]:
+    """Return the curves of `parabolic_points`, in a form that can be refined."""
+    if isinstance(surface, Spline):
+        return _curves_of_spline(surface, classify_patches(surface), tolerance)
+    return _Zeros(surface, tolerance, (CELLS, CELLS)).curves()
+
+
+# --- splines --------------------------------------------------------------------------------------
 
 
 def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
     classes = classify_patches(spline)
-    curves = []
-    scale = spline.scale
-    size = tolerance * _size(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * scale)
-    for uv, closed in polylines_of(spline, classes):
-        finer = refined(uv, lambda x: scale * _evaluated(spline, x), size, lambda x: x)
-        curves.append(ParabolicCurve(finer, _evaluated(spline, finer), closed))
+    curves = _curves_of_spline(spline, classes, tolerance)
     flat = np.isin(classes, (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR))
     cells = np.flatnonzero(flat.reshape(-1, 4).all(axis=1))
     i, j = np.divmod(cells, spline.cells[1])
     corners = np.stack([[i, j], [i + 1, j + 1]]).transpose(2, 0, 1)
     boxes = spline.frame[:2] + corners * spline.frame[2:]
-    return ParabolicPoints(tuple(curves), (), merged(boxes), bool(flat.all()))
+    return ParabolicPoints(tuple(x.curve for x in curves), (), merged(boxes), bool(flat.all()))
 
 
-def points_of_field(surface: Surface, field: CurvatureField, tolerance: float) -> ParabolicPoints:
-    """Return the parabolic points of a surface with this field of K; see `parabolic_points`."""
-    extent = np.array([high - low for low, high in surface.domain])
-    polylines, places, boxes, flat = search(field, 0.125 * tolerance * extent)
-    unresolved = field.share(field.unresolved)
-    if unresolved > WORTH_A_WARNING:
-        warnings.warn(
-            f"the curvature of {surface.name!r} cannot be computed on "
-            f"{100.0 * unresolved:.3g} % of its domain (a pole, a crease, fine detail, or "
-            "coordinates with too few digits), which is left out; the spline of the surface "
-            "(`fit`) has parabolic points everywhere.",
-            GaussmapWarning,
-            stacklevel=3,
-        )
-    grid = surface.evaluate(*np.meshgrid(*(np.linspace(*ends, 17) for ends in surface.domain)))
-    scale = scale_to_one(float(np.ptp(grid, axis=(0, 1)).max()))
-    size = tolerance * _size(grid.reshape(-1, 3) * scale)
-    curves = []
-    for uv, closed in polylines:
-        finer = refined(
-            uv,
-            lambda x: scale * _evaluated(surface, x),
-            size,
-            lambda x: near_zeros(surface, field, x),
-        )
-        finer = onto_zeros(surface, field, finer)
-        curves.append(ParabolicCurve(finer, _evaluated(surface, finer), closed))
-    isolated = map(ParabolicPoint, places, _evaluated(surface, places), boxes)
-    return ParabolicPoints(tuple(curves), tuple(isolated), flat, bool(field.flat.all()))
+def _curves_of_spline(spline: Spline, classes: NDArray[np.int8], tolerance: float) -> list[Traced]:
+    jets, size = jets_of_spline(spline), size_of_spline(spline)
+    return [followed(uv, jets, size, tolerance) for uv in polylines_of(spline, classes)]
 
 
-# --- places on the curves K = 0 -------------------------------------------------------------------
-
-
-def near_zeros(surface: Surface, field: CurvatureField, places: Array) -> Array:
-    """Move places (k, 2) along the gradient of the field to where it vanishes, by Newton steps."""
-    for _ in range(NEWTON_STEPS):
-        K, slope = field.evaluate(places), field.gradient(places)
-        square = np.einsum("kx,kx->k", slope, slope)
-        step = np.divide(K, square, out=np.zeros_like(K), where=square > 0.0)
-        places = places - step[:, None] * slope
-    return np.clip(places, *_limits(surface))
-
-
-def onto_zeros(surface: Surface, field: CurvatureField, places: Array) -> Array:
-    """Move places (k, 2) close to curves K = 0 onto them, as far as the derivatives are exact.
-
-    They move along the gradient of the field, by chord steps from one difference of K; those on the
-    border of the domain along the border. Places without such a zero near by, as crossings and
-    singular points, stay.
-    """
-    if surface.differences is not None:  # the field is as accurate
-        return places
-    extent = np.ptp(surface.domain, axis=1)
-    low, high = _limits(surface)
-    slope = field.gradient(places) * extent * ((low < places) & (places < high))
-    with np.errstate(all="ignore"):
-        along = extent * slope / np.linalg.norm(slope, axis=1, keepdims=True)
-        K = curvature(surface, places)
-        rate = (curvature(surface, places + STEP * along) - K) / STEP
-        moved, share = places, np.zeros(len(places))
-        for _ in range(CHORD_STEPS):
-            share -= K / rate
-            moved = places + share[:, None] * along
-            K = curvature(surface, moved)
-        near = np.abs(share) <= STEP
-    inside = ((low <= moved) & (moved <= high)).all(axis=1)
-    return np.where((near & inside)[:, None], moved, places)
-
-
-def curvature(surface: Surface, places: Array) -> Array:
-    """Return K (k,) of a surface at parameters (k, 2), which may lie beyond a periodic end."""
-    u, v = places.T
-    jets = surface.jets(*brought_inside(u, v, surface.domain, surface.boundary))
-    K = python_function(formulas.gaussian_curvature_of_derivatives)
-    return K(*(vector(jets[:, k]) for k in range(1, 6)))
-
-
-# --- arguments and evaluation ---------------------------------------------------------------------
-
-
-def _evaluated(surface: Surface | Spline, uv: Array) -> Array:
-    """Return the points (k, 3) at parameters (k, 2), which may lie beyond a periodic end."""
-    u, v = uv.T
-    return surface.evaluate(*brought_inside(u, v, surface.domain, surface.boundary))
-
-
-def _limits(surface: Surface) -> tuple[Array, Array]:
-    """Return the lowest and highest parameters, infinite where the surface is periodic."""
-    pairs = [
-        (-np.inf, np.inf) if ends[0] == "periodic" else domain
-        for domain, ends in zip(surface.domain, surface.boundary, strict=True)
-    ]
-    low, high = np.array(pairs).T
-    return low, high
-
-
-def _size(points: Array) -> float:
+def size_of_spline(spline: Spline) -> float:
+    """Return the diagonal of the bounding box of the coefficients."""
+    points = spline.coefficients[1:-1, 1:-1].reshape(-1, 3)
     return float(np.linalg.norm(np.ptp(points, axis=0)))
+
+
+# --- surfaces -------------------------------------------------------------------------------------
+
+
+class _Zeros:
+    """Where K of a surface is zero."""
+
+    def __init__(self, surface: Surface, tolerance: float, cells: tuple[int, int]) -> None:
+        self.surface, self.tolerance, self.curvature = surface, tolerance, Curvature(surface)
+        # Curves closer than this, relative to the domain, cross or are a point.
+        self.size = 0.125 * tolerance
+        while True:
+            self.grid = SignGrid(self.curvature, cells)
+            finer = 2 * cells[0], 2 * cells[1]
+            if self.grid.crossed.mean() <= CROWDED or max(finer) > MOST_CELLS:
+                self.critical = critical_zeros(self.grid, self.size)
+                if not self.critical.unclear or max(finer) > MOST_CELLS:
+                    break
+            cells = finer
+
+    def points(self) -> ParabolicPoints:
+        """Return what `parabolic_points` does; warns of what is unknown."""
+        grid = self.grid
+        unknown = float(grid.areas[grid.unknown].sum())
+        if unknown > WORTH_A_WARNING:
+            warnings.warn(
+                f"the curvature of {self.surface.name!r} cannot be computed on "
+                f"{100.0 * unknown:.3g} % of its domain, which is left out; the spline of the "
+                "surface (`fit`) has parabolic points everywhere.",
+                GaussmapWarning,
+                stacklevel=3,
+            )
+        curves = tuple(x.curve for x in self.curves())
+        whole = bool(grid.flat.all())
+        return ParabolicPoints(curves, self._isolated(), merged(grid.rectangles(grid.flat)), whole)
+
+    def curves(self) -> list[Traced]:
+        """Return the curves across which K changes its sign."""
+        K = self.curvature
+        return [
+            followed(uv, K.jets, K.size, self.tolerance, K.onto_zeros, self._with_cusps)
+            for uv in zero_curves(self.grid, self.critical.saddles)
+        ]
+
+    def _isolated(self) -> tuple[ParabolicPoint, ...]:
+        """Return places that K touches, one for those that are near each other, with boxes."""
+        from scipy.ndimage import label, maximum_filter
+
+        touched, reach = self.critical.touched, self.critical.reach
+        cells = self.grid.cells_at(touched)
+        here = np.zeros(self.grid.flat.shape, dtype=bool)
+        here[cells] = True
+        groups = np.zeros(here.shape, dtype=np.int64)
+        number = label(maximum_filter(here, 2 * TOGETHER + 1), output=groups)
+        found = []
+        for k in range(1, int(number) + 1):
+            own = groups[cells] == k
+            box = np.stack([(touched - reach)[own].min(axis=0), (touched + reach)[own].max(axis=0)])
+            middle = np.abs(touched[own] - box.mean(axis=0)).max(axis=1).argmin()
+            place = touched[own][middle]
+            box = np.clip(box, self.curvature.low, self.curvature.high)
+            found.append(ParabolicPoint(place, self.curvature.jets(place[None])[0, 0], box))
+        return tuple(found)
+
+    def _with_cusps(self, uv: Array) -> tuple[Array, Indices]:
+        """Return a curve (k, 2) with the cusps of its image as vertices, and which these are.
+
+        At a cusp, K does not change along the direction in which the normal does not turn; before
+        and behind it, it changes by values of different sign.
+        """
+        change, along = self._change(uv)
+        known = np.flatnonzero(np.abs(change) > NO_CHANGE)
+        cusps, new = list[int](), dict[int, Array]()
+        for i, j in pairwise(known.tolist()):
+            turns = np.prod(np.sign(np.einsum("kx,kx->k", along[i:j], along[i + 1 : j + 1])))
+            if change[i] * change[j] * turns > 0.0:
+                continue
+            if j == i + 1:
+                new[j] = self._cusp_between(uv[i], uv[j], along[i])
+            cusps.append(i + 1 + sum(x <= i for x in new))
+        places = np.fromiter(new, np.int64, len(new))
+        values = np.reshape(list(new.values()), (-1, 2))
+        return np.insert(uv, places, values, axis=0), np.array(cusps, dtype=np.int64)
+
+    def _cusp_between(self, start: Array, end: Array, before: Array) -> Array:
+        """Return the cusp (2,) between two vertices."""
+        from scipy.optimize import brentq
+
+        def place(share: float) -> Array:
+            return self.curvature.onto_zeros(start[None] + share * (end - start))
+
+        def value(share: float) -> float:
+            change, along = self._change(place(share))
+            return float(change[0] * np.sign(along[0] @ before))
+
+        return place(float(brentq(value, 0.0, 1.0, xtol=1e-12)))[0]  # pyright: ignore[reportArgumentType]
+
+    def _change(self, uv: Array) -> tuple[Array, Array]:
+        """Return the change (k,) of K along the direction in which the normal does not turn.
+
+        It is relative to the length of the gradient of K. Also returns the direction (k, 2), by
+        shares of the domain.
+        """
+        _, gradient, _ = self.curvature.derivatives(uv)
+        u, v = self.curvature.extent
+        e, f, g = self.curvature.at(uv).second_form.T * [[u * u], [u * v], [v * v]]
+        along = np.where(np.abs(e) > np.abs(g), [-f, e], [g, -f]).T
+        with np.errstate(invalid="ignore"):
+            along = along / np.linalg.norm(along, axis=1, keepdims=True)
+            size = np.linalg.norm(gradient, axis=1)
+            changes = np.einsum("kx,kx->k", gradient, along) / size
+            changes = np.where(size > NO_CHANGE * np.nanmax(size), changes, 0.0)
+        return np.nan_to_num(changes), np.nan_to_num(along)
+
+
+# --- arguments ------------------------------------------------------------------------------------
 
 
 def checked_tolerance(tolerance: float) -> float:
@@ -351,10 +352,8 @@ def checked_tolerance(tolerance: float) -> float:
     return value
 
 
-def _panels(cells: Sequence[int] | None) -> tuple[int, int] | None:
-    if cells is None:
-        return None
-    m, n = pair_of_cells(cells)
+def _checked_cells(cells: Sequence[int] | None) -> tuple[int, int]:
+    m, n = (CELLS, CELLS) if cells is None else pair_of_cells(cells)
     if max(m, n) > MOST_CELLS:
         raise InputError(f"at most {MOST_CELLS} x {MOST_CELLS} cells can be used, not {m} x {n}.")
-    return m, n
+    return max(m, CELLS), max(n, CELLS)

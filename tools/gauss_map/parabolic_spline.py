@@ -27,7 +27,7 @@ AT_CORNER = 1e-9
 ASIDE = 1e-7
 
 
-def polylines_of(spline: Spline, classes: NDArray[np.int8]) -> list[tuple[Array, bool]]:
+def polylines_of(spline: Spline, classes: NDArray[np.int8]) -> list[Array]:
     """Return the polylines (k, 2) where the Gaussian curvature vanishes or changes sign.
 
     They are exact: in each patch and along its edges these curves are straight in the parameters.
@@ -54,7 +54,7 @@ def polylines_of(spline: Spline, classes: NDArray[np.int8]) -> list[tuple[Array,
         return tuple(np.round(np.mod(place + 0.1 * AT_CORNER, period) / AT_CORNER).tolist())
 
     pieces = [(node(x[0]), node(x[1]), x) for x in segments[left * right < 0]]
-    return [(spline.frame[:2] + x * spline.frame[2:], closed) for x, closed in joined(pieces)]
+    return [spline.frame[:2] + x * spline.frame[2:] for x, _ in joined(pieces)]
 
 
 def _places(spline: Spline, patch: NDArray[np.int64], local: Array) -> Array:

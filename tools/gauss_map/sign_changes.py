@@ -34,7 +34,7 @@ def sign_changes(
     # So vertices are in the middle third of their sides.
     apart = np.where(values >= 0.0, 1.0 + size, -1.0 - size)
     # contourpy counts the second axis first.
-    lines = contour_generator(z=apart.T, line_type=LineType.Separate).lines(0.0)
+    lines = contour_generator(z=apart.T, corner_mask=False, line_type=LineType.Separate).lines(0.0)
     if not lines:
         return []
     # The middles of the crossed sides, in halves of a cell.

@@ -1,0 +1,138 @@
+"""The Gaussian curvature of a smooth surface at its parameters: values, errors and derivatives."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from ...generated import gaussian_image as formulas
+from ...runtime.base.aliases import Array
+from ...runtime.base.formula_calls import python_function, vector
+from ...runtime.base.scales import scale_to_one
+from ...runtime.domain.domain import brought_inside
+from ...runtime.spline.quasi_interpolant import not_too_large
+from ...runtime.surface.derivatives import Differences, Function
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.tapes import jets_of
+
+__all__ = ["Curvature", "Known"]
+
+# The error of a second derivative that a formula gives, relative to its length.
+ROUNDING = 1e-13
+# K is zero where it is less than its estimated error times this.
+SURE = 4.0
+# Places at which K is computed at once.
+AT_A_TIME = 1 << 14
+# Steps for derivatives of K, and for its slope, which Newton's method needs, relative to the domain.
+STEP, SLOPE_STEP = 1 / 1024, 1e-6
+# Newton's method ends with a step of this size, relative to the domain.
+NEWTON_STEPS, ARRIVED = 5, 1e-13
+# The size of a surface is taken from so many places along u and along v.
+SIZES = 17
+
+
+class Known(NamedTuple):
+    """K (k,), how large its error may be (k,), and n·x_uu, n·x_uv, n·x_vv (k, 3) for n = x_u × x_v.
+
+    Lengths are relative to the size of the surface. NaN where the surface is singular.
+    """
+
+    K: Array
+    error: Array
+    second_form: Array
+
+
+class Curvature:
+    """K of a surface at parameters (k, 2), which may lie beyond a periodic end.
+
+    Derivatives of the surface are its formulas, those of its operations, or differences; the error
+    of these is taken from others with steps that are twice as long.
+    """
+
+    def __init__(self, surface: Surface) -> None:
+        """Raise SurfaceError if the surface cannot be evaluated."""
+        self.surface = surface
+        self.low, self.high = np.array(surface.domain).T
+        self.extent = self.high - self.low
+        self.wraps = np.array([ends[0] == "periodic" for ends in surface.boundary])
+        ends = np.where(self.wraps, np.inf, self.high)
+        self.ends = np.where(self.wraps, -np.inf, self.low), ends
+        lines = (np.linspace(*ends, SIZES) for ends in surface.domain)
+        places = surface.evaluate(*np.meshgrid(*lines)).reshape(-1, 3)
+        extent = np.ptp(not_too_large(places, surface.name), axis=0)
+        self.scale = scale_to_one(float(extent.max()))
+        self.size = float(np.linalg.norm(self.scale * extent)) / self.scale
+        tape = None if surface.differences is None else surface.tape
+        self._jets: Function = surface.jets if tape is None else partial(jets_of, tape)
+        self._coarser = None
+        if tape is None and surface.differences is not None:
+            self._coarser = replace(surface.differences, step=2.0 * surface.differences.step).jets
+        derivatives = Differences(self._thrice, surface.domain, surface.boundary, STEP)
+        self._derivatives = derivatives.jets
+
+    def jets(self, places: Array) -> Array:
+        """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) of the surface."""
+        return self._jets(*self._inside(places))
+
+    def at(self, places: Array) -> Known:
+        """Return K at places (k, 2), its error, and the second form."""
+        parts = [self._known(x) for x in np.array_split(places, len(places) // AT_A_TIME + 1)]
+        return Known(*(np.concatenate(x) for x in zip(*parts, strict=True)))
+
+    def derivatives(self, places: Array) -> tuple[Array, Array, Array]:
+        """Return K (k,), its gradient (k, 2) and its Hessian (k, 2, 2) by shares of the domain."""
+        K, u, v, uu, uv, vv = self._derivatives(*self._inside(places))[..., 0].T
+        gradient = np.stack([u, v], axis=1) * self.extent
+        hessian = np.stack([uu, uv, uv, vv], axis=1).reshape(-1, 2, 2)
+        return K, gradient, hessian * np.outer(self.extent, self.extent)
+
+    def onto_zeros(self, places: Array) -> Array:
+        """Move places (k, 2) close to curves K = 0 onto them, by Newton steps along the gradient.
+
+        Those on the border of the domain move along it. Places without such a zero near by, as
+        crossings and singular points, stay.
+        """
+        low, high = self.ends
+        forward = np.where(places < low + 0.5 * self.extent, SLOPE_STEP, -SLOPE_STEP)
+        free = (low < places) & (places < high)
+        moved, share = places, np.zeros_like(places)
+        with np.errstate(all="ignore"):
+            for _ in range(NEWTON_STEPS):
+                stencil = moved + forward * np.concatenate([[[0.0, 0.0]], np.diag(self.extent)])[:, None]
+                K, in_u, in_v = self.at(stencil.reshape(-1, 2)).K.reshape(3, -1)
+                slope = free * (np.stack([in_u, in_v], axis=1) - K[:, None]) / forward
+                share = K[:, None] * slope / np.square(slope).sum(axis=1, keepdims=True)
+                moved = moved - share * self.extent
+                if not (np.abs(share) > ARRIVED).any():
+                    break
+        near = (np.abs(share) <= SLOPE_STEP).all(axis=1)
+        inside = ((low <= moved) & (moved <= high)).all(axis=1)
+        return np.where((near & inside)[:, None], moved, places)
+
+    def _known(self, places: Array) -> Known:
+        u, v = self._inside(places)
+        jets = self.scale * self._jets(u, v)
+        p_u, p_v, *second = (jets[:, k] for k in range(1, 6))
+        formula = python_function(formulas.gaussian_curvature_of_derivatives)
+        with np.errstate(all="ignore"):
+            K, *form = formula(*map(vector, (p_u, p_v, *second)))
+            area = np.linalg.norm(np.cross(p_u, p_v), axis=1)
+            condition = np.linalg.norm(p_u, axis=1) * np.linalg.norm(p_v, axis=1) / area
+            errors = [ROUNDING * condition * np.linalg.norm(x, axis=1) for x in second]
+            if self._coarser is not None:
+                apart = self.scale * self._coarser(u, v)[:, 3:] - jets[:, 3:]
+                errors = [x + y for x, y in zip(errors, np.linalg.norm(apart, axis=2).T, strict=True)]
+            (a, b, c), (A, B, C) = errors, (np.abs(x) / area for x in form)
+            error = (a * C + c * A + 2.0 * b * B + a * c + b * b) / area**2
+        return Known(K, SURE * error, np.stack(np.broadcast_arrays(*form), axis=1))
+
+    def _thrice(self, u: Array, v: Array) -> Array:
+        """Return K in three columns, for differences of points."""
+        return np.repeat(self.at(np.stack([u, v], axis=1)).K[:, None], 3, axis=1)
+
+    def _inside(self, places: Array) -> tuple[Array, Array]:
+        u, v = places.T.copy()
+        return brought_inside(u, v, self.surface.domain, self.surface.boundary)

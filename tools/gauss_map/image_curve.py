@@ -1,0 +1,152 @@
+"""Curves of a surface with their images on the sphere, at which the number of points changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Indices
+from ...runtime.domain.domain import brought_inside
+from ...runtime.place.on_spline import OnSpline
+from ...runtime.spline.spline import Spline
+from .polylines import distances, refined
+
+__all__ = ["ImageCurve", "Traced", "followed", "jets_of_spline"]
+
+OfPlaces = Callable[[Array], Array]
+NO_CUSPS: Indices = np.empty(0, dtype=np.int64)
+# Curves whose ends are this near to each other, relative to their size, are closed.
+CLOSED = 1e-6
+# The nearest point of a curve is searched among this number of places, then among as many between
+# the neighbours of the nearest one, and so on; at last between these, on chords.
+PLACES, ROUNDS = 9, 5
+
+
+@dataclass(frozen=True, eq=False)
+class ImageCurve:
+    """A curve of a surface at whose image the number of points with a normal changes.
+
+    Attributes
+    ----------
+    uv : (k, 2) float64 array
+        Parameters of the vertices. In a periodic direction they continue beyond the end of the
+        domain, without jumps.
+    points : (k, 3) float64 array
+        The vertices in space, in L.
+    normals : (k, 3) float64 array
+        The unit normals there: the image; NaN where the surface is singular.
+    closed : bool
+        Whether the curve is closed; its last vertex then repeats the first.
+    cusps : (c,) int64 array
+        Which vertices are cusps of the image of a parabolic curve.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> fold = gm.GaussMap("wavy_graph").folds()[0]
+    >>> len(fold.uv) == len(fold.points) == len(fold.normals), fold.closed, fold.cusps.dtype
+    (True, False, dtype('int64'))
+
+    """
+
+    uv: Array
+    points: Array
+    normals: Array
+    closed: bool
+    cusps: Indices
+
+    def __repr__(self) -> str:
+        kind = "closed" if self.closed else "open"
+        return f"ImageCurve({kind}, {len(self.uv):,} vertices, {len(self.cusps):,} cusps)"
+
+    def part(self, first: int, last: int) -> ImageCurve:
+        """Return the curve through the vertices from `first` to before `last`."""
+        if last - first == len(self.uv):
+            return self
+        rows = slice(first, last)
+        cusps = self.cusps[(self.cusps >= first) & (self.cusps < last)] - first
+        return ImageCurve(self.uv[rows], self.points[rows], self.normals[rows], False, cusps)
+
+
+@dataclass(frozen=True, eq=False)
+class Traced:
+    """A curve of a surface or a spline.
+
+    `jets` returns 2-jets (k, 6, 3) at parameters (k, 2), and `onto` moves parameters on chords of
+    the curve to the curve.
+    """
+
+    curve: ImageCurve
+    jets: OfPlaces
+    onto: OfPlaces
+
+    def part(self, first: int, last: int) -> Traced:
+        """Return the curve through the vertices from `first` to before `last`."""
+        return replace(self, curve=self.curve.part(first, last))
+
+    def angles(self, normals: Array) -> Array:
+        """Return the angles (S,), in radians, from normals to the image."""
+        from scipy.spatial import KDTree
+
+        uv, last = self.curve.uv, len(self.curve.uv) - 1
+        nearest = KDTree(self.curve.normals).query(normals)[1]
+        low, high = np.maximum(nearest - 1.0, 0.0), np.minimum(nearest + 1.0, last)
+        image = np.empty((PLACES, len(normals), 3))
+        for _ in range(ROUNDS):
+            places = np.linspace(low, high, PLACES)
+            index = np.minimum(places.astype(np.int64), last - 1)
+            chord = uv[index] + (places - index)[..., None] * (uv[index + 1] - uv[index])
+            found = _points_and_normals(self.jets(self.onto(chord.reshape(-1, 2))))[1]
+            image = found.reshape(*places.shape, 3)
+            apart = np.nan_to_num(np.linalg.norm(image - normals, axis=2), nan=2.0)
+            best = apart.argmin(axis=0)
+            low, high = (
+                np.take_along_axis(places, np.clip(best + x, 0, PLACES - 1)[None], axis=0)[0]
+                for x in (-1, 1)
+            )
+        sides = [distances(normals, *ends) for ends in pairwise(image)]
+        return 2.0 * np.arcsin(np.minimum(np.nanmin(sides, axis=0) / 2.0, 1.0))
+
+
+def followed(
+    uv: Array,
+    jets: OfPlaces,
+    size: float,
+    tolerance: float,
+    onto: OfPlaces = lambda places: places,
+    with_cusps: Callable[[Array], tuple[Array, Indices]] = lambda uv: (uv, NO_CUSPS),
+) -> Traced:
+    """Insert vertices into a polyline (k, 2) until it and its image are near a curve.
+
+    The tolerance is relative to the size of the surface, and in radians. `with_cusps` returns the
+    vertices with those that are cusps, and which these are.
+    """
+
+    def both(uv: Array) -> Array:
+        points, normals = _points_and_normals(jets(uv))
+        return np.hstack([points / size if size else points, normals])
+
+    uv, cusps = with_cusps(refined(uv, both, tolerance, onto))
+    points, normals = _points_and_normals(jets(uv))
+    closed = bool(np.linalg.norm(points[0] - points[-1]) <= CLOSED * np.ptp(points, axis=0).max())
+    return Traced(ImageCurve(uv, points, normals, closed, cusps), jets, onto)
+
+
+def jets_of_spline(spline: Spline) -> OfPlaces:
+    """Return the function that gives the 2-jets (k, 6, 3) of a spline at parameters (k, 2)."""
+    jets = OnSpline(spline).jets
+
+    def of_places(uv: Array) -> Array:
+        return jets(*brought_inside(*uv.T.copy(), spline.domain, spline.boundary))
+
+    return of_places
+
+
+def _points_and_normals(jets: Array) -> tuple[Array, Array]:
+    """Return points and unit normals (k, 3); NaN at singular points."""
+    normals = np.cross(jets[:, 1], jets[:, 2])
+    with np.errstate(invalid="ignore"):
+        return jets[:, 0], normals / np.linalg.norm(normals, axis=1, keepdims=True)
