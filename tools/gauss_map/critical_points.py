@@ -92,7 +92,9 @@ def _may_be_critical(grid: SignGrid) -> Flags:
     gradient = np.stack([u, v], axis=-1).reshape(-1, 2)
     hessian = np.stack([uu, uv, uv, vv], axis=-1).reshape(-1, 2, 2)
     known = np.isfinite(hessian).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1)
-    hessian, gradient = (np.where(known[:, *[None] * (x.ndim - 1)], x, 0.0) for x in (hessian, gradient))
+    hessian, gradient = (
+        np.where(known[:, *[None] * (x.ndim - 1)], x, 0.0) for x in (hessian, gradient)
+    )
     step = _newton_step(gradient, hessian, CONSTANT_BY_NODES)
     least = K.ravel() - 0.5 * np.einsum("kx,kx->k", gradient, step)
     near = (np.abs(step) <= FARTHEST_BY_NODES).all(axis=1)

@@ -12,9 +12,10 @@ from ...generated import gaussian_image as formulas
 from ...runtime.base.aliases import Array
 from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.scales import scale_to_one
+from ...runtime.base.tolerances import DERIVATIVE_ERROR
 from ...runtime.domain.domain import brought_inside
 from ...runtime.spline.quasi_interpolant import not_too_large
-from ...runtime.surface.derivatives import Differences, Function
+from ...runtime.surface.derivatives import Function, differences
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.tapes import jets_of
 
@@ -28,8 +29,8 @@ SURE = 4.0
 AT_A_TIME = 1 << 14
 # Steps for derivatives of K, and for its slope, which Newton's method needs, relative to the domain.
 STEP, SLOPE_STEP = 1 / 1024, 1e-6
-# Newton's method ends with a step of this size, relative to the domain.
-NEWTON_STEPS, ARRIVED = 5, 1e-13
+# Newton's method ends with a step of this size, relative to the domain; none is larger than the last.
+NEWTON_STEPS, ARRIVED, FARTHEST = 5, 1e-13, 0.1
 # The size of a surface is taken from so many places along u and along v.
 SIZES = 17
 
@@ -67,11 +68,11 @@ class Curvature:
         self.size = float(np.linalg.norm(self.scale * extent)) / self.scale
         tape = None if surface.differences is None else surface.tape
         self._jets: Function = surface.jets if tape is None else partial(jets_of, tape)
-        self._coarser = None
+        self._coarser, self._rounding = None, 0.0
         if tape is None and surface.differences is not None:
             self._coarser = replace(surface.differences, step=2.0 * surface.differences.step).jets
-        derivatives = Differences(self._thrice, surface.domain, surface.boundary, STEP)
-        self._derivatives = derivatives.jets
+            rounding = DERIVATIVE_ERROR * np.spacing(self.scale * float(np.abs(places).max()))
+            self._rounding = rounding / np.outer(self.extent, self.extent)[[0, 0, 1], [0, 1, 1]]
 
     def jets(self, places: Array) -> Array:
         """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) of the surface."""
@@ -84,7 +85,9 @@ class Curvature:
 
     def derivatives(self, places: Array) -> tuple[Array, Array, Array]:
         """Return K (k,), its gradient (k, 2) and its Hessian (k, 2, 2) by shares of the domain."""
-        K, u, v, uu, uv, vv = self._derivatives(*self._inside(places))[..., 0].T
+        steps, (in_u, in_v) = STEP * self.extent, np.stack(self.ends, axis=1).tolist()
+        jets, _ = differences(self._thrice, *places.T, (steps[0], steps[1]), (in_u, in_v))
+        K, u, v, uu, uv, vv = jets[..., 0].T
         gradient = np.stack([u, v], axis=1) * self.extent
         hessian = np.stack([uu, uv, uv, vv], axis=1).reshape(-1, 2, 2)
         return K, gradient, hessian * np.outer(self.extent, self.extent)
@@ -101,16 +104,18 @@ class Curvature:
         moved, share = places, np.zeros_like(places)
         with np.errstate(all="ignore"):
             for _ in range(NEWTON_STEPS):
-                stencil = moved + forward * np.concatenate([[[0.0, 0.0]], np.diag(self.extent)])[:, None]
+                stencil = (
+                    moved + forward * np.concatenate([[[0.0, 0.0]], np.diag(self.extent)])[:, None]
+                )
                 K, in_u, in_v = self.at(stencil.reshape(-1, 2)).K.reshape(3, -1)
                 slope = free * (np.stack([in_u, in_v], axis=1) - K[:, None]) / forward
                 share = K[:, None] * slope / np.square(slope).sum(axis=1, keepdims=True)
-                moved = moved - share * self.extent
+                step = np.clip(np.nan_to_num(share), -FARTHEST, FARTHEST) * self.extent
+                moved = np.clip(moved - step, low, high)
                 if not (np.abs(share) > ARRIVED).any():
                     break
         near = (np.abs(share) <= SLOPE_STEP).all(axis=1)
-        inside = ((low <= moved) & (moved <= high)).all(axis=1)
-        return np.where((near & inside)[:, None], moved, places)
+        return np.where(near[:, None], moved, places)
 
     def _known(self, places: Array) -> Known:
         u, v = self._inside(places)
@@ -121,11 +126,11 @@ class Curvature:
             K, *form = formula(*map(vector, (p_u, p_v, *second)))
             area = np.linalg.norm(np.cross(p_u, p_v), axis=1)
             condition = np.linalg.norm(p_u, axis=1) * np.linalg.norm(p_v, axis=1) / area
-            errors = [ROUNDING * condition * np.linalg.norm(x, axis=1) for x in second]
+            errors = ROUNDING * condition[:, None] * np.linalg.norm(jets[:, 3:], axis=2)
             if self._coarser is not None:
                 apart = self.scale * self._coarser(u, v)[:, 3:] - jets[:, 3:]
-                errors = [x + y for x, y in zip(errors, np.linalg.norm(apart, axis=2).T, strict=True)]
-            (a, b, c), (A, B, C) = errors, (np.abs(x) / area for x in form)
+                errors = errors + np.linalg.norm(apart, axis=2) + self._rounding
+            (a, b, c), (A, B, C) = errors.T, (np.abs(x) / area for x in form)
             error = (a * C + c * A + 2.0 * b * B + a * c + b * b) / area**2
         return Known(K, SURE * error, np.stack(np.broadcast_arrays(*form), axis=1))
 

@@ -49,7 +49,7 @@ class SignGrid:
         K, error, _ = curvature.at(self.at(np.argwhere(np.ones(shape))))
         K, error = K.reshape(shape), error.reshape(shape)
         with np.errstate(invalid="ignore"):
-            usual = 1.0 + np.median(np.abs(K[np.isfinite(K)])) if np.isfinite(K).any() else 1.0
+            usual = 1.0 + np.median(np.where(np.abs(K) > error, np.abs(K), 0.0))
             known = np.isfinite(K) & (error <= RESOLVED * np.maximum(np.abs(K), usual))
         self.zero = known & (np.abs(K) <= error)
         signs = np.where(known & ~self.zero, np.sign(K), 0.0)
