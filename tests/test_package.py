@@ -20,7 +20,7 @@ NAMESPACES = {
     "directions": "cap circle covering_radius fibonacci healpix icosphere polygon random",
     "errors": "FileError GaussmapError GaussmapWarning InputError MissingExtraError "
     "MissingFieldError SurfaceError UnknownNameError",
-    "gauss_map": "BoundaryArc GaussianImage GaussianImages ImageCurve ParabolicCurve "
+    "gauss_map": "BoundaryArc GaussianImage GaussianImages ImageCurve "
     "ParabolicLine ParabolicPoint ParabolicPoints PatchClass Piece classify_patches "
     "parabolic_lines parabolic_points split_patch",
 }

@@ -11,8 +11,8 @@ from .sign_grid import SignGrid
 
 __all__ = ["CriticalZeros", "critical_zeros"]
 
-# Newton's method ends with a step of this size, relative to the domain; it is slow where K is of the
-# order four.
+# Newton's method ends with a step of this size, relative to the domain; it is slow where K is of
+# the order four.
 NEWTON_STEPS, ARRIVED = 40, 1e-10
 # K is zero at a critical point where it would be at this distance, relative to the domain.
 TOUCHING = 1e-7
@@ -91,7 +91,7 @@ def _may_be_critical(grid: SignGrid) -> Flags:
     (uu, uv), (_, vv) = np.gradient(u, *lines), np.gradient(v, *lines)
     gradient = np.stack([u, v], axis=-1).reshape(-1, 2)
     hessian = np.stack([uu, uv, uv, vv], axis=-1).reshape(-1, 2, 2)
-    known = np.isfinite(hessian).all(axis=(1, 2)) & np.isfinite(gradient).all(axis=1)
+    known = np.isfinite(np.column_stack([hessian.reshape(-1, 4), gradient])).all(axis=1)
     hessian, gradient = (
         np.where(known[:, *[None] * (x.ndim - 1)], x, 0.0) for x in (hessian, gradient)
     )
@@ -113,7 +113,7 @@ def _wrapped(grid: SignGrid, places: Array) -> Array:
 
 def _eigenvalues(hessian: Array) -> Array:
     """Return the lower and the higher eigenvalue (2, k) of symmetric matrices (k, 2, 2)."""
-    return np.linalg.eigvalsh(hessian).T
+    return np.linalg.eigvalsh(hessian).T.astype(np.float64)
 
 
 def _half_distance_is_less(size: float | Array, K: Array, hessian: Array) -> Flags:

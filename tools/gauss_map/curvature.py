@@ -27,9 +27,10 @@ ROUNDING = 1e-13
 SURE = 4.0
 # Places at which K is computed at once.
 AT_A_TIME = 1 << 14
-# Steps for derivatives of K, and for its slope, which Newton's method needs, relative to the domain.
+# Steps for derivatives of K, and for its slope in Newton's method, relative to the domain.
 STEP, SLOPE_STEP = 1 / 1024, 1e-6
-# Newton's method ends with a step of this size, relative to the domain; none is larger than the last.
+# Newton's method ends with a step of the second size, relative to the domain; none is larger than
+# the third.
 NEWTON_STEPS, ARRIVED, FARTHEST = 5, 1e-13, 0.1
 # The size of a surface is taken from so many places along u and along v.
 SIZES = 17
@@ -85,8 +86,9 @@ class Curvature:
 
     def derivatives(self, places: Array) -> tuple[Array, Array, Array]:
         """Return K (k,), its gradient (k, 2) and its Hessian (k, 2, 2) by shares of the domain."""
+        u, v = places.T.copy()
         steps, (in_u, in_v) = STEP * self.extent, np.stack(self.ends, axis=1).tolist()
-        jets, _ = differences(self._thrice, *places.T, (steps[0], steps[1]), (in_u, in_v))
+        jets, _ = differences(self._thrice, u, v, (steps[0], steps[1]), (in_u, in_v))
         K, u, v, uu, uv, vv = jets[..., 0].T
         gradient = np.stack([u, v], axis=1) * self.extent
         hessian = np.stack([uu, uv, uv, vv], axis=1).reshape(-1, 2, 2)
@@ -124,8 +126,8 @@ class Curvature:
         formula = python_function(formulas.gaussian_curvature_of_derivatives)
         with np.errstate(all="ignore"):
             K, *form = formula(*map(vector, (p_u, p_v, *second)))
-            area = np.linalg.norm(np.cross(p_u, p_v), axis=1)
-            condition = np.linalg.norm(p_u, axis=1) * np.linalg.norm(p_v, axis=1) / area
+            area: Array = np.linalg.norm(np.cross(p_u, p_v), axis=1)
+            condition: Array = np.linalg.norm(p_u, axis=1) * np.linalg.norm(p_v, axis=1) / area
             errors = ROUNDING * condition[:, None] * np.linalg.norm(jets[:, 3:], axis=2)
             if self._coarser is not None:
                 apart = self.scale * self._coarser(u, v)[:, 3:] - jets[:, 3:]

@@ -140,7 +140,8 @@ def jets_of_spline(spline: Spline) -> OfPlaces:
     jets = OnSpline(spline).jets
 
     def of_places(uv: Array) -> Array:
-        return jets(*brought_inside(*uv.T.copy(), spline.domain, spline.boundary))
+        u, v = uv.T.copy()
+        return jets(*brought_inside(u, v, spline.domain, spline.boundary))
 
     return of_places
 

@@ -276,9 +276,9 @@ class _Zeros:
         here = np.zeros(self.grid.flat.shape, dtype=bool)
         here[cells] = True
         groups = np.zeros(here.shape, dtype=np.int64)
-        number = label(maximum_filter(here, 2 * TOGETHER + 1), output=groups)
+        label(maximum_filter(here, 2 * TOGETHER + 1), output=groups)
         found = []
-        for k in range(1, int(number) + 1):
+        for k in range(1, groups.max(initial=0) + 1):
             own = groups[cells] == k
             box = np.stack([(touched - reach)[own].min(axis=0), (touched + reach)[own].max(axis=0)])
             middle = np.abs(touched[own] - box.mean(axis=0)).max(axis=1).argmin()

@@ -53,7 +53,7 @@ class SignGrid:
             known = np.isfinite(K) & (error <= RESOLVED * np.maximum(np.abs(K), usual))
         self.zero = known & (np.abs(K) <= error)
         signs = np.where(known & ~self.zero, np.sign(K), 0.0)
-        modes = ["wrap" if wraps else "nearest" for wraps in curvature.wraps]
+        modes: Any = ["wrap" if wraps else "nearest" for wraps in curvature.wraps]
         largest, least = (f(signs, 3, mode=modes) for f in (maximum_filter, minimum_filter))
         around = np.where(largest > 0.0, largest, np.where(least < 0.0, least, np.nan))
         size = np.where(known, np.maximum(np.abs(K), TINY), 1.0)
@@ -64,10 +64,14 @@ class SignGrid:
             side[-1] = side[0]
         corners = of_corners(self.values)
         decided = np.isfinite(corners).all(axis=0)
-        self.flat = of_corners(self.zero | ~known).all(axis=0) & of_corners(self.zero).any(axis=0)
-        self.unknown = ~decided & ~self.flat
-        self.crossed = decided & (corners >= 0.0).any(axis=0) & (corners < 0.0).any(axis=0)
-        self.near_curves: Flags = maximum_filter(self.crossed | ~decided, 3, mode=modes)
+        zero = of_corners(self.zero)
+        flat = [(zero | of_corners(~known)).all(axis=0), zero.any(axis=0)]
+        self.flat: Flags = np.logical_and.reduce(flat)
+        self.unknown: Flags = ~decided & ~self.flat
+        crossed = [decided, (corners >= 0.0).any(axis=0), (corners < 0.0).any(axis=0)]
+        self.crossed: Flags = np.logical_and.reduce(crossed)
+        near = maximum_filter(self.crossed | ~decided, 3, mode=modes)
+        self.near_curves: Flags = near.astype(bool)
 
     def cells_at(self, places: Array) -> tuple[Indices, Indices]:
         """Return the cells (i, j) that hold places (k, 2) of the domain."""
