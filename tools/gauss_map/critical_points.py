@@ -85,6 +85,8 @@ def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
 
 def _may_be_critical(grid: SignGrid) -> Flags:
     """Return the nodes next to which, by differences, a critical point with K near zero may be."""
+    from scipy.ndimage import minimum_filter
+
     K = np.where(grid.zero, 0.0, grid.values)
     lines = [line / cell for line, cell in zip(grid.lines, grid.cell, strict=True)]
     u, v = np.gradient(K, *lines)
@@ -92,17 +94,12 @@ def _may_be_critical(grid: SignGrid) -> Flags:
     gradient = np.stack([u, v], axis=-1).reshape(-1, 2)
     hessian = np.stack([uu, uv, uv, vv], axis=-1).reshape(-1, 2, 2)
     known = np.isfinite(np.column_stack([hessian.reshape(-1, 4), gradient])).all(axis=1)
-    hessian, gradient = (
-        np.where(known[:, *[None] * (x.ndim - 1)], x, 0.0) for x in (hessian, gradient)
-    )
+    hessian[~known], gradient[~known] = 0.0, 0.0
     step = _newton_step(gradient, hessian, CONSTANT_BY_NODES)
     least = K.ravel() - 0.5 * np.einsum("kx,kx->k", gradient, step)
     near = (np.abs(step) <= FARTHEST_BY_NODES).all(axis=1)
     near &= _half_distance_is_less(FARTHEST_BY_NODES, least, hessian)
-    flat = np.ones(K.shape, dtype=bool)
-    for i, j in np.argwhere(np.ones((2, 2))):
-        flat[i : i + len(K) - 1, j : j + K.shape[1] - 1] &= grid.flat
-    return (known & near).reshape(K.shape) & ~flat
+    return (known & near).reshape(K.shape) & ~minimum_filter(grid.zero, 3)
 
 
 def _wrapped(grid: SignGrid, places: Array) -> Array:

@@ -127,8 +127,9 @@ class Curvature:
         with np.errstate(all="ignore"):
             K, *form = formula(*map(vector, (p_u, p_v, *second)))
             area: Array = np.linalg.norm(np.cross(p_u, p_v), axis=1)
-            condition: Array = np.linalg.norm(p_u, axis=1) * np.linalg.norm(p_v, axis=1) / area
-            errors = ROUNDING * condition[:, None] * np.linalg.norm(jets[:, 3:], axis=2)
+            lengths = np.linalg.norm(jets, axis=2)
+            condition = lengths[:, 1] * lengths[:, 2] / area
+            errors = ROUNDING * (condition * lengths[:, 3:].T).T
             if self._coarser is not None:
                 apart = self.scale * self._coarser(u, v)[:, 3:] - jets[:, 3:]
                 errors = errors + np.linalg.norm(apart, axis=2) + self._rounding

@@ -62,14 +62,6 @@ class ImageCurve:
         kind = "closed" if self.closed else "open"
         return f"ImageCurve({kind}, {len(self.uv):,} vertices, {len(self.cusps):,} cusps)"
 
-    def part(self, first: int, last: int) -> ImageCurve:
-        """Return the curve through the vertices from `first` to before `last`."""
-        if last - first == len(self.uv):
-            return self
-        rows = slice(first, last)
-        cusps = self.cusps[(self.cusps >= first) & (self.cusps < last)] - first
-        return ImageCurve(self.uv[rows], self.points[rows], self.normals[rows], False, cusps)
-
 
 @dataclass(frozen=True, eq=False)
 class Traced:
@@ -85,7 +77,12 @@ class Traced:
 
     def part(self, first: int, last: int) -> Traced:
         """Return the curve through the vertices from `first` to before `last`."""
-        return replace(self, curve=self.curve.part(first, last))
+        whole, rows = self.curve, slice(first, last)
+        if last - first == len(whole.uv):
+            return self
+        cusps = whole.cusps[(whole.cusps >= first) & (whole.cusps < last)] - first
+        arrays = (x[rows] for x in (whole.uv, whole.points, whole.normals))
+        return replace(self, curve=ImageCurve(*arrays, False, cusps))
 
     def angles(self, normals: Array) -> Array:
         """Return the angles (S,), in radians, from normals to the image."""
