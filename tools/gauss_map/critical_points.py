@@ -99,7 +99,7 @@ def _may_be_critical(grid: SignGrid) -> Flags:
     least = K.ravel() - 0.5 * np.einsum("kx,kx->k", gradient, step)
     near = (np.abs(step) <= FARTHEST_BY_NODES).all(axis=1)
     near &= _half_distance_is_less(FARTHEST_BY_NODES, least, hessian)
-    return (known & near).reshape(K.shape) & ~minimum_filter(grid.zero, 3)
+    return (known & near).reshape(K.shape) & (minimum_filter(grid.zero, 3) == 0)
 
 
 def _wrapped(grid: SignGrid, places: Array) -> Array:

@@ -116,8 +116,8 @@ class Curvature:
                 moved = np.clip(moved - step, low, high)
                 if not (np.abs(share) > ARRIVED).any():
                     break
-        near = (np.abs(share) <= SLOPE_STEP).all(axis=1)
-        return np.where(near[:, None], moved, places)
+        near = (np.abs(share) <= SLOPE_STEP).all(axis=1, keepdims=True)
+        return np.where(near, moved, places)
 
     def _known(self, places: Array) -> Known:
         u, v = self._inside(places)

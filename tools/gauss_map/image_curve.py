@@ -81,8 +81,10 @@ class Traced:
         if last - first == len(whole.uv):
             return self
         cusps = whole.cusps[(whole.cusps >= first) & (whole.cusps < last)] - first
-        arrays = (x[rows] for x in (whole.uv, whole.points, whole.normals))
-        return replace(self, curve=ImageCurve(*arrays, False, cusps))
+        curve = ImageCurve(
+            whole.uv[rows], whole.points[rows], whole.normals[rows], closed=False, cusps=cusps
+        )
+        return replace(self, curve=curve)
 
     def angles(self, normals: Array) -> Array:
         """Return the angles (S,), in radians, from normals to the image."""
