@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from ..base.aliases import Array, Indices
 from ..base.threads import over_ranges
-from ..kernels.centres import link_cells, move_to_centres
 from ..kernels.greedy import choose_far, update_distances
 from ..kernels.hash_grids import LEVELS, SQUARE, HashGrids, measure, sort_candidates
 
-__all__ = ["Candidates"]
+__all__ = ["Candidates", "Part"]
 
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
@@ -23,7 +22,6 @@ Result = TypeVar("Result")
 PART, MOST = 1 << 16, 64
 # Candidates nearer to a sample than this part of a radius are left out of the next searches.
 LEFT_OUT = 0.7
-CENTRES_AT_A_TIME = 1 << 9
 
 
 class Candidates:
@@ -46,20 +44,20 @@ class Candidates:
         With `split`, many candidates are split into parts for the threads; rows that follow one
         another should be neighbours then.
         """
-        count, self.radius, self._threads = len(rows), radius, threads
+        count, self.radius, self.threads = len(rows), radius, threads
         parts = min(max(count // PART, 1), MOST) if split else 1
         self._order, self._sorted = np.empty(count, dtype=np.int32), np.empty((count, 8))
         self._nearest = np.full(count, -1, dtype=np.int32)
         edges = np.linspace(0, count, parts + 1).astype(np.int64)
 
-        def part(k: int) -> _Part:
+        def part(k: int) -> Part:
             here = slice(int(edges[k]), int(edges[k + 1]))
             order = self._order[here]
-            made = _Part(rows[here], radius, order, self._sorted[here], self._nearest[here])
+            made = Part(rows[here], radius, order, self._sorted[here], self._nearest[here])
             order += np.int32(here.start)
             return made
 
-        self._parts = self._each(part, parts)
+        self.parts = self._each(part, parts)
 
     @property
     def distances(self) -> Array:
@@ -74,21 +72,21 @@ class Candidates:
     def update_distances(self, samples: Array, radius: float) -> None:
         """Update the distances within a radius of samples (N, 6), point and unit normal."""
         samples = np.ascontiguousarray(samples)
-        self._each(lambda k: self._parts[k].update_distances(samples, radius), len(self._parts))
+        self._each(lambda k: self.parts[k].update_distances(samples, radius), len(self.parts))
 
     def update_far(self, samples: Array, radius: float) -> None:
         """Update the distances of parts in which some are infinite."""
         samples = np.ascontiguousarray(samples)
 
         def update(k: int) -> None:
-            if np.isinf(self._parts[k].grids.candidates[:, SQUARE]).any():
-                self._parts[k].update_distances(samples, radius)
+            if np.isinf(self.parts[k].grids.candidates[:, SQUARE]).any():
+                self.parts[k].update_distances(samples, radius)
 
-        self._each(update, len(self._parts))
+        self._each(update, len(self.parts))
 
     def reset_distances(self) -> None:
         """Make all distances infinite again."""
-        self._each(lambda k: self._parts[k].reset_distances(), len(self._parts))
+        self._each(lambda k: self.parts[k].reset_distances(), len(self.parts))
 
     def choose(self, radius: float, most: int) -> Indices:
         """Choose candidates until all others are within a radius of a sample or a chosen one.
@@ -100,56 +98,38 @@ class Candidates:
         # Every other part at a time: neighbours would choose candidates that are close to one
         # another.
         for turn in (0, 1):
-            now = range(turn, len(self._parts), 2)
-            rows = self._each(lambda i, now=now: self._parts[now[i]].choose(radius), len(now))
+            now = range(turn, len(self.parts), 2)
+            rows = self._each(lambda i, now=now: self.parts[now[i]].choose(radius), len(now))
             found |= zip(now, rows, strict=True)
             self._update_other_parts(dict(zip(now, rows, strict=True)), radius)
-        rows = [part.order[found[k]] for k, part in enumerate(self._parts)]
+        rows = [part.order[found[k]] for k, part in enumerate(self.parts)]
         chosen = np.concatenate(rows).astype(np.int64)
         return chosen if len(chosen) <= most else chosen[np.arange(most) * len(chosen) // most]
 
-    def centres(self, count: int) -> Indices:
-        """Return for each of `count` samples the candidate at the centre of its Voronoi cell.
-
-        The cell is the candidates that are nearest to the sample; the row of the one nearest to the
-        centre of the smallest ball around them is returned, −1 if there are none. All samples must
-        have updated the distances at once, and none be chosen since.
-        """
-        heads, links = (np.full(x, -1, dtype=np.int32) for x in (count, len(self._order)))
-        link_cells(self._nearest, heads, links)
-        found = np.empty(count, dtype=np.int64)
-
-        def work(first: int, last: int) -> None:
-            move_to_centres(self._sorted, heads, links, first, last, found)
-
-        for _ in over_ranges(work, count, CENTRES_AT_A_TIME, self._threads):
-            pass
-        return np.where(found < 0, -1, self._order[found])
-
     def _update_other_parts(self, chosen: Mapping[int, Numbers], radius: float) -> None:
         """Update the distances of every part for the candidates chosen in all other parts."""
-        numbers = np.zeros(len(self._parts) + 1, dtype=np.int64)
+        numbers = np.zeros(len(self.parts) + 1, dtype=np.int64)
         for k, rows in chosen.items():
             numbers[k + 1] = len(rows)
         ends = np.cumsum(numbers)
-        if ends[-1] == 0 or len(self._parts) == 1:
+        if ends[-1] == 0 or len(self.parts) == 1:
             return
         samples = np.concatenate(
-            [self._parts[k].grids.candidates[rows, :6] for k, rows in chosen.items()]
+            [self.parts[k].grids.candidates[rows, :6] for k, rows in chosen.items()]
         )
 
         def update(k: int) -> None:
             for others in (samples[: ends[k]], samples[ends[k + 1] :]):
                 if len(others):
-                    self._parts[k].update_distances(others, radius)
+                    self.parts[k].update_distances(others, radius)
 
-        self._each(update, len(self._parts))
+        self._each(update, len(self.parts))
 
     def _each(self, work: Callable[[int], Result], count: int) -> list[Result]:
-        return list(over_ranges(lambda first, last: work(first), count, 1, self._threads))
+        return list(over_ranges(lambda first, last: work(first), count, 1, self.threads))
 
 
-class _Part:
+class Part:
     """Candidates in hash grids of their own."""
 
     def __init__(

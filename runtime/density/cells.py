@@ -28,6 +28,7 @@ __all__ = [
 
 # The columns of `numbers`, see kernels/cells.py.
 RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)
+SIDES, NUMBERS = slice(8, 14), 14
 # The extent of cells that stand for a place, relative to the domain of their piece.
 POINT = 1e-9
 
@@ -36,7 +37,7 @@ POINT = 1e-9
 class Cells:
     """M cells of `pieces` (M,), by number: boxes (M, 4), u0, v0, u1, v1, and places (M, 2).
 
-    `whole` (M,) says that no border passes them. `rows` and `numbers` (M, 8) are those of
+    `whole` (M,) says that no border passes them. `rows` (M, 8) and `numbers` (M, 14) are those of
     kernels/cells.py, lengths and curvatures scaled as in `Space`.
     """
 
@@ -105,7 +106,8 @@ def into_parts(cells: Cells, parts: Indices) -> Cells:
     last = place + 1 == parts[owner]
     boxes[:, 2:] = np.where(last, cells.boxes[owner, 2:], boxes[:, 2:])
     made = new_cells(cells.pieces[owner], boxes)
-    return replace(made, whole=cells.whole[owner], numbers=cells.numbers[owner])
+    made.numbers[:, LIMIT] = cells.numbers[owner, LIMIT]
+    return replace(made, whole=cells.whole[owner])
 
 
 def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
@@ -122,7 +124,7 @@ def new_cells(pieces: Indices, boxes: Array, whole: bool = False) -> Cells:
     count = len(pieces)
     places = (boxes[:, :2] + boxes[:, 2:]) / 2.0
     flags = np.full(count, whole)
-    return Cells(pieces, boxes, places, flags, np.zeros((count, 8)), np.zeros((count, 8)))
+    return Cells(pieces, boxes, places, flags, np.zeros((count, 8)), np.zeros((count, NUMBERS)))
 
 
 def points_of(pieces: Indices, places: Array, sizes: Array) -> Cells:

@@ -10,9 +10,10 @@ import numpy as np
 from ..base.aliases import Array, Indices
 from .at_normals import Given
 from .candidates import Candidates
-from .cells import Cells
+from .cells import LIMIT, Cells
 from .grid import Grid
 from .space import Space
+from .voronoi import Voronoi
 
 __all__ = ["STEP", "Cover"]
 
@@ -30,6 +31,10 @@ FINE, SMALLER = 0.4, 1.3
 FINEST = 0.1
 # Distances are renewed within this multiple of the radius first.
 NEAR = 1.25
+# Samples that move to centres move by less than this part of the radius, but for few.
+HARDLY = 0.3
+# Gaps between candidates are searched down to the radius, and then to this part of it, and so on.
+STEP_DOWN, ROUNDS = 0.9, 3
 # The most cells at a time: this number, or this multiple of the candidates.
 MANY, TIMES = 2e7, 8
 
@@ -72,7 +77,7 @@ class Cover:
         self._points, self._curvatures = rows[:, :6], rows[:, 6]
         self._added, self._waiting = space.nothing(), list[Cells]()
         self.given = self.fixed = len(rows)
-        self.fine, self.radius_asked, self.count_asked = FINE, 0.0, None
+        self.radius_asked, self.count_asked = 0.0, None
         if grid is not None:
             self._append(grid.cells)
             self.fixed = self.count
@@ -145,9 +150,9 @@ class Cover:
     def take_candidates(self, radius: float, widest: float) -> None:
         """Take candidates for sweeps with radii that fall from `widest` to this radius.
 
-        They are the places of cells whose radii are `fine` times the radius.
+        They are the places of cells whose radii are FINE times the radius.
         """
-        self.radius, self.cells = widest, self.space.cut(self.fine * radius)
+        self.radius, self.cells = widest, self.space.cut(FINE * radius)
         self._candidates = self._with_distances(self.cells.rows, radius, widest)
 
     def whole(self, turn: float) -> Cells:
@@ -196,16 +201,54 @@ class Cover:
         self._candidates.update_distances(self.points, min(NEAR * self.radius, widest))
         self._candidates.update_far(self.points, widest)
 
-    def move_to_centres(self, first: int) -> None:
-        """Move the samples from number `first` on to the centres of their Voronoi cells.
+    def move_to_centres(self) -> Voronoi:
+        """Move the samples that are not fixed to about the centres of their Voronoi cells.
 
-        The distances of the candidates have to be renewed before and after that.
+        The distances of the candidates have to be renewed before and after that. Returns finer
+        places for `fill_gaps`.
         """
-        chosen = self._candidates.centres(self.count)
-        moved = first + np.flatnonzero(chosen[first:] >= 0)
-        cells = self.cells[chosen[moved]]
+        voronoi = self.voronoi()
+        moved, rows, places = voronoi.centres(self.points, self.fixed)
+        cells, order = self._evaluated_at(rows, places)
+        regular = cells.rows[:, 3:6].any(axis=1)
+        moved, cells = moved[order][regular], cells[regular]
         self.points[moved], self.curvatures[moved] = cells.rows[:, :6], cells.rows[:, 7]
         self.added.write(moved - self.given, cells)
+        return voronoi
+
+    def voronoi(self) -> Voronoi:
+        """Return finer places than those of candidates, for samples that hardly move from now on.
+
+        The distances of the candidates have to be renewed before.
+        """
+        margin = HARDLY * self.radius
+        reach = self.radius + 2.0 * FINE * self.radius + margin
+        return Voronoi(self._candidates, self.cells, self.points, reach, margin)
+
+    def fill_gaps(self, voronoi: Voronoi, widest: float, count: int) -> None:
+        """Add samples at finer places, the widest gaps first, until there are `count`.
+
+        Gaps are searched from `widest` on.
+        """
+        least = self.radius
+        for _ in range(ROUNDS):
+            if self.count == count:
+                return
+            cells, _ = self._evaluated_at(*voronoi.widest(self.points, least))
+            candidates, radius = self._with_distances(cells.rows, least, widest), widest
+            while radius > least and self.count < count:
+                radius = max(STEP * radius, least)
+                self._choose(cells, candidates, radius, count)
+            widest, least = least, STEP_DOWN * least
+        self.renew_distances(widest)
+        self.narrow(widest, 0.0, count)
+
+    def _evaluated_at(self, rows: Indices, places: Array) -> tuple[Cells, Indices]:
+        """Return places (k, 2) in cells of the candidates as cells, and their order."""
+        order = np.argsort(self.cells.pieces[rows], kind="stable")
+        near = self.cells[rows[order]]
+        found = self.space.at(near.pieces, places[order], near.numbers[:, LIMIT], keep=True)
+        return found, order
 
     def remove_added(self) -> None:
         """Remove all samples that were added, except those of the grid."""

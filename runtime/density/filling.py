@@ -26,7 +26,7 @@ from .coverage import coverage
 from .deviation import widest_angle
 from .on_grid import cover_on_grid
 from .piece import Piece
-from .relaxation import relax
+from .relaxation import relax, spread
 from .space import Space
 
 __all__ = ["Filling", "fields_of", "fill", "spacing", "target_of"]
@@ -237,8 +237,7 @@ class Filling:
             if len(given.found) < len(space.pieces) > 1:
                 rest = math.floor(FOR_NORMALS * count)
         cover = self._new(space, given)
-        cover.to_count(max(count - rest, cover.count))
-        cover = self._relaxed(cover)
+        spread(cover, max(count - rest, cover.count), self.request.relax)
         missing = cover.missing()
         if SAMPLES_A_PIECE * len(space.pieces) <= count and len(missing):
             room = count - cover.count
@@ -247,6 +246,8 @@ class Filling:
             cover.add(missing[: count - cover.count])
         if cover.count < count and rest:
             _fill_normals(cover, count - cover.count)
+        if cover.count < count:
+            cover.renew_distances(cover.radius)
         cover.fill_up(count)
         return cover
 
@@ -283,7 +284,10 @@ class Filling:
         relax(relaxed, self.request.relax)
         if self.request.count is None or asked is None:
             return relaxed
-        return relaxed if self.reached(relaxed) <= asked * self.space.unit else cover
+        if self.reached(relaxed) <= asked * self.space.unit:
+            return relaxed
+        cover.renew_distances(cover.radius)
+        return cover
 
     def _new(self, space: Space, given: Given) -> Cover:
         return Cover(space, given, self.show_count)

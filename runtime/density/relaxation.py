@@ -1,40 +1,54 @@
-"""Spreading the added samples more evenly, at more cost."""
+"""Spreading the added samples more evenly than by adding one after another."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from .angles import fill_widest_angles
 from .cover import Cover
 
-__all__ = ["relax"]
+__all__ = ["relax", "spread"]
 
-# The radii of the cells of candidates, relative to the covering radius.
-FINE = 0.2
-# This part of the added samples goes where normals are farthest from those of all samples.
+# This part of the added samples fills the gaps that are widest when the others have moved.
+REST = 0.1
+# With a count and more than one step, this part goes where normals are farthest from those of all
+# samples.
 FOR_NORMALS = 0.1
-# This part of the others is moved; the rest fills the gaps that are widest then.
-MOVED = 0.9
-# Gaps are at most this much wider while samples are missing.
+# Gaps are at most this much wider than the radius while samples are missing.
 WIDEST = 2.0
 
 
-def relax(cover: Cover, steps: int) -> None:
-    """Add the samples, at least one, again among finer candidates, and move them `steps` times.
+def spread(cover: Cover, count: int, steps: int) -> None:
+    """Add samples until there are `count`; most of them are moved, `steps` times and once more.
 
-    A step moves each sample to the centre of the smallest ball around its Voronoi cell: Lloyd's
-    method for the largest distance instead of the mean of the squares. If their count is given, a
-    few go to the widest gaps in normal space before, and stay there; if a radius is given, there
-    may be fewer samples than before.
+    A step moves each sample towards the centre of the smallest ball around its Voronoi cell:
+    Lloyd's method for a high power of the distance instead of the mean of the squares.
     """
-    count, widest = cover.count, WIDEST * cover.radius
-    cover.remove_added()
-    cover.fine = FINE
-    cover.take_candidates(cover.radius, widest)
-    if cover.given and cover.count_asked is not None:
-        fill_widest_angles(cover, round(FOR_NORMALS * (count - cover.fixed)), widest)
-    settled = cover.count
-    cover.narrow(widest, cover.radius_asked, settled + round(MOVED * (count - settled)))
+    added = count - cover.count
+    for_normals = round(FOR_NORMALS * added) if steps > 0 else 0
+    cover.to_count(count - round(REST * added) - for_normals)
+    if cover.count > cover.fixed:
+        widest = WIDEST * cover.radius
+        cover.renew_distances(widest)
+        voronoi = cover.move_to_centres()
+        for _ in range(steps):
+            cover.renew_distances(widest)
+            voronoi = cover.move_to_centres()
+        if for_normals:
+            fill_widest_angles(cover, for_normals, widest)
+        cover.fill_gaps(voronoi, widest, count)
+    cover.count_asked = count
+
+
+def relax(cover: Cover, steps: int) -> None:
+    """Remove the samples that were added last, move the others, and cover the surface again.
+
+    What was asked is kept; if that is a radius, there may be fewer samples than before.
+    """
+    added, widest = cover.count - cover.fixed, WIDEST * cover.radius
+    cover.keep(np.arange(len(cover.added) - round(REST * added)))
     for _ in range(steps):
         cover.renew_distances(widest)
-        cover.move_to_centres(settled)
+        cover.move_to_centres()
     cover.renew_distances(widest)
     cover.to_what_was_asked(widest)

@@ -68,11 +68,12 @@ def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numb
     Boxes are u0, v0, u1, v1. Lengths are multiplied by `size`, and points are relative to a centre.
 
     rows (M, 8): point, unit normal, target density and K; normal and K are 0 at singular points.
-    numbers (M, 8): a radius around the point that holds the cell; the largest chord between the
+    numbers (M, 14): a radius around the point that holds the cell; the largest chord between the
     normal and others of the cell, 0 if these are rounding, 2 if an angle is not acute or there is
     no normal; the lengths of the cell along u and v; its bends along u and v, relative to these, 0
     if these are rounding; its area; the radius of curvature below which curvature does not count:
-    the width of the cell, if it is 0 on entry, or of one whose sides are `finest` (2,).
+    the width of the cell, if it is 0 on entry, or of one whose sides are `finest` (2,); and its
+    sides along u and v at the place, which are vectors.
     """
     for k in range(jets.shape[0]):
         du = boxes[k, 2] - boxes[k, 0]
@@ -118,3 +119,5 @@ def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numb
         numbers[k, 5] = length(patch.c) / along_v if along_v > least else 0.0
         numbers[k, 6] = area
         numbers[k, 7] = limit
+        set_row(numbers[:, 8:11], k, patch.d)
+        set_row(numbers[:, 11:14], k, patch.e)

@@ -1,70 +1,172 @@
-"""The candidates nearest to the centres of the smallest balls around Voronoi cells."""
+"""Voronoi cells of samples among finer places: where to move samples, and the widest gaps.
+
+The cell of a candidate that no border passes is a parallelogram nearly, with FINER² places in it.
+Of these, the nearest samples are found among the few that are in the list of the candidate.
+"""
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ...generated.vectors import Vector
-from ..machine_code.jit import jit, loop
-from .hash_grids import DENSITY
+from ..machine_code.jit import inline, jit, loop
+from .hash_grids import DENSITY, SQUARE
+from .vectors import length, row_vector
 
-__all__ = ["link_cells", "move_to_centres"]
+__all__ = ["FINER", "add_moments", "begin_lists", "find_nearest", "find_widest"]
 
-# Steps towards the centre of a ball (Badoiu and Clarkson, 2003).
-STEPS = 12
+# The places along each side of a cell.
+FINER = 4
+PLACES = FINER * FINER
+# The columns of `numbers` of cells, see kernels/cells.py.
+AREA, U, V = 6, 8, 11
 
 
-@jit
-def link_cells(nearest, heads, links):
-    """Link the candidates (M,) nearest to each sample (N,) in lists.
+@inline
+def offset(i):
+    """Return the coordinate of places number i along a side, from −1/2 to 1/2."""
+    return (i + 0.5) / FINER - 0.5
 
-    heads[number] is the first one, links[k] the one after k, −1 the end.
-    """
-    for k in range(nearest.size):
-        if nearest[k] >= 0:
-            links[k] = heads[nearest[k]]
-            heads[nearest[k]] = k
+
+@inline
+def place_in(candidates, lists, k, i, j):
+    """Return place number (i, j) in the cell of candidate k."""
+    row, s, t = lists.order[k], offset(i), offset(j)
+    sides = lists.numbers
+    return Vector(
+        candidates[k, 0] + s * sides[row, U] + t * sides[row, V],
+        candidates[k, 1] + s * sides[row, U + 1] + t * sides[row, V + 1],
+        candidates[k, 2] + s * sides[row, U + 2] + t * sides[row, V + 2],
+    )
+
+
+@inline
+def extent(lists, k):
+    """Return the radius of the ball around candidate k that holds the places in its cell."""
+    sides, row = lists.numbers, lists.order[k]
+    u, v = row_vector(sides[:, U:V], row), row_vector(sides[:, V:], row)
+    diagonal = max(
+        length(Vector(u.x + v.x, u.y + v.y, u.z + v.z)),
+        length(Vector(u.x - v.x, u.y - v.y, u.z - v.z)),
+    )
+    return offset(FINER - 1) * diagonal
+
+
+@inline
+def squared_distance(x, rows, k):
+    """Return the squared distance of x from the point of row k."""
+    dx, dy, dz = x.x - rows[k, 0], x.y - rows[k, 1], x.z - rows[k, 2]
+    return dx * dx + dy * dy + dz * dz
 
 
 @loop
-def extreme_candidate(candidates, links, head, x, sign):
-    """Return the candidate of a list that is farthest from x; the nearest one with sign = −1.
+def find_in_cell(candidates, lists, samples, k, work):
+    """Write the points of the places in a cell to work (5, FINER²), and their nearest samples.
 
-    Distances are multiplied by √w.
+    The rows are x, y, z, the squared distance and the number of the nearest sample in the list.
     """
-    best = -math.inf
-    found = head
-    k = head
-    while k >= 0:
-        dx = candidates[k, 0] - x.x
-        dy = candidates[k, 1] - x.y
-        dz = candidates[k, 2] - x.z
-        square = sign * (dx * dx + dy * dy + dz * dz) * candidates[k, DENSITY]
-        if square > best:
-            best = square
-            found = k
-        k = links[k]
-    return found
+    row, sides = lists.order[k], lists.numbers
+    p, u, v = row_vector(candidates, k), row_vector(sides[:, U:V], row), row_vector(sides[:, V:], row)
+    for i in range(FINER):
+        s = offset(i)
+        for j in range(FINER):
+            t, m = offset(j), np.uint64(FINER * i + j)  # unsigned: no check for negative indices
+            work[0, m] = p.x + s * u.x + t * v.x
+            work[1, m] = p.y + s * u.y + t * v.y
+            work[2, m] = p.z + s * u.z + t * v.z
+            work[3, m] = math.inf
+    for c in range(lists.counts[k]):
+        number = lists.near[k, c]
+        y, name = row_vector(samples, number), float(number)
+        for at in range(PLACES):
+            m = np.uint64(at)
+            dx, dy, dz = work[0, m] - y.x, work[1, m] - y.y, work[2, m] - y.z
+            square = dx * dx + dy * dy + dz * dz
+            nearer = square < work[3, m]
+            work[3, m] = square if nearer else work[3, m]
+            work[4, m] = name if nearer else work[4, m]
 
 
 @jit
-def move_to_centres(candidates, heads, links, first, last, found):
-    """Write the candidates at the centres of the cells of the samples first, …, last − 1.
+def begin_lists(grids, lists, margin):
+    """Write within which distances of candidates samples are noted.
 
-    The centre of the smallest ball around a cell is approximated by steps of 1/2, 1/3, … of the way
-    to the farthest candidate; the candidate nearest to it is written, −1 for an empty cell.
+    These may be the nearest ones in the cell of the candidate after they have moved by margin/√w.
     """
-    for number in range(first, last):
-        head = heads[number]
-        found[number] = head
-        if head < 0:
+    for k in range(lists.within.size):
+        away = math.sqrt(max(grids.candidates[k, SQUARE], 0.0))
+        reach = extent(lists, k) * math.sqrt(grids.candidates[k, DENSITY])
+        lists.within[k] = (away + 2.0 * reach + margin) ** 2
+
+
+@jit
+def add_moments(candidates, lists, samples, work, moments):
+    """Add the places in the cells of candidates to the moments (N, 4) of the nearest samples.
+
+    These are sums of weights times the points, and of weights: areas of the cells times squared
+    distances, so that the mean is near the centre of the smallest ball around a Voronoi cell.
+    """
+    for k in range(candidates.shape[0]):
+        if lists.counts[k] == 0:
             continue
-        centre = Vector(candidates[head, 0], candidates[head, 1], candidates[head, 2])
-        for step in range(STEPS):
-            k = extreme_candidate(candidates, links, head, centre, 1.0)
-            centre = Vector(
-                centre.x + (candidates[k, 0] - centre.x) / (step + 2.0),
-                centre.y + (candidates[k, 1] - centre.y) / (step + 2.0),
-                centre.z + (candidates[k, 2] - centre.z) / (step + 2.0),
-            )
-        found[number] = extreme_candidate(candidates, links, head, centre, -1.0)
+        find_in_cell(candidates, lists, samples, k, work)
+        area = lists.numbers[lists.order[k], AREA]
+        for m in range(PLACES):
+            nearest, weight = int(work[4, m]), area * work[3, m]
+            moments[nearest, 0] += weight * work[0, m]
+            moments[nearest, 1] += weight * work[1, m]
+            moments[nearest, 2] += weight * work[2, m]
+            moments[nearest, 3] += weight
+
+
+@jit
+def find_nearest(candidates, lists, points, found, squares):
+    """Find the place nearest to each of points (N, 3) that belong to the samples.
+
+    found (N, 2) are the row and the number of the place, −1 for that of the candidate, squares (N,)
+    the squared distances so far, −1 where there is no point.
+    """
+    for k in range(candidates.shape[0]):
+        x, reach = Vector(candidates[k, 0], candidates[k, 1], candidates[k, 2]), extent(lists, k)
+        for c in range(lists.counts[k]):
+            number = lists.near[k, c]
+            away = squared_distance(x, points, number)
+            if away < squares[number]:
+                squares[number] = away
+                found[number, 0], found[number, 1] = lists.order[k], -1
+            if squares[number] < 0.0 or away >= reach * reach:
+                continue
+            for m in range(PLACES):
+                place = place_in(candidates, lists, k, m // FINER, m % FINER)
+                square = squared_distance(place, points, number)
+                if square < squares[number]:
+                    squares[number] = square
+                    found[number, 0], found[number, 1] = lists.order[k], m
+
+
+@jit
+def find_widest(candidates, lists, samples, least, work, found):
+    """Find the place of each cell that is farthest from all samples, if it is as far as least/√w.
+
+    found (M,) are the numbers of the places, −1 for that of the candidate, −2 if none is as far.
+    """
+    for k in range(candidates.shape[0]):
+        found[k] = -2
+        density, away = candidates[k, DENSITY], math.inf
+        x = Vector(candidates[k, 0], candidates[k, 1], candidates[k, 2])
+        for c in range(lists.counts[k]):
+            away = min(away, squared_distance(x, samples, lists.near[k, c]))
+        if lists.counts[k] == 0:
+            away = candidates[k, SQUARE] / density
+        if (math.sqrt(max(away, 0.0)) + extent(lists, k)) * math.sqrt(density) < least:
+            continue
+        far = least * least
+        if away * density >= far:
+            far, found[k] = away * density, -1
+        if lists.counts[k] > 0:
+            find_in_cell(candidates, lists, samples, k, work)
+            for m in range(PLACES):
+                if work[3, m] * density >= far:
+                    far, found[k] = work[3, m] * density, m
