@@ -84,8 +84,9 @@ def sample(
         camera or a printer comes from there. Count, angle and coverage hold for these points. Not
         with ``density="aligned"``.
     relax : int, default 0
-        Steps, at most 10, that move the samples that fill gaps to better places. Two or three are
-        enough, and take 20 to 40 times as long as the sampling.
+        Further steps, at most 10, that move the samples that fill gaps to better places; with a
+        count, some samples go where normals are missing. Two are enough, and take at most twice as
+        long as the sampling.
     cells : (int, int), optional
         The numbers of cells along u and v of the spline that approximates the surface, see `fit`.
     on : {"surface", "spline"}, optional

@@ -1,7 +1,7 @@
 """Voronoi cells of samples among finer places: where to move samples, and the widest gaps.
 
-The cell of a candidate that no border passes is a parallelogram nearly, with FINER² places in it.
-Of these, the nearest samples are found among the few that are in the list of the candidate.
+The cell of a candidate that no border passes is nearly a parallelogram; FINER² places are in it.
+Their nearest samples are found among the few that are in the list of the candidate.
 """
 
 from __future__ import annotations
@@ -105,16 +105,17 @@ def begin_lists(grids, lists, margin):
 def add_moments(candidates, lists, samples, work, moments):
     """Add the places in the cells of candidates to the moments (N, 4) of the nearest samples.
 
-    These are sums of weights times the points, and of weights: areas of the cells times squared
-    distances, so that the mean is near the centre of the smallest ball around a Voronoi cell.
+    These are sums of weights times the points, and of weights: where the mean is, the integral of
+    the fourth power of the distance, times √w, from the sample would not get smaller by a small
+    move. It is near the centre of the smallest ball around a Voronoi cell.
     """
     for k in range(candidates.shape[0]):
         if lists.counts[k] == 0:
             continue
         find_in_cell(candidates, lists, samples, k, work)
-        area = lists.numbers[lists.order[k], AREA]
+        factor = lists.numbers[lists.order[k], AREA] * candidates[k, DENSITY] ** 2
         for m in range(PLACES):
-            nearest, weight = int(work[4, m]), area * work[3, m]
+            nearest, weight = int(work[4, m]), factor * work[3, m]
             moments[nearest, 0] += weight * work[0, m]
             moments[nearest, 1] += weight * work[1, m]
             moments[nearest, 2] += weight * work[2, m]

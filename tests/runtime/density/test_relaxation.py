@@ -1,8 +1,10 @@
-"""Relaxing: what it gains, and what its samples for normals do."""
+"""Spreading and relaxing: what is gained, and what the samples for normals do."""
 
 import gaussmap as gm
+import numpy as np
 import pytest
 from gaussmap.runtime.density import relaxation
+from scipy.spatial import KDTree
 
 
 def relaxed(name: str, count: int) -> gm.Samples:
@@ -11,17 +13,30 @@ def relaxed(name: str, count: int) -> gm.Samples:
 
 
 @pytest.mark.compiled
-def test_relaxing_narrows_gaps_and_angles():
-    """By 8 and 5 percent; they get wider if samples begin as close as they end."""
-    plain = gm.sample(gm.fit("monkey_saddle", (32, 32)), 600)
-    found = relaxed("monkey_saddle", 600)
-    assert found.coverage() < 0.95 * plain.coverage()
-    assert found.normal_deviation().space < 0.98 * plain.normal_deviation().space
+def test_gaps_between_candidates_are_filled():
+    """The widest gap on a square of a plane: 1.21 times that of a hexagonal lattice.
+
+    It is 1.35 times that if samples are not moved, and 1.45 if gaps are those at candidates.
+    """
+    samples = gm.sample("plane", 2000, density="uniform", cells=(8, 8))
+    (u0, u1), (v0, v1) = gm.surfaces.surface("plane").domain
+    u, v = np.meshgrid(np.linspace(u0, u1, 700)[35:-35], np.linspace(v0, v1, 700)[35:-35])
+    places = np.stack([u.ravel(), v.ravel()], axis=1)
+    widest = KDTree(samples.uv).query(places)[0].max()
+    lattice = np.sqrt((u1 - u0) * (v1 - v0) / 2000 * 2.0 / (3.0 * np.sqrt(3.0)))
+    assert widest < 1.3 * lattice
 
 
 @pytest.mark.compiled
-def test_a_tenth_of_the_added_samples_goes_where_normals_are_missing(monkeypatch):
-    """With half of them, the widest angle is 4.9° instead of 3.9°; with more, gaps get wider."""
+def test_relaxing_narrows_angles():
+    plain = gm.sample(gm.fit("monkey_saddle", (32, 32)), 1000)
+    found = relaxed("monkey_saddle", 1000)
+    assert found.normal_deviation().normal_space < 0.98 * plain.normal_deviation().normal_space
+
+
+@pytest.mark.compiled
+def test_a_twentieth_of_the_added_samples_goes_where_normals_are_missing(monkeypatch):
+    """Without them, the widest angle is 4.9° instead of 4.2°; with more, gaps get wider."""
     numbers, fill = [], relaxation.fill_widest_angles
 
     def recorded(cover, number, widest):
@@ -31,5 +46,5 @@ def test_a_tenth_of_the_added_samples_goes_where_normals_are_missing(monkeypatch
     monkeypatch.setattr(relaxation, "fill_widest_angles", recorded)
     samples = relaxed("monkey_saddle", 1000)
     added = int((samples.kind == "filling").sum())
-    assert numbers == [round(0.1 * added)]
+    assert numbers == [round(0.05 * added)]
     assert samples.normal_deviation().normal_space < 4.4
