@@ -154,7 +154,7 @@ def sample(
     is below the error of the spline, |K|^α is taken to be uniform.
 
     **Angles** next to singular points of the spline, such as cusps, hold as far as cells of 2⁻¹⁴ of
-    its size resolve them. **Relaxing** takes 20 kB of memory for each sample instead of 3 kB.
+    its size resolve them.
 
     **On the surface.** All points with prescribed normals are found, with a proof, where the
     derivatives of the surface can be bounded: those of the catalogue, of SymPy expressions, of

@@ -57,13 +57,13 @@ COSTS: dict[str, Cost] = {
     "stored": Cost("samples", 0.0, 1.0, 'use fewer normals, fewer fields or dtype="float32"'),
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or gm.sample_stream"),
     # The others have some candidates for each sample.
-    "balanced": Cost("samples", 3300.0, 0.0, FEWER),
-    "uniform": Cost("samples", 3300.0, 0.0, FEWER),
+    "balanced": Cost("samples", 3900.0, 0.0, FEWER),
+    "uniform": Cost("samples", 3900.0, 0.0, FEWER),
     "aligned": Cost("samples", 900.0, 0.0, FEWER),
-    "relaxed": Cost("samples", 19e3, 0.0, "use fewer, or relax=0, which takes a sixth"),
+    "relaxed": Cost("samples", 3900.0, 0.0, FEWER),
     "candidates": Cost("candidates for samples", 700.0, 0.0, LARGER),
     "part": Cost("samples", 8e3, 0.0, "use fewer"),
-    "relaxed part": Cost("samples", 25e3, 0.0, "use fewer, or relax=0, which takes a third"),
+    "relaxed part": Cost("samples", 9e3, 0.0, "use fewer"),
     "curve": Cost("samples", 420.0, 0.0, "use fewer"),
     # 450 in arrays, and what Qhull takes.
     "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples, or parts of patches"),

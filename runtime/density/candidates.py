@@ -148,14 +148,17 @@ class Part:
         self.searched, self.least = np.empty(0, dtype=np.int32), np.inf
 
     def update_distances(self, samples: Array, radius: float) -> None:
+        """See `Candidates`."""
         update_distances(self.grids, radius, samples)
 
     def reset_distances(self) -> None:
+        """See `Candidates`."""
         squares = self.grids.candidates[:, SQUARE]
         squares[squares >= 0.0] = np.inf
         self.grids.nearest[:], self.least = -1, np.inf
 
     def choose(self, radius: float) -> Numbers:
+        """Choose candidates; returns their rows in the grids. See `Candidates`."""
         if radius <= self.least:
             self.least = LEFT_OUT * radius
             self.searched = np.arange(len(self.order), dtype=np.int32)

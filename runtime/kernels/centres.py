@@ -68,7 +68,11 @@ def find_in_cell(candidates, lists, samples, k, work):
     The rows are x, y, z, the squared distance and the number of the nearest sample in the list.
     """
     row, sides = lists.order[k], lists.numbers
-    p, u, v = row_vector(candidates, k), row_vector(sides[:, U:V], row), row_vector(sides[:, V:], row)
+    p, u, v = (
+        row_vector(candidates, k),
+        row_vector(sides[:, U:V], row),
+        row_vector(sides[:, V:], row),
+    )
     for i in range(FINER):
         s = offset(i)
         for j in range(FINER):
