@@ -111,11 +111,11 @@ def update(grids, nearest, at, number, square, n):
 def note(grids, lists, at, number, square, n):
     """Note a sample that may be the nearest one somewhere in the cell of a candidate."""
     near, count = lists.near, lists.counts[at]
-    if square <= lists.within[at] and count < near.shape[1] and on_side(grids.candidates, at, n):
-        # Cells of a grid may share a bucket, which is then visited again.
-        if count == 0 or near[at, count - 1] != number:
-            near[at, count] = number
-            lists.counts[at] = count + 1
+    # Cells of a grid may share a bucket, which is then visited again.
+    has_room = count < near.shape[1] and (count == 0 or near[at, count - 1] != number)
+    if has_room and square <= lists.within[at] and on_side(grids.candidates, at, n):
+        near[at, count] = number
+        lists.counts[at] = count + 1
 
 
 update_around, note_around = around(update), around(note)
