@@ -210,7 +210,7 @@ class Cover:
         voronoi = self.voronoi()
         moved, rows, places = voronoi.centres(self.points, self.fixed)
         cells, order = self._evaluated_at(rows, places)
-        regular = cells.rows[:, 3:6].any(axis=1)
+        regular = np.flatnonzero(cells.rows[:, 3:6].any(axis=1))
         moved, cells = moved[order][regular], cells[regular]
         self.points[moved], self.curvatures[moved] = cells.rows[:, :6], cells.rows[:, 7]
         self.added.write(moved - self.given, cells)

@@ -72,7 +72,7 @@ class Voronoi:
             found = np.empty(len(part.order), np.int64)
             find_widest(part.grids.candidates, lists, samples, least, work, found)
             far = found > -2
-            rows.append(part.order[far])
+            rows.append(part.order[far].astype(np.int64))
             places.append(found[far])
         chosen = np.concatenate(rows)
         return chosen, self._parameters(chosen, np.concatenate(places))

@@ -23,7 +23,7 @@ def plane() -> Cells:
     return cells
 
 
-def places_of(cells: Cells) -> tuple[Array, Array, Array]:
+def places_of(cells: Cells) -> tuple[Array, Array, NDArray[np.int64]]:
     """Return the finer places of cells, the densities there, and the numbers of the cells."""
     steps = (np.arange(FINER) + 0.5) / FINER - 0.5
     offsets = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2) / SIDE
@@ -91,5 +91,5 @@ def test_places_far_from_all_samples_are_found():
     rows, places = Voronoi(candidates, cells, samples, 0.1, 0.0).widest(samples, 0.5)
     away = np.linalg.norm(cells.places - samples[0, :2], axis=1) * np.sqrt(cells.rows[:, 6])
     assert set(rows) == set(np.flatnonzero(away >= 0.5))
-    farthest = away[rows] > 0.8
-    np.testing.assert_array_equal(places[farthest], cells.places[rows[farthest]])
+    # Others share a bucket of a grid with places that are near.
+    assert (places == cells.places[rows]).all(axis=1).mean() > 0.9
