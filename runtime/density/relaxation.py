@@ -9,8 +9,9 @@ from .cover import Cover
 
 __all__ = ["relax", "spread"]
 
-# This part of the added samples fills the gaps that are widest when the others have moved.
-REST = 0.1
+# This part of the added samples fills the gaps that are widest when the others have moved. With
+# half of it, samples in a row leave wider gaps than without moving.
+REST = 0.2
 # With a count and more than one step, this part goes where normals are farthest from those of all
 # samples.
 FOR_NORMALS = 0.1
