@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from .edge_sampling import step_of
 from .edges import at_places
 from .faces import own_parameters
+from .mesh_spacing import Spacing
 from .part import Face
 from .results import PartSpace
 
@@ -18,8 +19,8 @@ __all__ = ["MeshEdges", "SampledEdges"]
 
 # Steps of edges are measured between this many places, at equal parameters.
 PLACES = 64
-# Steps are so many times shorter at most where an edge is curved more than the faces around.
-BENT = 2.0
+# The logarithm of the step along edges is bisected so many times.
+BISECTIONS = 50
 # An edge that ends where it begins has at least so many steps.
 CLOSED = 3
 # Ends of an edge without vertices that are closer than this part of the size are one.
@@ -51,15 +52,16 @@ class MeshEdges:
     `pieces` (S,) their pieces. `more` are shares of edges at which there are further vertices.
     """
 
-    space: PartSpace
+    spacing: Spacing
     sides: Indices
     owner: Indices
     pieces: Indices
     more: dict[int, Array]
 
     @classmethod
-    def of(cls, space: PartSpace) -> MeshEdges:
+    def of(cls, spacing: Spacing) -> MeshEdges:
         """Return the edges whose places are known on a piece."""
+        space = spacing.space
         arrays = space.pieces[0].face.part.arrays
         edges = len(arrays["edge_vertices"])
         owner = np.repeat(np.arange(edges), np.diff(arrays["edge_side_starts"]))
@@ -73,7 +75,12 @@ class MeshEdges:
         in_wire = np.isin(np.arange(len(owner)), arrays["wire_sides"])
         sides = np.flatnonzero((pieces >= 0) & known & (counts >= 2) & in_wire)
         sides = sides[np.argsort(pieces[sides], kind="stable")]
-        return cls(space, sides, owner[sides], pieces[sides], {})
+        return cls(spacing, sides, owner[sides], pieces[sides], {})
+
+    @property
+    def space(self) -> PartSpace:
+        """The space whose pieces are meshed."""
+        return self.spacing.space
 
     @property
     def arrays(self) -> dict[str, Indices]:
@@ -90,23 +97,46 @@ class MeshEdges:
     @property
     def least(self) -> int:
         """The number of vertices of edges that are divided as little as they may be."""
-        return self._count(0)
+        return self._count(self._steps(math.inf))
 
-    def _count(self, spaced: int) -> int:
-        """Return how many vertices edges have that are spaced as in a mesh of `spaced` vertices."""
-        steps = self._steps(spaced)[self.used & ~self.arrays["edge_degenerate"]]
+    def _count(self, steps: Indices) -> int:
+        """Return how many vertices edges of numbers of steps (E,) have."""
         more = sum(map(len, self.more.values()))
-        return len(self._vertices[0]) + int((steps - 1).sum()) + more
+        return len(self._vertices[0]) + int((steps - 1)[self._divided].sum()) + more
 
-    def _spaced(self, count: int) -> int:
-        """Return the largest number, up to a count, with which edges do not exceed that count."""
-        if self._count(count) <= count:
-            return count
-        low, high = 0, count
-        while high - low > 1:
-            middle = (low + high) // 2
-            low, high = (middle, high) if self._count(middle) <= count else (low, middle)
-        return low
+    @cached_property
+    def _divided(self) -> Flags:
+        """Which edges (E,) have vertices between their ends."""
+        return self.used & ~self.arrays["edge_degenerate"]
+
+    def _steps_for(self, count: int) -> Indices:
+        """Return the numbers of steps (E,) of edges in a mesh of a count, `least` or more.
+
+        Steps are the smallest ones that leave enough vertices for the inside of faces. If nothing
+        is covered there, edges have all of them: the longest steps are divided further.
+        """
+        costs = self._costs[:, -1]
+        low = max(self.spacing.smallest_step, costs.sum() / (count + len(costs)))
+        steps = self._steps(low) if low > 0.0 else self._steps(math.inf)
+        if low > 0.0 and self._total(steps, low) > count:
+            high = max(costs.max(), low)
+            for _ in range(BISECTIONS):
+                middle = math.sqrt(low * high)
+                is_enough = self._total(self._steps(middle), middle) <= count
+                low, high = (low, middle) if is_enough else (middle, high)
+            steps = self._steps(high)
+            steps = steps if self._count(steps) <= count else self._steps(math.inf)
+        if len(self.spacing.covered[1]):
+            return steps
+        at = np.flatnonzero(self._divided)
+        for _ in range(count - self._count(steps)):
+            steps[at[np.argmax(costs[at] / steps[at])]] += 1
+        return steps
+
+    def _total(self, steps: Indices, step: float) -> float:
+        """Return how many vertices edges of numbers of steps have, and the inside with a step."""
+        around = np.bincount(self.pieces, steps[self.owner], len(self.space.pieces))
+        return self._count(steps) + self.spacing.inside(step, around)
 
     @cached_property
     def used(self) -> Flags:
@@ -118,11 +148,11 @@ class MeshEdges:
         """The numbers of sides (E,) that edges of the part have here."""
         return np.bincount(self.owner, minlength=len(self.arrays["edge_vertices"]))
 
-    def _steps(self, spaced: int) -> Indices:
-        """Return the numbers of steps (E,) of edges spaced as in a mesh of `spaced` vertices."""
+    def _steps(self, step: float) -> Indices:
+        """Return the numbers of steps (E,) of edges for the length of a step."""
         ends = self._vertices[1]
         least = np.where(ends[:, 0] == ends[:, 1], CLOSED, 1)
-        wanted = np.ceil(self._costs[:, -1] / step_of(self.space, spaced)).astype(np.int64)
+        wanted = np.ceil(self._costs[:, -1] / step).astype(np.int64)
         return np.where(self.arrays["edge_degenerate"], 1, np.maximum(wanted, least))
 
     @cached_property
@@ -152,25 +182,16 @@ class MeshEdges:
 
     @cached_property
     def _costs(self) -> Array:
-        """The lengths (E, PLACES + 1) of edges up to places, in units of the sizing function.
+        """The lengths (E, PLACES + 1) of edges up to places, as their spacing measures them.
 
-        It is the smaller one of those of the faces around. Where an edge is curved more than they
-        are, as the border of a plane, steps are shorter, by the factor BENT at most.
+        The largest one of those on the faces around counts.
         """
         shares = np.linspace(0.0, 1.0, PLACES + 1)
         uv = [self._uv(k, shares) for k in range(len(self.sides))]
         owner = np.repeat(self.pieces, len(shares))
         places = at_places(self.space, owner, np.concatenate([np.empty((0, 2)), *uv])).uv
-        rows = self.space.at(owner, places, keep=True).rows.reshape(-1, len(shares), 8)
-        steps = np.diff(rows[:, :, :3], axis=1)
-        lengths = np.linalg.norm(steps, axis=2)
-        rates = np.sqrt(rows[:, :, 6])
-        costs = np.maximum(rates[:, 1:], rates[:, :-1]) * lengths
-        along = steps / np.where(lengths > 0.0, lengths, 1.0)[..., None]
-        turns = np.linalg.norm(np.diff(along, axis=1), axis=2) / 2.0
-        bends = np.pad(turns, ((0, 0), (0, 1))) + np.pad(turns, ((0, 0), (1, 0)))
-        costs = np.maximum(costs, np.minimum(bends, BENT * costs))
         found = np.zeros((len(self.around), PLACES))
+        costs = self.spacing.costs(self.pieces, places.reshape(-1, len(shares), 2))
         np.maximum.at(found, self.owner, costs)
         return np.pad(np.cumsum(found, axis=1), ((0, 0), (1, 0)))
 
@@ -190,7 +211,7 @@ class MeshEdges:
         Where edges as fine as the inside of faces would have more than these, they are coarser.
         """
         points, ends = self._vertices
-        steps, first = self._steps(self._spaced(count)), len(points)
+        steps, first = self._steps_for(count), len(points)
         shares, numbers = {}, {}
         even = np.linspace(0.0, 1.0, PLACES + 1)
         for edge in np.flatnonzero(self.used).tolist():

@@ -58,15 +58,13 @@ class FaceBorder:
         return cls(places, np.concatenate(numbers), np.concatenate(segments), np.concatenate(edges))
 
 
-def triangles_of(border: FaceBorder, inner: Array, lengths: Array) -> tuple[Indices, Indices]:
-    """Return triangles (k, 3) between places of the border and inner ones, which follow them.
+def triangles_of(border: FaceBorder, places: Array) -> tuple[Indices, Indices]:
+    """Return triangles (k, 3) between places (n, 2) of a plane, the first ones of the border.
 
     They run counterclockwise. And the segments (m, 2) between these vertices that are constraints.
-    `lengths` (2,) are those of x_u and x_v. Of places that are one, the first is a vertex. Raises
-    Crossing if the border crosses itself.
+    Of places that are one, the first is a vertex. Raises Crossing if the border crosses itself.
     """
     cdt = from_extra(*EXTRA)
-    places = np.concatenate([border.uv, inner]) * lengths
     low = places.min(axis=0)
     size = float(np.ptp(places, axis=0).max())
     keys = np.round((places - low) / (SAME * size))

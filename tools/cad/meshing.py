@@ -34,6 +34,7 @@ from ..meshes.triangulated import LARGEST_DEVIATION, checked_prefer
 from .edges import Places, at_places
 from .mesh_edges import MeshEdges, SampledEdges
 from .mesh_faces import EXTRA, Crossing, FaceBorder, triangles_of
+from .mesh_spacing import ByNormals, Spacing
 from .part import Part
 from .part_mesh import PartMesh
 from .results import PartSpace, space_of
@@ -45,13 +46,16 @@ INSIDE = 1e-6
 # Edges are divided further so many times, until faces and their triangles are proper; samples that
 # fell outside of the polygons around faces are replaced so many times.
 ROUNDS, REFILLS = 5, 8
+SPACINGS = {"shape": Spacing, "normals": ByNormals}
 
 
 def mesh_of_samples(part: Part, count: int, angle: float | None, prefer: str) -> PartMesh:
     """Return what `Samples.mesh` returns for a count of samples of a part."""
-    if checked_prefer(prefer) != "shape" or angle is not None:
-        what = 'prefer="normals"' if angle is None else "angle=..."
-        raise InputError(f"{what} is for meshes of surfaces, and these samples are of a CAD part.")
+    spaced = SPACINGS[checked_prefer(prefer)]
+    if angle is not None:
+        raise InputError(
+            "angle=... is for meshes of surfaces, and these samples are of a CAD part."
+        )
     check_extra(*EXTRA)
     check_memory("mesh", count)
     if not any(x.wires for x in part.faces):
@@ -62,14 +66,14 @@ def mesh_of_samples(part: Part, count: int, angle: float | None, prefer: str) ->
     whole = space_of(
         part, None, target_of(checked_request(None, count, None, None, "balanced", 0, None))
     )
-    known = MeshEdges.of(whole)
+    known = MeshEdges.of(Spacing(whole, count))
     failed = dict(whole.failed) | {
         x.face.index: f"{x.label} has edges whose places on it are not known."
         for x in whole.pieces
         if not known.is_known(x.face)
     }
     while True:
-        meshing = Meshing.of(part, whole, count, failed)
+        meshing = Meshing.of(part, whole, count, failed, spaced)
         crossing = meshing.refine()
         if not crossing:
             try:
@@ -107,8 +111,10 @@ class Corners:
     triangles: Indices
     fixed: Indices
 
-    def flipped(self, points: Array) -> Indices:
-        """Return better shaped triangles between places with points (C, 3), by flips of edges.
+    def flipped(self, points: Array, by_shape: bool) -> Indices:
+        """Return triangles between places with points (C, 3) that flips of edges have improved.
+
+        They are better shaped, or closer to the normals.
 
         Triangles at places without a normal, as at tips, stay as they are.
         """
@@ -120,7 +126,7 @@ class Corners:
         stay = np.concatenate([np.sort(self.fixed, axis=1) @ [count, 1], numbers[without].ravel()])
         adjacent[np.isin(numbers, stay)] = -1
         flip_edges(
-            scaled(points), normals, triangles, np.ones_like(triangles), adjacent, True,
+            scaled(points), normals, triangles, np.ones_like(triangles), adjacent, by_shape,
             math.cos(math.radians(LARGEST_DEVIATION)),
             np.arange(len(triangles)), np.ones(len(triangles), dtype=np.bool_),
         )  # fmt: skip
@@ -154,7 +160,14 @@ class Meshing:
     failed: dict[int, str]
 
     @classmethod
-    def of(cls, part: Part, whole: PartSpace, count: int, failed: dict[int, str]) -> Meshing:
+    def of(
+        cls,
+        part: Part,
+        whole: PartSpace,
+        count: int,
+        failed: dict[int, str],
+        spaced: type[Spacing],
+    ) -> Meshing:
         """Return the beginning of a mesh of the pieces of a space that have not failed."""
         pieces = tuple(x for x in whole.pieces if x.face.index not in failed)
         if not pieces:
@@ -163,7 +176,7 @@ class Meshing:
         request = checked_request(None, count, None, None, "balanced", 0, None)
         space = Filling(space, request, False, lambda number: None).balanced(capped=True)
         assert isinstance(space, PartSpace)
-        return cls(part, space, MeshEdges.of(space), count, failed)
+        return cls(part, space, MeshEdges.of(spaced(space, count)), count, failed)
 
     def refine(self) -> dict[int, str]:
         """Divide edges until no border crosses itself; return the faces for which that fails."""
@@ -184,7 +197,7 @@ class Meshing:
         found = []
         for piece, border in zip(self.space.pieces, self._borders(self._sampled()), strict=True):
             try:
-                triangles_of(border, np.empty((0, 2)), np.ones(2))
+                triangles_of(border, border.uv)
             except Crossing as error:
                 found.append((piece.face.index, border, f"of {piece.label}, {error}."))
         return found
@@ -237,20 +250,28 @@ class Meshing:
         cover = self._cover(sampled, borders)
         first, rounds = len(sampled.points), 0
         while True:
-            corners = self._corners(borders, cover.added[cover.fixed :], first)
+            added = cover.added[cover.fixed :] if cover else self.space.nothing()
+            corners = self._corners(borders, added, first)
             used, rounds = np.unique(corners.numbers[corners.triangles]), rounds + 1
             lacking = self.count - first - int(np.count_nonzero(used >= first))
-            if lacking <= 0 or rounds == REFILLS:
+            if lacking <= 0 or rounds == REFILLS or cover is None:
                 return self._mesh(sampled, corners)
             cover.fill_up(cover.count + lacking)
 
-    def _cover(self, sampled: SampledEdges, borders: list[FaceBorder]) -> Cover:
-        """Return the cover of faces: samples at vertices on edges, and others inside."""
-        pieces = np.repeat(np.arange(len(borders)), [len(x.uv) for x in borders])
-        cells = self.space.at(pieces, np.concatenate([x.uv for x in borders]))
+    def _cover(self, sampled: SampledEdges, borders: list[FaceBorder]) -> Cover | None:
+        """Return the cover of faces: samples at vertices on edges, and others inside.
+
+        None if all faces are ruled, and have none.
+        """
+        space, numbers = self.edges.spacing.covered
+        if not len(numbers):
+            return None
+        pieces = np.repeat(np.arange(len(numbers)), [len(borders[k].uv) for k in numbers])
+        places = [borders[k].uv for k in numbers]
+        cells = space.at(pieces, np.concatenate(places))
         cells = cells[np.asarray(cells.rows[:, 3:6].any(axis=1))]
         none = np.full(len(cells), -1)
-        cover = Cover(self.space, grid=Grid(cells, none, none, (0, 0)))
+        cover = Cover(space, grid=Grid(cells, none, none, (0, 0)))
         inside = self.count - len(sampled.points)
         if inside:
             cover.to_count(len(cells) + inside)
@@ -259,7 +280,8 @@ class Meshing:
     def _corners(self, borders: list[FaceBorder], added: Cells, first: int) -> Corners:
         """Return the triangles between vertices on edges and added ones, numbered from `first`."""
         order = np.argsort(added.pieces, kind="stable")
-        cells = added[order]
+        cells, spacing = added[order], self.edges.spacing
+        cells = replace(cells, pieces=spacing.covered[1][cells.pieces]) if len(cells) else cells
         rows = dict(by_piece(cells))
         inner = [cells.places[rows.get(k, slice(0, 0))] for k in range(len(borders))]
         numbers = [first + order[rows.get(k, slice(0, 0))] for k in range(len(borders))]
@@ -271,11 +293,10 @@ class Meshing:
         )
         triangles, fixed = [], []
         for k, border in enumerate(borders):
-            vectors = known.vectors[starts[k] : starts[k + 1], 1:]
-            lengths = np.sqrt((vectors**2).sum(axis=2).mean(axis=0))
-            lengths = np.where(lengths > 0.0, lengths, 1.0)
+            tangents = known.vectors[starts[k] : starts[k + 1], 1:]
+            places = spacing.plane(k, np.concatenate([border.uv, inner[k]]), tangents)
             try:
-                found, segments = triangles_of(border, inner[k], lengths)
+                found, segments = triangles_of(border, places)
             except Crossing as error:
                 error.face = self.space.pieces[k].face.index
                 raise
@@ -295,7 +316,7 @@ class Meshing:
         points[corners.numbers[::-1]] = corners.known.vectors[::-1, 0]
         points[: len(sampled.points)] = sampled.points
         uv[corners.numbers[::-1]] = corners.known.uv[::-1]
-        triangles = corners.flipped(points[corners.numbers])
+        triangles = corners.flipped(points[corners.numbers], self.edges.spacing.by_shape)
         vertices, normals = corners.numbers[triangles], corners.normals(self.space, triangles)
         faces = np.array([x.face.index for x in self.space.pieces])
         return PartMesh(

@@ -1,0 +1,308 @@
+"""How far apart vertices of a mesh of a part are, and the planes in which faces are triangulated.
+
+For well-shaped triangles vertices follow the target density of the space. For triangles that are
+close to the normals each parameter of a face is replaced by how far the normal turns along it:
+vertices are even in the plane of these two. So rulings, and the inside of planes, need none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.density.piece import Piece
+from ...runtime.density.space import Space
+from ...runtime.kernels.sizing import TargetDensity
+from ...runtime.place.on_spline import OnSpline
+from ...runtime.place.reach import normals_of_jets
+from .edge_sampling import step_of
+from .face_pieces import FacePiece
+from .results import PartSpace
+
+__all__ = ["ByNormals", "Spacing"]
+
+# Steps are so many times shorter at most where an edge is curved more than the faces around.
+BENT = 2.0
+# Normals are compared at this number of places along each parameter, and at all knots.
+PLACES = 33
+# A face whose normals turn by less than this along a parameter, in radians, is ruled.
+RULED = 1e-6
+# Of two parameters, one counts as this part of the other at least; and a straight edge of the size
+# of the part as this angle.
+LEAST, STRAIGHT = 1e-3, 1e-6
+# No step is longer than this times the mean of all. The logarithm of their common factor is between
+# these, and is bisected so many times.
+LONGEST = 3.0
+LOGARITHMS, BISECTIONS = (-60.0, 60.0), 60
+# Planes of different faces are so far apart, in radians.
+APART = 100.0
+
+
+@dataclass(frozen=True, eq=False)
+class Spacing:
+    """A count of vertices follows the target density of a space; planes are scaled by lengths."""
+
+    space: PartSpace
+    count: int
+
+    @property
+    def by_shape(self) -> bool:
+        """Whether triangles are to be well shaped, and not close to the normals."""
+        return True
+
+    @property
+    def covered(self) -> tuple[Space, Indices]:
+        """What is covered with vertices, and the numbers of its pieces in the space."""
+        return self.space, np.arange(len(self.space.pieces))
+
+    @property
+    def smallest_step(self) -> float:
+        """The smallest step along edges."""
+        return step_of(self.space, self.count)
+
+    def inside(self, step: float, around: Indices) -> float:  # noqa: ARG002
+        """Return how many vertices are to be left inside; `around` (P,) are steps around pieces."""
+        return 0.0
+
+    def costs(self, pieces: Indices, uv: Array) -> Array:
+        """Return the lengths (S, n − 1) of sides of edges between places (S, n, 2), in steps.
+
+        Where an edge is curved more than the faces around it, as the border of a plane, steps are
+        shorter, by the factor BENT at most.
+        """
+        owner = np.repeat(pieces, uv.shape[1])
+        rows = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows
+        rows = rows.reshape(*uv.shape[:2], 8)
+        lengths, turns = _lengths_and_turns(rows[..., :3])
+        rates = np.sqrt(rows[..., 6])
+        costs = np.maximum(rates[:, 1:], rates[:, :-1]) * lengths
+        return np.maximum(costs, np.minimum(turns, BENT * costs))
+
+    def plane(self, piece: int, uv: Array, tangents: Array) -> Array:  # noqa: ARG002
+        """Return places (k, 2) in the plane of a piece; `tangents` (k, 2, 3) are x_u and x_v."""
+        lengths = np.sqrt((tangents**2).sum(axis=2).mean(axis=0))
+        return uv * np.where(lengths > 0.0, lengths, 1.0)
+
+
+class ByNormals(Spacing):
+    """Vertices are even by how far normals turn, along each parameter of a face."""
+
+    @property
+    def by_shape(self) -> bool:
+        """Triangles are to be close to the normals."""
+        return False
+
+    @cached_property
+    def pieces(self) -> list[TurnedPiece]:
+        """The planes of all pieces, apart from one another, in steps."""
+        planes = [TurnedPiece.of(x, k) for k, x in enumerate(self.space.pieces)]
+        steps = _best_steps(planes, self.count).tolist()
+        return [x.in_steps(y) for x, y in zip(planes, steps, strict=True)]
+
+    @cached_property
+    def covered(self) -> tuple[Space, Indices]:
+        """The planes of faces that are not ruled."""
+        numbers = [k for k, x in enumerate(self.pieces) if not x.is_ruled]
+        pieces = tuple(self.pieces[k] for k in numbers)
+        space = Space(self.space.label, pieces, TargetDensity(floor=1.0), self.space.threads)
+        return space, np.array(numbers, dtype=np.int64)
+
+    @property
+    def smallest_step(self) -> float:
+        """0: edges may have all vertices."""
+        return 0.0
+
+    def inside(self, step: float, around: Indices) -> float:
+        """Return how many vertices cover the inside; half of those around a face are there, too."""
+        space, numbers = self.covered
+        if not len(numbers):
+            return 0.0
+        samples = (step_of(space, 1) / (space.unit * step)) ** 2
+        return max(samples - around[numbers].sum() / 2.0, 0.0)
+
+    def costs(self, pieces: Indices, uv: Array) -> Array:
+        """Return how far normals and edges turn between places (S, n, 2), in steps (S, n − 1)."""
+        owner = np.repeat(pieces, uv.shape[1])
+        points = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows[:, :3]
+        lengths, turns = _lengths_and_turns(points.reshape(*uv.shape[:2], 3))
+        straight = STRAIGHT * lengths / (self.space.size * self.space.unit)
+        steps = np.array([self.pieces[k].step for k in pieces.tolist()])
+        planes = [self.pieces[k].jets(*x.T)[:, 0] for k, x in zip(pieces.tolist(), uv, strict=True)]
+        costs = np.linalg.norm(np.diff(np.array(planes), axis=1), axis=2)
+        return np.maximum(costs, np.maximum(turns, straight) / steps[:, None])
+
+    def plane(self, piece: int, uv: Array, tangents: Array) -> Array:
+        """Return places (k, 2) in the plane of a piece; planes of a part are as they are."""
+        turned = self.pieces[piece]
+        return turned.turned(uv) if turned.turns else super().plane(piece, uv, tangents)
+
+
+def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
+    """Return the steps (P,) in planes for which a count of vertices has the least mean angle.
+
+    Angles are about as large as steps. A face has P/s vertices on its border and F/s² inside, with
+    its perimeter P and area F in the plane: the area of the face, which counts its angle s, is a
+    common factor times the derivative of that. No step is much longer than their mean.
+    """
+    areas = np.array([x.piece.size**2 for x in planes])
+    around = np.array([x.perimeter if x.turns else 0.0 for x in planes])
+    inside = np.array([0.0 if x.is_ruled else x.size**2 for x in planes])
+    curved = around > 0.0
+    if not curved.any():
+        return np.ones(len(planes))
+    areas, around, inside = areas[curved], around[curved], inside[curved]
+    low, high = LOGARITHMS
+    for _ in range(BISECTIONS):
+        factor = math.exp((low + high) / 2.0) * areas.sum()
+        steps = np.maximum(np.sqrt(factor * around / areas), np.cbrt(2.0 * factor * inside / areas))
+        steps = np.minimum(steps, LONGEST * np.average(steps, weights=areas))
+        middle, total = (low + high) / 2.0, (around / steps + inside / steps**2).sum()
+        low, high = (middle, high) if total > count else (low, middle)
+    found = np.full(len(planes), steps.max())
+    found[curved] = steps
+    return found
+
+
+def _lengths_and_turns(points: Array) -> tuple[Array, Array]:
+    """Return lengths (S, n − 1) between points (S, n, 3), and how far these polygons turn there."""
+    steps = np.diff(points, axis=1)
+    lengths = np.linalg.norm(steps, axis=2)
+    along = steps / np.where(lengths > 0.0, lengths, 1.0)[..., None]
+    turns = np.linalg.norm(np.diff(along, axis=1), axis=2) / 2.0
+    return lengths, np.pad(turns, ((0, 0), (0, 1))) + np.pad(turns, ((0, 0), (1, 0)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class TurnedPiece(Piece):
+    """A face as a plane of two lengths: how far its normal turns along u, and along v.
+
+    `knots` are values of u and v, and `lengths` the lengths up to there, by what is the largest
+    angle of all lines; `turns` is the larger one of both. A sphere stays one, of radius 1.
+    """
+
+    piece: FacePiece
+    number: int
+    knots: tuple[Array, Array]
+    lengths: tuple[Array, Array]
+    turns: float
+    is_ruled: bool
+    area: float
+    step: float = 1.0
+
+    @classmethod
+    def of(cls, piece: FacePiece, number: int) -> TurnedPiece:
+        """Return the plane of a face."""
+        knots = tuple(_places(piece, axis) for axis in (0, 1))
+        places = np.stack(np.meshgrid(*knots, indexing="ij"), axis=-1)
+        inside = piece.contains(places.reshape(-1, 2)).reshape(places.shape[:2])
+        jets = piece.jets(*places.reshape(-1, 2).T.copy())
+        normals = normals_of_jets(jets).reshape(*places.shape[:2], 3)
+        angles = [_angles(normals, inside, axis) for axis in (0, 1)]
+        totals = [float(x.sum()) for x in angles]
+        turns = max(totals)
+        lengths = []
+        for steps, values in zip(angles, knots, strict=True):
+            least = LEAST * turns * np.diff(values) / np.ptp(values)
+            lengths.append(np.concatenate([[0.0], np.cumsum(np.maximum(steps, least))]))
+        return cls(
+            label=piece.label, domain=piece.domain, trim=piece.trim, indices=piece.indices,
+            piece=piece, number=number, knots=(knots[0], knots[1]),
+            lengths=(lengths[0], lengths[1]), turns=turns if turns > RULED else 0.0,
+            is_ruled=min(totals) <= RULED, area=_area(piece, knots, lengths),
+        )  # fmt: skip
+
+    def in_steps(self, step: float) -> TurnedPiece:
+        """Return the same plane, in units of a step."""
+        return replace(
+            self, lengths=(self.lengths[0] / step, self.lengths[1] / step),
+            area=self.area / step**2, step=step,
+        )  # fmt: skip
+
+    @property
+    def perimeter(self) -> float:
+        """The length of the border in the plane."""
+        around = [self.turned(np.concatenate([x, x[:1]])) for x in self.polygons]
+        return float(sum(np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in around))
+
+    def turned(self, uv: Array) -> Array:
+        """Return places (k, 2) in the plane."""
+        return np.stack(
+            [np.interp(uv[:, k], self.knots[k], self.lengths[k]) for k in (0, 1)], axis=1
+        )
+
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return 2-jets (k, 6, 3) of the plane, or of the sphere."""
+        found, places = np.zeros((len(u), 6, 3)), np.stack([u, v], axis=1)
+        if self._radius:
+            found = self.piece.jets(u, v)
+            found[:, 0] -= self.piece.jets(*self.piece.middle)[0, 0]
+            found /= self._radius * self.step
+        else:
+            found[:, 0, :2] = self.turned(places)
+            for k in (0, 1):
+                rates = np.diff(self.lengths[k]) / np.diff(self.knots[k])
+                at = np.searchsorted(self.knots[k], places[:, k], side="right") - 1
+                found[:, 1 + k, k] = rates[np.clip(at, 0, len(rates) - 1)]
+        found[:, 0, 2] += APART * self.number
+        return found
+
+    @property
+    def _radius(self) -> float:
+        """The radius of a sphere, 0 of other faces."""
+        return self.piece.face.dimensions["radius"] if self.piece.face.kind == "sphere" else 0.0
+
+    @cached_property
+    def size(self) -> float:
+        """The root of the area in the plane, or on the sphere."""
+        size = self.piece.size / (self._radius * self.step) if self._radius else 0.0
+        return size or math.sqrt(self.area)
+
+    @property
+    def polygons(self) -> list[Array]:
+        """Those of the face."""
+        return self.piece.polygons
+
+    @property
+    def boxes(self) -> Array:
+        """Those of the face."""
+        return self.piece.boxes
+
+    def geometries(self, threads: int | None) -> list[OnSpline]:
+        """Return those of the face."""
+        return self.piece.geometries(threads)
+
+    def fields_at(
+        self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
+    ) -> dict[str, NDArray[Any]]:
+        """Return those of the face."""
+        return self.piece.fields_at(uv, rows, fields, dtype)
+
+
+def _places(piece: FacePiece, axis: int) -> Array:
+    """Return values of a parameter: even ones, and those between which a face is smooth."""
+    return np.unique(np.concatenate([np.linspace(*piece.domain[axis], PLACES), piece.lines(axis)]))
+
+
+def _angles(normals: Array, inside: Flags, axis: int) -> Array:
+    """Return the largest angles (k − 1,) between normals (k, l, 3) along an axis, where inside."""
+    n = np.moveaxis(normals, axis, 0)
+    here = np.moveaxis(inside if inside.any() else np.ones_like(inside), axis, 0)
+    known = n.any(axis=2)
+    chords = np.linalg.norm(np.diff(n, axis=0), axis=2)
+    counts = known[1:] & known[:-1] & (here[1:] | here[:-1])
+    return (2.0 * np.arcsin(np.minimum(np.where(counts, chords, 0.0) / 2.0, 1.0))).max(axis=1)
+
+
+def _area(piece: FacePiece, knots: Sequence[Array], lengths: Sequence[Array]) -> float:
+    """Return the area inside of a plane of lengths, by the middles between knots."""
+    middles = np.meshgrid(*((x[1:] + x[:-1]) / 2.0 for x in knots), indexing="ij")
+    inside = piece.contains(np.stack(middles, axis=-1).reshape(-1, 2)).reshape(middles[0].shape)
+    areas = np.multiply.outer(*(np.diff(x) for x in lengths))
+    return float(areas[inside if inside.any() else ...].sum())
