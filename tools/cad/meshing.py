@@ -245,18 +245,27 @@ class Meshing:
         return [FaceBorder.of(x, sampled) for x in self.space.pieces]
 
     def _made(self, sampled: SampledEdges) -> PartMesh:
-        """Return a mesh, whose edges may still be wrong; its vertices are numbered as edges say."""
+        """Return a mesh, whose edges may still be wrong; its vertices are numbered as edges say.
+
+        Vertices inside of faces are replaced by others if they fell outside of polygons, or are in
+        a triangle that points inward.
+        """
         borders = self._borders(sampled)
         cover = self._cover(sampled, borders)
-        first, rounds = len(sampled.points), 0
-        while True:
+        first, left_out = len(sampled.points), np.empty(0, dtype=np.int64)
+        for _ in range(REFILLS):
             added = cover.added[cover.fixed :] if cover else self.space.nothing()
-            corners = self._corners(borders, added, first)
-            used, rounds = np.unique(corners.numbers[corners.triangles]), rounds + 1
+            chosen = np.setdiff1d(np.arange(len(added)), left_out)
+            corners = self._corners(borders, added[chosen], first + chosen)
+            mesh = self._mesh(sampled, corners)
+            bad = np.unique(_inverted(mesh))
+            left_out = np.union1d(left_out, bad[bad >= first] - first)
+            used = np.setdiff1d(mesh.triangles, bad)
             lacking = self.count - first - int(np.count_nonzero(used >= first))
-            if lacking <= 0 or rounds == REFILLS or cover is None:
-                return self._mesh(sampled, corners)
+            if lacking <= 0 or cover is None:
+                break
             cover.fill_up(cover.count + lacking)
+        return mesh
 
     def _cover(self, sampled: SampledEdges, borders: list[FaceBorder]) -> Cover | None:
         """Return the cover of faces: samples at vertices on edges, and others inside.
@@ -277,14 +286,14 @@ class Meshing:
             cover.to_count(len(cells) + inside)
         return cover
 
-    def _corners(self, borders: list[FaceBorder], added: Cells, first: int) -> Corners:
-        """Return the triangles between vertices on edges and added ones, numbered from `first`."""
+    def _corners(self, borders: list[FaceBorder], added: Cells, names: Indices) -> Corners:
+        """Return the triangles between vertices on edges and added ones, of which `names` are the numbers."""
         order = np.argsort(added.pieces, kind="stable")
         cells, spacing = added[order], self.edges.spacing
         cells = replace(cells, pieces=spacing.covered[1][cells.pieces]) if len(cells) else cells
         rows = dict(by_piece(cells))
         inner = [cells.places[rows.get(k, slice(0, 0))] for k in range(len(borders))]
-        numbers = [first + order[rows.get(k, slice(0, 0))] for k in range(len(borders))]
+        numbers = [names[order[rows.get(k, slice(0, 0))]] for k in range(len(borders))]
         counts = [len(x.uv) + len(y) for x, y in zip(borders, inner, strict=True)]
         pieces, starts = np.repeat(np.arange(len(borders)), counts), np.cumsum([0, *counts])
         both = zip(borders, inner, strict=True)
@@ -361,11 +370,13 @@ def _wrong(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:
 
 
 def _inverted(mesh: PartMesh) -> Indices:
-    """Return the edges (k, 2) of triangles that point away from a normal at a corner."""
+    """Return the edges (k, 2) of triangles that point away from the mean normal of their corners.
+
+    From one at a corner they may, where a face of a file folds over at its end.
+    """
     a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
-    products = np.einsum("tx,tkx->tk", across, mesh.corner_normals)
-    found = mesh.triangles[(products < 0.0).any(axis=1)]
+    found = mesh.triangles[np.einsum("tx,tkx->t", across, mesh.corner_normals) < 0.0]
     return found[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
 
 
