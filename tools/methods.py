@@ -214,7 +214,7 @@ def mesh(
         from .cad.meshing import mesh_of_samples
 
         with busy("meshing", progress):
-            return mesh_of_samples(cast("Part", self.surface), len(self), angle, prefer)
+            return mesh_of_samples(self, angle, prefer)
     from .meshes.meshing import mesh_of
 
     if spline is None and self.offset_of is not None:

@@ -42,6 +42,7 @@ ROUNDING = 1e-9
 MOST_COUNT = 2**63 - 1
 # Where samples lie.
 PLACES = ("surface", "spline")
+DENSITIES = ("aligned", "gauss", "uniform", "power")
 COUNTS = (
     "normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes",
     "proved", "index", "faces", "empty_faces", "estimated_faces", "edge_samples",
@@ -188,8 +189,9 @@ class SamplingReport:
         on smoothly; see `Spline.apexes`.
     index : int or None
         The number of the surface among those of `sample_many`.
-    density : {"aligned"} or None
-        "aligned" if samples are on a grid, whether or not they have the fields row and column.
+    density : {"aligned", "gauss", "uniform", "power"} or None
+        "aligned" if samples are on a grid, whether or not they have the fields row and column. Of a
+        CAD part: the density, "power" for a power of \|K\|; None for "balanced".
     faces, empty_faces : int or None
         Of a CAD part: the number of its faces, and how many of them have no sample.
     estimated_faces : int or None
@@ -275,7 +277,7 @@ class SamplingReport:
         if self.on is not None:
             known_name(self.on, PLACES, "place of samples")
         if self.density is not None:
-            known_name(self.density, ("aligned",), "density on a grid")
+            known_name(self.density, DENSITIES, "density")
         for name, check in CHECKS.items():
             value = getattr(self, name)
             if value is not None or name in KNOWN:

@@ -12,6 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.trees import tree_of
 from ...runtime.density.filling import spacing
+from ...runtime.density.space import Space
 from ...runtime.samples.fields import EDGE_NAMES, INTEGER_NAMES, dtype_of, row_shape
 from .edges import Edges, Sides, edges_of, exact_places, sides_at
 from .results import PartSpace
@@ -69,7 +70,7 @@ def _on_edges(space: PartSpace, count: int) -> dict[str, NDArray[Any]]:
     return _arrays(space, sides[kept])
 
 
-def step_of(space: PartSpace, count: int) -> float:
+def step_of(space: Space, count: int) -> float:
     """Return the distance between neighbours among `count` samples where the density is 1."""
     integral = space.integral
     if not (count and integral > 0.0):

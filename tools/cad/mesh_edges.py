@@ -107,7 +107,7 @@ class MeshEdges:
     @cached_property
     def _divided(self) -> Flags:
         """Which edges (E,) have vertices between their ends."""
-        return self.used & ~self.arrays["edge_degenerate"]
+        return self.used & (self.arrays["edge_degenerate"] == 0)
 
     def _steps_for(self, count: int) -> Indices:
         """Return the numbers of steps (E,) of edges in a mesh of a count, `least` or more.

@@ -11,7 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -51,13 +51,10 @@ class Spacing:
 
     space: PartSpace
     count: int
+    # Whether triangles are to be well shaped, and not close to the normals.
+    by_shape: ClassVar[bool] = True
 
-    @property
-    def by_shape(self) -> bool:
-        """Whether triangles are to be well shaped, and not close to the normals."""
-        return True
-
-    @property
+    @cached_property
     def covered(self) -> tuple[Space, Indices]:
         """What is covered with vertices, and the numbers of its pieces in the space."""
         return self.space, np.arange(len(self.space.pieces))
@@ -67,7 +64,7 @@ class Spacing:
         """The smallest step along edges."""
         return step_of(self.space, self.count)
 
-    def inside(self, step: float, around: Indices) -> float:  # noqa: ARG002
+    def inside(self, step: float, around: Indices) -> float:
         """Return how many vertices are to be left inside; `around` (P,) are steps around pieces."""
         return 0.0
 
@@ -83,9 +80,11 @@ class Spacing:
         lengths, turns = _lengths_and_turns(rows[..., :3])
         rates = np.sqrt(rows[..., 6])
         costs = np.maximum(rates[:, 1:], rates[:, :-1]) * lengths
+        if not self.space.target.curvature_weight:
+            return costs
         return np.maximum(costs, np.minimum(turns, BENT * costs))
 
-    def plane(self, piece: int, uv: Array, tangents: Array) -> Array:  # noqa: ARG002
+    def plane(self, piece: int, uv: Array, tangents: Array) -> Array:
         """Return places (k, 2) in the plane of a piece; `tangents` (k, 2, 3) are x_u and x_v."""
         lengths = np.sqrt((tangents**2).sum(axis=2).mean(axis=0))
         return uv * np.where(lengths > 0.0, lengths, 1.0)
@@ -94,10 +93,7 @@ class Spacing:
 class ByNormals(Spacing):
     """Vertices are even by how far normals turn, along each parameter of a face."""
 
-    @property
-    def by_shape(self) -> bool:
-        """Triangles are to be close to the normals."""
-        return False
+    by_shape: ClassVar[bool] = False
 
     @cached_property
     def pieces(self) -> list[TurnedPiece]:
@@ -158,7 +154,7 @@ def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
     if not curved.any():
         return np.ones(len(planes))
     areas, around, inside = areas[curved], around[curved], inside[curved]
-    low, high = LOGARITHMS
+    (low, high), steps = LOGARITHMS, areas
     for _ in range(BISECTIONS):
         factor = math.exp((low + high) / 2.0) * areas.sum()
         steps = np.maximum(np.sqrt(factor * around / areas), np.cbrt(2.0 * factor * inside / areas))
@@ -269,7 +265,7 @@ class TurnedPiece(Piece):
         """Those of the face."""
         return self.piece.polygons
 
-    @property
+    @cached_property
     def boxes(self) -> Array:
         """Those of the face."""
         return self.piece.boxes
@@ -303,6 +299,6 @@ def _angles(normals: Array, inside: Flags, axis: int) -> Array:
 def _area(piece: FacePiece, knots: Sequence[Array], lengths: Sequence[Array]) -> float:
     """Return the area inside of a plane of lengths, by the middles between knots."""
     middles = np.meshgrid(*((x[1:] + x[:-1]) / 2.0 for x in knots), indexing="ij")
-    inside = piece.contains(np.stack(middles, axis=-1).reshape(-1, 2)).reshape(middles[0].shape)
-    areas = np.multiply.outer(*(np.diff(x) for x in lengths))
-    return float(areas[inside if inside.any() else ...].sum())
+    inside = piece.contains(np.stack(middles, axis=-1).reshape(-1, 2))
+    areas = np.multiply.outer(*(np.diff(x) for x in lengths)).ravel()
+    return float(areas[inside].sum() if inside.any() else areas.sum())

@@ -25,7 +25,8 @@ from ...runtime.density.cover import Cover
 from ...runtime.density.filling import Filling, target_of
 from ...runtime.density.grid import Grid
 from ...runtime.density.space import Space
-from ...runtime.samples.request import checked_request
+from ...runtime.samples.request import Request, checked_request
+from ...runtime.samples.samples import Samples
 from ..kernels.flips import flip_edges
 from ..meshes.creased import mean_normals
 from ..meshes.links import edge_numbers, neighbours
@@ -45,16 +46,25 @@ __all__ = ["mesh_of_samples"]
 INSIDE = 1e-6
 # Edges are divided further so many times, until faces and their triangles are proper; samples that
 # fell outside of the polygons around faces are replaced so many times.
-ROUNDS, REFILLS = 5, 8
+ROUNDS, REFILLS = 15, 8
+# The densities of samples that meshes follow.
+DENSITIES = ("balanced", "uniform")
 SPACINGS = {"shape": Spacing, "normals": ByNormals}
 
 
-def mesh_of_samples(part: Part, count: int, angle: float | None, prefer: str) -> PartMesh:
-    """Return what `Samples.mesh` returns for a count of samples of a part."""
-    spaced = SPACINGS[checked_prefer(prefer)]
+def mesh_of_samples(samples: Samples, angle: float | None, prefer: str) -> PartMesh:
+    """Return what `Samples.mesh` returns for samples of a part."""
+    spaced, part, count = SPACINGS[checked_prefer(prefer)], samples.surface, len(samples)
+    assert isinstance(part, Part)
     if angle is not None:
         raise InputError(
             "angle=... is for meshes of surfaces, and these samples are of a CAD part."
+        )
+    density = samples.report.density or "balanced"
+    if density not in DENSITIES and spaced.by_shape:
+        raise InputError(
+            'a mesh of a CAD part follows the density "balanced" or "uniform", and these samples have '
+            f'"{density}"; use one of these, or prefer="normals".'
         )
     check_extra(*EXTRA)
     check_memory("mesh", count)
@@ -63,9 +73,8 @@ def mesh_of_samples(part: Part, count: int, angle: float | None, prefer: str) ->
             f"part {part.name!r} does not say how its edges go around its faces, as those in files "
             "of older versions of gaussmap; read the CAD file again."
         )
-    whole = space_of(
-        part, None, target_of(checked_request(None, count, None, None, "balanced", 0, None))
-    )
+    density = "uniform" if density == "uniform" and spaced.by_shape else "balanced"
+    whole = space_of(part, None, target_of(request_of(count, density)))
     known = MeshEdges.of(Spacing(whole, count))
     failed = dict(whole.failed) | {
         x.face.index: f"{x.label} has edges whose places on it are not known."
@@ -74,27 +83,27 @@ def mesh_of_samples(part: Part, count: int, angle: float | None, prefer: str) ->
     }
     while True:
         meshing = Meshing.of(part, whole, count, failed, spaced)
-        crossing = meshing.refine()
-        if not crossing:
+        bad = meshing.refine()
+        if not bad:
             try:
-                mesh, wrong = meshing.mesh()
-                break
+                mesh, bad = meshing.mesh()
             except Crossing as error:  # by rounding
-                crossing = {error.face: f"of face {error.face}, {error}."}
-        failed |= crossing
+                bad = {error.face: f"of face {error.face}, {error}."}
+            else:
+                if not bad:
+                    break
+        failed |= bad
     if failed:
         text = (
             f"lacks {plural(len(failed), 'face')} of {len(part):,}: {next(iter(failed.values()))}"
         )
         warnings.warn(f"the mesh of part {part.name!r} {text}", GaussmapWarning, stacklevel=4)
-    if wrong:
-        text = f"has {plural(wrong, 'edge')} in more or fewer triangles than faces are there"
-        warnings.warn(
-            f"the mesh of part {part.name!r} {text}; take more samples.",
-            GaussmapWarning,
-            stacklevel=4,
-        )
     return mesh
+
+
+def request_of(count: int, density: str) -> Request:
+    """Return the request for a count of samples of a density."""
+    return checked_request(None, count, None, None, density, 0, None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,12 +180,16 @@ class Meshing:
         """Return the beginning of a mesh of the pieces of a space that have not failed."""
         pieces = tuple(x for x in whole.pieces if x.face.index not in failed)
         if not pieces:
-            raise SurfaceError(f"no face of part {part.name!r} can be meshed: {failed[0]}")
-        space: Space = replace(whole, pieces=pieces, _held={})
-        request = checked_request(None, count, None, None, "balanced", 0, None)
-        space = Filling(space, request, False, lambda number: None).balanced(capped=True)
-        assert isinstance(space, PartSpace)
-        return cls(part, space, MeshEdges.of(spaced(space, count)), count, failed)
+            reason = next(iter(failed.values()))
+            raise SurfaceError(f"no face of part {part.name!r} can be meshed: {reason}")
+        made: Space = replace(whole, pieces=pieces, _held={})
+        if whole.target.curvature_weight > 0.0:
+            request = request_of(count, "balanced")
+            made = Filling(made, request, False, lambda number: None).balanced(capped=True)
+        else:
+            made = made.between(1.0)
+        assert isinstance(made, PartSpace)
+        return cls(part, made, MeshEdges.of(spaced(made, count)), count, failed)
 
     def refine(self) -> dict[int, str]:
         """Divide edges until no border crosses itself; return the faces for which that fails."""
@@ -202,27 +215,41 @@ class Meshing:
                 found.append((piece.face.index, border, f"of {piece.label}, {error}."))
         return found
 
-    def mesh(self) -> tuple[PartMesh, int]:
-        """Return the mesh, and the number of its edges that are wrong.
+    def mesh(self) -> tuple[PartMesh, dict[int, str]]:
+        """Return the mesh, and the faces at edges that are in too few or too many triangles.
 
         Edges are divided where they are, and where triangles point inward, as long as that helps.
         Raises Crossing if the border of a face crosses itself.
         """
-        best, least, rounds = None, (0, 0), 0
-        while True:
-            sampled, rounds = self._sampled(), rounds + 1
+        best, least, wrong_of_best = None, (0, 0), np.empty((0, 2), dtype=np.int64)
+        for _ in range(ROUNDS):
+            sampled = self._sampled()
             try:
                 mesh = self._made(sampled)
             except Crossing:
                 if best is None:
                     raise
-                return best, least[0]
+                break
             wrong, inverted = _wrong(sampled, mesh, self.edges), _inverted(mesh)
             if best is None or (len(wrong), len(inverted)) < least:
-                best, least = _without_unused(mesh), (len(wrong), len(inverted))
+                best, least, wrong_of_best = mesh, (len(wrong), len(inverted)), wrong
             coarse = _between(np.concatenate([wrong, inverted]), sampled)
-            if not coarse or rounds == ROUNDS or not self._refine(sampled, coarse):
-                return best, least[0]
+            if not coarse or not self._refine(sampled, coarse):
+                break
+        assert best is not None
+        return _without_unused(best), self._faces_at(best, wrong_of_best)
+
+    def _faces_at(self, mesh: PartMesh, wrong: Indices) -> dict[int, str]:
+        """Return the faces of triangles with edges (k, 2), and why they cannot be meshed."""
+        count = len(mesh.vertices)
+        at = np.isin(edge_numbers(mesh.triangles, count), np.sort(wrong, axis=1) @ [count, 1])
+        faces = np.unique(mesh.face_index[at.any(axis=1)]).tolist()
+        text = "triangles share edges with those of other faces; take more samples."
+        return {
+            x.face.index: f"of {x.label}, {text}"
+            for x in self.space.pieces
+            if x.face.index in faces
+        }
 
     def _refine(self, sampled: SampledEdges, segments: dict[int, Flags]) -> bool:
         """Divide segments of edges, if there are vertices enough for that; return whether."""
@@ -253,6 +280,7 @@ class Meshing:
         borders = self._borders(sampled)
         cover = self._cover(sampled, borders)
         first, left_out = len(sampled.points), np.empty(0, dtype=np.int64)
+        mesh = None
         for _ in range(REFILLS):
             added = cover.added[cover.fixed :] if cover else self.space.nothing()
             chosen = np.setdiff1d(np.arange(len(added)), left_out)
@@ -265,6 +293,7 @@ class Meshing:
             if lacking <= 0 or cover is None:
                 break
             cover.fill_up(cover.count + lacking)
+        assert mesh is not None
         return mesh
 
     def _cover(self, sampled: SampledEdges, borders: list[FaceBorder]) -> Cover | None:
@@ -287,7 +316,7 @@ class Meshing:
         return cover
 
     def _corners(self, borders: list[FaceBorder], added: Cells, names: Indices) -> Corners:
-        """Return the triangles between vertices on edges and added ones, of which `names` are the numbers."""
+        """Return the triangles between vertices on edges and added ones, numbered by `names`."""
         order = np.argsort(added.pieces, kind="stable")
         cells, spacing = added[order], self.edges.spacing
         cells = replace(cells, pieces=spacing.covered[1][cells.pieces]) if len(cells) else cells

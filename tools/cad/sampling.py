@@ -47,7 +47,7 @@ def sample_part(
     cover = fill(space, request, progress)
     on_faces = [x for x in fields if x not in EDGE_NAMES]
     found = fields_of(cover, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)
-    report = _report(part, space, cover, found)
+    report = _report(part, space, cover, found, request)
     if request.reach is not None:
         report = replace(report, reach=(*request.reach.axis.tolist(), request.reach.angle))
     arrays: dict[str, Any] = {name: found[name] for name in on_faces}
@@ -74,7 +74,11 @@ def _check(request: Request) -> None:
 
 
 def _report(
-    part: Part, space: PartSpace, cover: Cover, arrays: Mapping[str, NDArray[Any]]
+    part: Part,
+    space: PartSpace,
+    cover: Cover,
+    arrays: Mapping[str, NDArray[Any]],
+    request: Request,
 ) -> SamplingReport:
     held = np.union1d(cover.added.pieces, cover.at_normals.pieces)
     return SamplingReport(
@@ -91,8 +95,16 @@ def _report(
         faces=len(part),
         empty_faces=len(part) - len(held),
         oriented=part.oriented,
+        density=_density(request),
         **_proof(space, cover),
     )
+
+
+def _density(request: Request) -> str | None:
+    """Return the density as it is reported, None for "balanced"."""
+    if not isinstance(request.density, str):
+        return "power"
+    return None if request.density == "balanced" else request.density
 
 
 def _proof(space: PartSpace, cover: Cover) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from .paths import PathLike, atomic_path, check_target, checked_path, known_suff
 from .ply import read_ply, write_mesh_ply, write_ply
 from .reading import opened
 from .tables import write_csv, write_xyz
+from .threemf import write_3mf
 from .triangle_files import write_glb, write_obj, write_stl
 from .vtk import write_mesh_vtp, write_vtk, write_vtp, write_vtu
 
@@ -63,6 +64,7 @@ OF_MESHES = {
     ".ply": Format(write_mesh_ply),
     ".obj": Format(write_obj),
     ".stl": Format(write_stl),
+    ".3mf": Format(write_3mf),
     ".vtk": Format(write_vtk),
     ".vtu": Format(write_vtu),
     ".vtp": Format(write_mesh_vtp),

@@ -1,0 +1,62 @@
+"""Triangles for 3-D printers: .3mf, a zip archive of XML (3MF core specification 1.3)."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...runtime.base.errors import InputError
+
+if TYPE_CHECKING:
+    from ..meshes.mesh import Mesh
+
+__all__ = ["write_3mf"]
+
+# Not trimesh: it needs two more libraries, and writes other bytes each time.
+CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+MODEL = "application/vnd.ms-package.3dmanufacturing-3dmodel+xml"
+PACKAGE = "http://schemas.openxmlformats.org/package/2006"
+HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n'
+TYPES = f"""{HEAD}<Types xmlns="{PACKAGE}/content-types">
+<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
+<Default Extension="model" ContentType="{MODEL}"/>
+</Types>
+"""
+RELATIONS = f"""{HEAD}<Relationships xmlns="{PACKAGE}/relationships">
+<Relationship Id="rel0" Target="/3D/3dmodel.model" \
+Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
+</Relationships>
+"""
+# Zip archives hold a time, of 1980 at the earliest: the same mesh gives the same bytes.
+TIME = (1980, 1, 1, 0, 0, 0)
+
+
+def write_3mf(mesh: Mesh, path: Path) -> None:
+    """Write vertices and triangles; the unit of length counts as a millimetre."""
+    a, b, c = mesh.triangles.T
+    if ((a == b) | (b == c) | (c == a)).any():
+        raise InputError("a .3mf file has no triangles with a vertex twice, as this mesh has.")
+    contents = {
+        "[Content_Types].xml": TYPES,
+        "_rels/.rels": RELATIONS,
+        "3D/3dmodel.model": "".join(_model(mesh)),
+    }
+    with zipfile.ZipFile(path, "w") as file:
+        for name, text in contents.items():
+            entry = zipfile.ZipInfo(name, TIME)
+            file.writestr(entry, text, zipfile.ZIP_DEFLATED)
+
+
+def _model(mesh: Mesh) -> Iterable[str]:
+    """Yield the lines of the model."""
+    yield f'{HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{CORE}">\n<resources>\n'
+    yield '<object id="1" type="model">\n<mesh>\n<vertices>\n'
+    for x, y, z in mesh.vertices.tolist():
+        yield f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>\n'
+    yield "</vertices>\n<triangles>\n"
+    for i, j, k in mesh.triangles.tolist():
+        yield f'<triangle v1="{i}" v2="{j}" v3="{k}"/>\n'
+    yield "</triangles>\n</mesh>\n</object>\n</resources>\n"
+    yield '<build>\n<item objectid="1"/>\n</build>\n</model>\n'
