@@ -191,7 +191,7 @@ class SamplingReport:
         The number of the surface among those of `sample_many`.
     density : {"aligned", "gauss", "uniform", "power"} or None
         "aligned" if samples are on a grid, whether or not they have the fields row and column. Of a
-        CAD part: the density, "power" for a power of \|K\|; None for "balanced".
+        CAD part: the density, "power" for a power of K; None for "balanced".
     faces, empty_faces : int or None
         Of a CAD part: the number of its faces, and how many of them have no sample.
     estimated_faces : int or None

@@ -37,6 +37,8 @@ RULED = 1e-6
 # Of two parameters, one counts as this part of the other at least; and a straight edge of the size
 # of the part as this angle.
 LEAST, STRAIGHT = 1e-3, 1e-6
+# The angle by which an edge turns counts as this part of one by which normals do.
+CURVED = 0.5
 # No step is longer than this times the mean of all. The logarithm of their common factor is between
 # these, and is bisected so many times.
 LONGEST = 3.0
@@ -132,7 +134,7 @@ class ByNormals(Spacing):
         steps = np.array([self.pieces[k].step for k in pieces.tolist()])
         planes = [self.pieces[k].jets(*x.T)[:, 0] for k, x in zip(pieces.tolist(), uv, strict=True)]
         costs = np.linalg.norm(np.diff(np.array(planes), axis=1), axis=2)
-        return np.maximum(costs, np.maximum(turns, straight) / steps[:, None])
+        return np.maximum(costs, np.maximum(CURVED * turns, straight) / steps[:, None])
 
     def plane(self, piece: int, uv: Array, tangents: Array) -> Array:
         """Return places (k, 2) in the plane of a piece; planes of a part are as they are."""
@@ -300,5 +302,5 @@ def _area(piece: FacePiece, knots: Sequence[Array], lengths: Sequence[Array]) ->
     """Return the area inside of a plane of lengths, by the middles between knots."""
     middles = np.meshgrid(*((x[1:] + x[:-1]) / 2.0 for x in knots), indexing="ij")
     inside = piece.contains(np.stack(middles, axis=-1).reshape(-1, 2))
-    areas = np.multiply.outer(*(np.diff(x) for x in lengths)).ravel()
-    return float(areas[inside].sum() if inside.any() else areas.sum())
+    areas = np.outer(np.diff(lengths[0]), np.diff(lengths[1])).ravel()
+    return float((inside @ areas) or areas.sum())

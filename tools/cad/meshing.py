@@ -63,8 +63,8 @@ def mesh_of_samples(samples: Samples, angle: float | None, prefer: str) -> PartM
     density = samples.report.density or "balanced"
     if density not in DENSITIES and spaced.by_shape:
         raise InputError(
-            'a mesh of a CAD part follows the density "balanced" or "uniform", and these samples have '
-            f'"{density}"; use one of these, or prefer="normals".'
+            'a mesh of a CAD part follows the density "balanced" or "uniform", and these samples '
+            f'have "{density}"; use one of these, or prefer="normals".'
         )
     check_extra(*EXTRA)
     check_memory("mesh", count)
@@ -208,9 +208,10 @@ class Meshing:
     def _crossing(self) -> list[tuple[int, FaceBorder, str]]:
         """Return the faces whose borders cross themselves, these, and what is wrong."""
         found = []
-        for piece, border in zip(self.space.pieces, self._borders(self._sampled()), strict=True):
+        for k, border in enumerate(self._borders(self._sampled())):
+            piece, even = self.space.pieces[k], np.ones((len(border.uv), 2, 3))
             try:
-                triangles_of(border, border.uv)
+                triangles_of(border, self.edges.spacing.plane(k, border.uv, even))
             except Crossing as error:
                 found.append((piece.face.index, border, f"of {piece.label}, {error}."))
         return found

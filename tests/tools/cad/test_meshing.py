@@ -2,18 +2,22 @@
 
 # pyright: reportAttributeAccessIssue=false
 
+import zipfile
+from xml.etree import ElementTree
+
 import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad.examples import all_kinds, box
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.part_mesh import PartMesh
+from gaussmap.tools.meshes.triangulated import Prefer
 
 SIZES = np.array([1.0, 2.0, 3.0])
 
 
-def meshed(part: Part, count: int) -> PartMesh:
-    mesh = gm.sample(part, count).mesh()
+def meshed(part: Part, count: int, prefer: Prefer = "shape") -> PartMesh:
+    mesh = gm.sample(part, count).mesh(prefer=prefer)
     assert isinstance(mesh, PartMesh)
     return mesh
 
@@ -233,12 +237,99 @@ def test_parts_without_loops_of_edges(made):
         gm.sample(made.part(made.box_faces()), 100).mesh()
 
 
-@pytest.mark.parametrize(
-    ("how", "match"), [({"angle": 10.0}, "angle="), ({"prefer": "normals"}, "prefer=")]
-)
-def test_what_parts_do_not_have(how, match):
-    with pytest.raises(gm.errors.InputError, match=match):
-        gm.sample(box(), 100).mesh(**how)
+def test_parts_do_not_have_angles():
+    with pytest.raises(gm.errors.InputError, match="angle="):
+        gm.sample(box(), 100).mesh(angle=10.0)
+
+
+# --- triangles close to the normals ---------------------------------------------------------------
+
+
+def inner(mesh: PartMesh) -> np.ndarray:
+    """Return the vertices that are on no edge of the part."""
+    return np.setdiff1d(np.arange(len(mesh.vertices)), np.concatenate(mesh.lines))
+
+
+@pytest.mark.parametrize("count", [8, 9, 100, 1001])
+def test_planes_have_no_vertices_inside(count):
+    mesh = sound(meshed(box(*SIZES), count, "normals"), count)
+    assert mesh.closed
+    assert mesh.volume == pytest.approx(6.0, rel=1e-12)
+    assert len(inner(mesh)) == 0
+    steps = [np.linalg.norm(np.diff(mesh.vertices[x], axis=0), axis=1) for x in mesh.lines]
+    longest = [x.max() for x in steps]
+    assert max(longest) <= 1.5 * min(longest) or count < 100
+
+
+@pytest.mark.parametrize("count", [50, 2000])
+def test_cylinders_have_vertices_on_their_circles_only(made, count):
+    """Their rows are rulings: a regular polygon of as many corners as vertices allow."""
+    part = made.cylinder()
+    mesh = sound(meshed(part, count, "normals"), count)
+    assert mesh.closed
+    assert len(inner(mesh)) == 0
+    heights = mesh.vertices[:, 2]
+    assert (np.isin(heights, [0.0, 2.0])).all()
+    corners = (heights == 0.0).sum()
+    assert abs(2 * corners - count) <= 1
+    side = mesh.face_index == 0
+    assert mesh.angles[side].max() == pytest.approx(180.0 / corners, rel=0.05)
+    assert mesh.angles[side].max() < 0.6 * meshed(part, count).angles.max()
+    polygon = corners * np.sin(2.0 * np.pi / corners)
+    assert mesh.volume == pytest.approx(polygon, rel=1e-2 if count < 100 else 1e-5)
+
+
+def test_balls_by_normals(made):
+    mesh = sound(meshed(made.ball(2.0), 1000, "normals"), 1000)
+    assert mesh.closed
+    np.testing.assert_allclose(np.linalg.norm(mesh.vertices, axis=1), 2.0, atol=1e-14)
+    assert np.median(mesh.angles) < 4.5  # √(4π / 1000) · .58 rad are 3.7°
+
+
+def weighted(mesh: PartMesh) -> float:
+    """Return the mean angle by area."""
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+    return float(np.average(mesh.angles, weights=np.linalg.norm(np.cross(b - a, c - a), axis=1)))
+
+
+def test_faces_of_all_kinds_by_normals():
+    part, count = all_kinds(), 1000
+    mesh = sound(meshed(part, count, "normals"), count)
+    assert mesh.euler_characteristic == len(part.faces)  # disks
+    kinds = np.array([x.kind for x in part.faces])
+    ruled = np.isin(kinds, ["plane", "cylinder", "cone"])
+    owners = mesh.face_index[np.isin(mesh.triangles, inner(mesh)).any(axis=1)]
+    assert not ruled[owners].any()
+    assert set(kinds[owners]) >= {"sphere", "torus"}
+    assert weighted(mesh) < 0.7 * weighted(meshed(part, count))
+    for kind in ("cylinder", "cone", "torus", "sphere"):
+        here = np.isin(mesh.face_index, np.flatnonzero(kinds == kind))
+        assert mesh.angles[here].mean() < 3.0 * weighted(mesh)
+
+
+# --- density --------------------------------------------------------------------------------------
+
+
+def test_meshes_follow_the_density_of_samples(made):
+    """Of a cylinder, disks have more vertices if the density is uniform."""
+    part, count = made.cylinder(height=0.2), 1500
+    flat = []
+    for density in ("balanced", "uniform"):
+        mesh = gm.sample(part, count, density=density).mesh()
+        assert isinstance(mesh, PartMesh)
+        assert sound(mesh, count).closed
+        flat.append((np.hypot(*mesh.vertices[:, :2].T) < 0.9).sum())
+    assert flat[1] > 1.2 * flat[0]
+    share = flat[1] / count
+    assert share == pytest.approx(2.0 * 0.81 / (2.0 + 2.0 * 0.2), rel=0.15)
+
+
+@pytest.mark.parametrize("how", [{"density": 1.0}, {"density": 0.5}])
+def test_other_densities_are_refused(how):
+    samples = gm.sample(all_kinds(), 300, **how)
+    with pytest.raises(gm.errors.InputError, match=r'"balanced" or "uniform", .* have "power"'):
+        samples.mesh()
+    assert len(samples.mesh(prefer="normals").vertices) == 300
 
 
 # --- files ----------------------------------------------------------------------------------------
@@ -277,6 +368,27 @@ def test_obj_files_have_a_normal_at_each_corner(made, tmp_path):
     assert np.array_equal(vertices, mesh.vertices)
     assert np.array_equal(corners[..., 0], mesh.triangles)
     np.testing.assert_allclose(normals[corners[..., 1]], mesh.corner_normals, atol=1e-9)
+
+
+def test_3mf_files(tmp_path):
+    mesh = meshed(box(*SIZES), 100)
+    contents = []
+    for name in ("one.3mf", "other.3mf"):
+        mesh.write(tmp_path / name)
+        contents.append((tmp_path / name).read_bytes())
+    assert contents[0] == contents[1]
+    with zipfile.ZipFile(tmp_path / "one.3mf") as file:
+        assert file.testzip() is None
+        assert file.namelist()[:2] == ["[Content_Types].xml", "_rels/.rels"]
+        target = ElementTree.fromstring(file.read("_rels/.rels"))[0].get("Target")
+        model = ElementTree.fromstring(file.read(str(target).lstrip("/")))
+    core = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+    rows = [[float(x.attrib[y]) for y in "xyz"] for x in model.iter(f"{core}vertex")]
+    corners = [[int(x.attrib[f"v{k}"]) for k in (1, 2, 3)] for x in model.iter(f"{core}triangle")]
+    assert np.array_equal(rows, mesh.vertices)
+    assert np.array_equal(corners, mesh.triangles)
+    (item,) = model.iter(f"{core}item")
+    assert item.get("objectid") == next(model.iter(f"{core}object")).get("id")
 
 
 def test_command_line(tmp_path, monkeypatch, capsys, main):
