@@ -143,8 +143,8 @@ def mesh(
 
     Of a CAD part it is a `PartMesh` of new vertices, as many as there are samples: first the
     vertices and edges of the part are sampled, once for the faces at both sides, then the inside
-    of faces. Their triangles meet, so that the mesh of a closed part is closed. Needs the extra
-    `mesh`.
+    of faces, with the density of the samples. Their triangles meet, so that the mesh of a closed
+    part is closed. Needs the extra `mesh`.
 
     Parameters
     ----------
@@ -161,8 +161,9 @@ def mesh(
           cells, too; samples of ``density="balanced"`` have well-shaped triangles.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction
-          only, and one sample is left out where a triangle would have no area. Not for CAD
-          parts.
+          only, and one sample is left out where a triangle would have no area. Of a CAD part:
+          planes, cylinders and cones have vertices on their edges only, other faces rows that
+          are even by how far normals turn.
     progress : bool, default False
         Show on a terminal what is done, after the first second.
 
@@ -179,7 +180,8 @@ def mesh(
     InputError
         Without samples or spline, if a sample lies outside its domain, if `angle` leaves no
         triangle, and, without it, if there are too few samples for a mesh that closes. Of a CAD
-        part, if there are fewer than its edges need, or its file has no loops of edges.
+        part, if there are fewer than its edges need, its file has no loops of edges, or, for
+        "shape", the density is neither "balanced" nor "uniform".
     SurfaceError
         If no face of a CAD part can be meshed.
     MissingExtraError

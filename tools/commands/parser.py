@@ -190,7 +190,7 @@ def _mesh() -> Command:
         "Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
         "points on open borders and at poles; of a CAD part, as many points of its own.",
         *_sampling(default_count=10_000),
-        _output(".ply, .obj, .stl, .vtk, .vtu, .vtp or .glb"),
+        _output(".ply, .obj, .stl, .3mf, .vtk, .vtu, .vtp or .glb"),
         Option("--deviation DEGREES", deviation, number),
         Option("--prefer KIND", prefer, click.Choice(("shape", "normals")), default="shape"),
         epilog=MESH_EXAMPLES,

@@ -36,6 +36,7 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
         - `.obj`: text of 17 digits; vertices with normals, and texture coordinates, see
           `Mesh.corner_uv`.
         - `.stl`: binary, float32; triangles alone.
+        - `.3mf`: vertices and triangles, for 3-D printers; the unit counts as a millimetre.
         - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`.
         - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
         - `.glb`: binary glTF with normals and texture coordinates, float32; needs the extra
@@ -51,8 +52,8 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
     MissingExtraError
         For a `.glb` file without the extra `trimesh`.
     InputError
-        If the mesh has no triangles, more vertices than a `.ply` file can number, or larger
-        coordinates than a `.glb` file can hold.
+        If the mesh has no triangles, more vertices than a `.ply` file can number, larger
+        coordinates than a `.glb` file can hold, or a vertex twice in a triangle of a `.3mf` file.
 
     Examples
     --------
