@@ -292,7 +292,7 @@ def _angles(normals: Array, inside: Flags, axis: int) -> Array:
     """Return the largest angles (k − 1,) between normals (k, l, 3) along an axis, where inside."""
     n = np.moveaxis(normals, axis, 0)
     here = np.moveaxis(inside if inside.any() else np.ones_like(inside), axis, 0)
-    known = n.any(axis=2)
+    known = np.asarray(n.any(axis=2))
     chords = np.linalg.norm(np.diff(n, axis=0), axis=2)
     counts = known[1:] & known[:-1] & (here[1:] | here[:-1])
     return (2.0 * np.arcsin(np.minimum(np.where(counts, chords, 0.0) / 2.0, 1.0))).max(axis=1)

@@ -3,6 +3,7 @@
 # pyright: reportAttributeAccessIssue=false
 
 import zipfile
+from typing import Literal
 from xml.etree import ElementTree
 
 import gaussmap as gm
@@ -11,12 +12,11 @@ import pytest
 from gaussmap.tools.cad.examples import all_kinds, box
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.part_mesh import PartMesh
-from gaussmap.tools.meshes.triangulated import Prefer
 
 SIZES = np.array([1.0, 2.0, 3.0])
 
 
-def meshed(part: Part, count: int, prefer: Prefer = "shape") -> PartMesh:
+def meshed(part: Part, count: int, prefer: Literal["shape", "normals"] = "shape") -> PartMesh:
     mesh = gm.sample(part, count).mesh(prefer=prefer)
     assert isinstance(mesh, PartMesh)
     return mesh

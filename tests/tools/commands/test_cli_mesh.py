@@ -86,7 +86,7 @@ def test_quiet(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["torus", "-o", "torus.npz"], "use one of .ply, .obj, .stl, .vtk, .vtu, .vtp, .glb"),
+        (["torus", "-o", "torus.npz"], "use one of .ply, .obj, .stl, .3mf, .vtk, .vtu, .vtp, .glb"),
         (["torus", "-o", "no/torus.ply"], "create the folder first"),
         (["torus", *FEW, "--deviation", "0", "-o", "a.ply"], "angle must lie between 0 and 180"),
         (["torus", "--deviation", "wide", "-o", "torus.ply"], "it must be a number, not 'wide'"),
