@@ -52,8 +52,8 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
     MissingExtraError
         For a `.glb` file without the extra `trimesh`.
     InputError
-        If the mesh has no triangles, more vertices than a `.ply` file can number, larger
-        coordinates than a `.glb` file can hold, or a vertex twice in a triangle of a `.3mf` file.
+        If the mesh has no triangles, more vertices than a `.ply` file can number, or larger
+        coordinates than a `.glb` file can hold.
 
     Examples
     --------

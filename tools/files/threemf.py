@@ -7,8 +7,6 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...runtime.base.errors import InputError
-
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
@@ -34,10 +32,10 @@ TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write_3mf(mesh: Mesh, path: Path) -> None:
-    """Write vertices and triangles; the unit of length counts as a millimetre."""
-    a, b, c = mesh.triangles.T
-    if ((a == b) | (b == c) | (c == a)).any():
-        raise InputError("a .3mf file has no triangles with a vertex twice, as this mesh has.")
+    """Write vertices and triangles; the unit of length counts as a millimetre.
+
+    The format has no triangles with a vertex twice: these are left out.
+    """
     contents = {
         "[Content_Types].xml": TYPES,
         "_rels/.rels": RELATIONS,
@@ -56,7 +54,8 @@ def _model(mesh: Mesh) -> Iterable[str]:
     for x, y, z in mesh.vertices.tolist():
         yield f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>\n'
     yield "</vertices>\n<triangles>\n"
-    for i, j, k in mesh.triangles.tolist():
+    a, b, c = mesh.triangles.T
+    for i, j, k in mesh.triangles[(a != b) & (b != c) & (c != a)].tolist():
         yield f'<triangle v1="{i}" v2="{j}" v3="{k}"/>\n'
     yield "</triangles>\n</mesh>\n</object>\n</resources>\n"
     yield '<build>\n<item objectid="1"/>\n</build>\n</model>\n'
