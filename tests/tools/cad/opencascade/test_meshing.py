@@ -2,6 +2,9 @@
 
 # pyright: reportMissingImports=false, reportAttributeAccessIssue=false
 
+import os
+from pathlib import Path
+
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -101,6 +104,40 @@ def test_solids_are_closed(name, count, write, read):
     assert mesh.volume == pytest.approx(volume_of(shape), rel=25.0 / count)
     assert mesh.angles.max() < 60.0  # and so none is inverted
     assert mesh.smallest_angles.min() > THIN.get(name, 2.0)
+
+
+@pytest.mark.parametrize("name", ["drilled", "torus", "all edges rounded", "cone"])
+def test_solids_are_closed_by_normals(name, write, read):
+    make, characteristic = SHAPES[name]
+    part = part_of(read(write(make(), "part.brep")))
+    mesh, even = (gm.sample(part, 1500).mesh(prefer=x) for x in ("normals", "shape"))
+    assert len(mesh.vertices) == 1500
+    assert mesh.closed
+    assert mesh.euler_characteristic == characteristic
+    assert mesh.volume == pytest.approx(volume_of(make()), rel=1e-2)
+    assert mesh.angles.mean() < 0.7 * even.angles.mean()
+
+
+# Files that are not part of gaussmap, see docs/parts_quality.md: their Euler characteristics.
+FOLDER = Path(os.environ.get("GAUSSMAP_PARTS", "none"))
+FILES = {
+    "screw.step": 2, "CrankArm.brep": -4, "bottle.brep": 2, "as1-tu-203.stp": -8,
+    "frame.step": -48, "hammer.iges": 2,
+}  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not FOLDER.is_dir(), reason="needs the folder GAUSSMAP_PARTS")
+@pytest.mark.parametrize("prefer", ["shape", "normals"])
+@pytest.mark.parametrize("name", FILES)
+def test_no_triangle_of_files_points_inward(name, prefer):
+    mesh = gm.sample(gm.read_cad(FOLDER / name), 8000).mesh(prefer=prefer)
+    assert len(mesh.vertices) == 8000
+    assert mesh.closed
+    assert mesh.euler_characteristic == FILES[name]
+    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    assert (np.einsum("tx,tkx->t", across, mesh.corner_normals) > 0.0).all()
 
 
 def test_shells_that_share_edges_are_open(write, read):
