@@ -436,9 +436,9 @@ def unobstructed(
     if by is None:
         by = cast("Part | None", whole_of(self)) or self.mesh()
     if isinstance(by, Whole):
-        from .cad.meshing import mesh_of_samples
+        from .cad.meshing import mesh_of_part
 
-        by = mesh_of_samples(cast("Part", by), OBSTACLE, None, "shape")
+        by = mesh_of_part(cast("Part", by), OBSTACLE)
     points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
     return are_free(points, normals, far, by)
 

@@ -40,7 +40,7 @@ from .part import Part
 from .part_mesh import PartMesh
 from .results import PartSpace, space_of
 
-__all__ = ["mesh_of_samples"]
+__all__ = ["mesh_of_part", "mesh_of_samples"]
 
 # Where a face has no normal, that at this part of the way into the triangle is taken.
 INSIDE = 1e-6
@@ -54,7 +54,7 @@ SPACINGS = {"shape": Spacing, "normals": ByNormals}
 
 def mesh_of_samples(samples: Samples, angle: float | None, prefer: str) -> PartMesh:
     """Return what `Samples.mesh` returns for samples of a part."""
-    spaced, part, count = SPACINGS[checked_prefer(prefer)], samples.surface, len(samples)
+    spaced, part = SPACINGS[checked_prefer(prefer)], samples.surface
     assert isinstance(part, Part)
     if angle is not None:
         raise InputError(
@@ -66,6 +66,14 @@ def mesh_of_samples(samples: Samples, angle: float | None, prefer: str) -> PartM
             'a mesh of a CAD part follows the density "balanced" or "uniform", and these samples '
             f'have "{density}"; use one of these, or prefer="normals".'
         )
+    density = "uniform" if density == "uniform" and spaced.by_shape else "balanced"
+    return mesh_of_part(part, len(samples), density, spaced)
+
+
+def mesh_of_part(
+    part: Part, count: int, density: str = "balanced", spaced: type[Spacing] = Spacing
+) -> PartMesh:
+    """Return a mesh of a part with so many vertices."""
     check_extra(*EXTRA)
     check_memory("mesh", count)
     if not any(x.wires for x in part.faces):
@@ -73,7 +81,6 @@ def mesh_of_samples(samples: Samples, angle: float | None, prefer: str) -> PartM
             f"part {part.name!r} does not say how its edges go around its faces, as those in files "
             "of older versions of gaussmap; read the CAD file again."
         )
-    density = "uniform" if density == "uniform" and spaced.by_shape else "balanced"
     whole = space_of(part, None, target_of(request_of(count, density)))
     known = MeshEdges.of(Spacing(whole, count))
     failed = dict(whole.failed) | {
@@ -97,7 +104,7 @@ def mesh_of_samples(samples: Samples, angle: float | None, prefer: str) -> PartM
         text = (
             f"lacks {plural(len(failed), 'face')} of {len(part):,}: {next(iter(failed.values()))}"
         )
-        warnings.warn(f"the mesh of part {part.name!r} {text}", GaussmapWarning, stacklevel=4)
+        warnings.warn(f"the mesh of part {part.name!r} {text}", GaussmapWarning, stacklevel=5)
     return mesh
 
 
