@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ..base.aliases import Array
 from ..base.threads import thread_count
 from ..base.trees import tree_of
+from ..kernels.greedy import SAME_SIDE
+from .candidates import Candidates
 from .space import Space
 
 __all__ = ["coverage"]
@@ -16,24 +20,28 @@ TIGHT = 1.1
 MOST_CUTS = 40
 
 
-def coverage(space: Space, points: Array, asked: float = math.inf) -> float:
-    """Return a bound of the distance of points of the surface from the nearest of points (N, 3).
+def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
+    """Return a bound of the distance of points of the surface from the nearest of samples.
+
+    Samples (N, 3) are points. With unit normals beside them, (N, 6), a point counts with the
+    nearest sample on its side: the normals of cells at their places tell which. If there is none,
+    any sample counts.
 
     Points and the distance are scaled as in `Space`. This is branch and bound: cells are cut that
     may hold a point farther away than TIGHT times the farthest place, or than `asked` if no place
     is. Where cells are those of a spline, and samples on the surface, twice the distance between
     spline and surface is added.
-    Infinite if there are no points.
+    Infinite if there are no samples.
     """
-    if len(points) == 0:
+    if len(samples) == 0:
         return math.inf
     apart, space = 2.0 * space.distance * space.unit, space.uniform
     asked -= apart
-    tree, workers = tree_of(points), thread_count(space.threads)
-    cells = space.cut(math.sqrt(space.area / len(points)) or 1.0)
+    distances_of = _Distances(space, samples)
+    cells = space.cut(math.sqrt(space.area / len(samples)) or 1.0)
     largest = found = widest = 0.0
     for _ in range(MOST_CUTS):
-        distances = tree.query(cells.rows[:, :3], workers=workers)[0]
+        distances = distances_of(cells.rows)
         bounds, found = distances + cells.radii, max(found, float(distances.max(initial=0.0)))
         far = bounds > (asked if found <= asked < TIGHT * found else TIGHT * found)
         largest = max(largest, float(bounds[~far].max(initial=0.0)))
@@ -43,3 +51,31 @@ def coverage(space: Space, points: Array, asked: float = math.inf) -> float:
     else:
         largest = max(largest, widest)
     return apart + largest
+
+
+class _Distances:
+    """The distances of places from the nearest samples: points (N, 3), or with normals (N, 6)."""
+
+    def __init__(self, space: Space, samples: Array) -> None:
+        self.space, self.samples = space, samples
+        self.tree = tree_of(np.ascontiguousarray(samples[:, :3]))
+
+    def __call__(self, rows: Array) -> Array:
+        """Return the distances (M,) of the points of rows (M, 8) of cells."""
+        workers = thread_count(self.space.threads)
+        distances, nearest = self.tree.query(rows[:, :3], workers=workers)
+        if self.samples.shape[1] == 3:
+            return distances
+        normals = rows[:, 3:6]
+        cosines = np.einsum("mx,mx->m", normals, self.samples[nearest, 3:])
+        left = np.flatnonzero((cosines < SAME_SIDE) & normals.any(axis=1))
+        # The nearest one is on the other side of a wall, or of an edge.
+        radius = math.sqrt(self.space.area / len(self.samples)) or 1.0
+        while len(left) and radius < 2.0 * self.space.size:
+            candidates = Candidates(rows[left], radius, self.space.threads)
+            candidates.update_distances(self.samples, radius)
+            found = candidates.distances
+            near = found <= radius
+            distances[left[near]] = found[near]
+            left, radius = left[~near], 2.0 * radius
+        return distances

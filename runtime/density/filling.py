@@ -149,9 +149,9 @@ class Filling:
         return self._to_radius(space, Given(space), self._asked)
 
     def reached(self, cover: Cover) -> float:
-        """Return a bound of the scaled distance of any point from the nearest sample."""
+        """Return a bound of the scaled distance of any point from the nearest sample on its side."""
         asked = math.inf if self.request.coverage is None else self.request.coverage
-        return coverage(self.space, cover.points[:, :3], asked * self.space.unit)
+        return coverage(self.space, cover.points, asked * self.space.unit)
 
     # --- the target density -----------------------------------------------------------------------
 
