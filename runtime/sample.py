@@ -73,7 +73,7 @@ def sample(
         and that of the sample nearest in normal. Not with ``density="gauss"``.
     coverage : float, optional
         The largest distance, in the unit L of the surface, from any point of it to the nearest
-        sample. Alone, or together with one of the others.
+        sample on its side (see Notes). Alone, or together with one of the others.
     density : {"gauss", "balanced", "aligned", "uniform"} or float, optional
         The target density. "gauss", the default with `normals` alone, is |K|, by samples at
         prescribed normals only; "balanced", the default otherwise, fills the gaps between these.
@@ -172,9 +172,9 @@ def sample(
     these are a tenth of all samples or more; if one of several has none, 5 % of a count go where
     normals are farthest from those of all samples. Every face has a sample if there are at least
     twice as many samples as faces. A sample represents only places whose normals are within 60° of
-    its own. Pieces share `cells` in proportion to their parameters, and `spline` of the samples is
-    None. Of parts, `density` is "balanced", "uniform", a number, or "gauss" with `normals`; `cells`
-    and `on` are not for parts.
+    its own, that is, places on its side. Pieces share `cells` in proportion to their parameters,
+    and `spline` of the samples is None. Of parts, `density` is "balanced", "uniform", a number, or
+    "gauss" with `normals`; `cells` and `on` are not for parts.
 
     **Edges.** Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
     `other_normals`. They are on both faces exactly, or, where the faces of the file do not meet, on

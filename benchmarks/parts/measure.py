@@ -13,18 +13,25 @@ from .ways import Cloud, File, Way
 
 __all__ = ["Errors", "OnPart", "errors", "judged"]
 
+# Normals of one side are within this angle, and so many more samples are looked at each time.
+SIDE, MORE = 60.0, 4
+# Samples are oriented by the nearest of so many places, whose normal has this cosine with theirs.
+PLACES, ALIKE = 16, 0.9
+
 
 @dataclass(frozen=True)
 class Errors:
     """How far places of a part are from samples: distances in % of its diagonal, degrees.
 
-    `gap` is the largest distance to the nearest sample, `normal` the largest angle to the sample
-    nearest in normal, wherever it is, `mean` the mean angle to the normal of the sample nearest in
-    space. Normals that are opposite count as equal.
+    `gap` is the largest distance to the nearest sample, `side` that to the nearest one on the same
+    side, `normal` the largest angle to the sample nearest in normal, wherever it is, `mean` the
+    mean angle to the normal of the sample nearest in space. Normals that are opposite count as
+    equal; which side is meant, the places around a sample say.
     """
 
     count: int
     gap: float
+    side: float
     normal: float
     mean: float
 
@@ -67,9 +74,38 @@ def errors(reference: Reference, cloud: Cloud) -> Errors:
     return Errors(
         len(cloud),
         100.0 * float(distances.max()) / reference.diagonal,
+        100.0 * float(same_side(reference, cloud).max()) / reference.diagonal,
         float(np.degrees(2.0 * np.arcsin(chords.max() / 2.0))),
         float(np.average(turned, weights=reference.areas)),
     )
+
+
+def same_side(reference: Reference, cloud: Cloud) -> Array:
+    """Return the distances of places from the nearest sample with a normal within SIDE degrees.
+
+    A sample with several normals is on the sides of all of them. Infinite if there is none.
+    """
+    normals = oriented(reference, cloud)
+    tree, least = KDTree(cloud.points), np.cos(np.radians(SIDE))
+    found, left = np.full(len(reference.points), np.inf), np.arange(len(reference.points))
+    many = 1
+    while len(left) and many < MORE * len(cloud):
+        near = np.arange(1, min(many, len(cloud)) + 1)
+        distances, rows = tree.query(reference.points[left], near, workers=-1)
+        cosines = np.einsum("pknx,px->pkn", normals[rows], reference.normals[left])
+        on_side = (np.nan_to_num(cosines, nan=-1.0) >= least).any(axis=2)
+        found[left] = np.where(on_side, distances, np.inf).min(axis=1)
+        left, many = left[np.isinf(found[left])], MORE * many
+    return found
+
+
+def oriented(reference: Reference, cloud: Cloud) -> Array:
+    """Return the normals (N, k, 3) of samples with the signs of normals of places around them."""
+    near = KDTree(reference.points).query(cloud.points, min(PLACES, len(reference.points)))[1]
+    cosines = np.einsum("nkx,npx->nkp", cloud.normals, reference.normals[near])
+    alike = np.abs(np.nan_to_num(cosines)) >= ALIKE
+    first = np.take_along_axis(cosines, alike.argmax(axis=2)[..., None], axis=2)
+    return np.where(alike.any(axis=2)[..., None] & (first < 0.0), -1.0, 1.0) * cloud.normals
 
 
 def angles(left: Array, right: Array) -> Array:

@@ -13,12 +13,10 @@ from .candidates import Candidates
 from .cover import STEP, Cover
 
 # Normals at places are covered within an angle that is smaller by this part, which is left for
-# the normals around them.
+# the normals around them: along borders, half of the steps between places.
 MARGIN = 0.02
 # Where normals are far from all others, the radii of the choice fall from this multiple on.
 FIRST = 2.0
-# Along borders, normals are looked at in steps of the limit divided by this.
-STEPS = 6.0
 # The widest gaps between normals are searched down to this part of the widest radius.
 LEAST = 0.1
 # The widest angles are searched at one of this number of cells.
@@ -37,7 +35,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
     """
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
     cover.evaluate_exactly()
-    near, largest, cells = (1.0 - MARGIN) * limit, 0.0, cover.whole(limit / STEPS)
+    near, largest, cells = (1.0 - MARGIN) * limit, 0.0, cover.whole(2.0 * MARGIN * limit)
     while len(cells):
         distances = _distances(cover, 0, cells.rows)
         far = distances > near

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.aliases import Array, Indices
 from .at_normals import Given
 from .candidates import Candidates
-from .cells import LIMIT, Cells
+from .cells import CHORD, LIMIT, RADIUS, Cells
 from .grid import Grid
 from .space import Space
 from .voronoi import Voronoi
@@ -29,6 +29,8 @@ FINE, SMALLER = 0.4, 1.3
 # Where all of the surface is to be covered, and not candidates only, cells that may hold an
 # uncovered point are bisected until they have this radius, relative to the covering radius.
 FINEST = 0.1
+# And borders are covered at places that are apart by twice this part of the covering radius.
+ON_BORDERS = 0.05
 # Distances are renewed within this multiple of the radius first.
 NEAR = 1.25
 # Samples that move to centres move by less than this part of the radius, but for few.
@@ -158,10 +160,12 @@ class Cover:
     def whole(self, turn: float) -> Cells:
         """Return few cells, which make up the surface, and places along its borders.
 
-        Normals turn by about `turn` between these, in radians.
+        Normals turn by about `turn` between these, in radians, and by half of it around each.
         """
         space = self.space
-        return (space.evaluated(space.first) + space.along_borders(math.inf, turn)).sorted()
+        borders = space.along_borders(math.inf, turn)
+        borders.numbers[:, CHORD] += turn / 2.0
+        return (space.evaluated(space.first) + borders).sorted()
 
     def missing(self) -> Cells:
         """Return a cell near the middle of each piece that has no sample, if it has a cell."""
@@ -319,8 +323,18 @@ class Cover:
             cells = self.space.halves(self.space.halves(cells[far]))
             candidates = self._with_distances(cells.rows, radius, radius)
             self._choose(cells, candidates, radius, most)
-        self._cover_small_cells(sum(small[1:], start=small[0]), radius, most)
+        small.append(self._borders(radius))
+        self._cover_small_cells(sum(small[1:], start=small[0]).sorted(), radius, most)
         self._candidates.update_distances(self.points[first:], radius)
+
+    def _borders(self, radius: float) -> Cells:
+        """Return places along borders, whose radii reach half of the way to the next ones.
+
+        In tips too narrow for cells, all that is to be covered is between these.
+        """
+        borders = self.space.along_borders(2.0 * ON_BORDERS * radius)
+        borders.numbers[:, RADIUS] += ON_BORDERS * radius / np.sqrt(borders.rows[:, 6])
+        return borders
 
     def _refuse_more(self, number: int) -> None:
         """Raise InputError if a number of cells is too large."""

@@ -18,6 +18,8 @@ __all__ = ["coverage"]
 # The search ends when the bound is within this factor of the largest distance found.
 TIGHT = 1.1
 MOST_CUTS = 40
+# Along borders, distances are taken at steps of this part of the mean spacing of samples.
+ON_BORDERS = 0.025
 
 
 def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
@@ -38,8 +40,10 @@ def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
     apart, space = 2.0 * space.distance * space.unit, space.uniform
     asked -= apart
     distances_of = _Distances(space, samples)
-    cells = space.cut(math.sqrt(space.area / len(samples)) or 1.0)
-    largest = found = widest = 0.0
+    spacing = math.sqrt(space.area / len(samples)) or 1.0
+    cells, borders = space.cut(spacing), space.along_borders(ON_BORDERS * spacing)
+    largest = found = float(distances_of(borders.rows).max(initial=0.0))
+    widest = 0.0
     for _ in range(MOST_CUTS):
         distances = distances_of(cells.rows)
         bounds, found = distances + cells.radii, max(found, float(distances.max(initial=0.0)))

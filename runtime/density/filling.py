@@ -149,7 +149,7 @@ class Filling:
         return self._to_radius(space, Given(space), self._asked)
 
     def reached(self, cover: Cover) -> float:
-        """Return a bound of the scaled distance of any point from the nearest sample on its side."""
+        """Return a bound of the scaled distance of any point from samples on its side."""
         asked = math.inf if self.request.coverage is None else self.request.coverage
         return coverage(self.space, cover.points, asked * self.space.unit)
 

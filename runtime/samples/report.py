@@ -157,8 +157,9 @@ class SamplingReport:
         The number of patches that are developable up to the rounding of their coordinates, and so
         have no support function (those at a pole are among them).
     coverage : float or None
-        A bound of the distance of any point of the surface from the nearest sample, in the unit of
-        the surface. Known if a coverage was requested; see also `Samples.coverage`.
+        A bound of the distance of any point of the surface from the nearest sample on its side, one
+        whose normal is within 60°, if there is one; in the unit of the surface. Known if a coverage
+        was requested. `Samples.coverage` is that to the nearest sample on either side.
     angle : float or None
         A bound of the angle, in degrees, between the normal of any point of the surface and that of
         the sample nearest in normal. Known if an angle was requested.

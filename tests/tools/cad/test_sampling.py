@@ -238,11 +238,10 @@ def test_a_narrow_face_alone(made, is_reversed):
     sliver = np.array([(0.0, 0.0), (1.0, 0.9999), (1.0, 1.0), (0.0, 0.0001)])
     ends = (0.0, 1.0), (0.0, 1.0)
     face = made.face("plane", made.placement(), *ends, 1e-4, loops=[sliver], reversed=is_reversed)
-    with pytest.warns(gm.GaussmapWarning, match="coverage is 0.106 instead of"):
-        samples = gm.sample(made.part([face]), coverage=0.1)
+    samples = gm.sample(made.part([face]), coverage=0.1)
     along = np.linspace(0, 1, 2000)
     points = np.stack([along, 0.9999 * along + 5e-5, 0 * along], axis=1)
-    assert gap(samples, points) <= samples.report.coverage <= 0.11
+    assert gap(samples, points) <= samples.report.coverage <= 0.1
 
 
 def test_failed_faces_are_left_out(made):
