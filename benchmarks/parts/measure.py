@@ -90,8 +90,8 @@ def same_side(reference: Reference, cloud: Cloud) -> Array:
     found, left = np.full(len(reference.points), np.inf), np.arange(len(reference.points))
     many = 1
     while len(left) and many < MORE * len(cloud):
-        near = np.arange(1, min(many, len(cloud)) + 1)
-        distances, rows = tree.query(reference.points[left], near, workers=-1)
+        near = tree.query(reference.points[left], min(many, len(cloud)), workers=-1)
+        distances, rows = (x.reshape(len(left), -1) for x in near)
         cosines = np.einsum("pknx,px->pkn", normals[rows], reference.normals[left])
         on_side = (np.nan_to_num(cosines, nan=-1.0) >= least).any(axis=2)
         found[left] = np.where(on_side, distances, np.inf).min(axis=1)

@@ -22,7 +22,7 @@ from types import SimpleNamespace
 import gaussmap as gm
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree
 
 pytest.importorskip("OCP")
 
@@ -266,16 +266,17 @@ def judged(path: Path, folder: Path) -> SimpleNamespace:
 
 def widest_angle(on: SimpleNamespace, samples: gm.Samples) -> float:
     """Return the largest angle in degrees from a normal to the nearest one of a sample."""
-    chords = cKDTree(samples.normals).query(on.normals)[0]
+    chords = KDTree(samples.normals).query(on.normals)[0]
     return float(np.degrees(2.0 * np.arcsin(chords.max() / 2.0)))
 
 
 def widest_gap(on: SimpleNamespace, samples: gm.Samples) -> float:
     """Return the largest distance of a place from the nearest sample on its side."""
     found, left = np.full(len(on.points), np.inf), np.arange(len(on.points))
-    tree, least, many = cKDTree(samples.points), np.cos(np.radians(SIDE + TURN)), 1
+    tree, least, many = KDTree(samples.points), np.cos(np.radians(SIDE + TURN)), 1
     while len(left) and many < 8 * len(samples):
-        distances, near = tree.query(on.points[left], k=np.arange(1, min(many, len(samples)) + 1))
+        nearest = tree.query(on.points[left], min(many, len(samples)))
+        distances, near = (x.reshape(len(left), -1) for x in nearest)
         cosines = np.einsum("pkx,px->pk", samples.normals[near], on.normals[left])
         found[left] = np.where(cosines >= least, distances, np.inf).min(axis=1)
         left, many = left[np.isinf(found[left])], 8 * many
