@@ -77,7 +77,7 @@ def about_value(value: object) -> str:
         return advice
     items = value if isinstance(value, list | tuple) else ()
     if any(isinstance(x, str) or _has(x, "name") for x in items):
-        return "several are sampled by gm.sample_many(surfaces, ...)"
+        return "gm.Part(surfaces) makes one of several, gm.sample_many(surfaces, ...) samples each"
     shape = getattr(value, "shape", None)
     if isinstance(shape, tuple):
         if len(shape) == 2 and shape[1] == 3:

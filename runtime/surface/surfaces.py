@@ -162,13 +162,8 @@ def named(value: T | str) -> T | Surface:
     """Return the surface of the catalogue for a name, and any other value unchanged.
 
     Every function that takes a surface calls this first. Raises UnknownNameError for other names,
-    with what to do if they are those of files, and InputError for several surfaces.
+    with what to do if they are those of files.
     """
-    if isinstance(value, list | tuple):
-        raise InputError(
-            "several surfaces were given in place of one; gm.Part([first, second, ...]) makes one "
-            "part of them, which can be sampled."
-        )
     if isinstance(value, str) and value not in CATALOGUE and (advice := file_advice(value)):
         raise UnknownNameError(f"there is no surface {shown(value)}; {advice}.")
     return surface(value) if isinstance(value, str) else value
