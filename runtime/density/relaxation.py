@@ -12,8 +12,8 @@ __all__ = ["relax", "spread"]
 # This part of the added samples fills the gaps that are widest when the others have moved. With
 # half of it, samples in a row leave wider gaps than without moving.
 REST = 0.2
-# With a count and more than one step, this part goes where normals are farthest from those of all
-# samples.
+# Beside samples at prescribed normals, with a count and more than one step, this part goes where
+# normals are farthest from those of all samples.
 FOR_NORMALS = 0.1
 # Gaps are at most this much wider than the radius while samples are missing.
 WIDEST = 2.0
@@ -26,7 +26,7 @@ def spread(cover: Cover, count: int, steps: int) -> None:
     Lloyd's method for a high power of the distance instead of the mean of the squares.
     """
     added = count - cover.count
-    for_normals = round(FOR_NORMALS * added) if steps > 0 else 0
+    for_normals = round(FOR_NORMALS * added) if cover.given and steps > 0 else 0
     cover.to_count(count - round(REST * added) - for_normals)
     if cover.count > cover.fixed:
         widest = WIDEST * cover.radius

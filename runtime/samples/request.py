@@ -53,8 +53,6 @@ class Request:
     @property
     def cost(self) -> str:
         """The entry of `memory.COSTS` for the samples."""
-        if self.relax:
-            return "relaxed"
         return self.density if isinstance(self.density, str) else "uniform"
 
     @property

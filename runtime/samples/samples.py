@@ -101,7 +101,7 @@ class Samples(SampleArrays, Methods):
     >>> import numpy as np
     >>> samples = gm.sample("torus", 200, cells=(16, 16))
     >>> samples
-    Samples(200 points on torus: 125 with K > 0, 75 with K < 0)
+    Samples(200 points on torus: 116 with K > 0, 84 with K < 0)
     >>> samples[samples.elliptic][:10]
     Samples(10 points on torus: 10 with K > 0)
     >>> samples[0], [len(one) for one in samples[:3]]

@@ -42,7 +42,7 @@ def sample_part(
     """Return samples of a part, and the normals that were searched. Raises what `sample` raises."""
     _check(request)
     if request.count is not None:
-        check_memory("relaxed part" if request.relax else "part", request.count)
+        check_memory("part", request.count)
     space = space_of(part, threads, target_of(request), request.reach)
     cover = fill(space, request, progress)
     on_faces = [x for x in fields if x not in EDGE_NAMES]

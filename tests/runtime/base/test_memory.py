@@ -116,11 +116,11 @@ def test_what_is_known_later(name: str, monkeypatch: pytest.MonkeyPatch) -> None
 def test_counts_on_parts(
     name: str, asked: dict[str, Any], parts: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of a box, whose faces are flat, relaxing takes less than half of what it takes of others."""
+    """Of a box, whose faces are flat, samples take less than half of what they take of others."""
     part = getattr(parts, name)()
     asked_for, peak = measured(lambda: gm.sample(part, **asked), monkeypatch)
-    assert 0.8 < asked_for[0] / peak < 2.5
-    assert max(asked_for) / peak < 2.5
+    assert 0.8 < asked_for[0] / peak < 2.6
+    assert max(asked_for) / peak < 2.6
 
 
 @pytest.mark.slow
@@ -193,7 +193,7 @@ def test_commands(
         lambda: gm.sample(TORUS, 10**7, density="aligned"),
         lambda: gm.sample(TORUS, 10**7, density="uniform"),
         lambda: gm.sample(TORUS, 10**7, density=0.5),
-        lambda: gm.sample(TORUS, 10**5, relax=1),
+        lambda: gm.sample(TORUS, 10**6, relax=1),
         lambda: gm.sample(TORUS, coverage=5e-4, density="uniform", cells=(8, 8)),
         lambda: gm.curves.sample(CIRCLE, 10**8),
         lambda: gm.fit(TORUS, (10**4, 10**4)),
@@ -209,7 +209,7 @@ def test_calls(call: Callable[[], Any], one_gib: None) -> None:
     "asked",
     [
         {"count": 10**7},
-        {"count": 10**5, "relax": 1},
+        {"count": 2 * 10**5, "relax": 1},
         {"coverage": 5e-3, "density": "uniform"},
     ],
     ids=str,

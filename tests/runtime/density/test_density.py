@@ -176,7 +176,6 @@ def test_covers_alone_answer_no_normals(density):
 )
 def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
     monkeypatch.setattr(space, "CELLS_AT_A_TIME", 100)
-    monkeypatch.setattr(candidates, "CENTRES_AT_A_TIME", 50)
     monkeypatch.setattr(candidates, "PART", 1 << 9)
     for surface in (TORUS, DENTS):
         expected = gm.sample(surface, threads=1, **asked)

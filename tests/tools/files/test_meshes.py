@@ -40,7 +40,7 @@ def numbers(mesh: gm.Mesh) -> dict[str, np.ndarray]:
 
 
 class TestFiles:
-    @pytest.mark.parametrize("suffix", OWN)
+    @pytest.mark.parametrize("suffix", [x for x in OWN if x != ".3mf"])
     def test_pyvista_reads_triangles(self, tmp_path, suffix):
         pv = pytest.importorskip("pyvista")
         mesh, path = square(), tmp_path / f"square{suffix}"
