@@ -247,11 +247,11 @@ def test_bounds_contain_exact_values_of_any_expression(position, s, t, width):
             radii = np.where(real, balls[1], math.inf)
             assert (~real <= np.isinf(balls[1])).all()
             known = np.isfinite(radii)
-            distance = abs(values - balls[0].astype(object))
-            assert (distance[known] <= radii[known].astype(object)).all()
+            distance = abs(values[known] - balls[0][known].astype(object))
+            assert (distance <= radii[known].astype(object)).all()
             known = np.isfinite(errors)
-            distance = abs(values[:6] - jets[k].astype(object))
-            assert (distance[known] <= errors[known].astype(object)).all()
+            distance = abs(values[:6][known] - jets[k][known].astype(object))
+            assert (distance <= errors[known].astype(object)).all()
 
 
 # --- where there are no bounds --------------------------------------------------------------------
