@@ -130,7 +130,7 @@ class ByNormals(Spacing):
         owner = np.repeat(pieces, uv.shape[1])
         points = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows[:, :3]
         lengths, turns = _lengths_and_turns(points.reshape(*uv.shape[:2], 3))
-        straight = STRAIGHT * lengths / (self.space.size * self.space.unit)
+        straight = STRAIGHT * lengths / self.space.size
         steps = np.array([self.pieces[k].step for k in pieces.tolist()])
         planes = [self.pieces[k].jets(*x.T)[:, 0] for k, x in zip(pieces.tolist(), uv, strict=True)]
         costs = np.linalg.norm(np.diff(np.array(planes), axis=1), axis=2)

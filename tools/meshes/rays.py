@@ -9,6 +9,7 @@ import numpy as np
 from ...runtime.base.aliases import Array, Flags
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra, from_extra
+from ...runtime.base.scales import scale_to_one
 from .mesh import Mesh
 
 __all__ = ["check_rays", "unobstructed"]
@@ -32,7 +33,12 @@ def unobstructed(points: Array, normals: Array, distance: float, obstacle: objec
     one side of the surface or the other.
     """
     solid = _solid(obstacle)
-    step = BELOW * float(np.abs(solid.bounds).max())
+    # trimesh rounds places to a number of decimals, and takes equal ones for one: sizes are about 1.
+    middle, size = solid.bounds.mean(axis=0), float(solid.extents.max())
+    scale = scale_to_one(size)
+    solid.vertices = (solid.vertices - middle) * scale
+    points, distance = (points - middle) * scale, distance * scale
+    step = BELOW * scale * size
     free = np.ones(len(points), dtype=np.bool_)
     for first in range(0, len(points), RAYS):
         along = normals[first : first + RAYS]

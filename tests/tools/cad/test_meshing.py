@@ -261,6 +261,20 @@ def test_planes_have_no_vertices_inside(count):
     assert max(longest) <= 1.5 * min(longest) or count < 100
 
 
+@pytest.mark.parametrize("size", [1e-9, 1e9])
+def test_meshes_by_normals_do_not_depend_on_the_unit(size):
+    """Straight edges count by their share of the size: they leave vertices for what turns."""
+
+    def part(size: float) -> Part:
+        sheet = [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0.3]]]
+        wall = [[[0, 0, -1], [0, 0, 0]], [[1, 0, -1], [1, 0, 0]]]
+        nets = (size * np.array(x, dtype=np.float64) for x in (sheet, wall))
+        return gm.Part([gm.Surface.from_nurbs((1, 1), ([0, 0, 1, 1],) * 2, x) for x in nets])
+
+    one, other = (meshed(part(x), 200, "normals") for x in (1.0, size))
+    assert [len(x) for x in other.lines] == [len(x) for x in one.lines]
+
+
 @pytest.mark.parametrize("count", [50, 2000])
 def test_cylinders_have_vertices_on_their_circles_only(made, count):
     """Their rows are rulings: a regular polygon of as many corners as vertices allow."""

@@ -3,6 +3,7 @@
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.meshes.rays import unobstructed
 
 trimesh = pytest.importorskip("trimesh")
 pytest.importorskip("rtree")
@@ -53,6 +54,18 @@ def test_a_clamp(parts):
     np.testing.assert_array_equal(samples.unobstructed(0.6, by=clamp), ~under)
     assert samples.unobstructed(0.4, by=clamp).all()
     np.testing.assert_array_equal(samples.unobstructed(0.4, by=wall), samples.normals[:, 0] < 0.5)
+
+
+@pytest.mark.parametrize(("scale", "shift"), [(1e-12, 0.0), (1e-9, 1e-3), (1e12, 1e18)])
+def test_rays_do_not_depend_on_the_unit(scale, shift):
+    """A box 1.5 above three points, of which one is above it, and one looks away."""
+    clamp = trimesh.creation.box(bounds=[[-3.0, -3.0, 1.5], [3.0, 3.0, 2.0]])
+    moved = trimesh.Trimesh(scale * clamp.vertices + shift, clamp.faces, process=False)
+    points = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 3.0], [0.2, 0.1, -1.0]])
+    normals = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0, 0.0, -1.0]])
+    for distance, free in ((1.4, [True, False, True]), (1.6, [False, False, True])):
+        found = unobstructed(scale * points + shift, normals, scale * distance, moved)
+        assert found.tolist() == free
 
 
 def test_what_is_refused(parts, monkeypatch):
