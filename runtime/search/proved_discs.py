@@ -198,7 +198,8 @@ class Pole:
         by_u, by_r = bounds.by_q
         condition = by_u * bounds.along[0] + by_r * bounds.along[1]
         steep = 1.0 + bounds.slope
-        size = np.abs(self.basis).max() * np.linalg.cond(self.basis)
+        plane = self.basis[:, :2]
+        size = np.abs(plane).max() * np.linalg.cond(plane)
         own = 64.0 * EPS * (condition**2 * bounds.slope + size) + 2.0 * self.tilt
         if self.tapes.slope is None:
             return own + steep * (by_u * around + by_r * (value + reach * away)), 0.0

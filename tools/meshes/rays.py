@@ -33,7 +33,7 @@ def unobstructed(points: Array, normals: Array, distance: float, obstacle: objec
     one side of the surface or the other.
     """
     solid = _solid(obstacle)
-    # trimesh rounds places to a number of decimals, and takes equal ones for one: sizes are about 1.
+    # trimesh rounds places to some decimals, and takes equal ones for one: sizes are about 1.
     middle, size = solid.bounds.mean(axis=0), float(solid.extents.max())
     scale = scale_to_one(size)
     solid.vertices = (solid.vertices - middle) * scale
