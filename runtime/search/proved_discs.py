@@ -194,16 +194,17 @@ class Pole:
         rounding_of_boxes(
             tape, box, widths * (1.0 + 1e-12), middles, radii, errors, np.empty((2, 4)), found
         )
-        value, around, away = np.linalg.norm(found[0, :3], axis=1).tolist()
         by_u, by_r = bounds.by_q
         condition = by_u * bounds.along[0] + by_r * bounds.along[1]
-        steep = 1.0 + bounds.slope
+        # Of x, x_u and x_r: the errors of h, and those of q1 and q2 times the slope.
+        of_q = np.linalg.norm(found[0, :3, :2], axis=1)
+        value, around, away = (found[0, :3, 2] + bounds.slope * of_q).tolist()
         plane = self.basis[:, :2]
         size = np.abs(plane).max() * np.linalg.cond(plane)
         own = 64.0 * EPS * (condition**2 * bounds.slope + size) + 2.0 * self.tilt
         if self.tapes.slope is None:
-            return own + steep * (by_u * around + by_r * (value + reach * away)), 0.0
-        return own + steep * by_r * away, steep * by_u * around
+            return own + by_u * around + by_r * (value + reach * away), 0.0
+        return own + by_r * away, by_u * around
 
 
 class _Coefficients:

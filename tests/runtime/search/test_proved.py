@@ -299,7 +299,14 @@ def rotation() -> Array:
 
 
 @pytest.mark.parametrize(
-    ("scales", "shift"), [((1.0, 0.7, 1.3), 0.3), ((1e-3, 1e-3, 1e-3), 1.0), ((2.0, 1.0, 9.0), 0.0)]
+    ("scales", "shift"),
+    [
+        ((1.0, 0.7, 1.3), 0.3),
+        ((1e-3, 1e-3, 1e-3), 1.0),
+        ((2.0, 1.0, 9.0), 0.0),
+        ((1e-12, 2e-12, 1e-12), 0.0),
+        ((1e12, 2e12, 1e12), 1e12),
+    ],
 )
 def test_points_near_poles_of_splines(scales: tuple[float, ...], shift: float) -> None:
     surface, matrix = spline_ball(scales, shift)
