@@ -212,6 +212,8 @@ def mesh(
     True
 
     """
+    if not len(self):
+        raise InputError("there are no samples, and so there is nothing to make a mesh of.")
     if isinstance(self.surface, Whole):
         from .cad.meshing import mesh_of_samples
 

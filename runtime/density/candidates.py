@@ -13,7 +13,7 @@ from ..base.threads import over_ranges
 from ..kernels.greedy import choose_far, update_distances
 from ..kernels.hash_grids import LEVELS, SQUARE, HashGrids, measure, sort_candidates
 
-__all__ = ["Candidates", "Part"]
+__all__ = ["Block", "Candidates"]
 
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
@@ -50,10 +50,10 @@ class Candidates:
         self._nearest = np.full(count, -1, dtype=np.int32)
         edges = np.linspace(0, count, parts + 1).astype(np.int64)
 
-        def part(k: int) -> Part:
+        def part(k: int) -> Block:
             here = slice(int(edges[k]), int(edges[k + 1]))
             order = self._order[here]
-            made = Part(rows[here], radius, order, self._sorted[here], self._nearest[here])
+            made = Block(rows[here], radius, order, self._sorted[here], self._nearest[here])
             order += np.int32(here.start)
             return made
 
@@ -129,8 +129,8 @@ class Candidates:
         return list(over_ranges(lambda first, last: work(first), count, 1, self.threads))
 
 
-class Part:
-    """Candidates in hash grids of their own."""
+class Block:
+    """Some of the candidates, in hash grids of their own."""
 
     def __init__(
         self, rows: Array, radius: float, order: Numbers, candidates: Array, nearest: Numbers

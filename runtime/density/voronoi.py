@@ -8,7 +8,7 @@ from ..base.aliases import Array, Indices
 from ..base.threads import over_ranges
 from ..kernels.centres import FINER, add_moments, begin_lists, find_nearest, find_widest
 from ..kernels.greedy import Lists, note_samples
-from .candidates import Candidates, Part
+from .candidates import Block, Candidates
 from .cells import SIDES, Cells
 
 __all__ = ["Voronoi"]
@@ -35,7 +35,7 @@ class Voronoi:
             numbers[~cells.whole, SIDES] = 0.0
         samples = np.ascontiguousarray(samples)
 
-        def listed(first: int, last: int) -> tuple[Part, Lists]:
+        def listed(first: int, last: int) -> tuple[Block, Lists]:
             part, count = candidates.parts[first], len(candidates.parts[first].order)
             near, counts = np.empty((count, MOST), np.int32), np.zeros(count, np.int32)
             lists = Lists(near, counts, np.empty(count), part.order, numbers)

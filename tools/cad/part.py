@@ -435,9 +435,9 @@ class Face:
 
     @property
     def wires(self) -> tuple[tuple[tuple[int, bool], ...], ...]:
-        """The edges along each loop, in turn, as places in the sides of edges of `part.arrays`.
+        """The edges along each loop, in turn: a number, and whether the edge is passed backwards.
 
-        And whether each is passed from its end to its beginning. The face lies at their left, seen
+        The number is that of its side in `part.arrays`. The face lies at the left of the loop, seen
         from where x_u × x_v points; () if the file of the part has no wires.
         """
         arrays = self.part.arrays

@@ -411,8 +411,8 @@ def _distribution() -> list[Option]:
         ),
         Option(
             "--relax STEPS",
-            "Distribute the samples that fill gaps more evenly, in 2 or 3 steps, at more cost "
-            "(default: 0).",
+            "Move the samples that fill gaps to better places, in so many further steps; 2 are "
+            "enough, and take up to twice the time (default: 0).",
             whole(MOST_STEPS, least=0),
             group="how dense",
             default="0",

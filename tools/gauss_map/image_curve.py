@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...runtime.base.aliases import Array, Indices
+from ...runtime.base.wording import plural
 from ...runtime.domain.domain import brought_inside
 from ...runtime.place.on_spline import OnSpline
 from ...runtime.spline.spline import Spline
@@ -60,7 +61,7 @@ class ImageCurve:
 
     def __repr__(self) -> str:
         kind = "closed" if self.closed else "open"
-        return f"ImageCurve({kind}, {len(self.uv):,} vertices, {len(self.cusps):,} cusps)"
+        return f"ImageCurve({kind}, {len(self.uv):,} vertices, {plural(len(self.cusps), 'cusp')})"
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.checks import as_float, pair_of_cells
 from ...runtime.base.errors import GaussmapWarning, InputError, shown
+from ...runtime.base.wording import plural
 from ...runtime.fitting.fit import fit, spline_of
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
@@ -115,9 +116,9 @@ class ParabolicPoints:
     developable: bool
 
     def __repr__(self) -> str:
-        counts = f"{len(self.curves):,} curves, {len(self.isolated):,} isolated"
+        counts = f"{plural(len(self.curves), 'curve')}, {len(self.isolated):,} isolated"
         whole = ", developable" if self.developable else ""
-        return f"ParabolicPoints({counts}, {len(self.flat):,} flat rectangles{whole})"
+        return f"ParabolicPoints({counts}, {plural(len(self.flat), 'flat rectangle')}{whole})"
 
 
 def parabolic_points(
@@ -167,7 +168,7 @@ def parabolic_points(
     Newton's method finds the critical points of K where it is zero: curves cross there, or K
     touches zero. Where curves are closer to each other than a cell, or closed and smaller, the grid
     is refined to at most 512 × 512 cells. Those that are still smaller or closer are `isolated`, or
-    may be joined wrongly.
+    may be joined wrongly; a pair of small curves within one cell can be missed.
 
     K has the derivatives of the surface, or those of the NumPy functions that a callable is made
     of. Other callables are differentiated by differences of points, and the error of K is

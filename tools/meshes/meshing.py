@@ -37,8 +37,6 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
     """Return what `Samples.mesh` returns."""
     preferred = checked_prefer(prefer)
     largest = WHOLE if angle is None else _checked_angle(angle)
-    if not len(samples):
-        raise InputError("there are no samples, and so there is nothing to make a mesh of.")
     check_fields(samples)
     check_memory("mesh", len(samples))
     mesh = triangulated(samples, spline, must_be_whole=angle is None)

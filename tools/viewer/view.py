@@ -177,7 +177,7 @@ def _said(face: Face, unit: str) -> str:
     """Return what the page says of a face that is picked."""
     name = f" {face.name!r}" if face.name else ""
     sizes = {x: y for x, y in face.dimensions.items() if x.endswith("radius")}
-    said = [f"{x.replace('_', ' ')} {y:.6g} {unit}" for x, y in sizes.items()]
+    said = [f"{x.replace('_', ' ')} {y:.6g} {unit}".rstrip() for x, y in sizes.items()]
     return ", ".join([f"Face {face.source_index}{name}: {face.kind}", *said])
 
 

@@ -237,6 +237,11 @@ def test_parts_without_loops_of_edges(made):
         gm.sample(made.part(made.box_faces()), 100).mesh()
 
 
+def test_no_samples_have_no_mesh():
+    with pytest.raises(gm.errors.InputError, match="there are no samples"):
+        gm.sample(box(), 60)[:0].mesh()
+
+
 def test_parts_do_not_have_angles():
     with pytest.raises(gm.errors.InputError, match="angle="):
         gm.sample(box(), 100).mesh(angle=10.0)

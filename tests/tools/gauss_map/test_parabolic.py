@@ -802,7 +802,7 @@ def test_results_print_in_one_line() -> None:
     number = f"{len(found.curves[0].uv):,} vertices"
     assert repr(found.curves[0]) == f"ImageCurve(closed, {number}, 0 cusps)"
     flat = gm.gauss_map.parabolic_points(gm.surfaces.plane(), cells=(2, 3))
-    assert repr(flat) == "ParabolicPoints(0 curves, 0 isolated, 1 flat rectangles, developable)"
+    assert repr(flat) == "ParabolicPoints(0 curves, 0 isolated, 1 flat rectangle, developable)"
     images = gm.gauss_map.GaussianImages.of_spline(gm.fit(gm.surfaces.plane(), (8, 8)))
     assert repr(images) == "GaussianImages(256 patches)"
     assert repr(images[0]) == "GaussianImage(point)"

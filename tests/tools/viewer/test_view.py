@@ -78,6 +78,13 @@ def test_the_region_is_a_few_per_cent_of_a_sphere_at_first() -> None:
     assert 0.02 < np.mean(apart < data["radius"] / 100.0) < 0.05
 
 
+def test_labels_without_a_unit(parts: ModuleType) -> None:
+    part = parts.all_kinds().select(kind="cylinder")
+    part.about["unit"] = ""
+    labels = read_page(module.page(gm.sample(part, 20)))["part"]["labels"]
+    assert labels[0] == "Face 1: cylinder, radius 1"
+
+
 def test_faces_of_a_part_have_colours_labels_and_edges(parts: ModuleType) -> None:
     part = parts.all_kinds().select(kind=("plane", "cylinder", "sphere"))
     samples = gm.sample(part, 100)
