@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
 from ..base.checks import finite_array, listed
@@ -30,6 +31,8 @@ MARGIN, MARGIN_IN_ROUNDINGS = 1e-9, 16.0
 POINTS_AT_A_TIME = 1 << 14
 # The largest number of times that a loop may run around a periodic direction.
 MOST_PERIODS = 100
+# Boxes and segments that are compared at a time: so many pairs of them.
+PAIRS_AT_A_TIME = 1 << 20
 # Points on an open side of the domain stand for points inside, at this part of the domain.
 INSIDE = 1e-13
 
@@ -72,6 +75,23 @@ class Loops:
                 here = (k >= 0) & (k < cells[0]) & (m >= 0) & (m < cells[1])
                 passed[k[here], m[here]] = True
         return passed
+
+    def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
+        """Return 1 for boxes (k, 4) inside, −1 outside, and 0 where a segment may meet the box.
+
+        That has a margin for rounding. The normals (k, 3) of boxes do not matter.
+        """
+        low, high = boxes[:, ::2], boxes[:, 1::2]
+        middles, halves = (low + high) / 2.0, (high - low) / 2.0
+        sides = np.where(self.contains(middles), 1, -1).astype(np.int8)
+        segments = np.concatenate([np.hstack([x, np.roll(x, -1, axis=0)]) for x in self.polygons])
+        step = max(PAIRS_AT_A_TIME // len(segments), 1)
+        for a, b, c, d in self.shifts:
+            moved = middles * (a, c) + (b, d)
+            for first in range(0, len(boxes), step):
+                some = slice(first, first + step)
+                sides[some][_may_meet(segments, moved[some], halves[some]).any(axis=1)] = 0
+        return sides
 
     def _inwards(self, uv: Array) -> Array:
         """Move points on open sides into the domain, by far less than its size."""
@@ -143,6 +163,22 @@ class Loops:
         cells = cells._replace(starts=starts.copy(), members=np.empty(starts[-1], dtype=np.int32))
         kernels.list_segments(cells, margins, True)
         return cells._replace(starts=starts), self.shifts * np.repeat(scales, 2)
+
+
+def _may_meet(segments: Array, middles: Array, halves: Array) -> Flags:
+    """Return whether segments (n, 4) may meet boxes with middles and half sizes (k, 2): (k, n).
+
+    Disjoint ones are separated by a line along u, along v or along the segment.
+    """
+    start, way = segments[:, :2], (segments[:, 2:] - segments[:, :2]) / 2.0
+    largest = np.maximum(np.abs(segments).max(), np.abs(middles).max(initial=0.0))
+    halves = halves + MARGIN_IN_ROUNDINGS * np.spacing(largest)
+    off = start + way - middles[:, None]
+    beside = (np.abs(off) > np.abs(way) + halves[:, None]).any(axis=2)
+    across = np.abs(off[:, :, 0] * way[:, 1] - off[:, :, 1] * way[:, 0])
+    reach = halves @ np.abs(way[:, ::-1]).T
+    rounding = MARGIN_IN_ROUNDINGS * 2.0**-52 * (np.abs(off) * np.abs(way[:, ::-1])).sum(axis=2)
+    return ~beside & (across <= reach + rounding)
 
 
 def _steps(polygon: Array, steps: Array) -> Array:

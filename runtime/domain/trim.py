@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
 from ..base.errors import InputError, SurfaceError, shown
@@ -29,6 +30,14 @@ class TrimPart(Protocol):
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
         """Return the cells (m, n) of a grid that its border may pass, None if that is unknown."""
+        ...
+
+    def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
+        """Return 1 for boxes (k, 4), u₀, u₁, v₀, v₁, that fulfil it in all points with a normal.
+
+        Each box has one of normals (k, 3). It is −1 if none of these points does, and 0 if that is
+        not known.
+        """
         ...
 
 
@@ -136,6 +145,34 @@ class Trim:
                 passed |= found
         return passed, all_known
 
+    def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
+        """Return whether boxes are inside of the trim (1), or outside (−1), as far as known (0).
+
+        Parameters
+        ----------
+        boxes : (k, 4) float64 array
+            Rectangles u₀, u₁, v₀, v₁ of parameters.
+        normals : (k, 3) float64 array
+            A unit normal for each: only the points of the box that have it count.
+
+        Returns
+        -------
+        (k,) int8 array
+            1 and −1 are proved up to rounding; 0 for boxes that may meet the border, and where a
+            predicate decides.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> square = gm.surfaces.sphere().trimmed([[(1, 1), (2, 1), (2, 2), (1, 2)]])
+        >>> boxes = np.array([[1.1, 1.2, 1.1, 1.2], [0.9, 1.2, 1.1, 1.2], [3.0, 3.1, 1.1, 1.2]])
+        >>> square.trim.sides(boxes, np.zeros((3, 3))).tolist()
+        [1, 0, -1]
+
+        """
+        return np.min([part.sides(boxes, normals) for part in self.parts], axis=0)
+
     def with_boundary(self, boundary: Boundary) -> Trim:
         """Return the trim of a surface whose boundary conditions have been found."""
         if boundary == self.boundary:
@@ -163,6 +200,10 @@ class Predicate:
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> None:
         """Return None: where the callable changes is not known."""
+
+    def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
+        """Return 0 for all boxes (k, 4): nothing is known between points."""
+        return np.zeros(len(boxes), np.int8)
 
     def _part(self, uv: Array) -> Flags:
         label = f"the predicate within=... of surface {self.name!r}"

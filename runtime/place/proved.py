@@ -10,6 +10,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
+from ..domain.trim import Trim
 from ..kernels.proved_cells import Work
 from ..kernels.proved_samples import CURVATURES, SampleFields, fill_places
 from ..kernels.tape import Tape
@@ -61,7 +62,7 @@ def proved_samples(
     arrays = _arrays(surface, spline, index.tape, normals, found, wanted, threads)
     arrays = samples_inside(spline.trim, arrays, fields)
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
-    return FieldsOfSamples(kept, 0), proof_of(len(normals), found.undecided)
+    return FieldsOfSamples(kept, 0), proof_of(normals, found.undecided, spline.trim)
 
 
 def _arrays(
@@ -104,10 +105,22 @@ def _arrays(
     return arrays | flags | {"normal_index": numbers}
 
 
-def proof_of(count: int, open_: Undecided, face: int | None = None) -> Proof:
-    """Return the proof for a number of normals, of which some are open; on a face of a part."""
+def proof_of(
+    normals: NDArray[np.float64], open_: Undecided, trim: Trim | None, face: int | None = None
+) -> Proof:
+    """Return the proof for unit normals (S, 3), of which some are open; on a face of a part."""
+    open_ = _not_outside(trim, open_, normals)
     undecided = tuple(
         UndecidedNormal(number, tuple(box), KINDS[kind], border, face)
         for number, box, kind, border in zip(*(x.tolist() for x in open_), strict=True)
     )
-    return Proof(count - len(np.unique(open_.numbers)), undecided)
+    return Proof(len(normals) - len(np.unique(open_.numbers)), undecided)
+
+
+def _not_outside(trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]) -> Undecided:
+    """Return the boxes that may have points inside a trim; they may meet its border, too."""
+    if trim is None or not len(open_.numbers):
+        return open_
+    sides = trim.sides(open_.boxes, normals[open_.numbers])
+    open_ = open_._replace(border=open_.border | (sides == 0))
+    return Undecided._make(x[sides >= 0] for x in open_)

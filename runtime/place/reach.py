@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
 from ..directions.regions import Cap
@@ -44,6 +45,10 @@ class InReach:
         limit = math.cos(math.radians(self.cap.angle))
         # Also where there is a place without a normal.
         return ~((2.0 * low - high > limit) | (2.0 * high - low < limit))
+
+    def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
+        """Return 1 for boxes whose normals (k, 3) are in the cap, −1 for others."""
+        return np.where(self.cap.contains(normals), 1, -1).astype(np.int8)
 
     def _cosines(self, domain: Domain, cells: tuple[int, int], shift: float) -> Array:
         """Return cosines (m + 1, n + 1), or (m, n) with a shift; NaN where there is no normal."""

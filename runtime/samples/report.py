@@ -93,7 +93,7 @@ class UndecidedNormal(NamedTuple):
         meet. "continuum": a curve or a region with this normal, such as a ruling of a cylinder.
         "singular": x_u × x_v may vanish.
     border : bool
-        Whether the box reaches an open side of the domain.
+        Whether the box reaches an open side of the domain, or may meet the border of the trim.
     face : int or None
         Of a CAD part: the index of the face whose parameters these are.
 

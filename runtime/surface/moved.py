@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..base.aliases import Array, Flags
 from ..base.checks import finite_array
@@ -172,3 +172,8 @@ class Turned:
         (low, high), along_v = domain
         found = self.part.cells_of_border(((self.total - high, self.total - low), along_v), cells)
         return None if found is None else found[::-1]
+
+    def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
+        """Return on which side of its border boxes (k, 4) are, −1, 0 or 1."""
+        own = np.column_stack([self.total - boxes[:, 1::-1], boxes[:, 2:]])
+        return self.part.sides(own, normals)

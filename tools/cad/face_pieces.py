@@ -163,7 +163,7 @@ class FacePiece(Piece):
             for name, values in self.fields_at(beside, beside, CURVATURES, np.float64).items():
                 fields[name][lost] = values
         fields["gaussian_curvature"] = np.copysign(fields["gaussian_curvature"], found.sign[inside])
-        proof = proof_of(len(normals), found.undecided, self.face.index)
+        proof = proof_of(normals, found.undecided, self.trim, self.face.index)
         report = SamplingReport(
             self.label, len(normals), len(uv), None, None, None, **proof._asdict()
         )

@@ -370,3 +370,55 @@ class TestSampling:
         assert shares[1] is not None
         assert shares[0] < 0.6
         assert shares[1] > 0.9
+
+
+def test_sides_of_boxes_are_those_of_shapely():
+    """Those that touch a segment are neither inside nor outside."""
+    stars = [circle(7, (1.5, 3.0), 1.0)[[0, 2, 4, 6, 1, 3, 5]], circle(9, (4.0, 2.0), 0.7)]
+    rng = np.random.default_rng(3)
+    low, sizes = rng.uniform(0.0, 5.0, (4000, 2)), 10.0 ** rng.uniform(-8, 0, (4000, 2))
+    corners = np.concatenate(stars)
+    low[:16] = corners - sizes[:16] * np.repeat([0.0, 1.0], 8)[:, None]  # with a corner in common
+    boxes = np.stack([low[:, 0], low[:, 0] + sizes[:, 0], low[:, 1], low[:, 1] + sizes[:, 1]], 1)
+    trim = trim_of(torus().trimmed(stars))
+    sides = trim.sides(boxes, np.zeros((4000, 3)))
+    lines = shapely.MultiLineString([[*x, x[0]] for x in stars])
+    rectangles = shapely.box(boxes[:, 0], boxes[:, 2], boxes[:, 1], boxes[:, 3])
+    meets = shapely.intersects(rectangles, lines)
+    meets[:16] = True  # rounding decides there
+    inside = crossings(stars, (boxes[:, ::2] + boxes[:, 1::2]) / 2)
+    np.testing.assert_array_equal(sides, np.where(meets, 0, np.where(inside, 1, -1)))
+    assert {*sides.tolist()} == {-1, 0, 1}
+
+
+def test_sides_of_boxes_at_a_seam():
+    """Boxes and loops may both pass it."""
+    trim = trim_of(torus().trimmed([ACROSS_SEAM]))
+    middles = np.array([[6.28, 6.28], [0.0, 0.0], [1.0, 6.0], [8.0 - TURN, 1.0], [5.0, 3.0]])
+    boxes = np.repeat(middles, 2, axis=1) + 0.1 * np.array([-1, 1, -1, 1])
+    assert trim.sides(boxes, np.zeros((5, 3))).tolist() == [1, 1, 1, 0, -1]
+
+
+LOOPS = {
+    "around": ([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)], [False]),
+    "beside": ([(0.2, -0.5), (0.5, -0.5), (0.5, 0.5), (0.2, 0.5)], []),
+    "through": ([(0.0, -0.5), (0.5, -0.5), (0.5, 0.5), (0.0, 0.5)], [True]),
+}
+
+
+@pytest.mark.parametrize("place", LOOPS)
+def test_flat_points_outside_of_a_trim_are_known(place):
+    loop, borders = LOOPS[place]
+    surface = gm.surfaces.monkey_saddle()
+    for trimmed, side in ((surface.trimmed([loop]), 1), (surface.trimmed([loop]).flipped(), -1)):
+        report = gm.GaussMap(trimmed).points(side * np.array([[0, 0, 1], [0.3, 0, 1]])).report
+        assert [(x.normal, x.kind, x.border) for x in report.undecided or ()] == [
+            (0, "multiple", x) for x in borders
+        ]
+        assert report.proved == 2 - len(borders)
+
+
+def test_normals_out_of_reach_are_known():
+    with pytest.warns(gm.GaussmapWarning, match="none of the normals"):
+        report = gm.sample("torus", normals=[[0, 0, 1], [0, 0, -1]], reach=((0, 0, 1), 40)).report
+    assert (report.proved, [x.normal for x in report.undecided or ()]) == (1, [0])

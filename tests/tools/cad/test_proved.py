@@ -202,6 +202,21 @@ def test_planes_cylinders_and_cones_have_lines_of_points(made, is_reversed):
     np.testing.assert_allclose(known, normals[2], atol=1e-14)
 
 
+def test_rulings_outside_of_a_trim_are_known(made):
+    """The face is a triangle, with u from 0.5 to 2.5; rulings run through the domain."""
+    loop = np.array([(0.5, 0.0), (2.5, 0.0), (1.5, 1.0)])
+    face = made.face(
+        "cylinder", [*made.placement(), 1.5], (0.0, 3.0), (0.0, 2.0), 3.0, loops=[loop]
+    )
+    angles = np.array([0.3, 0.499, 0.501, 1.5, 2.4, 2.7])
+    normals = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
+    report = gm.GaussMap(made.part([face])).points(normals).report
+    assert [(x.normal, x.kind, x.border) for x in report.undecided] == [
+        (k, "continuum", True) for k in (2, 3, 4)
+    ]
+    assert report.proved == 3
+
+
 def test_both_sides_of_an_apex(made):
     cone = made.face("cone", [*made.placement(), 0.0, 0.5], (0.0, TURN), (-1.0, 1.0), 3.0)
     normals = [[math.cos(0.5), 0.0, s * math.sin(0.5)] for s in (-1.0, 1.0)]
