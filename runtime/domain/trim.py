@@ -159,7 +159,7 @@ class Trim:
         -------
         (k,) int8 array
             1 and −1 are proved up to rounding; 0 for boxes that may meet the border, and where a
-            predicate decides.
+            predicate decides that is not made of inequalities between NumPy functions.
 
         Examples
         --------
@@ -185,12 +185,28 @@ class Trim:
         return replace(self, parts=(*self.parts, *parts))
 
 
+class OnBoxes(Protocol):
+    """What is known of a condition on boxes."""
+
+    def sides(self, boxes: Array) -> NDArray[np.int8]:
+        """Return 1 for boxes (k, 4) where it holds, −1 where it does not, 0 if that is unknown."""
+        ...
+
+
+Traced = Callable[[Callable[[Array, Array], Any], Domain], OnBoxes | None]
+
+
 @dataclass(frozen=True, eq=False)
 class Predicate:
-    """A vectorized callable f(u, v) → booleans, of the surface with a name."""
+    """A vectorized callable f(u, v) → booleans, of the surface with a name and a domain.
+
+    `traced` makes of it what is known of boxes, or None.
+    """
 
     function: Callable[[Array, Array], Any]
     name: str
+    domain: Domain
+    traced: Traced
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return what the callable says of points (k, 2)."""
@@ -202,8 +218,9 @@ class Predicate:
         """Return None: where the callable changes is not known."""
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Return 0 for all boxes (k, 4): nothing is known between points."""
-        return np.zeros(len(boxes), np.int8)
+        """Return on which side boxes (k, 4) are: 0 for all if the callable cannot be traced."""
+        condition = self.traced(self.function, self.domain)
+        return np.zeros(len(boxes), np.int8) if condition is None else condition.sides(boxes)
 
     def _part(self, uv: Array) -> Flags:
         label = f"the predicate within=... of surface {self.name!r}"
@@ -220,8 +237,9 @@ class Predicate:
 
 
 def trimmed_by(
-    trim: Trim | None, loops: object, within: object, domain: Domain, boundary: Boundary, name: str
-) -> Trim:
+    trim: Trim | None, loops: object, within: object, domain: Domain, boundary: Boundary,
+    name: str, traced: Traced,
+) -> Trim:  # fmt: skip
     """Return a trim with the conditions of `Surface.trimmed`; InputError if they are unusable."""
     parts: list[TrimPart] = []
     if loops is not None:
@@ -229,7 +247,7 @@ def trimmed_by(
     if within is not None:
         if not callable(within):
             raise InputError(f"within must be callable as f(u, v), not {shown(within)}.")
-        parts.append(Predicate(within, name))
+        parts.append(Predicate(within, name, domain, traced))
     if not parts:
         raise InputError("trimmed needs loops, within=..., or both.")
     return Trim(domain, boundary, tuple(parts)) if trim is None else trim.and_(*parts)

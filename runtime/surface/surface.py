@@ -25,6 +25,7 @@ from ..spline.quasi_interpolant import fit_grid
 from .moved import IDENTITY, AffineMap, Moved, affine_map, moved_grid, turned_trim
 from .names import label
 from .surface_values import Evaluation, SurfaceValues
+from .traced import traced_condition
 
 if TYPE_CHECKING:
     import sympy
@@ -513,6 +514,8 @@ class Surface(SurfaceValues):
         within : callable, optional
             ``within(u, v)`` gets two float64 arrays (k,) of parameters in the domain, and returns
             booleans (k,). What is smaller than an eighth of a patch of the spline may go unseen.
+            If it consists of inequalities between NumPy functions, joined by &, | and ~, undecided
+            boxes (see `SamplingReport.undecided`) outside of it are known to be there.
 
         Returns
         -------
@@ -538,7 +541,9 @@ class Surface(SurfaceValues):
         >>> sheets = gm.surfaces.torus().trimmed(within=lambda u, v: np.abs(v - 3) < 1)
 
         """
-        trim = trimmed_by(self.trim, loops, within, self.domain, self.boundary, self.name)
+        trim = trimmed_by(
+            self.trim, loops, within, self.domain, self.boundary, self.name, traced_condition
+        )
         return replace(self, trim=trim)
 
 

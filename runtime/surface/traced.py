@@ -1,4 +1,7 @@
-"""Tapes of callables that are made of NumPy functions: they are called once with symbols."""
+"""Callables that are made of NumPy functions: they are called once with symbols.
+
+Those that return points have tapes; those that return truth values are inequalities between tapes.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +16,13 @@ from numpy.typing import NDArray
 
 from ..domain.domain import Domain
 from ..kernels.tape import Tape
-from .tapes import TapeWriter, values_of
+from .tapes import TapeWriter, bounds_over_boxes, values_of
 
-__all__ = ["traced_tape"]
+__all__ = ["traced_condition", "traced_tape"]
 
 Array = NDArray[np.float64]
-Function = Callable[[Array, Array], Any]
+Sides = NDArray[np.int8]
+Function = Callable[..., Any]  # of u and v: arrays, or traced numbers
 
 # The callable and the tape are compared at points (i/√2, i/√3) modulo 1 of the domain. Both have
 # rounding errors, of which that of the tape is bounded, and that of the callable may be larger.
@@ -38,6 +42,23 @@ def traced_tape(function: Function, domain: Domain) -> Tape | None:
         return None
 
 
+def traced_condition(function: Function, domain: Domain) -> Condition | None:
+    """Return the inequalities that a callable f(u, v) → truth values is made of; None if unknown.
+
+    These are joined by &, | and ~. They are compared with the callable at some points.
+    """
+    writer = TapeWriter()
+    try:
+        found = function(*(Traced(writer, writer.write(x)) for x in "uv"))
+        if not isinstance(found, Condition):
+            return None
+        u, v = _places(domain)
+        own, sides = function(u, v), found.sides(np.stack([u, u, v, v], axis=1))
+        return found if ((sides == 0) | (own == (sides > 0))).all() else None
+    except Exception:  # what a user's callable raises for other objects than arrays
+        return None
+
+
 def _tape_of(function: Function) -> Tape | None:
     writer = TapeWriter()
     u, v = np.empty(1, dtype=object), np.empty(1, dtype=object)
@@ -50,11 +71,7 @@ def _tape_of(function: Function) -> Tape | None:
 
 def _agree(function: Function, tape: Tape, domain: Domain) -> bool:
     """Return whether the callable has the values of a tape, but for rounding."""
-    steps = np.arange(1, PLACES + 1)
-    u, v = (
-        low + (high - low) * (np.sqrt(x) * steps % 1.0)
-        for x, (low, high) in zip((0.5, 1 / 3), domain, strict=True)
-    )
+    u, v = _places(domain)
     values, errors = values_of(tape, u, v)
     with np.errstate(all="ignore"):
         own = np.asarray(function(u, v))
@@ -65,6 +82,15 @@ def _agree(function: Function, tape: Tape, domain: Domain) -> bool:
         and known.any(axis=0).all()
         and (np.abs(own - values) <= ROUNDING * errors)[known].all()
     )
+
+
+def _places(domain: Domain) -> list[Array]:
+    """Return u and v (k,) of the points at which a callable and its trace are compared."""
+    steps = np.arange(1, PLACES + 1)
+    return [
+        low + (high - low) * (np.sqrt(x) * steps % 1.0)
+        for x, (low, high) in zip((0.5, 1 / 3), domain, strict=True)
+    ]
 
 
 def row_of(writer: TapeWriter, value: object) -> int:
@@ -89,8 +115,9 @@ def applied(name: str) -> Callable[[Traced], Traced]:
 class Traced:
     """A number that depends on u and v: what is done to it is written to a tape.
 
-    NumPy's functions call the methods of their names for arrays of objects. There are none for
-    comparisons, absolute values and integers, which raise TypeError.
+    NumPy's functions call the methods of their names for arrays of objects. Comparisons are
+    conditions, which have no truth value; absolute values can be compared only, and integers and
+    equality raise TypeError.
     """
 
     writer: TapeWriter
@@ -109,6 +136,20 @@ class Traced:
 
     def __bool__(self) -> NoReturn:
         raise TypeError("branches are not traced")
+
+    def __gt__(self, other: object) -> Condition:
+        tape = self.writer.tape([(self - other).row] * 3)
+        if tape is None:
+            raise TypeError("numbers that are not finite are not traced")
+        return Positive(tape)
+
+    def __lt__(self, other: object) -> Condition:
+        return -self > self.written("negative", other)
+
+    __ge__, __le__ = __gt__, __lt__  # equal ones are decided by neither
+
+    def __abs__(self) -> AbsoluteValue:
+        return AbsoluteValue(self)
 
     def __pos__(self) -> Traced:
         return self
@@ -168,3 +209,65 @@ class Traced:
     sin, cos, exp, log, sqrt = map(applied, ("sin", "cos", "exp", "log", "sqrt"))
     sinh, cosh, tanh = map(applied, ("sinh", "cosh", "tanh"))
     arcsin, arctan = map(applied, ("asin", "atan"))
+
+
+@dataclass(frozen=True, eq=False)
+class AbsoluteValue:
+    """That of a traced number, which can be compared only: it has no derivative at 0."""
+
+    of: Traced
+
+    def __gt__(self, other: Traced | float) -> Condition:
+        return (self.of > other) | (-self.of > other)
+
+    def __lt__(self, other: Traced | float) -> Condition:
+        return (self.of < other) & (-self.of < other)
+
+    __ge__, __le__ = __gt__, __lt__
+
+
+class Condition:
+    """A condition on u and v, made of inequalities: what is known of it on boxes."""
+
+    def sides(self, boxes: Array) -> Sides:
+        """Return 1 for boxes (k, 4) where it holds, −1 where it does not, 0 if that is unknown."""
+        raise NotImplementedError
+
+    def __and__(self, other: Condition) -> Condition:
+        return Joined(np.minimum, (self, other))
+
+    def __or__(self, other: Condition) -> Condition:
+        return Joined(np.maximum, (self, other))
+
+    def __invert__(self) -> Condition:
+        return Joined(np.negative, (self,))
+
+    def __bool__(self) -> NoReturn:
+        raise TypeError("branches are not traced")
+
+
+@dataclass(frozen=True, eq=False)
+class Positive(Condition):
+    """The condition that the first coordinate of a tape is positive."""
+
+    tape: Tape
+
+    def sides(self, boxes: Array) -> Sides:
+        """Return the signs of bounds over boxes (k, 4), 0 for those that hold 0."""
+        low, high = boxes[:, ::2], boxes[:, 1::2]
+        halves = (high - low) / 2.0 + np.spacing(np.maximum(np.abs(low), np.abs(high)))
+        bounds = bounds_over_boxes(self.tape, (low + high) / 2.0, halves)
+        middle, radius = bounds[:, 0, 0, 0], bounds[:, 1, 0, 0]
+        return np.where(np.abs(middle) > radius, np.sign(middle), 0.0).astype(np.int8)
+
+
+@dataclass(frozen=True, eq=False)
+class Joined(Condition):
+    """Conditions whose values −1, 0, 1 are joined by a function of NumPy."""
+
+    join: np.ufunc
+    parts: tuple[Condition, ...]
+
+    def sides(self, boxes: Array) -> Sides:
+        """Return the joined values of the parts on boxes (k, 4)."""
+        return self.join(*(x.sides(boxes) for x in self.parts))

@@ -422,3 +422,53 @@ def test_normals_out_of_reach_are_known():
     with pytest.warns(gm.GaussmapWarning, match="none of the normals"):
         report = gm.sample("torus", normals=[[0, 0, 1], [0, 0, -1]], reach=((0, 0, 1), 40)).report
     assert (report.proved, [x.normal for x in report.undecided or ()]) == (1, [0])
+
+
+PREDICATES = {
+    "disc": lambda u, v: (u - 0.1) ** 2 + v**2 < 0.25,
+    "joined": lambda u, v: ~((np.sin(3 * u) > v) & (u <= 0.5)) | (np.hypot(u, v) < 0.3),
+    "absolute": lambda u, v: (np.abs(v - u) <= 0.2) & (abs(u) > np.exp(v) - 1.0),
+}
+
+
+@pytest.mark.parametrize("name", PREDICATES)
+def test_sides_of_boxes_follow_predicates(name):
+    """Where the predicate is the same on a grid, it is known of most boxes, and never wrong."""
+    trim = trim_of(gm.surfaces.monkey_saddle().trimmed(within=PREDICATES[name]))
+    rng = np.random.default_rng(4)
+    low, sizes = rng.uniform(-0.9, 0.8, (2000, 2)), 10.0 ** rng.uniform(-4, -1, (2000, 2))
+    boxes = np.stack([low[:, 0], low[:, 0] + sizes[:, 0], low[:, 1], low[:, 1] + sizes[:, 1]], 1)
+    sides = trim.sides(boxes, np.zeros((2000, 3)))
+    parts = np.stack(np.meshgrid(*2 * [np.linspace(0, 1, 9)]), axis=-1).reshape(-1, 1, 2)
+    u, v = (low + sizes * parts).reshape(-1, 2).T
+    inside = PREDICATES[name](u, v).reshape(81, -1)
+    assert inside[:, sides == 1].all()
+    assert not inside[:, sides == -1].any()
+    same = inside.all(axis=0) | ~inside.any(axis=0)
+    assert {*sides.tolist()} == {-1, 0, 1}
+    assert (sides[same] != 0).mean() > 0.95
+
+
+def untraced(u, v):
+    return np.floor(u + 4.2) == 3.0 * np.ones(u.shape)
+
+
+def inconsistent(u, v):
+    return u > (0.3 if isinstance(u, np.ndarray) else 0.0)
+
+
+def chosen(u, v):
+    return np.where(u < 0, v < 0, True)
+
+
+@pytest.mark.parametrize("within", [untraced, inconsistent, chosen])
+def test_predicates_that_are_not_inequalities_leave_boxes_open(within):
+    trim = trim_of(graph().trimmed(within=within))
+    assert trim.sides(np.array([[0.9, 0.91, 0.9, 0.91]]), np.zeros((1, 3))).tolist() == [0]
+
+
+@pytest.mark.parametrize(("edge", "borders"), [(0.2, []), (0.0, [True]), (-0.2, [False])])
+def test_flat_points_outside_of_a_predicate_are_known(edge, borders):
+    surface = gm.surfaces.monkey_saddle().trimmed(within=lambda u, v: u + v > edge)
+    report = gm.GaussMap(surface).points([[0, 0, 1], [0.3, 0, 1]]).report
+    assert [x.border for x in report.undecided or ()] == borders
