@@ -223,3 +223,17 @@ def torus_normal(R, r, x):
     """
     q = r * (R + r * x)
     return q
+
+
+@inline
+def cone_normal(R, x, y):
+    """The quotient q of x_u × x_v and the unit vector with the longitude u and the latitude
+    that is minus the half angle, on a cone whose radius is R where v = 0, or a cylinder; x is
+    the sine of the half angle, y is v.
+
+        q = R + x*y
+
+    Source: beyond the paper; 2 operations as written, 2 here.
+    """
+    q = R + x * y
+    return q

@@ -5,6 +5,7 @@ The other kinds are surfaces of the catalogue that are placed in space, or ratio
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import cast
 
 import sympy as sp
@@ -15,7 +16,7 @@ from .notation import Dot, VectorSymbol, derivative, scalar, substitute, vectors
 from .patch import VECTORS, a, b, c, d, e, p
 from .surfaces import TORUS
 
-__all__ = ["FORMULAS", "OFFSET_JET", "REVOLUTION_JET", "TORUS_NORMAL"]
+__all__ = ["CONE_NORMAL", "FORMULAS", "OFFSET_JET", "REVOLUTION_JET", "TORUS_NORMAL"]
 
 # The derivatives of a surface by u and v, in the order of its 2-jet.
 ORDERS = ("", "u", "v", "uu", "uv", "vv")
@@ -123,15 +124,20 @@ OFFSET_SIDE = Formula.build(
 )
 
 
-def _torus_normal() -> Formula:
-    """Divide the normal field of a torus by the unit vector at the same angles."""
-    u, v = TORUS.u, TORUS.v
-    direction = sp.cos(u) * sp.cos(v), sp.sin(u) * sp.cos(v), sp.sin(v)
+def _quotient(field: Iterable[sp.Expr], longitude: sp.Expr, latitude: sp.Expr) -> sp.Expr:
+    """Divide a normal field by the unit vector at two angles; ValueError if they are not along."""
+    across = sp.cos(latitude)
+    direction = sp.cos(longitude) * across, sp.sin(longitude) * across, sp.sin(latitude)
     quotients = {
-        sp.factor(sp.simplify(value / part))
-        for value, part in zip(TORUS.normal_field, direction, strict=True)
+        sp.factor(sp.simplify(value / part)) for value, part in zip(field, direction, strict=True)
     }
     (quotient,) = cast(set[sp.Expr], quotients)
+    return quotient
+
+
+def _torus_normal() -> Formula:
+    """Divide the normal field of a torus by the unit vector at the same angles."""
+    quotient = _quotient(TORUS.normal_field, TORUS.u, TORUS.v)
     R, r, x = map(scalar, ("R", "r", "x"))
     major, minor = TORUS.defaults
     return Formula.build(
@@ -140,10 +146,31 @@ def _torus_normal() -> Formula:
         "latitude $v$, on a torus with the radii $R$ and $r$, a sphere if $R = 0$; $x$ is the "
         "cosine of $v$.",
         inputs=[R, r, x],
-        outputs=[("q", substitute(quotient, {major: R, minor: r, sp.cos(v): x}))],
+        outputs=[("q", substitute(quotient, {major: R, minor: r, sp.cos(TORUS.v): x}))],
     )
 
 
 TORUS_NORMAL = _torus_normal()
 
-FORMULAS = (REVOLUTION_JET, OFFSET_JET, OFFSET_SIDE, TORUS_NORMAL)
+
+def _cone_normal() -> Formula:
+    """Turn a line about the z axis, and divide the normal by the unit vector along it."""
+    u, v, angle, radius = sp.symbols("u v angle radius", real=True)
+    across = radius + v * sp.sin(angle)
+    position = sp.Matrix([across * sp.cos(u), across * sp.sin(u), v * sp.cos(angle)])
+    along_u, along_v = sp.Matrix(position.diff(u)), sp.Matrix(position.diff(v))
+    quotient = _quotient(along_u.cross(along_v), u, -angle)
+    R, x, y = map(scalar, ("R", "x", "y"))
+    return Formula.build(
+        "cone_normal",
+        "The quotient $q$ of $x_u × x_v$ and the unit vector with the longitude $u$ and the "
+        "latitude that is minus the half angle, on a cone whose radius is $R$ where $v = 0$, or a "
+        "cylinder; $x$ is the sine of the half angle, $y$ is $v$.",
+        inputs=[R, x, y],
+        outputs=[("q", substitute(quotient, {radius: R, sp.sin(angle): x, v: y}))],
+    )
+
+
+CONE_NORMAL = _cone_normal()
+
+FORMULAS = (REVOLUTION_JET, OFFSET_JET, OFFSET_SIDE, TORUS_NORMAL, CONE_NORMAL)

@@ -1,10 +1,10 @@
 """All points with given normals on planes, cylinders, cones, spheres and tori, in closed form.
 
 Normals of the map x → M x + p are M⁻ᵀ m, up to their length, so that n becomes m = Mᵀ n in the
-frame of the face, whatever M is. There, x_u × x_v has the direction of (cos u cos w, sin u cos w,
-sin w), but for a sign: w = v on spheres and tori, and minus the half angle on cylinders and cones.
-The sign is that of ρ, the distance from the axis as the numbers of the face give it; on spheres and
-tori, that of the formula `torus_normal`.
+frame of the face, whatever M is. There, x_u × x_v is q (cos u cos w, sin u cos w, sin w): w = v on
+spheres and tori, and minus the half angle on cylinders and cones. The formulas `torus_normal` and
+`cone_normal` are q. So u and w are the longitude and the latitude of m or of −m, as q has the sign
++ or −: by definition angles of `arctan2`, of which nothing is left to derive.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated.faces import torus_normal
+from ...generated.faces import cone_normal, torus_normal
 from ...runtime.base.formula_calls import python_function
 from ...runtime.domain.domain import Domain, Interval
 from ...runtime.search.proved import KINDS
@@ -141,7 +141,8 @@ class RoundFace:
     def _on_rulings(self, normals: Array) -> FacePlaces:
         """Return rulings for the normals of a cylinder or a cone, on both sides of an apex."""
         radius, angle = self.sizes
-        ends, found = radius + math.sin(angle) * np.array(self.domain[1]), [NOTHING]
+        quotient, found = python_function(cone_normal), [NOTHING]
+        ends = quotient(radius, math.sin(angle), np.array(self.domain[1]))
         for sign in sorted({math.copysign(1.0, x) for x in ends.tolist()}):
             near = np.arange(len(normals))
             if angle == 0.0:
