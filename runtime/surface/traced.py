@@ -9,10 +9,11 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
+from types import FunctionType
 from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from ..domain.domain import Domain
 from ..kernels.tape import Tape
@@ -35,11 +36,53 @@ def traced_tape(function: Function, domain: Domain) -> Tape | None:
 
     What depends on comparisons, on single precision or on anything but u and v has none.
     """
-    try:
-        tape = _tape_of(function)
-        return tape if tape is not None and _agree(function, tape, domain) else None
-    except Exception:  # what a user's callable raises for arrays of objects
-        return None
+    for called in (function, _with_object_arrays(function)):
+        try:
+            tape = _tape_of(called)
+            return tape if tape is not None and _agree(function, tape, domain) else None
+        except Exception:  # what a user's callable raises for arrays of objects
+            continue
+    return None
+
+
+class ObjectArrays:
+    """The module NumPy, but for new arrays of float64: they hold objects, and so traced numbers."""
+
+    def __getattr__(self, name: str) -> object:
+        return getattr(np, name)
+
+    @staticmethod
+    def empty(shape: Any, dtype: DTypeLike = np.float64) -> Any:  # noqa: ANN401
+        """Return a new array."""
+        return np.empty(shape, object if dtype in (float, np.float64) else dtype)
+
+    @staticmethod
+    def zeros(shape: Any, dtype: DTypeLike = np.float64) -> Any:  # noqa: ANN401
+        """Return a new array of zeros."""
+        return np.zeros(shape, object if dtype in (float, np.float64) else dtype)
+
+
+def _with_object_arrays(function: Function) -> Function:
+    """Return a function of Python that fills new arrays with traced numbers.
+
+    It has other globals: TypeError if a call assigns to one of them.
+    """
+    if not isinstance(function, FunctionType):
+        return function
+    known = {x: ObjectArrays() if y is np else y for x, y in function.__globals__.items()}
+    own = dict(known)
+    copy = FunctionType(
+        function.__code__, own, function.__name__, function.__defaults__, function.__closure__
+    )
+    copy.__kwdefaults__ = function.__kwdefaults__
+
+    def called(u: Array, v: Array) -> Any:  # noqa: ANN401
+        position = copy(u, v)
+        if any(own.get(x) is not y for x, y in known.items()):
+            raise TypeError("assignments to globals are not traced")
+        return position
+
+    return called
 
 
 def traced_condition(function: Function, domain: Domain) -> Condition | None:

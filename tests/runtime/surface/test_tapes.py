@@ -122,8 +122,24 @@ def of_functions(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return np.stack([x, y, np.sqrt(u * u + v * v)], axis=-1)
 
 
+def that_fills(u: np.ndarray, v: np.ndarray, factor: float = 2.0, *, power: int = 3) -> np.ndarray:
+    points = np.empty((*u.shape, 3), dtype=float)
+    points[..., 0], points[..., 1] = u, factor * v
+    points[..., 2] = points[..., 0] ** power
+    points[..., 2] += np.sin(points[..., 1])
+    return points
+
+
+def that_fills_zeros(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    points = np.zeros(u.shape + (3,))  # noqa: RUF005
+    points[:, :2] = np.stack([u, v], axis=-1)
+    return points
+
+
 TRACED: list[Callable[..., Any]] = [
     in_place,
+    that_fills,
+    that_fills_zeros,
     of_powers,
     of_functions,
     lambda u, v: np.stack([u, v, np.sin(3 * u) * np.cos(3 * v)], axis=-1),
@@ -150,15 +166,32 @@ def with_a_state(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     return np.stack([u, v, calls * u], axis=-1)
 
 
-def that_fills(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+def that_fills_and_counts(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    global calls
+    calls += 1
     points = np.empty((*u.shape, 3))
+    points[..., 0], points[..., 1], points[..., 2] = u, v, calls * u
+    return points
+
+
+def that_fills_in_single_precision(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    points = np.empty((*u.shape, 3), np.float32)
     points[..., 0], points[..., 1], points[..., 2] = u, v, u
+    return points.astype(np.float64)
+
+
+def that_clips(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    points = np.zeros((*u.shape, 3))
+    points[..., 0], points[..., 1] = u, v
+    points[points[..., 0] < -0.9999, 2] = 1.0
     return points
 
 
 UNTRACED: list[Callable[..., Any]] = [
     with_a_state,
-    that_fills,
+    that_fills_and_counts,
+    that_fills_in_single_precision,
+    that_clips,
     lambda u, v: np.stack([u, v, np.where(u < 0, u, v)], axis=-1),
     lambda u, v: np.stack([u, v, np.where(u == 0.5, u, v)], axis=-1),
     lambda u, v: np.stack([u, v, np.where(u != 0.5, u, v)], axis=-1),
