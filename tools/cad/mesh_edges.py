@@ -11,7 +11,7 @@ import numpy as np
 from ...runtime.base.aliases import Array, Flags, Indices
 from .edges import at_places
 from .faces import own_parameters
-from .mesh_spacing import Spacing
+from .mesh_spacing import Spacing, least_enough
 from .part import Face
 from .results import PartSpace
 
@@ -19,8 +19,6 @@ __all__ = ["MeshEdges", "SampledEdges"]
 
 # Steps of edges are measured between this many places, at equal parameters.
 PLACES = 64
-# The logarithm of the step along edges is bisected so many times.
-BISECTIONS = 50
 # An edge that ends where it begins has at least so many steps.
 CLOSED = 3
 # Ends of an edge without vertices that are closer than this part of the size are one.
@@ -119,12 +117,10 @@ class MeshEdges:
         low = max(self.spacing.smallest_step, costs.sum() / (count + len(costs)))
         steps = self._steps(low) if low > 0.0 else self._steps(math.inf)
         if low > 0.0 and self._total(steps, low) > count:
-            high = max(costs.max(), low)
-            for _ in range(BISECTIONS):
-                middle = math.sqrt(low * high)
-                is_enough = self._total(self._steps(middle), middle) <= count
-                low, high = (low, middle) if is_enough else (middle, high)
-            steps = self._steps(high)
+            step = least_enough(
+                lambda x: self._total(self._steps(x), x) <= count, low, max(costs.max(), low)
+            )
+            steps = self._steps(step)
             steps = steps if self._count(steps) <= count else self._steps(math.inf)
         if len(self.spacing.covered[1]):
             return steps

@@ -8,7 +8,7 @@ vertices are even in the plane of these two. So rulings, and the inside of plane
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -26,23 +26,19 @@ from .edge_sampling import step_of
 from .face_pieces import FacePiece
 from .results import PartSpace
 
-__all__ = ["ByNormals", "Spacing"]
+__all__ = ["ByNormals", "Spacing", "TurnedPiece", "least_enough"]
 
-# Steps are so many times shorter at most where an edge is curved more than the faces around.
-BENT = 2.0
 # Normals are compared at this number of places along each parameter, and at all knots.
 PLACES = 33
-# A face whose normals turn by less than this along a parameter, in radians, is ruled.
+# A face whose normals turn by less than this along a parameter, in radians, is ruled; and a
+# straight edge of the size of the part counts as this angle.
 RULED = 1e-6
-# Of two parameters, one counts as this part of the other at least; and a straight edge of the size
-# of the part as this angle.
-LEAST, STRAIGHT = 1e-3, 1e-6
+# Of two parameters, one counts as this part of the other at least.
+LEAST = 1e-3
 # The angle by which an edge turns counts as this part of one by which normals do.
 CURVED = 0.5
-# No step is longer than this times the mean of all. The logarithm of their common factor is between
-# these, and is bisected so many times.
+# No step is longer than this times the mean of all.
 LONGEST = 3.0
-LOGARITHMS, BISECTIONS = (-60.0, 60.0), 60
 # Planes of different faces are so far apart, in radians.
 APART = 100.0
 
@@ -71,20 +67,13 @@ class Spacing:
         return 0.0
 
     def costs(self, pieces: Indices, uv: Array) -> Array:
-        """Return the lengths (S, n − 1) of sides of edges between places (S, n, 2), in steps.
-
-        Where an edge is curved more than the faces around it, as the border of a plane, steps are
-        shorter, by the factor BENT at most.
-        """
+        """Return the lengths (S, n − 1) of sides of edges between places (S, n, 2), in steps."""
         owner = np.repeat(pieces, uv.shape[1])
         rows = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows
         rows = rows.reshape(*uv.shape[:2], 8)
-        lengths, turns = _lengths_and_turns(rows[..., :3])
         rates = np.sqrt(rows[..., 6])
-        costs = np.maximum(rates[:, 1:], rates[:, :-1]) * lengths
-        if not self.space.target.curvature_weight:
-            return costs
-        return np.maximum(costs, np.minimum(turns, BENT * costs))
+        lengths = np.linalg.norm(np.diff(rows[..., :3], axis=1), axis=2)
+        return np.maximum(rates[:, 1:], rates[:, :-1]) * lengths
 
     def plane(self, piece: int, uv: Array, tangents: Array) -> Array:
         """Return places (k, 2) in the plane of a piece; `tangents` (k, 2, 3) are x_u and x_v."""
@@ -130,7 +119,7 @@ class ByNormals(Spacing):
         owner = np.repeat(pieces, uv.shape[1])
         points = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows[:, :3]
         lengths, turns = _lengths_and_turns(points.reshape(*uv.shape[:2], 3))
-        straight = STRAIGHT * lengths / self.space.size
+        straight = RULED * lengths / self.space.size
         steps = np.array([self.pieces[k].step for k in pieces.tolist()])
         planes = [self.pieces[k].jets(*x.T)[:, 0] for k, x in zip(pieces.tolist(), uv, strict=True)]
         costs = np.linalg.norm(np.diff(np.array(planes), axis=1), axis=2)
@@ -156,16 +145,31 @@ def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
     if not curved.any():
         return np.ones(len(planes))
     areas, around, inside = areas[curved], around[curved], inside[curved]
-    (low, high), steps = LOGARITHMS, areas
-    for _ in range(BISECTIONS):
-        factor = math.exp((low + high) / 2.0) * areas.sum()
+
+    def steps_for(factor: float) -> Array:
         steps = np.maximum(np.sqrt(factor * around / areas), np.cbrt(2.0 * factor * inside / areas))
-        steps = np.minimum(steps, LONGEST * np.average(steps, weights=areas))
-        middle, total = (low + high) / 2.0, (around / steps + inside / steps**2).sum()
-        low, high = (middle, high) if total > count else (low, middle)
+        return np.minimum(steps, LONGEST * np.average(steps, weights=areas))
+
+    def is_enough(factor: float) -> bool:
+        steps = steps_for(factor)
+        return bool((around / steps + inside / steps**2).sum() <= count)
+
+    low = high = float(areas.sum())
+    while is_enough(low):
+        low /= 2.0
+    while not is_enough(high):
+        high *= 2.0
+    steps = steps_for(least_enough(is_enough, low, high))
     found = np.full(len(planes), steps.max())
     found[curved] = steps
     return found
+
+
+def least_enough(is_enough: Callable[[float], bool], low: float, high: float) -> float:
+    """Return the least number that is enough, up to rounding; `low` is not, and `high` is."""
+    while low < (middle := math.sqrt(low * high)) < high:
+        low, high = (low, middle) if is_enough(middle) else (middle, high)
+    return high
 
 
 def _lengths_and_turns(points: Array) -> tuple[Array, Array]:

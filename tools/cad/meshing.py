@@ -44,8 +44,8 @@ __all__ = ["mesh_of_part", "mesh_of_samples"]
 
 # Where a face has no normal, that at this part of the way into the triangle is taken.
 INSIDE = 1e-6
-# Edges are divided further so many times, until faces and their triangles are proper; samples that
-# fell outside of the polygons around faces are replaced so many times.
+# Edges are divided further so many times, until triangles are proper; samples that fell outside of
+# the polygons around faces are replaced so many times.
 ROUNDS, REFILLS = 15, 8
 # The densities of samples that meshes follow.
 DENSITIES = ("balanced", "uniform")
@@ -200,8 +200,8 @@ class Meshing:
 
     def refine(self) -> dict[int, str]:
         """Divide edges until no border crosses itself; return the faces for which that fails."""
-        crossing, rounds = self._crossing(), 1
-        while crossing and rounds < ROUNDS:
+        crossing = self._crossing()
+        while crossing:
             sampled = self._sampled()
             owner = np.unique(np.concatenate([border.edges for _, border, _ in crossing]))
             all_of = {
@@ -209,7 +209,7 @@ class Meshing:
             }
             if not self._refine(sampled, all_of):
                 break
-            crossing, rounds = self._crossing(), rounds + 1
+            crossing = self._crossing()
         return {k: text for k, _, text in crossing}
 
     def _crossing(self) -> list[tuple[int, FaceBorder, str]]:
@@ -261,9 +261,9 @@ class Meshing:
 
     def _refine(self, sampled: SampledEdges, segments: dict[int, Flags]) -> bool:
         """Divide segments of edges, if there are vertices enough for that; return whether."""
-        before = dict(self.edges.more)
+        before, least = dict(self.edges.more), self.edges.least
         self.edges.refine(sampled, segments)
-        if self.edges.least <= self.count:
+        if least < self.edges.least <= self.count:
             return True
         self.edges.more = before
         return False

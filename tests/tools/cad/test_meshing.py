@@ -10,6 +10,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad.examples import all_kinds, box
+from gaussmap.tools.cad.face_pieces import FacePiece
+from gaussmap.tools.cad.mesh_spacing import TurnedPiece
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.part_mesh import PartMesh
 
@@ -91,7 +93,7 @@ def test_a_cylinder_is_exact_though_its_circles_have_few_points(made, count):
     assert mesh.lines[0][0] == mesh.lines[0][-1] == mesh.lines[2][0]
 
 
-@pytest.mark.parametrize("count", [150, 1500])
+@pytest.mark.parametrize("count", [60, 150, 1500])
 def test_a_ball_has_one_vertex_at_each_pole(made, count):
     mesh = sound(meshed(made.ball(2.0), count), count)
     assert mesh.closed
@@ -320,10 +322,78 @@ def test_faces_of_all_kinds_by_normals():
     owners = mesh.face_index[np.isin(mesh.triangles, inner(mesh)).any(axis=1)]
     assert not ruled[owners].any()
     assert set(kinds[owners]) >= {"sphere", "torus"}
-    assert weighted(mesh) < 0.7 * weighted(meshed(part, count))
+    assert weighted(mesh) < 1.95
+    assert weighted(meshed(part, count)) < 2.75  # 2.83 with more vertices along bent edges
     for kind in ("cylinder", "cone", "torus", "sphere"):
         here = np.isin(mesh.face_index, np.flatnonzero(kinds == kind))
         assert mesh.angles[here].mean() < 3.0 * weighted(mesh)
+
+
+def arcs(radius: float, others: float, shift: float) -> gm.Surface:
+    """Return what lies between a quarter of a circle and others: `others` and `shift` (x, y, z)."""
+    root = np.sqrt(0.5)
+    circle = radius * np.array([(1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)])
+    points = np.stack([circle, others * circle + [0.0, 0.0, shift]], axis=1)
+    weights = [[1.0, 1.0], [root, root], [1.0, 1.0]]
+    return gm.Surface.from_nurbs((2, 1), ([0, 0, 0, 1, 1, 1], [0, 0, 1, 1]), points, weights)
+
+
+def steps_of_arcs(*surfaces: gm.Surface) -> list[int]:
+    """Return the numbers of steps of all edges that are not straight in a mesh by normals."""
+    mesh = gm.sample(gm.Part(surfaces), 200).mesh(prefer="normals")
+    assert isinstance(mesh, PartMesh)
+    return [len(x) - 1 for x in mesh.lines if np.ptp(mesh.vertices[x][:, 2]) < 1e-9 and len(x) > 2]
+
+
+def test_small_cylinders_are_at_most_three_times_as_coarse_as_the_mean():
+    """The least mean angle has 29 times as large angles where the area is 850 times as small."""
+    small = arcs(1e-3, 1.0, 1.0).transformed(np.eye(4) + np.outer([0, 0, 1, 0], [0, 0, 0, 3.0]))
+    with pytest.warns(gm.GaussmapWarning, match="nearly coincide"):
+        numbers = steps_of_arcs(arcs(1.0, 1.0, 1.0), small)
+    assert len(numbers) == 4
+    assert max(numbers) == pytest.approx(3.0 * min(numbers), rel=0.1)
+
+
+def test_borders_of_planes_turn_by_twice_the_angle_of_cylinders():
+    ring = arcs(1.0, 0.5, 0.0).transformed(np.eye(4) + np.outer([0, 0, 1, 0], [0, 0, 0, 3.0]))
+    numbers = steps_of_arcs(arcs(1.0, 1.0, 1.0), ring)
+    assert len(numbers) == 4
+    assert max(numbers) == pytest.approx(2.0 * min(numbers), rel=0.1)
+
+
+def test_faces_that_turn_by_little_are_not_ruled():
+    """An arch of 1e-4 rad has vertices inside, and one of 1e-9 rad has none."""
+    for height, is_ruled in ((1e-4, False), (1e-9, True)):
+        curve = [(0.0, 0.0), (0.5, height), (1.0, 0.0)]
+        heights = [[(x, y, z + w) for y, w in curve] for x, z in curve]
+        arch = gm.Surface.from_nurbs((2, 2), ([0, 0, 0, 1, 1, 1],) * 2, heights)
+        mesh = gm.sample(gm.Part([arch]), 40).mesh(prefer="normals")
+        assert isinstance(mesh, PartMesh)
+        assert (len(inner(mesh)) == 0) == is_ruled
+
+
+def test_normals_of_waves_are_seen():
+    """Five waves, of which a straight line sees nothing, turn by 4 arctan(slope) each."""
+    slope = 0.3
+
+    def waves(u, v):
+        return np.stack([u, v, slope / (10.0 * np.pi) * np.sin(10.0 * np.pi * u + 0.7)], axis=-1)
+
+    part = gm.Part([gm.Surface.from_callable(waves, ((0.0, 1.0), (0.0, 1.0)))])
+    turned = TurnedPiece.of(FacePiece.of(part.faces[0]), 0)
+    assert turned.lengths[0][-1] == pytest.approx(20.0 * np.arctan(slope), rel=0.05)
+
+
+def test_steps_along_edges_are_even_whatever_their_parameters():
+    """Along u, the point moves with the speed 3 u²."""
+    points = [[(x, y, 0.0) for y in (0.0, 1.0)] for x in (0.0, 0.0, 0.0, 1.0)]
+    knots = [0.0] * 4 + [1.0] * 4, [0.0, 0.0, 1.0, 1.0]
+    part = gm.Part([gm.Surface.from_nurbs((3, 1), knots, points)])
+    mesh = gm.sample(part, 1500, density="uniform").mesh()
+    assert isinstance(mesh, PartMesh)
+    for line in mesh.lines:
+        lengths = np.linalg.norm(np.diff(mesh.vertices[line], axis=0), axis=1)
+        assert lengths.max() < 1.03 * lengths.min()
 
 
 # --- density --------------------------------------------------------------------------------------
