@@ -31,8 +31,6 @@ FINE, SMALLER = 0.4, 1.3
 FINEST = 0.1
 # And borders are covered at places that are apart by twice this part of the covering radius.
 ON_BORDERS = 0.05
-# Distances are renewed within this multiple of the radius first.
-NEAR = 1.25
 # Samples that move to centres move by less than this part of the radius, but for few.
 HARDLY = 0.3
 # Gaps between candidates are searched down to the radius, and then to this part of it, and so on.
@@ -202,7 +200,8 @@ class Cover:
         """Compute the distances of all candidates from the samples again, within `widest`."""
         self._candidates.reset_distances()
         # Nearly all candidates are that near to a sample. The others need the wide search.
-        self._candidates.update_distances(self.points, min(NEAR * self.radius, widest))
+        near = min((1.0 + HARDLY) * self.radius, widest)
+        self._candidates.update_distances(self.points, near)
         self._candidates.update_far(self.points, widest)
 
     def move_to_centres(self) -> Voronoi:

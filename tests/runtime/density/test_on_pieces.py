@@ -124,6 +124,14 @@ def test_pieces_of_other_sizes_share_a_count_by_the_target_density(density, fact
     assert np.abs(counts - 600 * needs / needs.sum()).max() <= 30
 
 
+def test_curvature_counts_up_to_20_times_the_root_of_the_floor():
+    """Of cylinders with the radii 0.02 and 100, κ² of the small one is 6,300 λ, and counts 400."""
+    small, large, count = 0.02, 100.0, 3000
+    samples = gm.sample(arcs(small, large, 1.0), count, cells=(8, 8))
+    expected = count * 400.0 * small / (400.0 * small + large)
+    assert (piece_of(samples, 1.0) == 0).sum() == pytest.approx(expected, rel=0.25)
+
+
 def test_an_angle_holds_on_all_pieces():
     samples = gm.sample(barrel(), angle=6.0, cells=CELLS)
     lower, upper = np.bincount(piece_of(samples, 1.0))

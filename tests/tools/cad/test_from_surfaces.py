@@ -184,6 +184,15 @@ def test_trims_have_borders():
     assert (gm.Part([halves[0]]).open_edges, gm.Part([halves[0]]).closed) == (2, False)
 
 
+@pytest.mark.parametrize(("points", "corners"), [(8, 8), (16, 0)])
+def test_borders_have_corners_where_they_turn_by_30_degrees(points, corners):
+    """An octagon turns by 45° at its corners; of 16 points, by 22.5°, a border is smooth."""
+    angles = np.linspace(0.0, TURN, points, endpoint=False)
+    polygon = 0.5 + 0.4 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    part = gm.Part([bilinear((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)).trimmed([polygon])])
+    assert len(part.arrays["edge_vertices"]) == max(corners, 1)
+
+
 def test_an_edge_of_three_faces():
     a, b = (0, 0, 0), (1, 0, 0)
     sheets = [bilinear(a, b, (1, *x), (0, *x)) for x in ((1, 0), (-1, 1), (-1, -1))]
@@ -207,6 +216,14 @@ def test_gaps_are_measured():
     assert (part.closed, part.gap) == (True, pytest.approx(1e-3, rel=1e-9))
     mesh = gm.sample(part, 200).mesh()
     assert (mesh.closed, mesh.euler_characteristic) == (True, 2)
+
+
+@pytest.mark.parametrize(("gap", "is_near"), [(0.007, True), (0.014, False)])
+def test_edges_nearly_coincide_up_to_a_hundredth_of_their_length(gap, is_near, recwarn):
+    sides = cube()
+    sides[5] = moved(sides[5], (0.0, 0.0, gap))
+    assert gm.Part(sides).open_edges == 8
+    assert any("nearly coincide" in str(x.message) for x in recwarn) == is_near
 
 
 @pytest.mark.parametrize(
