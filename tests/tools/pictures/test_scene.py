@@ -124,6 +124,38 @@ def test_the_back_of_a_thin_plate_is_painted_first(parts):
     assert len(top[0]) < 10  # at corners: no middle of a pixel is in them
 
 
+def test_what_holds_a_pixel_of_400_is_seen():
+    """A right triangle holds a square with half of its sides, and that the middle of a pixel."""
+    corners = np.random.default_rng(5).random((50, 1, 2)) * 0.99
+    small = np.pad(
+        corners + 2.05 / 400.0 * np.array([(0, 0), (1, 0), (0, 1)]), ((0, 0), (0, 0), (0, 1))
+    )
+    small[..., 2] = np.arange(1, 51)[:, None]  # those in front hide no other as a whole
+    behind = np.array([[(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(1, 0, 0), (1, 1, 0), (0, 1, 0)]])
+    assert in_front(np.concatenate([small, behind])).all()
+
+
+def test_painted_pieces_are_a_fortieth_of_the_diameter(parts):
+    """Pieces that are sorted by their mean depths are wrong by a side at most."""
+    whole = scene_of(parts.box(1.0, 2.0, 2.0))
+    diameter = np.linalg.norm(np.ptp(whole.triangles.reshape(-1, 3), axis=0))
+    for layer in whole.in_layers():
+        pieces = layer.quadrangles[:, :3]
+        sides = np.linalg.norm(pieces - np.roll(pieces, -1, axis=1), axis=2)
+        assert sides.max() <= diameter / 40.0
+
+
+def test_triangles_fill_a_trimmed_square_and_have_an_area():
+    angles = 2.0 * np.pi * np.arange(100) / 100
+    circle = 1.0 + 0.5 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    square = [(0.0, 0.0), (0.0, 2.0), (2.0, 2.0), (2.0, 0.0)]
+    sheet = gm.Surface.from_sympy(("u", "v", "0"), ("u", "v"), ((0, 2), (0, 2)))
+    a, b, c = np.moveaxis(scene_of(gm.Part([sheet.trimmed([circle, square])])).triangles, 1, 0)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
+    assert areas.sum() == pytest.approx(4.0 - 12.5 * np.sin(2.0 * np.pi / 100), rel=1e-7)
+    assert areas.min() > 1e-6 * areas.max()
+
+
 def test_triangles_of_a_part_have_its_area():
     part = gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz")
     a, b, c, _ = np.moveaxis(scene_of(part).quadrangles, 1, 0)
