@@ -688,7 +688,6 @@ def test_fine_waves_have_no_false_points() -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.slow
 def test_touching_curve_is_isolated_in_one_rectangle() -> None:
     """z = u⁴ + v²: K ≥ 0 vanishes along the line u = 0 without a change of sign."""
     found = gm.gauss_map.parabolic_points(graph(lambda u, v: u**4 + v * v), tolerance=1e-2)
@@ -707,7 +706,6 @@ def test_touching_curve_is_isolated_in_one_rectangle() -> None:
         (lambda u, v: (u * u + v * v) ** 2, [[-0.02, -0.02], [0.02, 0.02]]),
     ],
 )
-@pytest.mark.slow
 def test_zeros_in_too_many_rectangles_are_not_lost(f, box) -> None:
     """K > 0 but on a line, or at a point where it is of order 4: K ≈ 48 r⁴ is lost in rounding."""
     (zero,) = gm.gauss_map.parabolic_points(graph(f)).isolated
