@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from gaussmap.runtime.density import candidates as candidates_module
 from gaussmap.runtime.density.candidates import Candidates
 from gaussmap.runtime.density.cells import Cells, new_cells
 from gaussmap.runtime.density.voronoi import Voronoi
@@ -93,3 +94,22 @@ def test_places_far_from_all_samples_are_found():
     assert set(rows) == set(np.flatnonzero(away >= 0.5))
     # Others share a bucket of a grid with places that are near.
     assert (places == cells.places[rows]).all(axis=1).mean() > 0.9
+
+
+def test_parts_of_candidates_have_the_centres_and_gaps_of_the_whole(monkeypatch):
+    cells, samples = plane(), samples_of(30, 2)
+
+    def found(count: int) -> list[Array]:
+        candidates = Candidates(cells.rows, 0.1, split=True)
+        assert len(candidates.parts) == count
+        candidates.update_distances(samples, 3.0)
+        made = Voronoi(candidates, cells, samples, 3.0, 0.05)
+        moved, rows, places = made.centres(samples, 4)
+        far, gaps = made.widest(samples, 0.2)
+        order = np.argsort(far)
+        return [moved, rows, places, far[order], gaps[order]]
+
+    whole = found(1)
+    monkeypatch.setattr(candidates_module, "PART", 20)
+    for one, other in zip(whole, found(7), strict=True):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-12)
