@@ -18,7 +18,8 @@ from OCP.TopoDS import TopoDS
 
 from ..records import EdgeRecord, FaceRecord
 from ..units import scaled_parameters
-from .loops import edges_of
+from .faces import FaceReader
+from .loops import EdgeCurves
 from .p_curves import PCurve
 from .shapes import Key, parts_of
 from .solids import PlacedFace
@@ -32,7 +33,7 @@ Wires = list[list[tuple[int, int, bool]]]
 # piece of others, and the least and the largest number.
 ANGLE, POINTS_A_PIECE, LEAST, MOST = 0.15, 4, 9, 1025
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
-EDGE, WIRE = TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_WIRE
+EDGE = TopAbs_ShapeEnum.TopAbs_EDGE
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class Known:
 
 
 def topology_of(
-    placed: Sequence[PlacedFace], faces: Sequence[FaceRecord], factor: float
+    placed: Sequence[PlacedFace], faces: Sequence[FaceRecord], factor: float, reader: FaceReader
 ) -> Topology:
     """Return all edges of faces, and how they follow one another around each.
 
@@ -71,8 +72,8 @@ def topology_of(
     known: dict[Key, Known] = {}
     ordered = []
     for k, (face, record) in enumerate(zip(placed, faces, strict=True)):
-        forward = TopoDS.Face(face.sewn.Oriented(FORWARD))
-        ordered.append([] if record.reason else _ordered(forward))
+        forward = face.sewn.Oriented(FORWARD)
+        ordered.append([] if record.reason else _ordered(forward, reader))
         curves = {(Key(x), x.Orientation()): curve for wire in ordered[-1] for x, curve in wire}
         for edge in parts_of(forward, EDGE):
             key, turn = Key(edge), edge.Orientation()
@@ -80,7 +81,7 @@ def topology_of(
             at.faces.append(k)
             at.turns.append(turn)
             at.curves.append(curves.get((key, turn)))
-    scales = [scaled_parameters(x.geometry, factor) for x in faces]
+    scales = [np.tile(scaled_parameters(x.geometry, factor), 2) for x in faces]
     vertices = _Vertices()
     edges = [_record(x, scales, vertices) for x in known.values()]
     places = {key: place for place, key in enumerate(known)}
@@ -97,10 +98,10 @@ def topology_of(
     return Topology(edges, factor * vertices.points, wires)
 
 
-def _ordered(face: Any) -> list[list[tuple[Any, PCurve]]]:  # noqa: ANN401
+def _ordered(face: Any, reader: FaceReader) -> EdgeCurves:  # noqa: ANN401
     """Return the edges of each wire of a face, in turn, with their p-curves."""
     try:
-        return [edges_of(TopoDS.Wire(x), face) for x in parts_of(face, WIRE)]
+        return reader.wires(face)
     except Exception:  # of Open CASCADE: without p-curves there is nothing to say
         return []
 
@@ -110,7 +111,7 @@ def _record(known: Known, scales: list[Array], vertices: _Vertices) -> EdgeRecor
     shares = np.linspace(0.0, 1.0, max((_points(x) for x in known.curves if x), default=2))
     nothing = np.full((len(shares), 4), np.nan)
     sides = [nothing if x is None else _uv(x, shares) for x in known.curves]
-    sides = [x * np.tile(scales[k], 2) for k, x in zip(known.faces, sides, strict=True)]
+    sides = [x * scales[k] for k, x in zip(known.faces, sides, strict=True)]
     return EdgeRecord(
         tuple(known.faces),
         np.concatenate([x[:, :2] for x in sides], axis=1),
@@ -163,5 +164,7 @@ def _uv(curve: PCurve, shares: Array) -> Array:
         found[:, 2:] *= last - first
         return found
     ends = curve.evaluate(np.array([first, last]))[:, :2]
-    along = ends[1] - ends[0]
-    return np.concatenate([ends[0] + shares[:, None] * along, np.tile(along, (len(shares), 1))], 1)
+    found = np.empty((len(shares), 4))
+    found[:, 2:] = ends[1] - ends[0]
+    found[:, :2] = ends[0] + shares[:, None] * found[:, 2:]
+    return found

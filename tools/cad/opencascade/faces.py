@@ -12,10 +12,11 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_Orientation
+from OCP.TopoDS import TopoDS
 
 from ..records import FaceRecord, Geometry
 from .curves import UnusableError
-from .loops import loops_of
+from .loops import EdgeCurves, loops_of, wires_of
 from .shapes import Key
 from .surfaces import basis_of, geometry_of, periods_of
 
@@ -32,6 +33,14 @@ class FaceReader:
 
     def __init__(self) -> None:
         self._known: dict[Key, tuple[list[Array], float]] = {}
+        self._wires: dict[Key, EdgeCurves] = {}
+
+    def wires(self, face: Any) -> EdgeCurves:  # noqa: ANN401
+        """Return the edges of each wire of a face, which is taken as forward, with p-curves."""
+        key = Key(face)
+        if key not in self._wires:
+            self._wires[key] = wires_of(_forward(face))
+        return self._wires[key]
 
     def record(self, face: Any) -> FaceRecord:  # noqa: ANN401
         """Return the record of a face, with a reason if it has failed."""
@@ -68,13 +77,17 @@ class FaceReader:
         key = Key(face, placed=False)
         known = self._known.get(key)
         if known is None:
-            known = loops_of(face), area_of(face)
+            known = loops_of(_forward(face), self.wires), area_of(face)
             if not np.isfinite(known[1]):
                 raise UnusableError("its area is not finite")
             if known[1] < LEAST_AREA:
                 raise UnusableError("its area is zero")
             self._known[key] = known
         return known
+
+
+def _forward(face: Any) -> Any:  # noqa: ANN401
+    return TopoDS.Face(face.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
 
 
 def area_of(face: Any) -> float:  # noqa: ANN401

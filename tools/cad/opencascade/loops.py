@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -16,9 +17,11 @@ from .curves import UnusableError
 from .p_curves import PCurve, curve_of
 from .shapes import parts_of
 
-__all__ = ["edges_of", "loops_of"]
+__all__ = ["EdgeCurves", "loops_of", "wires_of"]
 
 Array = NDArray[np.float64]
+# The edges of each wire of a face and their p-curves, one after another.
+EdgeCurves = list[list[tuple[Any, PCurve]]]
 
 # Polygons leave the curves by no more than this part of the (u, v) box of the face, and this part
 # of its mean width in it, but not less than the last.
@@ -33,12 +36,11 @@ FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs
 EDGE, WIRE = TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_WIRE
 
 
-def loops_of(face: Any) -> list[Array]:  # noqa: ANN401
+def loops_of(face: Any, wires_of: Callable[[Any], EdgeCurves]) -> list[Array]:  # noqa: ANN401
     """Return the closed polygons of a face; UnusableError says why there are none.
 
-    The face is taken as forward, so that it lies left of its curves.
+    The face is forward, so that it lies left of its curves.
     """
-    face = TopoDS.Face(face.Oriented(FORWARD))
     u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
     bounds = np.array([(u0, v0), (u1, v1)])
     if not (np.isfinite(bounds).all() and np.abs(bounds).max() < INFINITE):
@@ -46,7 +48,7 @@ def loops_of(face: Any) -> list[Array]:  # noqa: ANN401
     size = bounds[1] - bounds[0]
     if not (size > 0.0).all():
         raise UnusableError("its area is zero")
-    wires = [[x for _, x in edges_of(TopoDS.Wire(wire), face)] for wire in parts_of(face, WIRE)]
+    wires = [[curve for _, curve in wire] for wire in wires_of(face)]
     if not wires:
         return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
     loops = _polygons(wires, size, OF_BOX)
@@ -84,7 +86,12 @@ def _mean_width(loops: list[Array], size: Array) -> float:
     return abs(area) / length if length else 0.0
 
 
-def edges_of(wire: Any, face: Any) -> list[tuple[Any, PCurve]]:  # noqa: ANN401
+def wires_of(face: Any) -> EdgeCurves:  # noqa: ANN401
+    """Return the edges of each wire of a face that is forward, with their p-curves."""
+    return [_edges_of(TopoDS.Wire(x), face) for x in parts_of(face, WIRE)]
+
+
+def _edges_of(wire: Any, face: Any) -> list[tuple[Any, PCurve]]:  # noqa: ANN401
     """Return the edges of a wire and their p-curves, one after another."""
     explorer, edges = BRepTools_WireExplorer(wire, face), []
     while explorer.More():

@@ -50,7 +50,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         )
     in_unit = unit or document.unit
     factor = METRES["mm"] / METRES[in_unit]
-    topology = topology_of(found.faces, faces, factor)
+    topology = topology_of(found.faces, faces, factor, reader)
     faces = [replace(x, wires=wires) for x, wires in zip(faces, topology.wires, strict=True)]
     return PartRecord(
         name,
