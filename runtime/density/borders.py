@@ -25,28 +25,33 @@ class Border:
 
     def passes(self, boxes: Array) -> Flags:
         """Return which boxes (M, 4), u0, v0, u1, v1, the border may pass."""
-        i, j = self._pixels(boxes[:, :2])
-        k, m = self._pixels(boxes[:, 2:])
+        i, j, k, m = self._pixels(boxes)
         sums = self._sums
         return sums[k + 1, m + 1] - sums[i, m + 1] - sums[k + 1, j] + sums[i, j] > 0
 
     def near(self, boxes: Array, places: Array) -> Flags:
         """Return which places (k, 2) are in pixels that some boxes (M, 4) reach into."""
         marks = np.zeros((self.n + 1, self.n + 1), dtype=np.int64)
-        i, j = self._pixels(boxes[:, :2])
-        k, m = self._pixels(boxes[:, 2:])
+        i, j, k, m = self._pixels(boxes)
         np.add.at(marks, (i, j), 1)
         np.add.at(marks, (k + 1, m + 1), 1)
         np.add.at(marks, (i, m + 1), -1)
         np.add.at(marks, (k + 1, j), -1)
         covered = marks.cumsum(axis=0).cumsum(axis=1) > 0
-        return covered[self._pixels(places)]
+        i, j = self._pixels(places)
+        return covered[i, j]
 
-    def _pixels(self, places: Array) -> tuple[Indices, Indices]:
+    def _pixels(self, places: Array) -> Indices:
+        """Return the pixels (2, k) of places (k, 2), or those (4, k) of corners of boxes (k, 4)."""
+        low, rates = self._frame
+        found = np.floor((places.reshape(-1, 2) - low) * rates).astype(np.int64)
+        return found.clip(0, self.n - 1).reshape(places.shape).T
+
+    @cached_property
+    def _frame(self) -> tuple[Array, Array]:
+        """The smallest parameters (2,), and the pixels by parameters (2,)."""
         low, high = np.array(self.domain).T
-        found = np.floor((places - low) * (self.n / (high - low))).astype(np.int64)
-        i, j = np.clip(found, 0, self.n - 1).T
-        return i, j
+        return low, self.n / (high - low)
 
     @cached_property
     def _sums(self) -> NDArray[np.int32]:

@@ -93,7 +93,7 @@ class Piece(ABC):
         """The piece with the derivatives of what is sampled, which may take longer."""
         return self
 
-    @property
+    @cached_property
     def sizes(self) -> Array:
         """The lengths (2,) of the domain."""
         low, high = np.array(self.domain).T

@@ -218,11 +218,7 @@ class Space:
     def borders(self) -> list[BorderLine]:
         """The borders of all pieces, without the floor."""
         if "borders" not in self._held:
-            space, found = self.between(0.0), []
-            for k, places, inside, limits in polygons_of(self.pieces, self.first):
-                cells = space.at(np.full(len(places), k), inside, limits, keep=True)
-                found.append(BorderLine(k, places, cells.rows, cells.numbers[:, LIMIT]))
-            self._held["borders"] = found
+            self._held["borders"] = self._borders()
         return self._held["borders"]
 
     def along_borders(self, step: float, turn: float = math.inf) -> Cells:
@@ -239,9 +235,9 @@ class Space:
 
     def middles(self, pieces: Indices) -> Cells:
         """Return the cell nearest to the middle of each of some pieces."""
-        first, rows = self.first, []
+        first, rows, wanted = self.first, [], set(pieces.tolist())
         for k, found in by_piece(first):
-            if k in pieces:
+            if k in wanted:
                 points, areas = first.rows[found, :3], first.numbers[found, AREA]
                 regular = first.rows[found, 3:6].any(axis=1)
                 weights = areas if areas.any() else np.ones(len(areas))
@@ -347,6 +343,18 @@ class Space:
                 break
         return sum(done[1:], start=done[0]).sorted()
 
+    def _borders(self) -> list[BorderLine]:
+        lines = list(polygons_of(self.pieces, self.first))
+        if not lines:
+            return []
+        numbers, polygons, inside, limits = zip(*lines, strict=True)
+        counts = [len(x) for x in polygons]
+        owners, ends = np.repeat(numbers, counts), np.cumsum(counts)[:-1]
+        places, near = np.concatenate(inside), np.concatenate(limits)
+        cells = self.between(0.0).at(owners, places, near, keep=True)
+        rows, limits = np.split(cells.rows, ends), np.split(cells.numbers[:, LIMIT], ends)
+        return list(map(BorderLine, numbers, polygons, rows, limits))
+
     @cached_property
     def _fewest(self) -> Indices:
         return np.full(len(self.pieces), FEWEST_PIXELS)
@@ -388,8 +396,7 @@ class Space:
             for first in range(rows.start, rows.stop, CELLS_AT_A_TIME)
         ]
         list(over_ranges(work, len(parts), len(parts) // RANGES + 1, self.threads))
-        known = np.concatenate([cells.rows, cells.numbers], axis=1)
-        finite = np.asarray(np.isfinite(known).all(axis=1))
+        finite = np.isfinite(cells.rows).all(axis=1) & np.isfinite(cells.numbers).all(axis=1)
         if keep:
             cells.rows[~finite] = 0.0
             return cells

@@ -95,12 +95,15 @@ class Loops:
 
     def _inwards(self, uv: Array) -> Array:
         """Move points on open sides into the domain, by far less than its size."""
+        return uv.clip(*self._limits)
+
+    @cached_property
+    def _limits(self) -> tuple[Array, Array]:
+        """The smallest and the largest parameters (2,) of points that count as inside."""
         low, high = np.array(self.domain).T
         nudge = INSIDE * (high - low)
         is_open = np.array([not closes(ends) for ends in self.boundary])
-        return np.clip(
-            uv, np.where(is_open, low + nudge, -np.inf), np.where(is_open, high - nudge, np.inf)
-        )
+        return np.where(is_open, low + nudge, -np.inf), np.where(is_open, high - nudge, np.inf)
 
     @cached_property
     def box(self) -> Array:

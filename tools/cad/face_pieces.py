@@ -254,10 +254,12 @@ def _lines(face: Face, axis: int, ends: tuple[float, float]) -> Array:
     if period > 0.0 and len(knots):
         turns = np.arange(-2, 3) * period
         knots = np.unique(knots + turns[:, None])
-    slack = SAME_LINE * (ends[1] - ends[0])
-    inside = np.sort(knots[(knots > ends[0] + slack) & (knots < ends[1] - slack)])
-    inside = inside[np.diff(inside, prepend=-np.inf) > slack]
-    lines = np.concatenate([[ends[0]], inside, [ends[1]]])
+    lines = np.array(ends)
+    if len(knots):
+        slack = SAME_LINE * (ends[1] - ends[0])
+        inside = np.sort(knots[(knots > ends[0] + slack) & (knots < ends[1] - slack)])
+        inside = inside[np.diff(inside, prepend=-np.inf) > slack]
+        lines = np.concatenate([[ends[0]], inside, [ends[1]]])
     parts = max(PARTS_OF_SPAN, math.ceil(degree / 2)) if len(knots) else 1
     if geometry.surface is not None:
         parts = PARTS_OF_SURFACE

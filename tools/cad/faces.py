@@ -96,9 +96,11 @@ def _is_whole(loops: Sequence[Array], domain: Domain) -> bool:
     low, high = np.array(domain).T
     places = (loop - low) / (high - low)
     at_border = np.minimum(np.abs(places), np.abs(places - 1.0)).min(axis=1) <= ON_BORDER
+    if not at_border.all():
+        return False
     x, y = places.T
     area = (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2.0
-    return bool(at_border.all()) and abs(abs(area) - 1.0) <= 4.0 * ON_BORDER
+    return abs(abs(area) - 1.0) <= 4.0 * ON_BORDER
 
 
 # --- kinds ----------------------------------------------------------------------------------------
