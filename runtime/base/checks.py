@@ -240,8 +240,12 @@ def checked_array(
 
 
 def _fits(array: NDArray[Any], shape: tuple[int | str, ...]) -> bool:
-    pairs = zip(shape, array.shape, strict=False)
-    return len(shape) == array.ndim and all(isinstance(x, str) or x == y for x, y in pairs)
+    if len(shape) != array.ndim:
+        return False
+    for wanted, found in zip(shape, array.shape, strict=True):  # no generator: called very often
+        if wanted != found and not isinstance(wanted, str):
+            return False
+    return True
 
 
 def _shown(shape: tuple[int | str, ...]) -> str:

@@ -152,6 +152,8 @@ class Cover:
 
         They are the places of cells whose radii are FINE times the radius.
         """
+        for name in ("cells", "_candidates"):  # the former ones, which take as much memory
+            vars(self).pop(name, None)
         self.radius, self.cells = widest, self.space.cut(FINE * radius)
         self._candidates = self._with_distances(self.cells.rows, radius, widest)
 

@@ -352,7 +352,7 @@ class Space:
         owners, ends = np.repeat(numbers, counts), np.cumsum(counts)[:-1]
         places, near = np.concatenate(inside), np.concatenate(limits)
         cells = self.between(0.0).at(owners, places, near, keep=True)
-        rows, limits = np.split(cells.rows, ends), np.split(cells.numbers[:, LIMIT], ends)
+        rows, limits = np.split(cells.rows, ends), np.split(cells.numbers[:, LIMIT].copy(), ends)
         return list(map(BorderLine, numbers, polygons, rows, limits))
 
     @cached_property

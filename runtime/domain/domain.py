@@ -118,9 +118,11 @@ def brought_inside(
     """Return parameters (k,) less whole periods; those beyond other ends stay what they are."""
     places = u.copy(), v.copy()
     for axis, (low, high) in enumerate(domain):
+        if not closes(boundary[axis]):
+            continue
         values, others = places[axis], places[1 - axis]
         out = np.flatnonzero((values < low) | (values > high))
-        if closes(boundary[axis]) and len(out):
+        if len(out):
             periods = np.floor((values[out] - low) / (high - low))
             values[out] = np.clip(values[out] - periods * (high - low), low, high)
             if boundary[axis][0] == "mirrored":

@@ -70,10 +70,12 @@ class Loops:
             # The shifts are their own inverses where they turn a direction.
             places = np.stack([a * (points[:, 0] - b), c * (points[:, 1] - d)], axis=1)
             i, j = np.floor((places - low) / steps).astype(np.int64).T
-            for di, dj in np.ndindex(3, 3):
-                k, m = i + di - 1, j + dj - 1
-                here = (k >= 0) & (k < cells[0]) & (m >= 0) & (m < cells[1])
-                passed[k[here], m[here]] = True
+            here = (i >= -1) & (i <= cells[0]) & (j >= -1) & (j <= cells[1])
+            marks = np.zeros((cells[0] + 2, cells[1] + 2), dtype=np.bool_)
+            marks[i[here] + 1, j[here] + 1] = True
+            # And the cells around those with a point.
+            rows = marks[:-2] | marks[1:-1] | marks[2:]
+            passed |= rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
         return passed
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:

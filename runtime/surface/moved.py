@@ -99,7 +99,7 @@ class Moved(Differentiable):
         jets = self.map.directions(self.surface.jets(self._own(u), v))
         jets[:, 0] += self.map.shift
         if self.turned:
-            jets[:, [1, 4]] *= -1.0  # x_u and x_uv
+            jets[:, 1::3] *= -1.0  # x_u and x_uv
         return jets
 
     def tape(self) -> Tape | None:
