@@ -7,7 +7,7 @@ next to the border take their turn, as cells without an extent.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +21,7 @@ __all__ = [
     "by_piece",
     "halved",
     "into_parts",
+    "joined",
     "new_cells",
     "points_of",
 ]
@@ -57,8 +58,7 @@ class Cells:
 
     def __add__(self, other: Cells) -> Cells:
         """Return these cells, followed by others."""
-        both = zip(self._arrays, other._arrays, strict=True)
-        return Cells(*(np.concatenate(x) for x in both))
+        return joined([self, other])
 
     @property
     def _arrays(self) -> tuple[NDArray, ...]:
@@ -86,6 +86,12 @@ class Cells:
     def chords(self) -> Array:
         """How far normals of each cell (M,) are from that at its place, 2 if unknown."""
         return self.numbers[:, CHORD]
+
+
+def joined(parts: Sequence[Cells]) -> Cells:
+    """Return the cells of some parts, one part after another."""
+    arrays = zip(*(x._arrays for x in parts), strict=True)
+    return Cells(*(np.concatenate(x) for x in arrays))
 
 
 def halved(cells: Cells, along_u: Flags) -> Cells:

@@ -10,7 +10,7 @@ import numpy as np
 from ..base.aliases import Array, Indices
 from .at_normals import Given
 from .candidates import Candidates
-from .cells import CHORD, LIMIT, RADIUS, Cells
+from .cells import CHORD, LIMIT, RADIUS, Cells, joined
 from .grid import Grid
 from .space import Space
 from .voronoi import Voronoi
@@ -299,7 +299,7 @@ class Cover:
     def _joined(self) -> Cover:
         """Join the samples that wait with the others: many at once are quicker."""
         if self._waiting:
-            added = sum(self._waiting[1:], start=self._waiting[0])
+            added = joined(self._waiting)
             self._waiting = []
             self._points = np.concatenate([self._points, added.rows[:, :6]])
             self._curvatures = np.concatenate([self._curvatures, added.rows[:, 7]])
@@ -325,7 +325,7 @@ class Cover:
             candidates = self._with_distances(cells.rows, radius, radius)
             self._choose(cells, candidates, radius, most)
         small.append(self._borders(radius))
-        self._cover_small_cells(sum(small[1:], start=small[0]).sorted(), radius, most)
+        self._cover_small_cells(joined(small).sorted(), radius, most)
         self._candidates.update_distances(self.points[first:], radius)
 
     def _borders(self, radius: float) -> Cells:

@@ -31,6 +31,7 @@ from .cells import (
     by_piece,
     halved,
     into_parts,
+    joined,
     new_cells,
     points_of,
 )
@@ -257,8 +258,8 @@ class Space:
         steps = np.where(many[:, None], np.ceil(np.sqrt(parts)).astype(np.int64), 1)
         owner = np.repeat(np.arange(len(steps)), steps.prod(axis=1))
         cells, owner = sifted(self.pieces, into_parts(cells, steps), pixels, owner)
-        cells = into_parts(cells, -(-parts[owner] // steps[owner]))
-        return (self.evaluated(cells, pixels) + self.along_borders(radius)).sorted()
+        cells = self.evaluated(into_parts(cells, -(-parts[owner] // steps[owner])), pixels)
+        return (cells + self.along_borders(radius)).sorted()
 
     def parts(self, radius: float) -> Indices:
         """Return into how many parts (M, 2) `cut` divides the first cells along u and v.
@@ -341,7 +342,7 @@ class Space:
                 done.append(space.at(*beside(self.pieces, lost, self._fewest)))
             if not len(cells):
                 break
-        return sum(done[1:], start=done[0]).sorted()
+        return joined(done).sorted()
 
     def _borders(self) -> list[BorderLine]:
         lines = list(polygons_of(self.pieces, self.first))
@@ -396,7 +397,8 @@ class Space:
             for first in range(rows.start, rows.stop, CELLS_AT_A_TIME)
         ]
         list(over_ranges(work, len(parts), len(parts) // RANGES + 1, self.threads))
-        finite = np.isfinite(cells.rows).all(axis=1) & np.isfinite(cells.numbers).all(axis=1)
+        each = (np.isfinite(x).all(axis=1) for x in (cells.rows, cells.numbers))
+        finite = np.logical_and(*each)
         if keep:
             cells.rows[~finite] = 0.0
             return cells
