@@ -397,8 +397,8 @@ class Space:
             for first in range(rows.start, rows.stop, CELLS_AT_A_TIME)
         ]
         list(over_ranges(work, len(parts), len(parts) // RANGES + 1, self.threads))
-        each = (np.isfinite(x).all(axis=1) for x in (cells.rows, cells.numbers))
-        finite = np.logical_and(*each)
+        rows, numbers = (np.isfinite(x).all(axis=1) for x in (cells.rows, cells.numbers))
+        finite = np.asarray(rows & numbers)
         if keep:
             cells.rows[~finite] = 0.0
             return cells
