@@ -97,7 +97,11 @@ def parabolic_points(exponent: int) -> list[Any]:
         points = gm.gauss_map.parabolic_points(surface, tolerance=1e-3)
         assert points.curves or points.isolated
         found += [[np.ldexp(x.points, -exponent), x.uv, x.closed] for x in points.curves]
-        found += [[np.ldexp(x.point, -exponent), x.uv, x.box] for x in points.isolated]
+        # Products of parameters next to 0 underflow.
+        found += [
+            [np.round(y, 15) for y in (np.ldexp(x.point, -exponent), x.uv, x.box)]
+            for x in points.isolated
+        ]
         found += [points.flat, points.developable]
     return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -12,6 +13,7 @@ from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.wording import plural
 from ...runtime.domain.domain import brought_inside
 from ...runtime.place.on_spline import OnSpline
+from ...runtime.place.reach import normals_of_jets
 from ...runtime.spline.spline import Spline
 from .polylines import distances, refined
 
@@ -131,7 +133,7 @@ def followed(
 
     uv, cusps = with_cusps(refined(uv, both, tolerance, onto))
     points, normals = _points_and_normals(jets(uv))
-    closed = bool(np.linalg.norm(points[0] - points[-1]) <= CLOSED * np.ptp(points, axis=0).max())
+    closed = math.dist(points[0], points[-1]) <= CLOSED * float(np.ptp(points, axis=0).max())
     return Traced(ImageCurve(uv, points, normals, closed, cusps), jets, onto)
 
 
@@ -148,6 +150,5 @@ def jets_of_spline(spline: Spline) -> OfPlaces:
 
 def _points_and_normals(jets: Array) -> tuple[Array, Array]:
     """Return points and unit normals (k, 3); NaN at singular points."""
-    normals = np.cross(jets[:, 1], jets[:, 2])
-    with np.errstate(invalid="ignore"):
-        return jets[:, 0], normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = normals_of_jets(jets)
+    return jets[:, 0], np.where(normals.any(axis=1, keepdims=True), normals, np.nan)

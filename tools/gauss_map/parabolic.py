@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -222,7 +223,7 @@ def _curves_of_spline(spline: Spline, classes: NDArray[np.int8], tolerance: floa
 def size_of_spline(spline: Spline) -> float:
     """Return the diagonal of the bounding box of the coefficients."""
     points = spline.coefficients[1:-1, 1:-1].reshape(-1, 3)
-    return float(np.linalg.norm(np.ptp(points, axis=0)))
+    return math.hypot(*np.ptp(points, axis=0))
 
 
 # --- surfaces -------------------------------------------------------------------------------------
