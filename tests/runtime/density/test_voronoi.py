@@ -96,6 +96,7 @@ def test_places_far_from_all_samples_are_found():
     assert (places == cells.places[rows]).all(axis=1).mean() > 0.9
 
 
+@pytest.mark.compiled
 def test_parts_of_candidates_have_the_centres_and_gaps_of_the_whole(monkeypatch):
     cells, samples = plane(), samples_of(30, 2)
 
