@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
-from ..base.scales import scale_to_one
 from ..directions.regions import Cap
 from ..domain.domain import Boundary, Domain
 from ..domain.trim import Trim
+from ..surface.derivatives import normals_of_jets
 from ..surface.surface import Surface
 
-__all__ = ["InReach", "in_reach", "normals_of_jets", "reached"]
+__all__ = ["InReach", "in_reach", "reached"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,11 +76,3 @@ def in_reach(surface: Surface | None, reach: Cap | None) -> Surface | None:
     x = surface
     condition = InReach(lambda places: normals_of_jets(x.jets(*places.T.copy())), reach)
     return replace(x, trim=reached(x.trim, x.domain, x.boundary, condition))
-
-
-def normals_of_jets(jets: Array) -> Array:
-    """Return the unit normals (k, 3) of 2-jets (k, 6, 3); 0 where there is none."""
-    tangents = scale_to_one(float(np.abs(jets[:, 1:3]).max(initial=0.0))) * jets[:, 1:3]
-    normals = np.cross(tangents[:, 0], tangents[:, 1])
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)

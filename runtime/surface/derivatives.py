@@ -17,6 +17,7 @@ import numpy as np
 
 from ...generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
 from ..base.aliases import Array, Indices
+from ..base.scales import scale_to_one
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside
 from ..kernels.tape import Tape
 
@@ -28,6 +29,7 @@ __all__ = [
     "Function",
     "differences",
     "nodes_between",
+    "normals_of_jets",
     "shifts_inside",
     "weighted",
 ]
@@ -129,6 +131,14 @@ def _bounds(interval: Interval, ends: BoundaryPair) -> Interval:
     """Return where open ends are; beyond others the surface goes on."""
     (low, high), (at_low, at_high) = interval, ends
     return low if at_low == "open" else -math.inf, high if at_high == "open" else math.inf
+
+
+def normals_of_jets(jets: Array) -> Array:
+    """Return the unit normals (k, 3) of 2-jets (k, 6, 3); 0 where there is none."""
+    tangents = scale_to_one(float(np.abs(jets[:, 1:3]).max(initial=0.0))) * jets[:, 1:3]
+    normals = np.cross(tangents[:, 0], tangents[:, 1])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
 
 
 def power_of_two(value: float) -> float:

@@ -24,10 +24,11 @@ from ...runtime.kernels.refine import evaluate_jets
 from ...runtime.place.on_spline import OnSpline
 from ...runtime.place.on_surface import geometry_of
 from ...runtime.place.proved import proof_of
-from ...runtime.place.reach import in_reach, normals_of_jets
+from ...runtime.place.reach import in_reach
 from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, bytes_of, dtype_of
 from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
+from ...runtime.surface.derivatives import normals_of_jets
 from ...runtime.surface.surface import Surface
 from .face_indices import face_index
 from .face_places import FaceIndex, FacePlaces

@@ -21,7 +21,7 @@ from ...runtime.density.piece import Piece
 from ...runtime.density.space import Space
 from ...runtime.kernels.sizing import TargetDensity
 from ...runtime.place.on_spline import OnSpline
-from ...runtime.place.reach import normals_of_jets
+from ...runtime.surface.derivatives import normals_of_jets
 from .edge_sampling import step_of
 from .face_pieces import FacePiece
 from .results import PartSpace

@@ -13,8 +13,8 @@ from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.wording import plural
 from ...runtime.domain.domain import brought_inside
 from ...runtime.place.on_spline import OnSpline
-from ...runtime.place.reach import normals_of_jets
 from ...runtime.spline.spline import Spline
+from ...runtime.surface.derivatives import normals_of_jets
 from .polylines import distances, refined
 
 __all__ = ["ImageCurve", "Traced", "followed", "jets_of_spline"]
