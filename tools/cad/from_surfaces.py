@@ -22,7 +22,7 @@ from ...runtime.surface.surfaces import named
 from .face_pieces import FacePiece, pieces_of
 from .measures import integrals_of, signs_of
 from .part import Part, part_of
-from .records import FaceRecord, Geometry, Net, PartRecord
+from .records import FaceRecord, Geometry, Net, PartRecord, Wire
 from .sewing import Border, Sewn, sewn
 
 __all__ = ["part_of_surfaces"]
@@ -225,7 +225,7 @@ def _part(
     closed = [x for x in shells if x.closed]
     solid_of = {face: k for k, shell in enumerate(closed) for face in shell.signs}
     signs = {face: sign for shell in shells for face, sign in shell.signs.items()}
-    wires = defaultdict[int, list[list[tuple[int, int, bool]]]](list)
+    wires = defaultdict[int, list[Wire]](list)
     for border, wire in zip(borders, found.wires, strict=True):
         wires[border.face].append(wire)
     made = [

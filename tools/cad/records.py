@@ -15,9 +15,11 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from ...runtime.surface.surface import Surface
 
-__all__ = ["KINDS", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord"]
+__all__ = ["KINDS", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord", "Wire"]
 
 Array = NDArray[np.float64]
+# The edges along a loop, in turn: (edge, which of its sides, whether it is passed backwards).
+Wire = list[tuple[int, int, bool]]
 
 # The kinds of faces, with the lengths of their numbers (see `saving`). Append only: files hold
 # places in this list. "unknown" is that of failed faces whose kind is not known, "surface" that of
@@ -86,7 +88,7 @@ class FaceRecord:
     color: Sequence[float] | None = None
     solid_index: int = -1
     reason: str = ""
-    wires: Sequence[Sequence[tuple[int, int, bool]]] = ()
+    wires: Sequence[Wire] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,11 +19,9 @@ from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.errors import SurfaceError
 from ...runtime.base.trees import tree_of
 from ...runtime.surface.surface import Surface
-from .records import EdgeRecord
+from .records import EdgeRecord, Wire
 
-__all__ = ["Border", "Sewn", "Wire", "sewn"]
-
-Wire = list[tuple[int, int, bool]]  # as in `FaceRecord.wires`
+__all__ = ["Border", "Sewn", "sewn"]
 
 # A border has a corner where it turns by more than this, in degrees.
 CORNER = 30.0

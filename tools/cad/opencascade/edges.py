@@ -16,7 +16,7 @@ from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
 from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS
 
-from ..records import EdgeRecord, FaceRecord
+from ..records import EdgeRecord, FaceRecord, Wire
 from ..units import scaled_parameters
 from .faces import FaceReader
 from .loops import EdgeCurves
@@ -27,7 +27,7 @@ from .solids import PlacedFace
 __all__ = ["Topology", "topology_of"]
 
 Array = NDArray[np.float64]
-Wires = list[list[tuple[int, int, bool]]]
+Wires = list[Wire]
 
 # The points of a p-curve that is not straight: an angle between those of circles, a number for each
 # piece of others, and the least and the largest number.
