@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from .aliases import Array
 
 __all__ = ["Ball"]
 
-Array = NDArray[np.float64]
 
 # The rounding of a midpoint, relative to it, and that of a radius, which has a few operations.
 UNIT, WIDER = 2.0**-53, 1.0 + 2.0**-48

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
 from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
@@ -39,7 +40,6 @@ from .proved_lines import lines_of
 
 __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
-Array = NDArray[np.float64]
 
 # How often irregular cells are cut into four, and cells without a narrow cone of normals.
 LEVELS = (2, 5)

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...generated.jet import graph_at_pole, graph_slopes
+from ..base.aliases import Array
 from ..base.balls import Ball
 from ..base.formula_calls import python_function
 from ..domain.domain import Domain
@@ -32,7 +32,6 @@ from .proved_lines import jumps_of, lines_of
 
 __all__ = ["PoleDisc", "pole_disc"]
 
-Array = NDArray[np.float64]
 
 SECTORS = 512
 # Bounds of quotients of splines need narrower sectors: there is a power of u in them for each knot

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...generated.elementary import SPLINE
+from ..base.aliases import Array
 from ..kernels.tape import Tape
 from ..kernels.tape_spline_bounds import SLACK
 
 __all__ = ["jumps_of", "lines_of"]
-
-Array = NDArray[np.float64]
 
 
 def jumps_of(tape: Tape, axis: int, low: float, high: float) -> Array:

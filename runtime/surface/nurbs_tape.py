@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array
 from ..kernels.nurbs import Net
 from ..kernels.tape import Tape
 from ..kernels.tape_splines import COORDINATES, MOST_COEFFICIENTS, Polynomials
@@ -21,7 +22,6 @@ from .tapes import TapeWriter
 
 __all__ = ["nurbs_tape"]
 
-Array = NDArray[np.float64]
 
 UNIT = 2.0**-53
 KEPT = 256  # bases of spans: those of the faces of a part are often the same

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...generated import elementary as codes
 from ..base import compiling  # noqa: F401 - announces compilation on terminals
+from ..base.aliases import Array
 from ..domain.domain import Interval
 from ..kernels.tape import POINT, Tape, points_jets
 from ..kernels.tape_balls import BALL, bounds_of_boxes
@@ -29,7 +30,6 @@ __all__ = [
     "values_of",
 ]
 
-Array = NDArray[np.float64]
 Number = tuple[float, float]  # a value, and how far the exact one may be from it
 LEAVES = (codes.U, codes.V, codes.CONSTANT, codes.SPLINE, codes.COORDINATE)
 BINARY = (codes.SUM, codes.PRODUCT)

@@ -15,13 +15,13 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.aliases import Array
 from ..domain.domain import Domain
 from ..kernels.tape import Tape
 from .tapes import TapeWriter, bounds_over_boxes, values_of
 
 __all__ = ["traced_condition", "traced_tape"]
 
-Array = NDArray[np.float64]
 Sides = NDArray[np.int8]
 Function = Callable[..., Any]  # of u and v: arrays, or traced numbers
 
