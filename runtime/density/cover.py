@@ -210,9 +210,11 @@ class Cover:
         """Move the samples that are not fixed to about the centres of their Voronoi cells.
 
         The distances of the candidates have to be renewed before and after that. Returns finer
-        places for `fill_gaps`.
+        places than those of the candidates, for `fill_gaps`.
         """
-        voronoi = self.voronoi()
+        margin = HARDLY * self.radius
+        reach = self.radius + 2.0 * FINE * self.radius + margin
+        voronoi = Voronoi(self._candidates, self.cells, self.points, reach, margin)
         moved, rows, places = voronoi.centres(self.points, self.fixed)
         cells, order = self._evaluated_at(rows, places)
         regular = np.flatnonzero(cells.rows[:, 3:6].any(axis=1))
@@ -220,15 +222,6 @@ class Cover:
         self.points[moved], self.curvatures[moved] = cells.rows[:, :6], cells.rows[:, 7]
         self.added.write(moved - self.given, cells)
         return voronoi
-
-    def voronoi(self) -> Voronoi:
-        """Return finer places than those of candidates, for samples that hardly move from now on.
-
-        The distances of the candidates have to be renewed before.
-        """
-        margin = HARDLY * self.radius
-        reach = self.radius + 2.0 * FINE * self.radius + margin
-        return Voronoi(self._candidates, self.cells, self.points, reach, margin)
 
     def fill_gaps(self, voronoi: Voronoi, widest: float, count: int) -> None:
         """Add samples at finer places, the widest gaps first, until there are `count`.
