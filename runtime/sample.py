@@ -161,11 +161,11 @@ def sample(
     callables made of NumPy functions, of NURBS, of affine images of these, and of faces of parts.
     The report says for how many normals the points are `proved` to be all, and lists the others in
     `undecided`; see `SamplingReport`. What is found out about the last eight surfaces is kept, so
-    that the function of a surface must return the same points each time; `GaussMap` keeps it as
-    long as it is wanted. On other surfaces, and at normals that were not prescribed, a sample is
-    moved by Newton's method from the spline to the point with its normal. Where there is none near
-    by, it stays on the spline and is marked, see `Samples.on_surface`. Samples that fill gaps are
-    evaluated at their parameters.
+    that the function of a surface must return the same points each time; a `GaussMap` keeps it for
+    as long as the object exists. On other surfaces, and at normals that were not prescribed, a
+    sample is moved by Newton's method from the spline to the point with its normal. Where there is
+    none near by, it stays on the spline and is marked, see `Samples.on_surface`. Samples that fill
+    gaps are evaluated at their parameters.
 
     **Parts and pieces.** All faces of a part, and all smooth pieces of a surface, have one target
     density, and one count; angle and coverage hold for the whole. A piece has samples at normals if

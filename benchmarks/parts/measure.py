@@ -13,9 +13,11 @@ from .ways import Cloud, File, Way
 
 __all__ = ["Errors", "OnPart", "errors", "judged"]
 
-# Normals of one side are within this angle, and so many more samples are looked at each time.
+# Normals on one side are within this angle. The nearest sample on a side is looked for among this
+# many times as many neighbours, until one is found.
 SIDE, MORE = 60.0, 4
-# Samples are oriented by the nearest of so many places, whose normal has this cosine with theirs.
+# The normal of a sample gets the sign of the nearest of this many places whose normal is parallel
+# to it, up to this cosine.
 PLACES, ALIKE = 16, 0.9
 
 

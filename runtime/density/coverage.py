@@ -25,9 +25,9 @@ ON_BORDERS = 0.025
 def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
     """Return a bound of the distance of points of the surface from the nearest of samples.
 
-    Samples (N, 3) are points. With unit normals beside them, (N, 6), a point counts with the
-    nearest sample on its side: the normals of cells at their places tell which. If there is none,
-    any sample counts.
+    Samples are points (N, 3), or points and unit normals (N, 6). With normals, the distance of a
+    point is that from the nearest sample on its side of the surface, by the normals at the places
+    of cells; if there is none, from the nearest of all.
 
     Points and the distance are scaled as in `Space`. This is branch and bound: cells are cut that
     may hold a point farther away than TIGHT times the farthest place, or than `asked` if no place

@@ -31,7 +31,7 @@ MARGIN, MARGIN_IN_ROUNDINGS = 1e-9, 16.0
 POINTS_AT_A_TIME = 1 << 14
 # The largest number of times that a loop may run around a periodic direction.
 MOST_PERIODS = 100
-# Boxes and segments that are compared at a time: so many pairs of them.
+# The number of pairs of a box and a segment that are compared at a time.
 PAIRS_AT_A_TIME = 1 << 20
 # Points on an open side of the domain stand for points inside, at this part of the domain.
 INSIDE = 1e-13

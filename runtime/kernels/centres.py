@@ -109,9 +109,10 @@ def begin_lists(grids, lists, margin):
 def add_moments(candidates, lists, samples, work, moments):
     """Add the places in the cells of candidates to the moments (N, 4) of the nearest samples.
 
-    These are sums of weights times the points, and of weights: where the mean is, the integral of
-    the fourth power of the distance, times √w, from the sample would not get smaller by a small
-    move. It is near the centre of the smallest ball around a Voronoi cell.
+    Moments are the sums of weights times the points, and of the weights: area times w² times the
+    squared distance from the sample. The gradient, by the sample, of the integral of w² times the
+    fourth power of the distance over the Voronoi cell vanishes at the mean, with these weights. The
+    mean is near the centre of the smallest ball around the cell.
     """
     for k in range(candidates.shape[0]):
         if lists.counts[k] == 0:

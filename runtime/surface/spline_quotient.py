@@ -10,9 +10,9 @@ from __future__ import annotations
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...generated import elementary as codes
+from ..base.aliases import Array
 from ..kernels.tape import Tape
 from ..kernels.tape_functions import UNIT
 from ..kernels.tape_spline_bounds import SLACK
@@ -21,9 +21,8 @@ from .tapes import BINARY, LEAVES, TapeWriter, moved_tape
 
 __all__ = ["mapped_spline", "spline_quotient"]
 
-Array = NDArray[np.float64]
 
-# A side is one point up to so many roundings of the largest coefficient.
+# A side is one point if its coefficients differ by at most this many roundings of the largest one.
 ROUNDINGS = 2.0**10
 
 
