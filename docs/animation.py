@@ -183,7 +183,7 @@ def moved(actors: Actors, moment: float) -> tuple[Floats, Floats]:
 
 
 def palette_of(pictures: list[Image.Image], colours: int) -> NDArray[np.uint8]:
-    """Return a palette (k, 3) for all pictures: this many colours, and some exact ones."""
+    """Return a palette (k, 3) for all pictures: this many frequent colours, and some exact ones."""
     together = np.concatenate([np.asarray(picture) for picture in pictures])
     chosen = Image.fromarray(together).quantize(colours, method=Image.Quantize.MEDIANCUT)
     exact = [to_rgb(name) for name in ("white", MARK, INK, ELLIPTIC, HYPERBOLIC)]

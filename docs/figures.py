@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib.style
+import numpy as np
 from gaussmap.docs import animation
 from gaussmap.docs.animation import palette_of, reduced, with_palette
 from gaussmap.docs.curve_figures import figure_4, figure_5
@@ -59,7 +60,10 @@ def demo(made: Path, folder: Path) -> None:
     for name in DEMO:
         with Image.open(made / f"{name}.png") as image:
             picture = image.convert("RGB")
-        palette = palette_of([picture], COLOURS)
+        # Half of the palette are frequent colours, half are near to all, as in colour bars.
+        near = picture.quantize(COLOURS // 2, method=Image.Quantize.MAXCOVERAGE).getpalette()
+        near_to_all = np.array(near, dtype=np.uint8)[: 3 * (COLOURS // 2)].reshape(-1, 3)
+        palette = np.concatenate([palette_of([picture], COLOURS // 2), near_to_all])
         numbers = reduced(picture, palette)
         for ending, colours in (("", palette), ("_dark", dark(palette))):
             with atomic_path(folder / f"{name}{ending}.png") as temporary:

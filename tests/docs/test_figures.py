@@ -13,8 +13,9 @@ from gaussmap.generated import patch as kernels
 from gaussmap.runtime.base.formula_calls import python_function, vector
 from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC
 from gaussmap.tools.pictures.scene import quadrangles
+from matplotlib import colormaps
 from matplotlib.colors import to_rgb
-from matplotlib.image import imread
+from matplotlib.image import imread, imsave
 
 pytestmark = [pytest.mark.compiled, pytest.mark.slow]
 
@@ -57,6 +58,18 @@ def captions(drawn) -> dict[int, str]:
 
 def pixels(path: Path) -> np.ndarray:
     return imread(path)[..., :3]
+
+
+def test_small_copies_keep_rare_colours(tmp_path, monkeypatch):
+    rng = np.random.default_rng(1)
+    picture = np.repeat(rng.uniform(size=(300, 400, 1)), 3, axis=2)  # greys, but for one row
+    picture[150] = colormaps["viridis"](np.linspace(0.0, 1.0, 400))[:, :3]
+    imsave(tmp_path / "made.png", picture)
+    monkeypatch.setattr(figures, "DEMO", ("made",))
+    (tmp_path / "copies").mkdir()
+    figures.demo(tmp_path, tmp_path / "copies")
+    copy = pixels(tmp_path / "copies" / "made.png")
+    assert np.abs(copy - pixels(tmp_path / "made.png")).max() < 0.1
 
 
 # --- the page and the pictures --------------------------------------------------------------------
