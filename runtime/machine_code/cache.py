@@ -26,6 +26,8 @@ class KernelCache(NullCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return a kernel; wait for a process that compiles it now. None: this one has to."""
+        if self._lock is not None:
+            self._lock.release()  # the last compilation has failed
         key = key_of(self._function, sig)
         pack = shipped.open_pack()
         found = None if pack is None else _restored(pack.get(key), target_context)

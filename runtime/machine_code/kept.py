@@ -97,7 +97,6 @@ class FileLock:
 
     def acquire(self) -> None:
         """Wait for the lock."""
-        self.release()  # an earlier compilation may have failed
         with suppress(ImportError, OSError):  # Windows; read-only folders
             import fcntl
 
@@ -112,7 +111,7 @@ class FileLock:
             self.release()
 
     def __del__(self) -> None:
-        self.release()  # compilation has failed
+        self.release()
 
     def release(self) -> None:
         """Let others have it."""

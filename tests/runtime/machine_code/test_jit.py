@@ -160,6 +160,17 @@ def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
 
 
 @pytest.mark.compiled
+def test_a_failed_compilation_keeps_no_lock(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(kept, "POLL", None)  # waiting raises TypeError
+    kernel = jit.jit(triple)
+    for _ in range(2):
+        with pytest.raises(numba.TypingError):
+            kernel(None)
+
+
+@pytest.mark.compiled
 @pytest.mark.skipif(os.name == "nt", reason="Windows has other permissions")
 def test_machine_code_can_be_read_by_other_users(folder: Path) -> None:
     """As new files can: one user may compile for all, by `gaussmap warm`."""
