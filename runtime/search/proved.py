@@ -44,6 +44,8 @@ __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 # How often irregular cells are cut into four, and cells without a narrow cone of normals.
 LEVELS = (2, 5)
 CELLS = (64, 64)
+# Cells along u and v that are looked at first, whether there are normals.
+PROBES = 4
 # Base cells, normals and hard normals that are worked on at a time.
 CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
 # Room for cells, and for what is found at a time, in the beginning.
@@ -175,7 +177,9 @@ class ProvedIndex:
         box = np.array([*domain[0], *domain[1], *periods])
         discs, inside, poles = _discs(tape, domain, boundary, cells)
         lines = [lines_of(tape, k, inside[k], cells[k]) for k in (0, 1)]
-        cut = _cut(tape, lines, threads)
+        if _has_no_normals(tape, lines):
+            return None
+        cut = _cut(tape, lines, LEVELS, threads)
         blind = cut.noise[:, REACH] == 0.0
         u, v, h_u, h_v = cut.place[blind].T
         unbounded = np.vstack([poles, np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])])
@@ -361,9 +365,25 @@ def _discs(
     return tuple(discs), inside, np.array(unknown).reshape(-1, 4)
 
 
-def _cut(tape: Tape, lines: list[NDArray[np.float64]], threads: int | None) -> Cells:
-    """Return the cells of a grid."""
-    levels, deepest = np.array(LEVELS), 3 * max(LEVELS) + 2
+def _has_no_normals(tape: Tape, lines: list[NDArray[np.float64]]) -> bool:
+    """Return whether cells have no cones of normals, as those of a line: seen at a few small ones.
+
+    Otherwise all cells of a line are cut as often as can be, which takes seconds.
+    """
+    few = [np.unique(np.linspace(0, len(x) - 2, PROBES).round()).astype(int) for x in lines]
+    ends = [
+        np.stack([x[k], x[k] + (x[k + 1] - x[k]) / 2 ** LEVELS[1]])
+        for x, k in zip(lines, few, strict=True)
+    ]
+    cells = _cut(tape, [x.T.ravel() for x in ends], (0, 0), 1)
+    return bool(((cells.cone[:, 3] >= OPEN) & (cells.noise[:, REACH] > 0.0)).all())
+
+
+def _cut(
+    tape: Tape, lines: list[NDArray[np.float64]], most: tuple[int, int], threads: int | None
+) -> Cells:
+    """Return the cells of a grid, cut as often as `LEVELS` say."""
+    levels, deepest = np.array(most), 3 * max(most) + 2
     count = (len(lines[0]) - 1) * (len(lines[1]) - 1)
 
     def work(first: int, last: int) -> list[Cells]:
