@@ -66,6 +66,7 @@ def test_samples_move_to_the_place_nearest_to_the_mean(cut):
         assert (np.abs(place - cells.places[row]) < 0.5 / SIDE).all()
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("cut", [False, True])
 def test_the_widest_gaps_are_found_after_samples_have_moved(cut):
     cells, samples = plane(), samples_of(30, 2)

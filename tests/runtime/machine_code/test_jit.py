@@ -160,9 +160,7 @@ def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
 
 
 @pytest.mark.compiled
-def test_a_failed_compilation_keeps_no_lock(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_failed_compilation_keeps_no_lock(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(kept, "POLL", None)  # waiting raises TypeError
     kernel = jit.jit(triple)
     for _ in range(2):

@@ -147,6 +147,24 @@ def test_curvatures_are_those_of_the_stored_parameters(amplitude: float, frequen
     np.testing.assert_allclose(samples.points[there], points, rtol=0.0, atol=1e-15)
 
 
+def test_curvatures_of_a_graph() -> None:
+    """K and H of 2z = ax² + by² where its normals are prescribed."""
+    a, b = 1.5, -0.7
+    paraboloid = gm.Surface.from_callable(
+        lambda x, y: np.stack([x, y, 0.5 * (a * x * x + b * y * y)], axis=-1), ((-1, 1), (-1, 1))
+    )
+    normals = np.array([[0.3, 0.1, 1.0], [-0.2, 0.5, 1.0], [0.0, 0.0, 1.0]])
+    target, numbers = refined(paraboloid, (4, 4), normals)
+    assert sorted(numbers) == [0, 1, 2]
+    x, y = -normals[numbers, 0] / a, -normals[numbers, 1] / b
+    np.testing.assert_allclose(target.uv, np.stack([x, y], axis=1), rtol=0.0, atol=1e-14)
+    W = 1.0 + (a * x) ** 2 + (b * y) ** 2
+    H = -(a * (1.0 + (b * y) ** 2) + b * (1.0 + (a * x) ** 2)) / (2.0 * W**1.5)
+    np.testing.assert_allclose(target.gaussian, a * b / W**2, rtol=10 * NORMAL_ERROR)
+    np.testing.assert_allclose(target.mean, H, rtol=10 * NORMAL_ERROR)
+
+
+@pytest.mark.compiled
 def test_curvatures_of_a_sphere() -> None:
     samples = gm.sample("sphere", normals=gm.fibonacci(500), cells=(24, 24))
     np.testing.assert_allclose(samples.gaussian_curvature, 1.0, rtol=0.0, atol=1e-13)

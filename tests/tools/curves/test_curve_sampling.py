@@ -113,6 +113,7 @@ def test_moved_and_scaled(name: str, factor: float, shift: float) -> None:
             assert (sums(samples, len(normals)) == CLOSED[name][1]).all()
 
 
+@pytest.mark.compiled
 def test_scaling_by_a_power_of_two_changes_nothing_else() -> None:
     first, second = (
         gm.curves.sample(closed("star", factor=x), normals=gm.directions.circle(300))
@@ -365,6 +366,7 @@ def test_points_of_a_square() -> None:
 # --- count ----------------------------------------------------------------------------------------
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("count", [1, 2, 7, 100, 1000])
 def test_count_is_exact_without_inflections(count: int) -> None:
     assert len(gm.curves.sample(closed("ellipse"), count=count)) == count
@@ -374,12 +376,14 @@ def test_count_is_exact_without_inflections(count: int) -> None:
     assert len(samples) == samples.report.normals == count
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["eight", "star"])
 @pytest.mark.parametrize("count", [20, 100, 1000])
 def test_count_is_nearly_met_with_inflections(name: str, count: int) -> None:
     assert abs(len(gm.curves.sample(closed(name), count=count)) - count) <= 0.05 * count + 1
 
 
+@pytest.mark.compiled
 def test_count_that_cannot_be_met_is_said() -> None:
     with pytest.warns(gm.GaussmapWarning, match="samples instead of the requested 1"):
         samples = gm.curves.sample(closed("star"), count=1)

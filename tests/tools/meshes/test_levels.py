@@ -28,6 +28,7 @@ def test_levels_are_nested_and_good_meshes(name: str) -> None:
     assert worst[0] > 1.5 * worst[1] > 2.25 * worst[2]
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("counts", [[0], [201], [1.5], ["many"]])
 def test_unusable_counts(counts: list) -> None:
     with pytest.raises(gm.errors.InputError, match="level"):

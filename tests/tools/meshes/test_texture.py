@@ -36,6 +36,7 @@ def test_texture_coordinates_do_not_jump(surface: gm.Surface | str) -> None:
     assert found.max() < 1.5
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "sphere", "cylinder"])
 def test_they_are_the_parameters_less_whole_periods(name: str) -> None:
     mesh = gm.sample(name, 1500, cells=(24, 24)).mesh()
@@ -55,6 +56,7 @@ def test_without_a_domain_they_are_the_parameters() -> None:
     assert np.array_equal(mesh.corner_uv, mesh.uv[triangle])
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("suffix", [".glb", ".obj"])
 def test_files_have_them(suffix: str, tmp_path) -> None:
     trimesh = pytest.importorskip("trimesh")
