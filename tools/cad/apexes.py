@@ -21,7 +21,8 @@ __all__ = ["Apex", "apexes_of"]
 Array = NDArray[np.float64]
 
 SINGULAR = KINDS.index("singular")
-# A side is one point if its points at so many places are equal up to so many roundings.
+# A side is one point if its points at so many places are equal up to so many roundings of the
+# largest coordinate of all sides: what is computed of these is not more exact next to the origin.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the place of the coefficient of u v in Taylor polynomials; those of u and v are 1 and 2
 
@@ -62,12 +63,14 @@ class Apex:
 
 def apexes_of(surface: Surface, tape: Tape) -> list[Apex]:
     """Return the sides of a surface that are one point up to rounding."""
-    found = []
-    for axis in (0, 1):
-        along = np.linspace(*surface.domain[1 - axis], PLACES)
-        for end in surface.domain[axis]:
-            places = [np.full(PLACES, end), along]
-            points = surface.jets(*(places if axis == 0 else places[::-1]))[:, 0]
-            if np.ptp(points, axis=0).max() <= ROUNDINGS * np.spacing(np.abs(points).max()):
-                found.append(Apex(tape, axis, end))
-    return found
+    sides = [(axis, end) for axis in (0, 1) for end in surface.domain[axis]]
+    points = np.stack([_points_of_side(surface, *x) for x in sides])
+    slack = ROUNDINGS * np.spacing(np.fmax.reduce(np.abs(points), axis=None))
+    is_point = np.ptp(points, axis=1).max(axis=1) <= slack
+    return [Apex(tape, *x) for x, yes in zip(sides, is_point.tolist(), strict=True) if yes]
+
+
+def _points_of_side(surface: Surface, axis: int, end: float) -> Array:
+    """Return points (PLACES, 3) on the side of u (axis 0) or of v where it has the value `end`."""
+    places = [np.full(PLACES, end), np.linspace(*surface.domain[1 - axis], PLACES)]
+    return surface.jets(*(places if axis == 0 else places[::-1]))[:, 0]

@@ -318,6 +318,17 @@ def test_prescribed_normals_and_reach():
     assert tilted.normals[:, 2].min() >= np.cos(np.radians(30.0)) - 1e-12
 
 
+@pytest.mark.parametrize("shift", [0.0, 1.0])
+def test_a_side_that_is_a_point_is_one_at_the_origin_too(shift):
+    """It is one up to rounding, sin(π) ≠ 0, which is not less where coordinates are small."""
+    z = f"sin(v)*(u - 1)**2 + sin(v)**2 + {shift}"
+    tip = gm.Surface.from_sympy(
+        ("sin(v)*cos(u)", "sin(v)*sin(u)", z), ("u", "v"), ((0, 2), (1.7, "pi"))
+    )
+    report = gm.GaussMap(gm.Part([tip])).points(gm.icosphere(3)).report
+    assert report.proved == report.normals == 92
+
+
 def test_a_grid_is_its_spline():
     u, v = np.meshgrid(np.linspace(0.0, 1.0, 6), np.linspace(0.0, 1.0, 5), indexing="ij")
     heights = [np.stack([u + k, v, 0.2 * np.sin(3.0 * (u + k))], axis=-1) for k in (0, 1)]
