@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -15,15 +16,16 @@ from ...runtime.base.errors import GaussmapWarning, InputError, SurfaceError, sh
 from ...runtime.base.wording import plural
 from ...runtime.domain.domain import closes
 from ...runtime.domain.loops import Loops
-from ...runtime.surface.moved import IDENTITY, Moved, Turned
-from ...runtime.surface.nurbs import Nurbs
+from ...runtime.surface.moved import Turned
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
+from ..files.lengths import METRES, checked_unit
 from .face_pieces import FacePiece, pieces_of
 from .measures import integrals_of, signs_of
 from .part import Part, part_of
-from .records import FaceRecord, Geometry, Net, PartRecord, Wire
+from .records import FaceRecord, PartRecord, Wire
 from .sewing import Border, Sewn, sewn
+from .surface_geometry import geometry_of_surface
 
 __all__ = ["part_of_surfaces"]
 
@@ -32,14 +34,20 @@ TOLERANCE = 1e-6
 
 
 def part_of_surfaces(
-    _: Part, surfaces: Sequence[Surface | str], tolerance: float | None, name: str
+    _: Part,
+    surfaces: Sequence[Surface | str],
+    tolerance: float | None,
+    name: str,
+    unit: str | None,
 ) -> Part:
     """Return what `Part([...])` is to be; raises what that raises."""
-    held = _checked(surfaces)
+    held, known = _checked(surfaces), None if unit is None else checked_unit(unit)
     most = None if tolerance is None else positive_number(tolerance, "tolerance")
     faces = [_face(x) for x in held]
     # Areas are not known yet, and faces without an area are no pieces.
-    bare = part_of(PartRecord(text(name, "name"), "", 1.0, False, faces))
+    bare = part_of(
+        PartRecord(text(name, "name"), known or "", METRES.get(known or "", 1.0), False, faces)
+    )
     pieces, reasons = pieces_of(bare.faces)
     if reasons:
         raise SurfaceError(next(iter(reasons.values())))
@@ -76,11 +84,12 @@ def _checked(surfaces: object) -> list[Surface]:
 
 
 def _face(surface: Surface) -> FaceRecord:
-    """Return a surface as a face: a NURBS as its numbers, any other as it is."""
-    loops = _loops(surface)
-    net = _net(surface)
-    geometry = Geometry("surface", surface=surface) if net is None else Geometry("nurbs", net=net)
-    return FaceRecord(geometry, surface.domain, loops=loops, area=1.0, name=surface.name)
+    """Return a surface as a face: as numbers if these give it, and else as it is."""
+    geometry, parameters = geometry_of_surface(surface)
+    corners = np.array(list(itertools.product(*surface.domain))) @ parameters.T
+    loops = [x @ parameters.T for x in _loops(surface)]
+    domain = np.stack([corners.min(axis=0), corners.max(axis=0)], axis=1).tolist()
+    return FaceRecord(geometry, domain, loops=loops, area=1.0, name=surface.name)
 
 
 def _loops(surface: Surface) -> list[Array]:
@@ -107,20 +116,6 @@ def _loops(surface: Surface) -> list[Array]:
                 "inside of it: cut them at the seam."
             )
     return [np.clip(x, low, high) for x in polygons]
-
-
-def _net(surface: Surface) -> Net | None:
-    """Return the numbers of a NURBS that may be moved, None for any other surface."""
-    moved = surface.function if isinstance(surface.function, Moved) else None
-    nurbs = surface.function if moved is None else moved.surface.function
-    if not isinstance(nurbs, Nurbs):
-        return None
-    map_ = IDENTITY if moved is None else moved.map
-    points, weights = map_.points(nurbs.control_points), nurbs.points[:, :, 3:]
-    u, v = nurbs.knots
-    if moved is not None and moved.turned:
-        points, weights, u = points[::-1], weights[::-1], sum(moved.ends) - u[::-1]
-    return Net(nurbs.degrees, (u, v), points, weights[:, :, 0] if weights.size else None)
 
 
 def _corners(piece: FacePiece) -> Array:
@@ -240,8 +235,8 @@ def _part(
     ]
     return part_of(
         PartRecord(
-            bare.name, "", 1.0, len(closed) == len(shells), made, [""] * len(closed), found.edges,
-            found.vertices, list(_warnings(made, found)),
+            bare.name, bare.unit, bare.metres, len(closed) == len(shells), made,
+            [""] * len(closed), found.edges, found.vertices, list(_warnings(made, found)),
         )
     )  # fmt: skip
 

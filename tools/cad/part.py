@@ -52,6 +52,9 @@ class Part(Methods, Whole):
         size of the part.
     name : str, default "part"
         What messages call it.
+    unit : str, optional
+        The unit L of the surfaces, "mm", "in" or another one of `read_cad`: files and summaries of
+        samples say it. Nothing is converted.
 
     Attributes
     ----------
@@ -60,14 +63,14 @@ class Part(Methods, Whole):
     about : dict
         All that is not an array, such as names.
     surfaces : dict of int to Surface
-        The surfaces of faces that are not given by numbers, by the index of the face: those of
-        `Part([...])` that are no NURBS.
+        The surfaces of faces that are not given by numbers, by the index of the face: those of the
+        kind "surface".
 
     Raises
     ------
     InputError, UnknownNameError
-        For anything else, for a trim that is no single set of loops in the domain, and if the
-        surfaces cannot have normals on one side, as those of a Möbius band.
+        For anything else, an unknown unit, a trim that is no single set of loops in the domain, and
+        if the surfaces cannot have normals on one side, as those of a Möbius band.
     SurfaceError
         If a surface cannot be evaluated, or is no larger than the tolerance.
 
@@ -94,6 +97,9 @@ class Part(Methods, Whole):
     (200, 6.0)
     >>> cup.faces[0].kind, sorted(cup.surfaces)
     ('surface', [0, 1])
+    >>> ring = gm.Part(["torus"], unit="mm").select(kind="torus")
+    >>> ring.unit, ring.faces[0].dimensions["minor_radius"]
+    ('mm', 0.35)
 
     >>> from gaussmap.tools.cad.examples import box
     >>> part = box(1.0, 2.0, 3.0)
@@ -118,8 +124,9 @@ class Part(Methods, Whole):
         *,
         tolerance: float | None = None,
         name: str = "part",
+        unit: str | None = None,
     ) -> None:
-        vars(self).update(self._made_of(surfaces, tolerance, name).__getstate__())
+        vars(self).update(self._made_of(surfaces, tolerance, name, unit).__getstate__())
 
     @classmethod
     def _of(
@@ -347,7 +354,8 @@ class Face:
     def kind(self) -> str:
         """One of plane, cylinder, cone, sphere, torus, nurbs, revolution, extrusion, offset.
 
-        It is "surface" for a surface of `Part([...])` that is no NURBS, and "unknown" for a face
+        Planes, cylinders, cones, spheres and tori of the catalogue and NURBS, moved or not, have
+        their kind; any other surface of `Part([...])` is a "surface". "unknown" is that of a face
         that failed before its kind was found out.
         """
         return self.geometry.kind

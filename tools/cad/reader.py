@@ -16,11 +16,11 @@ from contextlib import suppress
 from pathlib import Path
 
 from ...runtime.base.checks import positive_number
-from ...runtime.base.errors import FileError, GaussmapWarning, InputError, shown
+from ...runtime.base.errors import FileError, GaussmapWarning, InputError
 from ...runtime.base.extras import check_extra
 from ...runtime.base.memory import GIB
 from ...runtime.base.progress import busy
-from ..files.lengths import METRES, unit_named
+from ..files.lengths import checked_unit
 from ..files.paths import PathLike, checked_path, reason_of
 from .part import Part, read_part
 from .worker import ERROR, PART
@@ -98,7 +98,7 @@ def read_cad(
 
     """
     path = checked_path(path)
-    unit = _checked_unit(unit)
+    unit = None if unit is None else checked_unit(unit)
     seconds = positive_number(time_limit, "time_limit", "seconds", MOST_SECONDS)
     gib = positive_number(memory_limit, "memory_limit", "GiB", MOST_SECONDS)
     if gib < LEAST_MEMORY:
@@ -124,15 +124,6 @@ def read_cad(
         part = read_part(folder / PART)
     _warn(part)
     return part
-
-
-def _checked_unit(unit: object) -> str | None:
-    if unit is None:
-        return None
-    known = unit_named(unit) if isinstance(unit, str) else None
-    if known is None:
-        raise InputError(f"unit must be one of {', '.join(METRES)}, not {shown(unit)}.")
-    return known
 
 
 def _check_file(path: Path) -> None:

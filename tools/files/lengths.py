@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from ...runtime.base.errors import InputError, shown
 from ...runtime.base.extras import if_installed
 from ...runtime.samples.fields import COLUMNS, UNITS
 from ...runtime.samples.samples import Samples
 from ...runtime.samples.whole import Whole
 
-__all__ = ["METRES", "names_with_units", "unit_named", "unit_of", "units_of", "whole_of"]
+__all__ = [
+    "METRES",
+    "checked_unit",
+    "names_with_units",
+    "unit_named",
+    "unit_of",
+    "units_of",
+    "whole_of",
+]
 
 # The length of each unit in metres.
 METRES: dict[str, float] = {
@@ -47,6 +56,14 @@ NAMES = {**{x: x for x in METRES}, **{x: unit for unit, every in SYNONYMS.items(
 def unit_named(name: str) -> str | None:
     """Return the unit that a file or a user calls so; None if there is no such unit."""
     return NAMES.get(name.strip().lower())
+
+
+def checked_unit(unit: object) -> str:
+    """Return the unit that a user calls so; InputError if there is no such unit."""
+    known = unit_named(unit) if isinstance(unit, str) else None
+    if known is None:
+        raise InputError(f"unit must be one of {', '.join(METRES)}, not {shown(unit)}.")
+    return known
 
 
 def whole_of(samples: Samples) -> Whole | None:

@@ -6,6 +6,7 @@ import pickle
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.cad.surface_geometry import geometry_of_surface
 
 TURN = 2.0 * np.pi
 BEZIER = [0, 0, 0, 1, 1, 1]
@@ -251,13 +252,12 @@ def test_one_surface():
     part = gm.Part([gm.surfaces.sphere().flipped(), "plane"])  # two sets
     assert [x.reversed for x in part.faces] == [True, False]
     assert [(x.kind, x.name, x.solid_index) for x in part.faces] == [
-        ("surface", "sphere", 0), ("surface", "plane", -1),
+        ("sphere", "sphere", 0), ("plane", "plane", -1),
     ]  # fmt: skip
     assert (len(part.solids), part.oriented, part.closed) == (1, False, False)
     alone = part.select(index=[0])
     assert (alone.closed, alone.area) == (True, pytest.approx(4.0 * np.pi, rel=1e-9))
     assert is_outward(alone, 0.0)
-    assert len(part.select(kind="surface")) == 2
 
 
 def test_a_set_with_one_side_is_refused():
@@ -268,6 +268,105 @@ def test_a_set_with_one_side_is_refused():
     for surfaces in (strips, [gm.surfaces.moebius_band()]):
         with pytest.raises(gm.errors.InputError, match="band'\\) closes a band that has one side"):
             gm.Part(surfaces)
+
+
+# --- kinds and units ------------------------------------------------------------------------------
+
+TILTED = 2.0 * np.linalg.qr(np.array([(3.0, 1, 2), (1, 4, 1), (2, -1, 5)]))[0]
+MIRROR = np.diag([1.0, -1.0, 1.0])
+SHEAR = np.array([(1.0, 0.5, 0.0), (0.0, 2.0, 0.3), (0.2, 0.0, 1.0)])
+SURFACES = gm.surfaces
+
+
+@pytest.mark.parametrize("is_flipped", [False, True], ids=["", "flipped"])
+@pytest.mark.parametrize("matrix", [np.eye(3), TILTED, MIRROR], ids=["", "tilted", "mirrored"])
+@pytest.mark.parametrize(
+    ("surface", "kind", "sizes"),
+    [
+        (SURFACES.plane(0.5, -2.0), "plane", {}),
+        (SURFACES.cylinder(0.5, 3.0), "cylinder", {"radius": 0.5}),
+        (SURFACES.cone(1.0, 0.25, 1.0), "cone", {"half_angle": np.degrees(np.arctan(0.75))}),
+        (SURFACES.cone(0.25, 0.25, 3.0), "cylinder", {"radius": 0.25}),
+        (SURFACES.sphere(1.5), "sphere", {"radius": 1.5}),
+        (SURFACES.torus(2.0, 0.5), "torus", {"major_radius": 2.0, "minor_radius": 0.5}),
+    ],
+    ids=["plane", "cylinder", "cone", "even cone", "sphere", "torus"],
+)
+def test_kinds_and_dimensions(surface, kind, sizes, matrix, is_flipped):
+    factor = np.linalg.norm(matrix[0])
+    shift = np.array([3.0, -2.0, 5.0])
+    placed = np.block([[matrix, shift[:, None]], [np.zeros(3), 1.0]])
+    given = surface.transformed(placed)
+    given = given.flipped() if is_flipped else given
+    (low, high), (first, last) = given.domain
+    middle = (low + high) / 2.0
+    given = given.trimmed([[(low, first), (middle, first), (middle, last), (low, last)]])
+    face = gm.Part([given]).faces[0]
+    assert face.kind == kind
+    for name, size in sizes.items():
+        wanted = size if name == "half_angle" else factor * size
+        assert face.dimensions[name] == pytest.approx(wanted, rel=1e-14)
+    if kind != "plane":
+        assert face.dimensions["hollow"] == is_flipped
+        axis = face.dimensions.get("axis", [0.0, 0.0, 1.0])
+        wanted = [0.0, 0.0, 1.0] if kind == "sphere" else matrix[:, 2] / factor
+        np.testing.assert_allclose(np.abs(np.dot(axis, wanted)), 1.0, rtol=1e-14)
+    u, v = (np.linspace(a, b, 7)[1:-1] for a, b in ((low, middle), (first, last)))
+    jets = given.jets(u, v)
+    _, own = geometry_of_surface(given)
+    again = face.surface.jets(*(own @ [u, v]))
+    tangents = np.einsum("ij,kix->kjx", own, again[:, 1:3])
+    np.testing.assert_allclose(again[:, 0], jets[:, 0], atol=1e-13)
+    np.testing.assert_allclose(tangents, jets[:, 1:3], atol=1e-13)
+    assert face.surface.trim.contains(np.stack(own @ [u, v], axis=1)).all()
+
+
+@pytest.mark.parametrize(
+    ("surface", "matrix", "kind"),
+    [
+        ("torus", SHEAR, "surface"),
+        ("sphere", np.diag([1.0, 1.0, 2.0]), "surface"),
+        ("cone", np.diag([1.0, 1.0, 2.0]), "cone"),
+        ("cylinder", np.diag([1.0, 2.0, 1.0]), "surface"),
+        ("plane", SHEAR, "plane"),
+        ("torus", np.eye(3) + 1e-8 * SHEAR, "surface"),
+        ("torus", np.eye(3) + 1e-10 * SHEAR, "torus"),
+        ("ellipsoid", np.eye(3), "surface"),
+    ],
+)
+def test_kinds_after_affine_maps(surface, matrix, kind):
+    (face,) = gm.Part([gm.surfaces.surface(surface).transformed(matrix)]).faces
+    assert face.kind == kind
+
+
+@pytest.mark.parametrize("is_reversed", [False, True])
+def test_faces_of_parts_keep_their_kinds(parts, is_reversed):
+    faces = [x for x in parts.all_kinds().faces if x.kind in ("plane", "cylinder", "cone", "sphere",
+                                                              "torus")]  # fmt: skip
+    surfaces = [x.surface.flipped() if is_reversed else x.surface for x in faces]
+    for given, old in zip(surfaces, faces, strict=True):
+        (face,) = gm.Part([given]).faces
+        assert face.kind == old.kind
+        for name, value in old.dimensions.items():
+            if isinstance(value, float):
+                assert face.dimensions[name] == pytest.approx(value, rel=1e-12)
+
+
+def test_units(tmp_path):
+    part = gm.Part([gm.surfaces.cylinder(0.5)], unit="inch", name="tube")
+    assert (part.unit, part.metres, repr(part)) == (
+        "in",
+        0.0254,
+        "Part(tube: 1 face, 0 solids, in)",
+    )
+    samples = gm.sample(part.select(kind="cylinder"), 20)
+    samples.write(tmp_path / "tube.csv")
+    head = (tmp_path / "tube.csv").read_text().splitlines()[0]
+    assert head.startswith("x [in],y [in],z [in]")
+    assert "face_radius [in]" in head
+    assert gm.Part(["torus"]).unit == ""
+    with pytest.raises(gm.errors.InputError, match="unit must be one of nm, um, mm"):
+        gm.Part(["torus"], unit="furlong")
 
 
 # --- what takes parts -----------------------------------------------------------------------------
@@ -292,10 +391,10 @@ def test_nurbs_are_saved_moved_and_flipped(tmp_path):
 
 
 def test_functions_are_pickled_and_not_saved(tmp_path):
-    part = gm.Part(["torus"])
+    part = gm.Part(["enneper"]).select(kind="surface")
     again = pickle.loads(pickle.dumps(part))
     np.testing.assert_array_equal(gm.sample(again, 50).points, gm.sample(part, 50).points)
-    with pytest.raises(gm.errors.InputError, match=r"face 0 \('torus'\) .* function in memory"):
+    with pytest.raises(gm.errors.InputError, match=r"face 0 \('enneper'\) .* function in memory"):
         part.save(tmp_path / "part.npz")
 
 
