@@ -113,10 +113,10 @@ def listed(values: object) -> list[Any] | None:
 
 
 def text(value: object, name: str) -> str:
-    """Return a text; InputError with its name for anything else."""
+    """Return a plain text, of NumPy's too; InputError with its name for anything else."""
     if not isinstance(value, str):
         raise InputError(f"{name} must be a text, not {shown(value)}.")
-    return value
+    return str(value)
 
 
 def yes_or_no(value: object, name: str) -> bool:

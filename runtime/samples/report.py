@@ -124,7 +124,7 @@ class UndecidedNormal(NamedTuple):
 # What makes plain values of the entries, and refuses others; only those of KNOWN are never None.
 KNOWN = ("surface", "samples")
 CHECKS: dict[str, Callable[[Any, str], Any]] = {
-    **dict.fromkeys(("surface", "crs"), text),
+    **dict.fromkeys(("surface", "crs", "unit"), text),
     **dict.fromkeys(("samples", *COUNTS), _count),
     **dict.fromkeys(DISTANCES, _number),
     "developable_share": lambda share, name: _number(share, name, 1.0),
@@ -205,6 +205,8 @@ class SamplingReport:
     reach : (float, float, float, float) or None
         Of a CAD part, with ``reach=(axis, angle)``: the unit vector of the axis, and the angle in
         degrees. `Samples.coverage`, `normal_deviation` and `weights` are those of what is in reach.
+    unit : str or None
+        Of a CAD part: the unit of lengths, as "mm", if it is known.
     crs : str or None
         Of a `terrain`: the coordinate reference system of the points, as "EPSG:number" or WKT.
     origin : (float, float, float) or None
@@ -237,7 +239,7 @@ class SamplingReport:
     SamplingReport(surface='torus', normals=2, samples=4, patches=16384, ..., apexes=0)
     >>> report.density is report.edge_samples is report.crs is report.origin is None
     True
-    >>> report.reach is None
+    >>> report.reach is report.unit is None
     True
     >>> report.developable_share, report.apexes, report.index
     (0.0, 0, None)
@@ -271,6 +273,7 @@ class SamplingReport:
     oriented: bool | None = None
     edge_samples: int | None = None
     reach: tuple[float, float, float, float] | None = None
+    unit: str | None = None
     crs: str | None = None
     origin: tuple[float, float, float] | None = None
 

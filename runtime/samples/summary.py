@@ -30,7 +30,8 @@ def summary_of(samples: SampleArrays) -> str:
     if report.angle is not None:
         line += f"; every normal is within {report.angle:.3g}° of that of a sample"
     if report.coverage is not None:
-        line += f"; every point is within {report.coverage:.3g} of a sample"
+        distance = f"{report.coverage:.3g} {report.unit or ''}".strip()
+        line += f"; every point is within {distance} of a sample"
     if report.developable_share is not None and not _filling(samples):
         share = f"{100.0 * report.developable_share:.2f}"
         if share != "0.00":
@@ -39,7 +40,7 @@ def summary_of(samples: SampleArrays) -> str:
     if report.on == "spline":
         line += misfit_clause(report)
     if report.faces is not None:
-        line += f"; {report.faces:,} faces"
+        line += f"; {plural(report.faces, 'face')}"
         if report.empty_faces:
             line += f", {report.empty_faces:,} of them without samples"
         if report.estimated_faces:

@@ -351,7 +351,7 @@ def _samples(arrays: dict[str, NDArray[Any]], row: ManifestRow) -> Samples:
     report = SamplingReport(
         surface=row.name, normals=None, samples=row.samples, patches=None,
         developable_share=None, developable_patches=None, coverage=row.coverage, angle=row.angle,
-        fit_distance=row.misfit, index=row.part,
+        fit_distance=row.misfit, index=row.part, unit=row.unit_of_length or None,
     )  # fmt: skip
     known: dict[str, Any] = {**arrays}
     return Samples(**known, report=report)

@@ -96,6 +96,7 @@ def _report(
         empty_faces=len(part) - len(held),
         oriented=part.oriented,
         density=_density(request),
+        unit=part.unit or None,
         **_proof(space, cover),
     )
 

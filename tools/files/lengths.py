@@ -74,13 +74,12 @@ def whole_of(samples: Samples) -> Whole | None:
 
 
 def unit_of(samples: Samples) -> str | None:
-    """Return the unit of length of samples: that of their part, or of their reference system.
+    """Return the unit of length of samples: that of their report, or of their reference system.
 
     None if it is not known. Reference systems are read by rasterio, if it is installed.
     """
-    part = whole_of(samples)
-    if part is not None:
-        return part.unit or None
+    if samples.report.unit is not None:
+        return samples.report.unit
     crs = samples.report.crs
     rasterio = None if crs is None else if_installed("rasterio.crs")
     if rasterio is None:

@@ -194,13 +194,14 @@ class TestReport:
             "oriented": True,
             "edge_samples": np.int64(2),
             "reach": (0, np.int8(0), 3, np.float32(60.0)),
+            "unit": np.str_("mm"),
             "crs": "EPSG:32633",
             "origin": np.array([1, 2.0]),
         }
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, int, tuple,
-            float, float, float, int, int, str, int, int, int, bool, int, tuple, str, tuple,
+            float, float, float, int, int, str, int, int, int, bool, int, tuple, str, str, tuple,
         ]  # fmt: skip
         assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "double", True, None),)
         assert report.reach == (0.0, 0.0, 1.0, 60.0)

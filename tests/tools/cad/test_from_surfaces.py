@@ -2,6 +2,7 @@
 
 import itertools
 import pickle
+import re
 
 import gaussmap as gm
 import numpy as np
@@ -359,7 +360,12 @@ def test_units(tmp_path):
         0.0254,
         "Part(tube: 1 face, 0 solids, in)",
     )
-    samples = gm.sample(part.select(kind="cylinder"), 20)
+    samples = gm.sample(part.select(kind="cylinder"), 20, coverage=0.5)
+    assert re.search(r"within 0\.\d+ in of a sample; 1 face$", samples.summary())
+    assert gm.GaussMap(part).points([[1, 0, 0]]).report.unit == "in"
+    samples.write(tmp_path / "tube.npz")
+    gm.read_samples(tmp_path / "tube.npz").write(tmp_path / "again.csv")
+    assert (tmp_path / "again.csv").read_text().startswith("x [in],y [in],z [in]")
     samples.write(tmp_path / "tube.csv")
     head = (tmp_path / "tube.csv").read_text().splitlines()[0]
     assert head.startswith("x [in],y [in],z [in]")
