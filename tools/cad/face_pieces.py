@@ -55,7 +55,7 @@ CURVATURES = ("gaussian_curvature", "mean_curvature")
 # for each part of a span, and their least and largest number. At the border, points are lost by the
 # error of the spline.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
-# The part of a face that can be reached is measured at about this number of places squared.
+# What is measured on a raster of a face, is so at about this number of places squared.
 RASTER = 64
 # Which parameters of a kind of face are angles.
 ANGLES = {
@@ -100,16 +100,20 @@ class FacePiece(Piece):
         """The part of the area whose normals are in the reach, measured on a raster."""
         if self.reach is None:
             return 1.0
+        jets = self.on_raster()
+        areas = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
+        inside = self.reach.contains(normals_of_jets(jets))
+        return float(areas[inside].sum() / areas.sum()) if inside.any() else 0.0
+
+    def on_raster(self) -> Array:
+        """Return the 2-jets (k, 6, 3) at the places of a raster of the domain inside the trim."""
         n = max(2, math.ceil(RASTER / math.sqrt(len(self.boxes))))
         shares = (np.indices((n, n)).reshape(2, -1).T + 0.5) / n
         low, sizes = self.boxes[:, None, :2], self.boxes[:, None, 2:] - self.boxes[:, None, :2]
         places = (low + shares * sizes).reshape(-1, 2)
         trim = self.surface.trim
         places = places if trim is None else places[trim.contains(places)]
-        jets = self.surface.jets(*places.T.copy())
-        areas = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
-        inside = self.reach.contains(normals_of_jets(jets))
-        return float(areas[inside].sum() / areas.sum()) if inside.any() else 0.0
+        return self.surface.jets(*places.T.copy())
 
     @cached_property
     def boxes(self) -> Array:

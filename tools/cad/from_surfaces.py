@@ -6,7 +6,7 @@ import itertools
 import warnings
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from .measures import integrals_of, signs_of
 from .part import Part, part_of
 from .records import FaceRecord, PartRecord, Wire
 from .sewing import Border, Sewn, sewn
+from .shells import shells_of
 from .surface_geometry import geometry_of_surface
 
 __all__ = ["part_of_surfaces"]
@@ -136,67 +137,6 @@ def _borders(piece: FacePiece) -> list[Border]:
     return found
 
 
-# --- orientation ----------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Shell:
-    """Faces that hang together, with 1 or −1 for those that are flipped; whether it is closed."""
-
-    signs: dict[int, int]
-    closed: bool
-
-    @property
-    def flipped(self) -> Shell:
-        """The same with opposite normals."""
-        return Shell({k: -sign for k, sign in self.signs.items()}, self.closed)
-
-
-def _shells(bare: Part, found: Sewn, borders: Sequence[Border]) -> list[Shell]:
-    """Return the sets of faces that hang together, each with normals on one side.
-
-    Raises InputError if there is a set that has one side only.
-    """
-    passed = defaultdict[int, list[tuple[int, bool]]](list)
-    for border, wire in zip(borders, found.wires, strict=True):
-        for edge, _, backwards in wire:
-            passed[edge].append((border.face, backwards))
-    links, is_open = defaultdict[int, list[tuple[int, int]]](list), set[int]()
-    for edge, sides in passed.items():
-        if found.edges[edge].degenerate:
-            continue
-        if len(sides) != 2:
-            is_open |= {face for face, _ in sides}
-            continue
-        (one, first), (other, second) = sides
-        sign = 1 if first != second else -1
-        links[one].append((other, sign))
-        links[other].append((one, sign))
-    shells, known = [], dict[int, int]()
-    for start in range(len(bare)):
-        if start not in known:
-            signs = _signs(bare, start, links)
-            known |= signs
-            shells.append(Shell(signs, not is_open & signs.keys()))
-    return shells
-
-
-def _signs(bare: Part, start: int, links: dict[int, list[tuple[int, int]]]) -> dict[int, int]:
-    """Return the faces that hang together with one, and the signs of their normals."""
-    signs, waiting = {start: 1}, [start]
-    for face in waiting:  # it grows
-        for other, sign in links.get(face, ()):
-            if other not in signs:
-                signs[other] = sign * signs[face]
-                waiting.append(other)
-            elif signs[other] != sign * signs[face]:
-                raise InputError(
-                    f"surface {other} ({bare.faces[other].name!r}) closes a band that has one side "
-                    "only, as a Möbius band has; the normals of a part have to be on one side."
-                )
-    return signs
-
-
 # --- the part -------------------------------------------------------------------------------------
 
 
@@ -213,32 +153,27 @@ def _part(
     for face, (_, area) in zip(faces, integrals, strict=True):
         if not area > 0.0:
             raise SurfaceError(f"surface {face.name!r} has no area.")
-    shells = _shells(bare, found, borders)
-    for k, shell in enumerate(shells):
-        if shell.closed and sum(sign * integrals[f][0] for f, sign in shell.signs.items()) < 0.0:
-            shells[k] = shell.flipped
-    closed = [x for x in shells if x.closed]
-    solid_of = {face: k for k, shell in enumerate(closed) for face in shell.signs}
-    signs = {face: sign for shell in shells for face, sign in shell.signs.items()}
+    shells = shells_of(pieces, found, borders, [x[0] for x in integrals])
+    shell_of = {face: x for x in shells for face in x.signs}
     wires = defaultdict[int, list[Wire]](list)
     for border, wire in zip(borders, found.wires, strict=True):
         wires[border.face].append(wire)
     made = [
         replace(
             face,
-            reversed=signs[k] < 0,
+            reversed=shell_of[k].signs[k] < 0,
             area=integrals[k][1],
-            solid_index=solid_of.get(k, -1),
+            solid_index=shell_of[k].solid,
             wires=wires[k],
         )
         for k, face in enumerate(faces)
     ]
-    return part_of(
-        PartRecord(
-            bare.name, bare.unit, bare.metres, len(closed) == len(shells), made,
-            [""] * len(closed), found.edges, found.vertices, list(_warnings(made, found)),
-        )
+    record = PartRecord(
+        bare.name, bare.unit, bare.metres, all(x.closed for x in shells), made,
+        [""] * (1 + max(x.solid for x in shells)), found.edges, found.vertices,
+        list(_warnings(made, found)),
     )  # fmt: skip
+    return part_of(record)
 
 
 def _warnings(faces: Sequence[FaceRecord], found: Sewn) -> Iterator[str]:

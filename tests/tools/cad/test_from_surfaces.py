@@ -271,6 +271,51 @@ def test_a_set_with_one_side_is_refused():
             gm.Part(surfaces)
 
 
+def volume_of_ball(radius):
+    return 4.0 / 3.0 * np.pi * radius**3
+
+
+def ball(radius, centre=(0.0, 0.0, 0.0), *, flipped=False):
+    surface = moved(gm.surfaces.sphere(), centre, radius)
+    return surface.flipped() if flipped else surface
+
+
+@pytest.mark.parametrize("flipped", [False, True])
+def test_a_closed_set_inside_another_is_a_hollow(flipped):
+    small = [moved(x, (3.0, 0.0, 0.0)) for x in cube(0.5)]
+    block = [moved(x, (-2.5, -2.5, -2.5)) for x in cube(5.0)]
+    surfaces = [
+        *small, ball(1.5, flipped=flipped), ball(1.0, flipped=not flipped), *block,
+        ball(0.6, (5.0, 0.0, 0.0)),
+    ]  # fmt: skip
+    part = gm.Part(surfaces)
+    assert (part.closed, part.oriented, len(part.solids)) == (True, True, 4)
+    # A ball in a hollow of the block, and two bodies beside it.
+    assert [x.solid_index for x in part.faces] == [0] * 6 + [2, 1] + [2] * 6 + [3]
+    volume = 125.125 - volume_of_ball(1.5) + volume_of_ball(1.0) + volume_of_ball(0.6)
+    assert part.volume == pytest.approx(volume, rel=1e-9)
+    hollow = gm.sample(part.select(index=[6]), 50)
+    assert (np.einsum("kx,kx->k", hollow.points, hollow.normals) < 0.0).all()
+    assert part.faces[6].dimensions["hollow"]
+
+
+@pytest.mark.parametrize(("wall", "shift"), [(1e-3, 0.0), (0.2, 0.2 - 1e-6)])
+def test_walls_may_be_thin(wall, shift):
+    part = gm.Part([ball(1.0), ball(1.0 - wall, (shift, 0.0, 0.0))])
+    assert part.volume == pytest.approx(volume_of_ball(1.0) - volume_of_ball(1.0 - wall), rel=1e-9)
+    assert len(part.solids) == 1
+
+
+@pytest.mark.parametrize(
+    ("other", "centre"),
+    [(0.5, (0.7, 0.0, 0.0)), (0.5, (1.6, 0.0, 0.0)), (0.05, (0.9, 0.9, 0.9))],
+    ids=["crossing", "outside", "in a corner of the box around it"],
+)
+def test_what_crosses_or_is_outside_is_no_hollow(other, centre):
+    part = gm.Part([ball(1.0), ball(other, centre)])
+    assert part.volume == pytest.approx(volume_of_ball(1.0) + volume_of_ball(other), rel=1e-9)
+
+
 # --- kinds and units ------------------------------------------------------------------------------
 
 TILTED = 2.0 * np.linalg.qr(np.array([(3.0, 1, 2), (1, 4, 1), (2, -1, 5)]))[0]

@@ -1,0 +1,150 @@
+"""Faces that hang together: their normals are on one side, out of solids and into hollows."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...runtime.base.aliases import Array
+from ...runtime.base.errors import InputError
+from ...runtime.base.trees import tree_of
+from ...runtime.surface.derivatives import normals_of_jets
+from .face_pieces import FacePiece
+from .sewing import Border, Sewn
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
+__all__ = ["Shell", "shells_of"]
+
+# A shell lies inside another one if of about so many of its points at least this share does.
+PROBES, INSIDE = 100, 0.9
+
+
+@dataclass(frozen=True)
+class Shell:
+    """Faces that hang together, with 1 or −1 for those that are flipped; whether it is closed.
+
+    `solid` is the number of the solid that it encloses, or that it is a hollow of; −1 for none.
+    """
+
+    signs: dict[int, int]
+    closed: bool
+    solid: int = -1
+
+    @property
+    def flipped(self) -> Shell:
+        """The same with opposite normals."""
+        return replace(self, signs={k: -sign for k, sign in self.signs.items()})
+
+
+def shells_of(
+    pieces: Sequence[FacePiece], found: Sewn, borders: Sequence[Border], heights: Sequence[float]
+) -> list[Shell]:
+    """Return the sets of faces that hang together, each with normals on one side.
+
+    Of closed ones these point out of solids, and so into hollows; of open ones, to the side of the
+    first face. `heights` are the integrals of (x − c)·n over the faces. Raises InputError if there
+    is a set that has one side only.
+    """
+    shells = [_outward(x, heights) for x in _connected(pieces, found, borders)]
+    closed = [k for k, x in enumerate(shells) if x.closed]
+    # A shell is inside larger ones only.
+    closed.sort(key=lambda k: -sum(sign * heights[f] for f, sign in shells[k].signs.items()))
+    points = {k: _Points.of(shells[k], pieces) for k in closed} if len(closed) > 1 else {}
+    solid_of_hollow = dict[int, int]()
+    for place, k in enumerate(closed):
+        smallest = next((x for x in closed[:place][::-1] if points[x].hold(points[k])), None)
+        if smallest is not None and smallest not in solid_of_hollow:
+            solid_of_hollow[k] = smallest
+    solids = [k for k in sorted(closed) if k not in solid_of_hollow]
+    for k in closed:
+        shells[k] = replace(
+            shells[k].flipped if k in solid_of_hollow else shells[k],
+            solid=solids.index(solid_of_hollow.get(k, k)),
+        )
+    return shells
+
+
+def _outward(shell: Shell, heights: Sequence[float]) -> Shell:
+    """Return a shell with normals that point out of it, if it is closed."""
+    volume = sum(sign * heights[face] for face, sign in shell.signs.items())
+    return shell.flipped if shell.closed and volume < 0.0 else shell
+
+
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """Points (k, 3) all over a closed shell, and normals (k, 3) there, which point out of it."""
+
+    points: Array
+    normals: Array
+
+    @classmethod
+    def of(cls, shell: Shell, pieces: Sequence[FacePiece]) -> _Points:
+        jets = [pieces[face].on_raster() for face in shell.signs]
+        signs = np.repeat(list(shell.signs.values()), [len(x) for x in jets])
+        jets = np.concatenate(jets)
+        return cls(jets[:, 0], signs[:, None] * normals_of_jets(jets))
+
+    @cached_property
+    def tree(self) -> KDTree:
+        return tree_of(self.points)
+
+    def hold(self, other: _Points) -> bool:
+        """Return whether another shell is inside this one: behind the nearest points of it."""
+        probes = other.points[:: 1 + len(other.points) // PROBES]
+        if not len(probes) or not len(self.points):
+            return False
+        nearest = self.tree.query(probes)[1]
+        heights = np.einsum("kx,kx->k", probes - self.points[nearest], self.normals[nearest])
+        return bool((heights < 0.0).mean() >= INSIDE)
+
+
+def _connected(pieces: Sequence[FacePiece], found: Sewn, borders: Sequence[Border]) -> list[Shell]:
+    """Return the sets of faces that hang together, each with normals on one side."""
+    passed = defaultdict[int, list[tuple[int, bool]]](list)
+    for border, wire in zip(borders, found.wires, strict=True):
+        for edge, _, backwards in wire:
+            passed[edge].append((border.face, backwards))
+    links, is_open = defaultdict[int, list[tuple[int, int]]](list), set[int]()
+    for edge, sides in passed.items():
+        if found.edges[edge].degenerate:
+            continue
+        if len(sides) != 2:
+            is_open |= {face for face, _ in sides}
+            continue
+        (one, first), (other, second) = sides
+        sign = 1 if first != second else -1
+        links[one].append((other, sign))
+        links[other].append((one, sign))
+    shells, known = [], dict[int, int]()
+    for start in range(len(pieces)):
+        if start not in known:
+            signs = _signs(pieces, start, links)
+            known |= signs
+            shells.append(Shell(signs, not is_open & signs.keys()))
+    return shells
+
+
+def _signs(
+    pieces: Sequence[FacePiece], start: int, links: dict[int, list[tuple[int, int]]]
+) -> dict[int, int]:
+    """Return the faces that hang together with one, and the signs of their normals."""
+    signs, waiting = {start: 1}, [start]
+    for face in waiting:  # it grows
+        for other, sign in links.get(face, ()):
+            if other not in signs:
+                signs[other] = sign * signs[face]
+                waiting.append(other)
+            elif signs[other] != sign * signs[face]:
+                name = pieces[other].face.name
+                raise InputError(
+                    f"surface {other} ({name!r}) closes a band that has one side only, as a Möbius "
+                    "band has; the normals of a part have to be on one side."
+                )
+    return signs
