@@ -41,8 +41,6 @@ __all__ = [
     "write",
 ]
 
-OBSTACLE = 20_000  # vertices of the mesh of a part that rays are tested against
-
 
 def write(
     self: Samples,
@@ -393,8 +391,9 @@ def unobstructed(
         The distance d, in L.
     by : Part, Mesh or trimesh.Trimesh, optional
         The obstacle: by default the part or surface of the samples. A part becomes a mesh of
-        20,000 vertices, as ``gm.sample(part, 20_000).mesh()``. For samples of a `Part.select` give
-        the whole part, for a clamp or a table its mesh.
+        20,000 vertices, as ``gm.sample(part, 20_000).mesh()``, or of more if it has very many
+        edges; this is made once, and kept with the part. For samples of a `Part.select` give the
+        whole part, for a clamp or a table its mesh.
 
     Returns
     -------
@@ -438,9 +437,9 @@ def unobstructed(
     if by is None:
         by = cast("Part | None", whole_of(self)) or self.mesh()
     if isinstance(by, Whole):
-        from .cad.meshing import mesh_of_part
+        from .cad.obstacle import obstacle_of
 
-        by = mesh_of_part(cast("Part", by), OBSTACLE)
+        by = obstacle_of(cast("Part", by))
     points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
     return are_free(points, normals, far, by)
 

@@ -64,7 +64,7 @@ def _solid(obstacle: object) -> Any:  # noqa: ANN401
     solid = trimesh.Trimesh(corners.vertices, triangles, process=False, use_embree=False)
     if not (solid.is_watertight and solid.is_winding_consistent):
         raise InputError(
-            "rays need a closed mesh of the obstacle, whose triangles say which side is outside, "
-            "and this one is open; give a closed one, as in samples.unobstructed(5.0, by=mesh)."
+            "rays need a closed obstacle, whose triangles say which side is outside, and this one "
+            "is open; give the whole part, or a closed mesh, as in unobstructed(5.0, by=part)."
         )
     return solid

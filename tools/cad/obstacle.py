@@ -1,0 +1,28 @@
+"""The mesh of a part that rays are tested against."""
+
+from __future__ import annotations
+
+from ...runtime.base.kept import kept
+from .mesh_edges import MeshEdges
+from .mesh_spacing import Spacing
+from .meshing import mesh_of_part
+from .part import Part
+from .part_mesh import PartMesh
+from .results import space_of
+
+__all__ = ["obstacle_of"]
+
+# The number of vertices, or where edges alone need more than half of it, twice of what these need.
+VERTICES = 20_000
+
+
+def obstacle_of(part: Part) -> PartMesh:
+    """Return the mesh of a part, which is kept with it; InputError and warnings of meshes."""
+    return kept(part, obstacle_of, lambda: _made(part))
+
+
+def _made(part: Part) -> PartMesh:
+    least = 0
+    if any(x.wires for x in part.faces):
+        least = MeshEdges.of(Spacing(space_of(part, None), VERTICES)).least
+    return mesh_of_part(part, max(VERTICES, 2 * least))
