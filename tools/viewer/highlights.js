@@ -1,5 +1,6 @@
 // What is picked, drawn over Plotly's pictures: Plotly takes seconds to change one of many traces.
-// The samples in front are discs; those whose surface is seen from behind are circles.
+// Samples are discs, and circles where the surface is seen from behind. Hidden ones are not drawn, but
+// for the few large ones, which are empty circles then.
 
 const canvases = {};
 const marks = { surface: { rows: points, parts: [] }, sphere: { rows: normals, parts: [], circle: null } };
@@ -34,21 +35,24 @@ function paint(name) {
     pen.scale(devicePixelRatio, devicePixelRatio);
     const { rows, parts, circle } = marks[name], viewer = towardsViewer(matrix);
     if (circle) paintCircle(pen, matrix, box, viewer, circle);
+    const front = name === "surface" && parts.some((x) => x.which.length) ? frontOf(plot) : null;
     for (const { which, size } of parts) {
         for (const i of which) {
+            const isHidden = front !== null && !isSeen(front, i, viewer), isLarge = size > 4;
+            if (isHidden && !isLarge) continue;
             const [x, y] = onScreen(matrix, box, rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]);
-            paintDisc(pen, x, y, size, COLOURS[kind[i]], dot(i, viewer) > 0);
+            paintDisc(pen, x, y, size, COLOURS[kind[i]], isLarge, dot(i, viewer) > 0 && !isHidden, isHidden);
         }
     }
 }
 
-function paintDisc(pen, x, y, size, colour, isInFront) {
+function paintDisc(pen, x, y, size, colour, isLarge, isFilled, isEmpty) {
     pen.beginPath();
     pen.arc(x, y, size, 0, 2 * Math.PI);
-    pen.lineWidth = size > 4 ? 2 : 1;
-    pen.fillStyle = isInFront ? colour : "white";
-    pen.strokeStyle = isInFront ? "white" : colour;
-    pen.fill();
+    pen.lineWidth = isLarge ? 2 : 1;
+    pen.fillStyle = isFilled ? colour : "white";
+    pen.strokeStyle = isFilled ? "white" : colour;
+    if (!isEmpty) pen.fill();
     pen.stroke();
 }
 

@@ -1,40 +1,20 @@
 // From pixels to a sample, or to a normal.
 
 function sampleAt(plot, x, y) {
-    const matrix = camera(plot), box = plot.getBoundingClientRect(), near = [];
-    let front = Infinity;
+    const front = frontOf(plot), viewer = towardsViewer(front.matrix);
+    let least = 16, found = -1;
     for (let i = 0; i < count; i++) {
-        const at = onScreen(matrix, box, points[3 * i], points[3 * i + 1], points[3 * i + 2]);
+        const at = onScreen(front.matrix, front.box, points[3 * i], points[3 * i + 1], points[3 * i + 2]);
         const distance = Math.hypot(at[0] - x, at[1] - y);
-        if (distance < 16) {
-            near.push([distance, at[2], i]);
-            front = Math.min(front, at[2]);
-        }
-    }
-    // Behind the front one by more than a few pixels is another sheet.
-    const depth = Math.hypot(matrix[2], matrix[6], matrix[10]) * 0.08;
-    const seen = near.filter((x) => x[1] <= front + depth).sort((a, b) => a[0] - b[0]);
-    return seen.length ? seen[0][2] : -1;
-}
-
-/** The face of a part whose triangle is in front at these pixels; −1 for none. */
-function faceAt(plot, x, y) {
-    const matrix = camera(plot), box = plot.getBoundingClientRect();
-    const seen = new Float64Array(vertices.length);
-    for (let i = 0; i < vertices.length; i += 3) {
-        seen.set(onScreen(matrix, box, vertices[i], vertices[i + 1], vertices[i + 2]), i);
-    }
-    let front = Infinity, found = -1;
-    for (let t = 0; t < faceOfTriangle.length; t++) {
-        const corners = [0, 1, 2].map((k) => 3 * triangles[3 * t + k]);
-        const [a, b, c] = corners.map((i) => [seen[i] - x, seen[i + 1] - y]);
-        const weights = [[b, c], [c, a], [a, b]].map(([p, q]) => p[0] * q[1] - p[1] * q[0]);
-        const total = weights[0] + weights[1] + weights[2];
-        if (!total || weights.some((w) => w / total < 0)) continue;
-        const depth = corners.reduce((sum, i, k) => sum + seen[i + 2] * weights[k] / total, 0);
-        if (depth < front) [front, found] = [depth, faceOfTriangle[t]];
+        if (distance < least && isSeen(front, i, viewer)) [least, found] = [distance, i];
     }
     return found;
+}
+
+/** The face of a part that is in front at these pixels; −1 for none. */
+function faceAt(plot, x, y) {
+    const { width, found } = frontOf(plot), at = found[Math.round(y) * width + Math.round(x)];
+    return at >= 0 ? faceOfTriangle[at] : -1;
 }
 
 function normalAt(plot, x, y) {

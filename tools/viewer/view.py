@@ -35,7 +35,9 @@ from ..pictures.scene import Scene, scene_of_samples
 __all__ = ["COUNT", "MOST", "SUFFIXES", "check_count", "check_target", "page", "view"]
 
 SUFFIXES = (".html", ".htm")
-SCRIPTS = ("theme", "samples", "scene", "camera", "picking", "selection", "highlights", "link")
+SCRIPTS = (
+    "theme", "samples", "scene", "camera", "front", "picking", "selection", "highlights", "link",
+)  # fmt: skip
 COUNT = 5_000  # samples, if no number is given
 MOST = 50_000  # samples in a page, which stays fluid
 NEIGHBOURS = 8  # of each sample, for connected groups
@@ -52,6 +54,9 @@ HINTS = (
 PALE_PARABOLIC = "#b9b9b9"
 # Of faces whose file gives none; neighbours seldom have the same.
 COLOURS_OF_FACES = ("#c9d6df", "#e3d5bd", "#cfe0cf", "#dfcfdc", "#c8dcdc", "#e0d0c8", "#d3d3e3")
+# Around the surface, of its diameter: samples are drawn above it (LIFT in scene.js), and what is
+# outside of the range of an axis is not drawn.
+MARGIN = 0.02
 RADIUS = 10.0  # of the region around a place at first, in per cent of the diameter
 
 
@@ -122,7 +127,8 @@ def _data(
     proper = (one != two) & (two != three) & (three != one)
     triangles = triangles[proper]
     factors = np.array([1.0, 1.0, scene.factor])
-    reach = 1.04 * np.maximum((high - low) / diameter / 2, 0.02)
+    half = (high - low) / diameter / 2
+    reach = np.maximum(1.04 * half, half + MARGIN)
     aspect = reach * factors
     points = (samples.points.astype(np.float64) - middle) / diameter
     normals = samples.normals.astype(np.float64)

@@ -112,6 +112,33 @@ def test_a_face_of_a_part(browser: Any, tmp_path: Path, parts: Any) -> None:
     assert set(picked(browser)["best"]) == set(here.tolist())
 
 
+def test_hidden_samples_do_not_light_up(browser: Any, tmp_path: Path) -> None:
+    """Two squares, one above the other: of the lower one, what the upper one hides is not drawn."""
+    raised = np.eye(4)
+    raised[2, 3] = 1.0
+    sheets = [gm.surfaces.plane(), gm.surfaces.plane().transformed(raised)]
+    samples = gm.sample(gm.Part(sheets), 300)
+    samples.view(tmp_path / "sheets.html")
+    browser.open(tmp_path / "sheets.html", 1280, 860)
+    lower = np.flatnonzero(samples.face_index == 0)
+    viewer = np.array(browser.value("towardsViewer(camera(byId('surface')))"))
+    where = samples.points + viewer / viewer[2]  # what is drawn over them, at z = 1
+    outside = np.abs(where[lower, :2]).max(axis=1)
+    browser.click(*place_of(browser, "surface", scaled(browser, int(lower[outside.argmax()]))))
+    assert picked(browser)["members"] == lower.tolist()
+    ends = {True: lower[outside > 1.15], False: lower[outside < 0.85]}
+    for is_seen, rows in ends.items():
+        assert len(rows) > 5
+        for k in rows.tolist():
+            x, y = place_of(browser, "surface", scaled(browser, k))
+            assert (browser.value(PIXEL.format(x=x, y=y)) != "0,0,0") == is_seen
+    middle = "camera(plot), plot.getBoundingClientRect(), 0, 0, 0"
+    front = (
+        f"(() => {{ const plot = byId('surface'); return faceAt(plot, ...onScreen({middle})); }})()"
+    )
+    assert browser.value(front) == 1
+
+
 def test_a_phone(browser: Any, pages: Path, samples: gm.Samples) -> None:
     browser.open(pages / "torus.html", 390, 844, phone=True)
     assert browser.value("document.documentElement.scrollWidth") == 390

@@ -109,6 +109,12 @@ def test_faces_of_a_part_have_colours_labels_and_edges(parts: ModuleType) -> Non
     assert np.nanmax(np.abs(edges)) <= 0.5 + 1e-6
 
 
+def test_samples_above_flat_parts_are_in_the_range_of_the_axes(parts: ModuleType) -> None:
+    data = read_page(module.page(gm.sample(parts.box(1.0, 30.0, 20.0), 100)))
+    lifted = data["points"] + 0.012 * data["normals"]  # as scene.js does
+    assert (np.abs(lifted.reshape(-1, 3)) <= np.array(data["range"])[:, 1]).all()
+
+
 def test_the_page_loads_nothing(samples: gm.Samples) -> None:
     text = module.page(samples)
     own = text[: text.index("<script>")] + text[text.index('<script type="application/json"') :]

@@ -1,0 +1,44 @@
+// What is in front on the screen: the nearest triangle at each pixel, and which samples are hidden.
+
+/** The depths of the triangles that are in front, and their numbers or −1, at all pixels. */
+function frontOf(plot) {
+    const matrix = camera(plot), box = plot.getBoundingClientRect();
+    const width = Math.ceil(box.width) + 1, height = Math.ceil(box.height) + 1;
+    const depths = new Float32Array(width * height).fill(Infinity);
+    const found = new Int32Array(width * height).fill(-1);
+    const seen = new Float64Array(vertices.length);
+    for (let i = 0; i < vertices.length; i += 3) {
+        seen.set(onScreen(matrix, box, vertices[i], vertices[i + 1], vertices[i + 2]), i);
+    }
+    const ends = (a, b, c, most) => // whole numbers between three
+        [Math.max(0, Math.ceil(Math.min(a, b, c))), Math.min(most, Math.floor(Math.max(a, b, c)))];
+    for (let t = 0; t < triangles.length; t += 3) {
+        const [i, j, k] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
+        const x = seen[i], y = seen[i + 1], z = seen[i + 2];
+        const bx = seen[j] - x, by = seen[j + 1] - y, cx = seen[k] - x, cy = seen[k + 1] - y;
+        const area = bx * cy - by * cx;
+        if (!area) continue;
+        const [left, right] = ends(x, x + bx, x + cx, width - 1), [top, bottom] = ends(y, y + by, y + cy, height - 1);
+        for (let row = top; row <= bottom; row++) for (let column = left; column <= right; column++) {
+            const b = ((column - x) * cy - (row - y) * cx) / area, c = (bx * (row - y) - by * (column - x)) / area;
+            if (b < -BESIDE || c < -BESIDE || b + c > 1 + BESIDE) continue;
+            const depth = z + b * (seen[j + 2] - z) + c * (seen[k + 2] - z), at = row * width + column;
+            if (depth < depths[at]) [depths[at], found[at]] = [depth, t / 3];
+        }
+    }
+    return { matrix, box, width, height, depths, found };
+}
+
+const BESIDE = 1e-9; // a pixel on the side of two triangles is on one of them
+
+/** Whether a sample is in front, on this side of the surface or, of a sheet, on the other one. */
+function isSeen(front, i, viewer) {
+    const side = dot(i, viewer) < 0 ? -LIFT : LIFT; // it is drawn above the triangles, too
+    const [x, y, depth] = onScreen(front.matrix, front.box, ...placed(points, [i], side).map((x) => x[0]));
+    // Between four pixels a triangle is nowhere deeper than at one of these.
+    return [[0, 0], [1, 0], [0, 1], [1, 1]].some(([right, down]) => {
+        const column = Math.floor(x) + right, row = Math.floor(y) + down;
+        const inside = column >= 0 && row >= 0 && column < front.width && row < front.height;
+        return !inside || depth <= front.depths[row * front.width + column];
+    });
+}
