@@ -75,10 +75,18 @@ def target_of(request: Request) -> TargetDensity:
     return TargetDensity(gauss_weight=1.0, exponent=float(request.density))
 
 
-def fill(space: Space, request: Request, progress: bool) -> Cover:
-    """Sample a space, whose target density has no floor; raises what `sample` raises."""
+def fill(
+    space: Space,
+    request: Request,
+    progress: bool,
+    each_once: Callable[[Given], Given] | None = None,
+) -> Cover:
+    """Sample a space, whose target density has no floor; raises what `sample` raises.
+
+    `each_once` leaves out samples at prescribed normals that several pieces have.
+    """
     with counted(request.count, progress) as show_count:
-        filling = Filling(space, request, progress, show_count)
+        filling = Filling(space, request, progress, show_count, each_once)
         cover = filling.cover()
         if request.angle is not None:
             cover.angle = cover_normals(cover, request.angle)
@@ -120,12 +128,16 @@ def _of_piece(
 
 @dataclass(frozen=True, eq=False)
 class Filling:
-    """How a space is sampled for a request; `show_count` is called with the number of samples."""
+    """How a space is sampled for a request; `show_count` is called with the number of samples.
+
+    `each_once` is that of `fill`.
+    """
 
     space: Space
     request: Request
     progress: bool
     show_count: Callable[[int], object]
+    each_once: Callable[[Given], Given] | None = None
 
     def cover(self) -> Cover:
         """Return the cover that is asked for."""
@@ -299,7 +311,8 @@ class Filling:
         space, count = self.space, self.request.count
         if count is None:
             curved = np.flatnonzero(space.images > LEAST_IMAGE)
-            return at_normals(space, self.request.directions, curved, self.progress)
+            found = at_normals(space, self.request.directions, curved, self.progress)
+            return found if self.each_once is None else self.each_once(found)
         seen = space.solid_angles(count / (4 * math.pi))
         counts = apportioned(count, seen if seen.any() else space.areas)
         return at_count(space, counts, self.progress)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -22,6 +23,7 @@ from ...runtime.samples.samples import Samples
 from .edge_sampling import with_edges
 from .part import Part
 from .results import PartSpace, space_of
+from .smooth_edges import each_once
 
 __all__ = ["sample_part"]
 
@@ -44,7 +46,7 @@ def sample_part(
     if request.count is not None:
         check_memory("part", request.count)
     space = space_of(part, threads, target_of(request), request.reach)
-    cover = fill(space, request, progress)
+    cover = fill(space, request, progress, partial(each_once, space))
     on_faces = [x for x in fields if x not in EDGE_NAMES]
     found = fields_of(cover, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)
     report = _report(part, space, cover, found, request)

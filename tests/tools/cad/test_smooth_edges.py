@@ -1,0 +1,94 @@
+"""Points with given normals where faces meet smoothly: each of them is there once."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+
+TURN, QUARTER = 2.0 * np.pi, np.pi / 2.0
+ANGLES = np.linspace(0.1, 6.2, 50)
+TILT = np.linalg.qr(np.array([(3.0, 1, 2), (1, 4, 1), (2, -1, 5)]))[0]
+
+
+def cut(surface: gm.Surface, u, v, matrix=None) -> gm.Surface:
+    """Return the part of a surface over a rectangle, moved."""
+    found = gm.Surface.from_callable(surface.function, (u, v))
+    return found if matrix is None else found.transformed(matrix)
+
+
+def halves(matrix=None, shift: float = 0.0, *, trimmed: bool = False) -> list[gm.Surface]:
+    """Return two halves of a unit sphere, the second one moved; they meet in the plane y = 0."""
+    sphere, along = gm.surfaces.sphere(), (-QUARTER, QUARTER)
+    found = [cut(sphere, (0.0, np.pi), along), cut(sphere, (np.pi, TURN), along)]
+    if trimmed:
+        found = [sphere.trimmed([[(a, -QUARTER), (a + np.pi, -QUARTER), (a + np.pi, QUARTER),
+                                  (a, QUARTER)]]) for a in (0.0, np.pi)]  # fmt: skip
+    placed = np.eye(4)
+    placed[0, 3] = shift
+    found[1] = found[1].transformed(placed)
+    return found if matrix is None else [x.transformed(matrix) for x in found]
+
+
+def meridian(angles=ANGLES) -> np.ndarray:
+    return np.stack([np.cos(angles), 0.0 * angles, np.sin(angles)], axis=1)
+
+
+def latitude(v: float) -> np.ndarray:
+    x, y, z = np.cos(ANGLES) * np.cos(v), np.sin(ANGLES) * np.cos(v), np.sin(v) + 0.0 * ANGLES
+    return np.stack([x, y, z], axis=1)
+
+
+@pytest.mark.parametrize("trimmed", [False, True])
+@pytest.mark.parametrize("matrix", [np.eye(3), TILT], ids=["", "tilted"])
+def test_each_point_of_a_sphere_is_there_once(matrix, trimmed):
+    """At poles four borders end; the even-odd rule of trims gives a point to one side itself."""
+    gauss_map = gm.GaussMap(gm.Part(halves(matrix, trimmed=trimmed)))
+    normals = np.concatenate([meridian(), np.eye(3), -np.eye(3)]) @ matrix.T
+    assert (gauss_map.count(normals) == 1).all()
+    assert (gauss_map.degree(normals) == 1).all()
+    samples = gauss_map.points(normals)
+    np.testing.assert_allclose(samples.points, normals[samples.normal_index], atol=1e-14)
+    assert trimmed or (samples.face_index[samples.normal_index < 50] == 0).all()
+
+
+@pytest.mark.parametrize("v", [1.0, 2.0], ids=["elliptic", "hyperbolic"])
+def test_each_point_of_a_torus_is_there_once(v):
+    torus = gm.surfaces.torus()
+    part = gm.Part([cut(torus, (0, TURN), (0, v), TILT), cut(torus, (0, TURN), (v, TURN), TILT)])
+    gauss_map = gm.GaussMap(part)
+    assert (gauss_map.count(latitude(v) @ TILT.T) == 2).all()
+    assert (gauss_map.degree(latitude(v) @ TILT.T) == 0).all()
+
+
+def test_where_curvature_changes_its_sign_both_faces_have_the_point():
+    """A ball with a neck: the Gauss map has a fold at the edge, with two points or none beside."""
+    v, radius = 0.5, 0.5
+    ball = cut(gm.surfaces.sphere(), (0, TURN), (-QUARTER, v))
+    neck = gm.surfaces.torus((1.0 + radius) * np.cos(v), radius)
+    raised = np.eye(4)
+    raised[2, 3] = (1.0 + radius) * np.sin(v)
+    gauss_map = gm.GaussMap(gm.Part([ball, cut(neck, (0, TURN), (np.pi, np.pi + v), raised)]))
+    for angle, count in ((v - 1e-4, 2), (v, 2), (v + 1e-4, 0)):
+        assert (gauss_map.count(latitude(angle)) == count).all()
+        assert (gauss_map.degree(latitude(angle)) == 0).all()
+
+
+@pytest.mark.parametrize(("gap", "count"), [(1e-8, 1), (1e-6, 2)])
+def test_faces_may_be_apart_by_rounding(gap, count):
+    part = gm.Part(halves(shift=gap), tolerance=1e-4)
+    assert (gm.GaussMap(part).count(meridian(np.array([2.0, 4.0]))) == count).all()
+
+
+def test_faces_that_only_touch_have_points_of_their_own():
+    matrix = np.diag([0.5, 0.5, 0.5, 1.0])
+    matrix[0, 3] = -0.5  # inside of the sphere, in contact with it at its edge
+    cap = cut(gm.surfaces.sphere(), (2.0, 4.0), (-1.0, 1.0), matrix)
+    samples = gm.GaussMap(gm.Part([*halves(), cap])).points([[-1.0, 0.0, 0.0]])
+    assert samples.face_index.tolist() == [0, 2]
+    np.testing.assert_allclose(samples.points, [[-1.0, 0.0, 0.0]] * 2, atol=1e-14)
+
+
+def test_gaps_are_filled_beside_what_is_left():
+    samples = gm.sample(gm.Part(halves()), normals=meridian(), coverage=0.3)
+    assert (np.bincount(samples.normal_index[samples.normal_index >= 0]) == 1).all()
+    assert samples.report.coverage <= 0.3
+    assert len(samples) == samples.report.samples > 50
