@@ -51,7 +51,10 @@ def space_of(
         pieces, failed = pieces_of(part.faces, reach)
     if not pieces:
         if reach is not None and len(failed) < len(part.faces):
-            raise SurfaceError(f"no normal of part {part.name!r} is within the reach.")
+            raise SurfaceError(
+                f"no normal of part {part.name!r} is within the {reach.angle:g}° of the reach; "
+                "those of the wall of a bore are at 90° to its axis."
+            )
         reason = f": {next(iter(failed.values()))}" if failed else "."
         raise SurfaceError(f"part {part.name!r} has no face that can be sampled{reason}")
     held = {} if reach or target.gauss_weight > 0.0 else kept(part, target, dict)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
+from collections import Counter
 from collections.abc import Sequence
 from fnmatch import fnmatchcase
 from typing import SupportsFloat
@@ -78,7 +79,12 @@ def select(
     if normal is not None:
         chosen &= _facing(self, normal, chosen)
     if not chosen.any():
-        raise InputError(f"part {self.name!r} has no face that fulfils all conditions.")
+        counts = Counter(x.kind for x in self.faces)
+        held = ", ".join(f"{number:,} {kind}" for kind, number in counts.most_common())
+        raise InputError(
+            f"part {self.name!r} has no face that fulfils all conditions; the kinds of its faces "
+            f"are: {held}."
+        )
     return _part(self, np.flatnonzero(chosen).tolist())
 
 

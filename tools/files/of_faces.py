@@ -31,7 +31,7 @@ def texts_of(column: FaceColumn, samples: Samples) -> NDArray[Any]:
 
 def _text(value: float | str | None) -> str:
     if isinstance(value, float):
-        return f"{value:.17g}"
+        return repr(float(value))
     line = io.StringIO()
     csv.writer(line, lineterminator="").writerow(["" if value is None else value, ""])
     return line.getvalue()[:-1]

@@ -33,7 +33,7 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
         Name of the file. The suffix is one of
 
         - `.ply`: binary; vertices with normals and u, v.
-        - `.obj`: text of 17 digits; vertices with normals, and texture coordinates, see
+        - `.obj`: text of all digits; vertices with normals, and texture coordinates, see
           `Mesh.corner_uv`.
         - `.stl`: binary, float32; triangles alone.
         - `.3mf`: vertices and triangles, for 3-D printers; the unit counts as a millimetre.

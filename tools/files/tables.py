@@ -20,7 +20,7 @@ from .of_faces import columns_of_faces, texts_of
 __all__ = ["write_csv", "write_rows", "write_xyz"]
 
 # As many digits as it takes to read the same numbers again.
-_DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%.17g", "O": "%s"}
+_DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%r", "O": "%s"}
 _ROWS = 4096
 # Fewer rows are written before Polars is imported; more at once take memory and save no time.
 WORTH_AN_IMPORT, ROWS_OF_POLARS = 20_000, 1 << 18

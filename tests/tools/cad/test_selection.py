@@ -26,7 +26,8 @@ def test_conditions(made):
     assert indices(part.select(color=(1.0, 0.5, 0.0))) == [0]
     assert indices(part.select(index=[3, 1])) == [1, 3]
     assert indices(part.select(kind="plane", normal=((0, 0, -3), 1.0))) == [1]
-    with pytest.raises(gm.errors.InputError, match="no face that fulfils all"):
+    message = r"conditions; the kinds of its faces are: 2 plane, 1 cylinder, 1 unknown\.$"
+    with pytest.raises(gm.errors.InputError, match=message):
         part.select(kind="plane", color="#ff8000")
 
 

@@ -26,7 +26,7 @@ def rows_of(path) -> list[dict[str, str]]:
 def radius_of(face) -> str:
     found = face.dimensions
     size = found["minor_radius"] if face.kind == "torus" else found.get("radius", "")
-    return f"{size:.17g}" if size else ""
+    return repr(size) if size else ""
 
 
 @pytest.mark.parametrize("least", [0, 1000])
