@@ -13,7 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...runtime.base.aliases import Array, Flags
-from ...runtime.base.checks import finite_array, known_name, listed, positive_number, text
+from ...runtime.base.checks import (
+    finite_array,
+    known_name,
+    listed,
+    positive_number,
+    real_values,
+    text,
+)
 from ...runtime.base.errors import InputError, shown
 from ...runtime.directions.unit import normalized, unit_vector
 from .face_pieces import FacePiece, pieces_of
@@ -127,7 +134,8 @@ def _colour(color: str | ArrayLike) -> Array:
 
 def _at(index: ArrayLike, count: int) -> Flags:
     """Return which of so many faces are at some places; InputError for others."""
-    places, chosen = np.atleast_1d(np.asarray(index)), np.zeros(count, dtype=np.bool_)
+    places = np.atleast_1d(real_values(index, "index"))
+    chosen = np.zeros(count, dtype=np.bool_)
     if places.dtype.kind not in "iu" or places.ndim != 1:
         raise InputError(f"index must be whole numbers, places in part.faces, not {shown(index)}.")
     bad = places[(places < 0) | (places >= count)]
