@@ -34,11 +34,11 @@ const BESIDE = 1e-9; // a pixel on the side of two triangles is on one of them
 /** Whether a sample is in front, on this side of the surface or, of a sheet, on the other one. */
 function isSeen(front, i, viewer) {
     const side = dot(i, viewer) < 0 ? -LIFT : LIFT; // it is drawn above the triangles, too
-    const [x, y, depth] = onScreen(front.matrix, front.box, ...placed(points, [i], side).map((x) => x[0]));
+    const [x, y, depth] = onScreen(front.matrix, front.box, lifted(points, i, 0, side), lifted(points, i, 1, side),
+        lifted(points, i, 2, side));
     // Between four pixels a triangle is nowhere deeper than at one of these.
-    return [[0, 0], [1, 0], [0, 1], [1, 1]].some(([right, down]) => {
-        const column = Math.floor(x) + right, row = Math.floor(y) + down;
-        const inside = column >= 0 && row >= 0 && column < front.width && row < front.height;
-        return !inside || depth <= front.depths[row * front.width + column];
-    });
+    const column = Math.floor(x), row = Math.floor(y), { width, height, depths } = front;
+    if (column < 0 || row < 0 || column > width - 2 || row > height - 2) return true;
+    const at = row * width + column;
+    return depth <= Math.max(depths[at], depths[at + 1], depths[at + width], depths[at + width + 1]);
 }

@@ -1,8 +1,8 @@
 // What Plotly draws: the surface with its samples, and the sphere with their normals.
 
 const column = (rows, k) => Float32Array.from({ length: rows.length / 3 }, (_, i) => rows[3 * i + k]);
-const placed = (rows, which, lift = 0) => [0, 1, 2].map((k) =>
-    Float32Array.from(which, (i) => rows[3 * i + k] + lift * normals[3 * i + k] / data.aspect_factors[k]));
+const lifted = (rows, i, k, lift) => rows[3 * i + k] + lift * normals[3 * i + k] / data.aspect_factors[k];
+const placed = (rows, which, lift = 0) => [0, 1, 2].map((k) => Float32Array.from(which, (i) => lifted(rows, i, k, lift)));
 const ofKind = (k) => Array.from({ length: count }, (_, i) => i).filter((i) => kind[i] === k);
 
 // A circle is drawn as some thirty triangles, a square as two.
