@@ -9,7 +9,7 @@ from gaussmap.docs.orders import code, listed, markdown, wrapped
 from ..peers.machine import machine
 from .measure import Errors, OnPart
 from .reference import PLACES
-from .ways import BALANCED, CLOSE, CLOUD, FARTHEST, GMSH, WAYS, Way
+from .ways import BALANCED, CLOSE, CLOUD, FARTHEST, GMSH, LIMIT, WAYS, Way
 
 __all__ = ["page"]
 
@@ -50,7 +50,8 @@ Normals that are opposite count as equal, as those of Gmsh are not oriented; sid
 normals of places around a sample. *Gmsh* means the
 vertices of its meshes with sizes by curvature; a vertex on an edge counts once, and has the normals
 of all faces there, which makes its mean E small. Of meshes with three largest sizes, the one with
-the smallest product of gap and angle is shown. *Farthest points* are chosen by Open3D in a cloud of
+the smallest product of gap and angle is shown; one that takes more than {limit:.0f} minutes is
+given up. *Farthest points* are chosen by Open3D in a cloud of
 {cloud:,} places.
 
 The files are not part of gaussmap; `GAUSSMAP_PARTS` names their folder. They come from Debian:
@@ -97,7 +98,7 @@ def page(parts: Sequence[OnPart]) -> str:
     texts = [
         wrapped(HEAD.format(close=100 * CLOSE, tuned=names(tuned), held=names(held))),
         wrapped(losses(parts)),
-        wrapped(METHOD.format(places=PLACES, cloud=CLOUD)),
+        wrapped(METHOD.format(places=PLACES, cloud=CLOUD, limit=LIMIT / 60.0)),
         "## Results\n",
         table(parts),
         wrapped(TARGETS.format(wider=WIDER, narrower=NARROWER)),

@@ -5,10 +5,11 @@
 
 from __future__ import annotations
 
+import multiprocessing
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import gaussmap as gm
 import numpy as np
@@ -17,16 +18,20 @@ from gaussmap.tools.cad.part import Part
 from ..peers.forms import Array
 from .reference import reference
 
-__all__ = ["BALANCED", "FARTHEST", "GMSH", "WAYS", "Cloud", "File", "Way"]
+__all__ = ["BALANCED", "FARTHEST", "GMSH", "LIMIT", "WAYS", "Cloud", "File", "Way", "within"]
+
+Result = TypeVar("Result")
 
 MILLIMETRES = 1e3
 # Farthest points are chosen in a cloud of this many places.
 CLOUD = 200_000
 # Gmsh: before all sizes are scaled a full turn of the normal has ELEMENTS, and the largest size is
 # one of LARGEST, relative to the diagonal. The count is met within NEAR, if TRIES are enough for
-# that, and CLOSE at any rate.
+# that, and CLOSE at any rate. A largest size for which all tries take more than LIMIT seconds is
+# given up.
 ELEMENTS, LARGEST = 12.0, (1.0, 0.06, 0.04)
 NEAR, CLOSE, TRIES = 0.02, 0.05, 7
+LIMIT = 300.0
 
 
 @dataclass(frozen=True)
@@ -87,25 +92,37 @@ def farthest(file: File) -> list[Cloud]:
 def meshed(file: File) -> list[Cloud]:
     """Return the vertices of meshes by Gmsh, of sizes by curvature with several largest sizes.
 
-    A vertex on an edge has the normals of all faces there.
+    A vertex on an edge has the normals of all faces there. Raises TimeoutError if no largest size
+    has a mesh in time.
     """
+    clouds = [within(LIMIT, mesh_of, file.path, file.count, largest) for largest in LARGEST]
+    done = [x for x in clouds if x is not None]
+    if not done:
+        raise TimeoutError(f"no mesh within {LIMIT:g} s")
+    return [x for x in done if abs(len(x) / file.count - 1.0) <= CLOSE]
+
+
+def within(seconds: float, work: Callable[..., Result], *arguments: Any) -> Result | None:
+    """Return what work returns in a process of its own, or None if it takes longer than that."""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        try:
+            return pool.apply_async(work, arguments).get(seconds)
+        except multiprocessing.TimeoutError:
+            return None
+
+
+def mesh_of(path: Path, count: int, largest: float) -> Cloud:
+    """Return about a count of vertices of a mesh, of a largest size relative to the diagonal."""
     import gmsh
 
-    if gmsh.isInitialized():
-        gmsh.finalize()
     gmsh.initialize(interruptible=False)
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", ELEMENTS)
-    gmsh.model.occ.importShapes(str(file.path))
+    gmsh.model.occ.importShapes(str(path))
     gmsh.model.occ.synchronize()
     box = np.reshape(gmsh.model.getBoundingBox(-1, -1), (2, 3))
-    found = []
-    for largest in LARGEST:
-        gmsh.option.setNumber("Mesh.MeshSizeMax", largest * float(np.linalg.norm(box[1] - box[0])))
-        cloud = tuned(file.count)
-        if abs(len(cloud) / file.count - 1.0) <= CLOSE:
-            found.append(cloud)
-    return found
+    gmsh.option.setNumber("Mesh.MeshSizeMax", largest * float(np.linalg.norm(box[1] - box[0])))
+    return tuned(count)
 
 
 def tuned(count: int) -> Cloud:

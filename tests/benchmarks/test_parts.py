@@ -1,10 +1,12 @@
 """The page about the quality of parts, from errors that nobody measured."""
 
+import time
+
 import numpy as np
 from gaussmap.benchmarks.parts.measure import Errors, OnPart, errors
 from gaussmap.benchmarks.parts.page import page
 from gaussmap.benchmarks.parts.reference import Reference
-from gaussmap.benchmarks.parts.ways import BALANCED, FARTHEST, GMSH, WAYS, Cloud
+from gaussmap.benchmarks.parts.ways import BALANCED, FARTHEST, GMSH, WAYS, Cloud, within
 
 
 def test_page_names_losses_first_and_judges_targets():
@@ -51,3 +53,8 @@ def test_samples_on_the_other_side_of_a_wall_do_not_count():
     found = errors(reference, cloud)
     np.testing.assert_allclose((found.gap, found.side), (2.0, 80.0))
     assert errors(reference, Cloud(places[:1], normals[:1, None])).side == np.inf
+
+
+def test_what_takes_too_long_is_given_up():
+    assert within(0.01, time.sleep, 60.0) is None
+    assert within(60.0, abs, -3) == 3
