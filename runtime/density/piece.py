@@ -13,6 +13,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array, Flags, Indices
 from ..domain.domain import Domain, brought_inside
+from ..domain.loops import Loops
 from ..domain.trim import Trim
 from ..place.on_spline import OnSpline
 from ..samples.samples import Samples
@@ -149,7 +150,8 @@ class Piece(ABC):
     def beside(self, places: Array, steps: Array) -> tuple[Array, Indices]:
         """Return which places are inside, of those left and right of places (k, 2) on a border.
 
-        And the numbers of these; the border runs along steps (k, 2).
+        And the numbers of these; the border runs along steps (k, 2). Where neither is, in tips too
+        narrow for that, the place on the border stands for both.
         """
         along = steps / self.sizes
         lengths = np.hypot(*along.T)
@@ -159,7 +161,23 @@ class Piece(ABC):
         low, high = np.array(self.domain).T
         inside = ((both > low) & (both < high)).all(axis=1)
         inside[inside] = self.contains(both[inside])
-        return both[inside], np.tile(np.arange(len(places)), 2)[inside]
+        narrow = np.flatnonzero(~inside.reshape(2, -1).any(axis=0))
+        on = np.clip(self.wrapped(places[narrow]), low, high)
+        allowed = self._allows(on)
+        numbers = np.tile(np.arange(len(places)), 2)[inside]
+        return (
+            np.concatenate([both[inside], on[allowed]]),
+            np.concatenate([numbers, narrow[allowed]]),
+        )
+
+    def _allows(self, places: Array) -> Flags:
+        """Return which places (k, 2) on its loops fulfil all other conditions of the trim."""
+        assert self.trim is not None
+        allowed = np.ones(len(places), np.bool_)
+        for part in self.trim.parts:
+            if len(places) and not isinstance(part, Loops):
+                allowed &= part.contains(places)
+        return allowed
 
 
 def boxes_between(u: Array, v: Array) -> Array:

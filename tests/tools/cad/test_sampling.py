@@ -244,6 +244,20 @@ def test_a_narrow_face_alone(made, is_reversed):
     assert gap(samples, points) <= samples.report.coverage <= 0.1
 
 
+@pytest.mark.parametrize("inner", [0.499, 0.4999])
+def test_coverage_holds_where_a_hole_touches_the_border(made, inner):
+    """The crescent between the circles gets narrower than the places beside the borders."""
+    turns = np.linspace(0.0, made.TURN, 720, endpoint=False) - np.pi / 2
+    circle, ends = np.stack([np.cos(turns), np.sin(turns)], axis=1), (-0.5, 0.5)
+    loops = [0.5 * circle, inner * circle[::-1] + [0.0, inner - 0.5]]
+    area = np.pi * (0.25 - inner**2)
+    face = made.face("plane", made.placement(), ends, ends, area, loops=loops)
+    samples = gm.sample(made.part([face]), coverage=0.02, density="uniform")
+    borders = np.concatenate([x + t * (np.roll(x, -1, 0) - x) for x in loops for t in (0, 0.5)])
+    points = np.column_stack([borders, np.zeros(len(borders))])
+    assert gap(samples, points) <= 1.001 * samples.report.coverage <= 1.001 * 0.02
+
+
 def test_failed_faces_are_left_out(made):
     faces = made.box_faces()
     faces[2] = FaceRecord(Geometry("unknown"), reason="it has no surface")
