@@ -50,7 +50,7 @@ Normals that are opposite count as equal, as those of Gmsh are not oriented; sid
 normals of places around a sample. *Gmsh* means the
 vertices of its meshes with sizes by curvature; a vertex on an edge counts once, and has the normals
 of all faces there, which makes its mean E small. Of meshes with three largest sizes, the one with
-the smallest product of gap and angle is shown; one that takes more than {limit:.0f} minutes is
+the smallest product of gap and angle is shown; one that takes more than {limit} s is
 given up. *Farthest points* are chosen by Open3D in a cloud of
 {cloud:,} places.
 
@@ -98,7 +98,7 @@ def page(parts: Sequence[OnPart]) -> str:
     texts = [
         wrapped(HEAD.format(close=100 * CLOSE, tuned=names(tuned), held=names(held))),
         wrapped(losses(parts)),
-        wrapped(METHOD.format(places=PLACES, cloud=CLOUD, limit=LIMIT / 60.0)),
+        wrapped(METHOD.format(places=PLACES, cloud=CLOUD, limit=LIMIT)),
         "## Results\n",
         table(parts),
         wrapped(TARGETS.format(wider=WIDER, narrower=NARROWER)),

@@ -6,7 +6,10 @@
 from __future__ import annotations
 
 import multiprocessing
+import resource
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -27,11 +30,11 @@ MILLIMETRES = 1e3
 CLOUD = 200_000
 # Gmsh: before all sizes are scaled a full turn of the normal has ELEMENTS, and the largest size is
 # one of LARGEST, relative to the diagonal. The count is met within NEAR, if TRIES are enough for
-# that, and CLOSE at any rate. A largest size for which all tries take more than LIMIT seconds is
-# given up.
+# that, and CLOSE at any rate. A largest size is given up if the tries take more than LIMIT seconds
+# of a processor.
 ELEMENTS, LARGEST = 12.0, (1.0, 0.06, 0.04)
 NEAR, CLOSE, TRIES = 0.02, 0.05, 7
-LIMIT = 300.0
+LIMIT = 180
 
 
 @dataclass(frozen=True)
@@ -98,16 +101,21 @@ def meshed(file: File) -> list[Cloud]:
     clouds = [within(LIMIT, mesh_of, file.path, file.count, largest) for largest in LARGEST]
     done = [x for x in clouds if x is not None]
     if not done:
-        raise TimeoutError(f"no mesh within {LIMIT:g} s")
+        raise TimeoutError(f"no mesh within {LIMIT} s")
     return [x for x in done if abs(len(x) / file.count - 1.0) <= CLOSE]
 
 
-def within(seconds: float, work: Callable[..., Result], *arguments: Any) -> Result | None:
-    """Return what work returns in a process of its own, or None if it takes longer than that."""
-    with multiprocessing.get_context("spawn").Pool(1) as pool:
+def within(seconds: int, work: Callable[..., Result], *arguments: Any) -> Result | None:
+    """Return what work returns, or None if it takes longer than some seconds of a processor.
+
+    It runs in a process of its own, which the system ends then.
+    """
+    limits = resource.RLIMIT_CPU, (seconds, seconds)
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, context, resource.setrlimit, limits) as pool:
         try:
-            return pool.apply_async(work, arguments).get(seconds)
-        except multiprocessing.TimeoutError:
+            return pool.submit(work, *arguments).result()
+        except BrokenProcessPool:
             return None
 
 

@@ -1,6 +1,6 @@
 """The page about the quality of parts, from errors that nobody measured."""
 
-import time
+import itertools
 
 import numpy as np
 from gaussmap.benchmarks.parts.measure import Errors, OnPart, errors
@@ -56,5 +56,5 @@ def test_samples_on_the_other_side_of_a_wall_do_not_count():
 
 
 def test_what_takes_too_long_is_given_up():
-    assert within(0.01, time.sleep, 60.0) is None
-    assert within(60.0, abs, -3) == 3
+    assert within(1, sum, itertools.repeat(0)) is None
+    assert within(60, abs, -3) == 3
