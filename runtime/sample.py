@@ -143,7 +143,8 @@ def sample(
     "balanced" has fewer normals, and samples that fill the gaps: no point is farther from a sample
     than r/κ, nor than r/√λ. κ is the larger of |κ₁| and |κ₂|, so that normals of neighbouring
     samples differ by about r radians; with `angle`, r is twice the angle. λ is 0.8 times the mean
-    of κ², or follows from `coverage`; with a count or a coverage, κ counts up to 20 √λ.
+    of κ², or follows from `coverage`; with a count, a coverage or an angle, κ counts up to 20 √λ,
+    for an angle in the mean of κ², too.
 
     "aligned" is for `count`, `angle` and `coverage`. Its lines u = const and v = const are spaced
     by how fast the normal turns across them. That takes fewer samples for the same angles where

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.errors import InputError
 from ..base.shares import apportioned
 from ..base.threads import counted
 from ..base.tolerances import FLAT_SURFACE, LENGTH_ERROR
@@ -41,6 +42,12 @@ WIDER = 2.0
 # Balanced: the floor of the target density, relative to the mean of κ², and the κ above which
 # curvature does not count for a count or a coverage, relative to the root of the floor.
 FLOOR, MOST_CURVED = 0.8, 20.0
+# For an angle the mean of κ² is that of the κ that counts: both fall until the mean is within this
+# factor of the one before.
+SETTLED = 0.9
+# An angle is refused if it would take more samples than this, which is minutes of work, and more
+# than on this number of spheres: not because it is small, but because of narrow faces.
+MOST_FOR_ANGLE, SPHERES = 2e6, 300.0
 # |K|^α vanishes where K does; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
 # The number of added samples that a sample at a normal is taken to save. It saves up to 0.7; with
@@ -168,13 +175,26 @@ class Filling:
     # --- the target density -----------------------------------------------------------------------
 
     def balanced(self, *, capped: bool = False) -> Space:
-        """Return the space with the floor of "balanced", and, if it is capped, a ceiling."""
-        request = self.request
+        """Return the space with the floor of "balanced", and, if it is capped, a ceiling.
+
+        For an angle the floor follows from what is below the ceiling: else tiny fillets would make
+        all flat parts dense.
+        """
+        floor = self._floor(math.inf)
+        if not capped:
+            return self.space.between(floor)
+        lower = self._floor(MOST_CURVED**2 * floor)
+        while self.request.angle is not None and lower < SETTLED * floor:
+            floor, lower = lower, self._floor(MOST_CURVED**2 * lower)
+        return self.space.between(floor, MOST_CURVED**2 * floor)
+
+    def _floor(self, ceiling: float) -> float:
+        """Return the floor of "balanced" for a target density with a ceiling."""
+        request, space = self.request, self.space.between(self.space.target.floor, ceiling)
         # Normals and angles are absolute: flat parts then count as parts of a sphere.
         absolute = request.normals is not None or request.angle is not None
-        least = self.request.solid_angle if absolute else FLAT_SURFACE
-        floor = FLOOR * max(self.space.integral, least) / self.space.area
-        return self.space.between(floor, MOST_CURVED**2 * floor if capped else math.inf)
+        least = request.solid_angle if absolute else FLAT_SURFACE
+        return FLOOR * max(space.integral, least) / space.area
 
     @property
     def _by_power(self) -> Space:
@@ -208,10 +228,12 @@ class Filling:
 
     def _by_radius(self) -> Cover:
         """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""
-        request, space, asked = self.request, self.balanced(), self._asked
+        request, asked = self.request, self._asked
+        space = self.balanced(capped=request.angle is not None)
         if request.angle is not None:
             frequency_within(request.angle)  # or InputError
             radius = WIDER * math.radians(request.angle)
+            _refuse_too_many(space, radius, request)
             given = self._at_lattices(radius, space)
         elif request.normals is not None:
             given = self._at_normals()
@@ -223,8 +245,9 @@ class Filling:
             given = self._at_lattices(radius, space)
         if asked is not None:
             floor = (radius / asked) ** 2
+            most = MOST_CURVED**2 * floor
             is_free = request.angle is None and request.normals is None
-            space = space.between(floor, MOST_CURVED**2 * floor if is_free else math.inf)
+            space = space.between(floor, most if is_free else max(most, space.target.ceiling))
         return self._to_radius(space, given, radius)
 
     def _to_radius(self, space: Space, given: Given, radius: float) -> Cover:
@@ -335,6 +358,20 @@ class Filling:
         expected = density * space.solid_angles(density)
         least = max(LATTICE * space.integral / (GREEDY * radius**2), 0.5)
         return at_lattices(space, density, np.flatnonzero(expected >= least), self.progress)
+
+
+def _refuse_too_many(space: Space, radius: float, request: Request) -> None:
+    """Raise InputError if an angle takes too many samples because faces are narrow."""
+    counts, angle = space.integrals / (GREEDY * radius**2), request.angle
+    total = float(counts.sum())
+    if angle is None or total <= MOST_FOR_ANGLE or space.integral <= SPHERES * request.solid_angle:
+        return
+    most, enough = int(counts.argmax()), angle * math.sqrt(total / MOST_FOR_ANGLE)
+    raise InputError(
+        f"{space.label} would take about {total / 1e6:,.1f} million samples for angle={angle:g}, "
+        f"{counts[most] / total:.0%} of them on {space.pieces[most].label}, which is narrow and "
+        f"sharply curved; ask for angle={enough:.2g} or more, or for a count."
+    )
 
 
 def _fill_normals(cover: Cover, number: int) -> None:

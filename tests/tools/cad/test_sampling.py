@@ -167,6 +167,31 @@ def test_an_angle_holds_in_narrow_tips(made, angle):
     assert samples.normal_deviation().normal_space <= samples.report.angle <= angle
 
 
+@pytest.mark.parametrize("radius", [1e-3, 1e-4])
+def test_an_angle_takes_few_samples_of_tiny_fillets(made, radius):
+    """They took 66,000 samples of the larger one, most of them on the plane."""
+    plane = made.face("plane", made.placement(), (0.0, 1.0), (0.0, 1.0), 1.0)
+    axis = made.placement((0.0, 0.0, -radius), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    quarter = (-np.pi / 2, 0.0)
+    fillet = made.face("cylinder", [*axis, radius], quarter, (0.0, 1.0), np.pi / 2 * radius)
+    samples = gm.sample(made.part([plane, fillet]), angle=5.0)
+    turn = np.linspace(*quarter, 2000)
+    normals = np.stack([0.0 * turn, -np.sin(turn), np.cos(turn)], axis=1)
+    chords = cKDTree(samples.normals).query(normals)[0]
+    assert np.degrees(2 * np.arcsin(chords.max() / 2)) <= samples.report.angle <= 5.0
+    assert len(samples) < 1000
+
+
+def test_an_angle_that_takes_millions_of_samples_is_refused(made):
+    radius, turn = 1e-4, (0.0, made.TURN)
+    area = made.TURN * radius
+    ends = turn, (0.0, 1.0), area, (made.TURN, 0.0)
+    part = made.part([made.face("cylinder", [*made.placement(), radius], *ends)], "needle")
+    with pytest.raises(gm.errors.InputError, match=r"million samples .* on face 0 .* or more, or"):
+        gm.sample(part, angle=3.5)
+    assert len(gm.sample(part, 50)) == 50
+
+
 def test_prescribed_normals(plates):
     normals = np.array([[1.0, 2, 2], [-2, 1, 2], [2, -2, 1]]) / 3
     with pytest.warns(gm.GaussmapWarning, match="33 % of its area is flat"):
