@@ -19,6 +19,9 @@ __all__ = ["normal_deviation", "widest_angle"]
 PLACES, FEWEST = 16, 20_000
 # Then cells that may hold a larger angle than the largest found so far are cut, this often.
 CUTS = 6
+# There are no more of these places than MOST; their cells are cut as much more often, BLOCK of them
+# at a time, for the memory.
+MOST, BLOCK = 1 << 21, 1 << 18
 # Decimal places to which normals have to differ in the search for the nearest one.
 DIGITS = 9
 
@@ -58,12 +61,18 @@ def widest_angle(space: Space, normals: Array) -> float:
 def _largest(space: Space, samples: int, chord_of: Callable[[Array], Array]) -> float:
     """Return the largest angle in degrees that is found of chords at places."""
     even, found = space.uniform.exact, 0.0
-    cells = even.cut(math.sqrt(even.area / max(PLACES * samples, FEWEST)))
-    for _ in range(CUTS):
-        chords = np.where(cells.rows[:, 3:6].any(axis=1), chord_of(cells.rows), 0.0)
-        found = max(found, float(chords.max(initial=0.0)))
-        # Within a cell the normal turns by no more than this.
-        cells = even.quarters(cells[chords + cells.chords > found])
-        if len(cells) == 0:
-            break
+    wanted = max(PLACES * samples, FEWEST)
+    first = min(wanted, MOST)
+    all_cells, cuts = even.cut(math.sqrt(even.area / first)), CUTS
+    while first < wanted:
+        first, cuts = 4 * first, cuts + 1
+    for start in range(0, len(all_cells), BLOCK):
+        cells = all_cells[start : start + BLOCK]
+        for _ in range(cuts):
+            chords = np.where(cells.rows[:, 3:6].any(axis=1), chord_of(cells.rows), 0.0)
+            found = max(found, float(chords.max(initial=0.0)))
+            # Within a cell the normal turns by no more than this.
+            cells = even.quarters(cells[chords + cells.chords > found])
+            if len(cells) == 0:
+                break
     return math.degrees(2.0 * math.asin(min(found, 2.0) / 2.0))

@@ -66,3 +66,12 @@ def test_samples_from_a_file_need_a_spline(tmp_path):
 def test_no_samples_are_far_from_everything():
     samples = gm.sample(gm.fit("torus", CELLS), 100)[:0]
     assert samples.normal_deviation() == (180.0, 180.0)
+
+
+def test_many_places_are_searched_block_by_block(monkeypatch):
+    """Fewer places at first, whose cells are cut once more, find about the same angles."""
+    samples = gm.sample(gm.fit("torus", (12, 12)), 60)
+    expected = samples.normal_deviation()
+    for name, value in (("MOST", 5000), ("BLOCK", 1000)):
+        monkeypatch.setattr(f"gaussmap.runtime.density.deviation.{name}", value)
+    np.testing.assert_allclose(samples.normal_deviation(), expected, rtol=0.01)
