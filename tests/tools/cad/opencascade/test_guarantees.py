@@ -61,8 +61,6 @@ from .conftest import written
 
 EDGE = TopAbs_ShapeEnum.TopAbs_EDGE
 SLACK = 1.02
-# Not met: where a hole touches a side, nothing of the last 1e-4 of the tips' widths is sampled.
-WIDER = {"touching hole": 1.1}
 SIDE, TURN = 60.0, 5.0
 # Where places are on each edge: evenly, and close to its ends.
 NEAR_ENDS = 10.0 ** -np.arange(2.5, 7.0)
@@ -300,10 +298,10 @@ def check_angle(on: SimpleNamespace, asked: float) -> None:
     assert samples.report.angle <= 1.1 * asked
 
 
-def check_coverage(on: SimpleNamespace, asked: float, slack: float = SLACK) -> None:
+def check_coverage(on: SimpleNamespace, asked: float) -> None:
     samples = gm.sample(on.part, coverage=asked * on.size, fields=FIELDS)
     assert samples.report.coverage is not None
-    assert widest_gap(on, samples) <= slack * samples.report.coverage
+    assert widest_gap(on, samples) <= SLACK * samples.report.coverage
     assert samples.report.coverage <= asked * on.size
 
 
@@ -324,7 +322,7 @@ def test_guarantees_hold_on_all_made_up_parts(name, tmp_path):
     for angle in (5.0, 2.0, 1.0):
         check_angle(on, angle)
     for coverage in (0.05, 0.02):
-        check_coverage(on, coverage, WIDER.get(name, SLACK))
+        check_coverage(on, coverage)
 
 
 @pytest.mark.slow
