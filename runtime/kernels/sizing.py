@@ -16,9 +16,10 @@ __all__ = ["TargetDensity", "density_of"]
 
 
 class TargetDensity(NamedTuple):
-    """Samples per area, up to a factor: a κ² + b |K|^exponent, from the floor to the ceiling.
+    """Samples per area, up to a factor: a κ^(2e) + b |K|^e, from the floor to the ceiling.
 
-    κ is the larger principal curvature in modulus, a the curvature weight and b the Gauss weight.
+    κ is the larger principal curvature in modulus, a the curvature weight, b the Gauss weight and e
+    the exponent.
     Curvatures are those of the scaled surface.
     """
 
@@ -45,7 +46,7 @@ def density_of(K, H, radius, target):
     limit = 1.0 / (radius * radius)
     if target.curvature_weight > 0.0:
         k = largest_curvature(K, H)
-        density += target.curvature_weight * at_most(k * k, limit)
+        density += target.curvature_weight * math.pow(at_most(k * k, limit), target.exponent)
     if target.gauss_weight > 0.0:
         density += target.gauss_weight * math.pow(at_most(abs(K), limit), target.exponent)
     return max(min(density, target.ceiling), target.floor)

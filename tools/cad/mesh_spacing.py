@@ -1,8 +1,9 @@
 """How far apart vertices of a mesh of a part are, and the planes in which faces are triangulated.
 
-For well-shaped triangles vertices follow the target density of the space. For triangles that are
-close to the normals each parameter of a face is replaced by how far the normal turns along it:
-vertices are even in the plane of these two. So rulings, and the inside of planes, need none.
+For well-shaped triangles vertices follow the target density of the space, which is as κ. For
+triangles that are close to the normals each parameter of a face is replaced by how far the normal
+turns along it: vertices are even in the plane of these two. So rulings, and the inside of planes,
+need none.
 """
 
 from __future__ import annotations
@@ -51,6 +52,9 @@ class Spacing:
     count: int
     # Whether triangles are to be well shaped, and not close to the normals.
     by_shape: ClassVar[bool] = True
+    # The density is κ^(2 · exponent): triangles of size h are κ h²/8 from the surface, and these
+    # distances are even if 1/h² is as κ.
+    exponent: ClassVar[float] = 0.5
 
     @cached_property
     def covered(self) -> tuple[Space, Indices]:
@@ -85,6 +89,7 @@ class ByNormals(Spacing):
     """Vertices are even by how far normals turn, along each parameter of a face."""
 
     by_shape: ClassVar[bool] = False
+    exponent: ClassVar[float] = 1.0
 
     @cached_property
     def pieces(self) -> list[TurnedPiece]:

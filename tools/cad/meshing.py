@@ -24,6 +24,7 @@ from ...runtime.density.cells import Cells, by_piece
 from ...runtime.density.cover import Cover
 from ...runtime.density.filling import Filling, target_of
 from ...runtime.density.grid import Grid
+from ...runtime.density.relaxation import spread
 from ...runtime.density.space import Space
 from ...runtime.samples.request import Request, checked_request
 from ...runtime.samples.samples import Samples
@@ -31,7 +32,7 @@ from ..kernels.flips import flip_edges
 from ..meshes.creased import mean_normals
 from ..meshes.links import edge_numbers, neighbours
 from ..meshes.mesh import scaled
-from ..meshes.triangulated import LARGEST_DEVIATION, checked_prefer
+from ..meshes.triangulated import ENOUGH, LARGEST_DEVIATION, checked_prefer
 from .edges import Places, at_places
 from .mesh_edges import MeshEdges, SampledEdges
 from .mesh_faces import EXTRA, Crossing, FaceBorder, triangles_of
@@ -81,7 +82,10 @@ def mesh_of_part(
             f"part {part.name!r} does not say how its edges go around its faces, as those in files "
             "of older versions of gaussmap; read the CAD file again."
         )
-    whole = space_of(part, None, target_of(request_of(count, density)))
+    target = target_of(request_of(count, density))
+    if target.curvature_weight > 0.0:
+        target = target._replace(exponent=spaced.exponent)
+    whole = space_of(part, None, target)
     known = MeshEdges.of(Spacing(whole, count))
     failed = dict(whole.failed) | {
         x.face.index: f"{x.label} has edges whose places on it are not known."
@@ -130,9 +134,8 @@ class Corners:
     def flipped(self, points: Array, by_shape: bool) -> Indices:
         """Return triangles between places with points (C, 3) that flips of edges have improved.
 
-        They are better shaped, or closer to the normals.
-
-        Triangles at places without a normal, as at tips, stay as they are.
+        They are closer to the normals; `by_shape`, better shaped, and then closer to the normals
+        where no angle becomes small. Triangles at places without a normal, as at tips, stay.
         """
         count, normals = len(self.pieces), self.known.normals
         triangles = self.triangles.copy()
@@ -141,11 +144,13 @@ class Corners:
         without = ~np.asarray(normals.any(axis=1))[triangles].all(axis=1)
         stay = np.concatenate([np.sort(self.fixed, axis=1) @ [count, 1], numbers[without].ravel()])
         adjacent[np.isin(numbers, stay)] = -1
-        flip_edges(
-            scaled(points), normals, triangles, np.ones_like(triangles), adjacent, by_shape,
-            math.cos(math.radians(LARGEST_DEVIATION)),
-            np.arange(len(triangles)), np.ones(len(triangles), dtype=np.bool_),
-        )  # fmt: skip
+        ways = [(True, math.cos(math.radians(LARGEST_DEVIATION)))] if by_shape else []
+        ways.append((False, math.tan(math.radians(ENOUGH)) if by_shape else 0.0))
+        for way, least in ways:
+            flip_edges(
+                scaled(points), normals, triangles, np.ones_like(triangles), adjacent, way, least,
+                np.arange(len(triangles)), np.ones(len(triangles), dtype=np.bool_),
+            )  # fmt: skip
         return triangles
 
     def normals(self, space: PartSpace, triangles: Indices) -> Array:
@@ -320,7 +325,7 @@ class Meshing:
         cover = Cover(space, grid=Grid(cells, none, none, (0, 0)))
         inside = self.count - len(sampled.points)
         if inside:
-            cover.to_count(len(cells) + inside)
+            spread(cover, len(cells) + inside, 0)
         return cover
 
     def _corners(self, borders: list[FaceBorder], added: Cells, names: Indices) -> Corners:

@@ -138,9 +138,9 @@ def flip_edge(points, normals, triangles, sides, neighbours, by_shape, least, t,
     """Flip the edge of triangle t opposite to its corner k if that improves the two triangles.
 
     The edge a b of the triangles c a b and d b a becomes the edge c d of c a d and d b c. That
-    raises their smallest cosine or, `by_shape`, the tangent of their smallest angle; then the
-    smallest cosine may fall, down to `least`. Returns the triangle across the edge, or −1 if there
-    is no flip.
+    raises their smallest cosine or, `by_shape`, the tangent of their smallest angle. The other one
+    of both may fall, down to `least`. Returns the triangle across the edge, or −1 if there is no
+    flip.
     """
     other = neighbours[t, k]
     if other < 0:
@@ -153,10 +153,10 @@ def flip_edge(points, normals, triangles, sides, neighbours, by_shape, least, t,
     turned = sides[t, ka] * sides[other, oa]
     if d == c or turned != sides[t, kb] * sides[other, ob]:
         return -1
-    if by_shape:
+    if by_shape or least > 0.0:
         now = min(smallest_tangent(points, c, a, b), smallest_tangent(points, d, b, a))
         then = min(smallest_tangent(points, c, a, d), smallest_tangent(points, d, b, c))
-        if then <= now + QUALITY_GAIN:
+        if then <= (now + QUALITY_GAIN if by_shape else min(now, least)):
             return -1
     side_a, side_b, side_c = sides[t, ka], sides[t, kb], sides[t, k]
     side_d = turned * sides[other, od]

@@ -17,7 +17,16 @@ from ..kernels import flips as kernels
 from .links import neighbours
 from .mesh import Mesh, cosines_of, scaled, tangents_of
 
-__all__ = ["Prefer", "Triangulated", "checked_prefer", "flip_edges", "improved", "too_few"]
+__all__ = [
+    "ENOUGH",
+    "LARGEST_DEVIATION",
+    "Prefer",
+    "Triangulated",
+    "checked_prefer",
+    "flip_edges",
+    "improved",
+    "too_few",
+]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -166,8 +175,9 @@ def flip_edges(mesh: Triangulated, prefer: Prefer, least: float = 1.0) -> int:
 
     For "shape" cosines between triangles and normals may fall, down to `least`.
     """
+    by_shape = prefer == "shape"
     return kernels.flip_edges(
-        *mesh.arrays(), prefer == "shape", least,
+        *mesh.arrays(), by_shape, least if by_shape else 0.0,
         np.arange(len(mesh.triangles)), np.ones(len(mesh.triangles), dtype=np.bool_),
     )  # fmt: skip
 

@@ -338,9 +338,11 @@ def arcs(radius: float, others: float, shift: float) -> gm.Surface:
     return gm.Surface.from_nurbs((2, 1), ([0, 0, 0, 1, 1, 1], [0, 0, 1, 1]), points, weights)
 
 
-def steps_of_arcs(*surfaces: gm.Surface) -> list[int]:
-    """Return the numbers of steps of all edges that are not straight in a mesh by normals."""
-    mesh = gm.sample(gm.Part(surfaces), 200).mesh(prefer="normals")
+def steps_of_arcs(
+    *surfaces: gm.Surface, prefer: Literal["shape", "normals"] = "normals", count: int = 200
+) -> list[int]:
+    """Return the numbers of steps of all edges that are not straight."""
+    mesh = gm.sample(gm.Part(surfaces), count).mesh(prefer=prefer)
     assert isinstance(mesh, PartMesh)
     return [len(x) - 1 for x in mesh.lines if np.ptp(mesh.vertices[x][:, 2]) < 1e-9 and len(x) > 2]
 
@@ -352,6 +354,24 @@ def test_small_cylinders_are_at_most_three_times_as_coarse_as_the_mean():
         numbers = steps_of_arcs(arcs(1.0, 1.0, 1.0), small)
     assert len(numbers) == 4
     assert max(numbers) == pytest.approx(3.0 * min(numbers), rel=0.1)
+
+
+def test_distances_of_even_meshes_are_even():
+    """Of radii r, steps h have the distance h²/8r; if that is even, arcs have steps as √r."""
+    small = arcs(0.5, 1.0, 1.0).transformed(np.eye(4) + np.outer([0, 0, 1, 0], [0, 0, 0, 3.0]))
+    numbers = steps_of_arcs(arcs(1.0, 1.0, 1.0), small, prefer="shape", count=2000)
+    assert len(numbers) == 4
+    assert max(numbers) == pytest.approx(np.sqrt(2.0) * min(numbers), rel=0.06)
+
+
+def test_even_meshes_are_flipped_to_the_normals_where_no_angle_becomes_small(made, monkeypatch):
+    part, count = made.cylinder(), 1000
+    mesh = sound(meshed(part, count), count)
+    assert np.quantile(mesh.smallest_angles, 0.01) > 24.0
+    monkeypatch.setattr("gaussmap.tools.cad.meshing.ENOUGH", 89.0)  # which no triangle has
+    by_shape = meshed(part, count)
+    assert by_shape.smallest_angles.mean() > mesh.smallest_angles.mean() + 1.0
+    assert mesh.angles.mean() < 0.95 * by_shape.angles.mean()
 
 
 def test_borders_of_planes_turn_by_twice_the_angle_of_cylinders():
