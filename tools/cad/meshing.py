@@ -10,8 +10,10 @@ from __future__ import annotations
 import itertools
 import math
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -48,6 +50,9 @@ INSIDE = 1e-6
 # Edges are divided further so many times, until triangles are proper; samples that fell outside of
 # the polygons around faces are replaced so many times.
 ROUNDS, REFILLS = 15, 8
+# If a mesh has faults, larger counts are tried, each this many times the one before, up to so many
+# times what edges need at least: if one has none, that is what the error says.
+MORE, MANY = 1.2, 16
 # The densities of samples that meshes follow.
 DENSITIES = ("balanced", "uniform")
 SPACINGS = {"shape": Spacing, "normals": ByNormals}
@@ -92,8 +97,29 @@ def mesh_of_part(
         for x in whole.pieces
         if not known.is_known(x.face)
     }
+    check_larger = partial(_check_larger, part, whole, count, failed, spaced, known)
+    try:
+        mesh, is_proper = _meshed(part, whole, count, failed, spaced)
+    except SurfaceError:
+        check_larger()
+        raise
+    if not is_proper:
+        check_larger()
+    if failed := mesh.failed:
+        text = (
+            f"lacks {plural(len(failed), 'face')} of {len(part):,}: {next(iter(failed.values()))}"
+        )
+        warnings.warn(f"the mesh of part {part.name!r} {text}", GaussmapWarning, stacklevel=5)
+    return mesh
+
+
+def _meshed(
+    part: Part, whole: PartSpace, count: int, failed: Mapping[int, str], spaced: type[Spacing]
+) -> tuple[PartMesh, bool]:
+    """Return a mesh, and whether no face failed beside those, and no triangle points inward."""
+    lacking = dict(failed)
     while True:
-        meshing = Meshing.of(part, whole, count, failed, spaced)
+        meshing = Meshing.of(part, whole, count, lacking, spaced)
         bad = meshing.refine()
         if not bad:
             try:
@@ -102,14 +128,28 @@ def mesh_of_part(
                 bad = {error.face: f"of face {error.face}, {error}."}
             else:
                 if not bad:
-                    break
-        failed |= bad
-    if failed:
-        text = (
-            f"lacks {plural(len(failed), 'face')} of {len(part):,}: {next(iter(failed.values()))}"
-        )
-        warnings.warn(f"the mesh of part {part.name!r} {text}", GaussmapWarning, stacklevel=5)
-    return mesh
+                    return mesh, len(lacking) == len(failed) and not len(_inverted(mesh))
+        lacking |= bad
+
+
+def _check_larger(
+    part: Part,
+    whole: PartSpace,
+    count: int,
+    failed: Mapping[int, str],
+    spaced: type[Spacing],
+    edges: MeshEdges,
+) -> None:
+    """Raise InputError if a larger count, not too large, has a mesh without faults."""
+    larger = math.ceil(MORE * count)
+    while larger < MANY * edges.least:
+        with suppress(SurfaceError):  # no face has triangles
+            if _meshed(part, whole, larger, failed, spaced)[1]:
+                raise InputError(
+                    f"a mesh of part {part.name!r} with {count:,} vertices would lack faces, or "
+                    f"have triangles that point inward; {larger:,} are enough."
+                )
+        larger = math.ceil(MORE * larger)
 
 
 def request_of(count: int, density: str) -> Request:

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.cad import meshing
 from gaussmap.tools.cad.examples import all_kinds, box
 from gaussmap.tools.cad.face_pieces import FacePiece
 from gaussmap.tools.cad.mesh_spacing import TurnedPiece
@@ -203,17 +204,31 @@ def test_counts_below_what_edges_need_are_refused(made):
             gm.sample(part, least - 1).mesh()
 
 
+def test_counts_with_faults_are_refused_with_one_that_has_none(made):
+    part = ring(made, 0.99)
+    with pytest.raises(gm.errors.InputError, match=r"30 vertices would lack .* 36 are enough"):
+        gm.sample(part, 30).mesh()
+    assert len(meshed(part, 36).vertices) == 36
+    assert meshed(part, 36).failed == {}
+
+
 # --- what fails -----------------------------------------------------------------------------------
 
 
-def test_a_face_whose_border_crosses_itself_is_missing(made):
-    """The other faces are there, and the mesh never says that it is closed."""
+def crossed_box() -> Part:
+    """Return a box whose face 5 has a border that crosses itself."""
     whole = box(*SIZES)
     starts = whole.arrays["side_point_starts"]
     side, _ = whole.faces[5].wires[0][0]
     points = whole.arrays["side_points"][starts[side] : starts[side + 1]]
     points[:, :2] = [(0.9, 1.9), (0.1, 1.9)]
     points[:, 2:] = points[1, :2] - points[0, :2]
+    return whole
+
+
+def test_a_face_whose_border_crosses_itself_is_missing():
+    """The other faces are there, and the mesh never says that it is closed."""
+    whole = crossed_box()
     with pytest.warns(gm.GaussmapWarning, match="lacks 1 face of 6: of face 5 .* crosses itself"):
         mesh = gm.sample(whole, 400).mesh()
     assert list(mesh.failed) == [5]
@@ -222,6 +237,20 @@ def test_a_face_whose_border_crosses_itself_is_missing(made):
     assert mesh.euler_characteristic == 1
     assert "1 face missing" in mesh.summary()
     assert len(mesh.vertices) == 400
+
+
+def test_larger_counts_are_tried_up_to_a_bound(monkeypatch):
+    """The edges of a box need 8 vertices: counts below 16 times that are tried."""
+    tried, meshed = [], meshing._meshed
+
+    def noted(part, whole, count, failed, spaced):
+        tried.append(count)
+        return meshed(part, whole, count, failed, spaced)
+
+    monkeypatch.setattr(meshing, "_meshed", noted)
+    with pytest.warns(gm.GaussmapWarning, match="crosses itself"):
+        gm.sample(crossed_box(), 60).mesh()
+    assert tried == [60, 72, 87, 105, 126]
 
 
 def test_edges_without_places_leave_their_faces_out():
