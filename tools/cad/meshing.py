@@ -414,7 +414,7 @@ class Meshing:
             points, mean_normals(vertices, normals, count), uv, vertices,
             np.full(count, -1), self.part.name,
             corner_normals=normals, face_index=faces[corners.pieces[triangles[:, 0]]],
-            lines=tuple(self._lines(sampled)), failed=self.failed,
+            lines=tuple(self._lines(sampled)), failed=self.failed, unit=self.part.unit,
         )  # fmt: skip
 
     def _lines(self, sampled: SampledEdges) -> Iterator[Indices]:

@@ -36,7 +36,8 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
         - `.obj`: text of all digits; vertices with normals, and texture coordinates, see
           `Mesh.corner_uv`.
         - `.stl`: binary, float32; triangles alone.
-        - `.3mf`: vertices and triangles, for 3-D printers; the unit counts as a millimetre.
+        - `.3mf`: vertices and triangles, for 3-D printers, with the unit of length; one that is not
+          known counts as a millimetre.
         - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`.
         - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
         - `.glb`: binary glTF with normals and texture coordinates, float32; needs the extra

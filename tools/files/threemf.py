@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from .lengths import METRES
+
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
@@ -27,12 +29,17 @@ RELATIONS = f"""{HEAD}<Relationships xmlns="{PACKAGE}/relationships">
 Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
 </Relationships>
 """
+# The units that the format has, by their names here. Lengths in others are written in millimetres.
+UNITS = {
+    "um": "micron", "mm": "millimeter", "cm": "centimeter", "m": "meter",
+    "in": "inch", "ft": "foot",
+}  # fmt: skip
 # Zip archives hold a time, of 1980 at the earliest: the same mesh gives the same bytes.
 TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write_3mf(mesh: Mesh, path: Path) -> None:
-    """Write vertices and triangles; the unit of length counts as a millimetre.
+    """Write vertices and triangles; a unit of length that is not known counts as a millimetre.
 
     The format has no triangles with a vertex twice: these are left out.
     """
@@ -49,9 +56,11 @@ def write_3mf(mesh: Mesh, path: Path) -> None:
 
 def _model(mesh: Mesh) -> Iterable[str]:
     """Yield the lines of the model."""
-    yield f'{HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{CORE}">\n<resources>\n'
+    unit = mesh.unit if mesh.unit in UNITS else "mm"
+    factor = METRES.get(mesh.unit, METRES[unit]) / METRES[unit]
+    yield f'{HEAD}<model unit="{UNITS[unit]}" xml:lang="en-US" xmlns="{CORE}">\n<resources>\n'
     yield '<object id="1" type="model">\n<mesh>\n<vertices>\n'
-    for x, y, z in mesh.vertices.tolist():
+    for x, y, z in (mesh.vertices * factor).tolist():
         yield f'<vertex x="{x!r}" y="{y!r}" z="{z!r}"/>\n'
     yield "</vertices>\n<triangles>\n"
     a, b, c = mesh.triangles.T

@@ -97,6 +97,7 @@ class CreasedMesh(Mesh):
             places.reshape(-1, 3).astype(np.int64),
             self.sample_index[at],
             name=self.name,
+            unit=self.unit,
         )
 
 

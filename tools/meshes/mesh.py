@@ -56,6 +56,8 @@ class Mesh(Methods):
         The rectangle of the parameters, if it is known.
     boundary : pair of pairs of str or None
         The boundary conditions there, see `Surface`; "pole" for any side that is one point.
+    unit : str
+        The unit of length, such as "mm"; empty if it is not known.
 
     Raises
     ------
@@ -93,9 +95,11 @@ class Mesh(Methods):
     left_out: int = 0
     domain: Domain | None = None
     boundary: Boundary | None = None
+    unit: str = ""
 
     def __post_init__(self) -> None:
         text(self.name, "name")
+        text(self.unit, "unit")
         floating, whole = np.dtype(np.float64), np.dtype(np.int64)
         count = len(checked_array("vertices", self.vertices, ("M", 3), floating))
         faces = len(checked_array("triangles", self.triangles, ("T", 3), whole))

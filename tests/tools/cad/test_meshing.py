@@ -3,6 +3,7 @@
 # pyright: reportAttributeAccessIssue=false
 
 import zipfile
+from dataclasses import replace
 from typing import Literal
 from xml.etree import ElementTree
 
@@ -527,6 +528,23 @@ def test_3mf_files(tmp_path):
     assert np.array_equal(corners, mesh.triangles)
     (item,) = model.iter(f"{core}item")
     assert item.get("objectid") == next(model.iter(f"{core}object")).get("id")
+
+
+@pytest.mark.parametrize(
+    ("unit", "written", "factor"),
+    [("um", "micron", 1.0), ("mm", "millimeter", 1.0), ("cm", "centimeter", 1.0),
+     ("m", "meter", 1.0), ("in", "inch", 1.0), ("ft", "foot", 1.0), ("", "millimeter", 1.0),
+     ("km", "millimeter", 1e6), ("yd", "millimeter", 914.4)],
+)  # fmt: skip
+def test_3mf_files_have_a_unit(tmp_path, unit, written, factor):
+    mesh = meshed(box(*SIZES), 8)
+    assert mesh.unit == "mm"
+    replace(mesh, unit=unit).write(tmp_path / "part.3mf")
+    with zipfile.ZipFile(tmp_path / "part.3mf") as file:
+        model = ElementTree.fromstring(file.read("3D/3dmodel.model"))
+    assert model.get("unit") == written
+    xs = [float(x.attrib["x"]) for x in model.iter() if x.tag.endswith("}vertex")]
+    np.testing.assert_allclose(xs, mesh.vertices[:, 0] * factor, rtol=1e-15)
 
 
 def test_command_line(tmp_path, monkeypatch, capsys, main):
