@@ -254,6 +254,22 @@ def test_larger_counts_are_tried_up_to_a_bound(monkeypatch):
     assert tried == [60, 72, 87, 105, 126]
 
 
+def test_edges_are_divided_again_as_long_as_triangles_point_inward(monkeypatch):
+    """But not more often than that: here, an edge never gets better."""
+    rounds, wrong = [], meshing._wrong
+
+    def noted(sampled, mesh, edges):
+        rounds.append(len(mesh.lines[0]))
+        return wrong(sampled, mesh, edges)
+
+    monkeypatch.setattr(meshing, "_wrong", noted)
+    monkeypatch.setattr(meshing, "_inverted", lambda mesh: mesh.lines[0][None, :2])
+    monkeypatch.setattr(meshing, "REFILLS", 1)
+    assert len(meshed(box(*SIZES), 150).vertices) == 150
+    assert len(rounds) == 15
+    assert rounds[-1] > rounds[0]
+
+
 def test_edges_without_places_leave_their_faces_out():
     whole = box(*SIZES)
     side, _ = whole.faces[2].wires[0][1]
@@ -432,6 +448,25 @@ def test_normals_of_waves_are_seen():
     part = gm.Part([gm.Surface.from_callable(waves, ((0.0, 1.0), (0.0, 1.0)))])
     turned = TurnedPiece.of(FacePiece.of(part.faces[0]), 0)
     assert turned.lengths[0][-1] == pytest.approx(20.0 * np.arctan(slope), rel=0.05)
+
+
+def test_a_parameter_along_which_normals_do_not_turn_counts_a_little(made):
+    """Otherwise a cylinder would have no area in its plane."""
+    turned = TurnedPiece.of(FacePiece.of(made.cylinder().faces[0]), 0)
+    assert turned.lengths[0][-1] == pytest.approx(2.0 * np.pi, rel=1e-3)
+    assert turned.lengths[1][-1] == pytest.approx(1e-3 * turned.lengths[0][-1], rel=1e-12)
+
+
+def test_faces_whose_normals_are_the_same_do_not_share_vertices():
+    """Planes of two faces are apart: each of both has vertices as if it were alone."""
+    curve = [(0.0, 0.0), (0.5, 0.8), (1.0, 0.0)]
+    heights = [[(x, y, z + w) for y, w in curve] for x, z in curve]
+    arch = gm.Surface.from_nurbs((2, 2), ([0, 0, 0, 1, 1, 1],) * 2, heights)
+    shifted = arch.transformed(np.eye(4) + np.outer([1, 0, 0, 0], [0, 0, 0, 5.0]))
+    mesh = meshed(gm.Part([arch, shifted]), 400, "normals")
+    inside = mesh.vertices[inner(mesh)][:, 0]
+    assert len(inside) > 100
+    assert (inside > 2.0).mean() == pytest.approx(0.5, abs=0.05)
 
 
 def test_steps_along_edges_are_even_whatever_their_parameters():
