@@ -149,6 +149,33 @@ Seconds for `samples.mesh(prefer="normals")` of N samples, the median of {rounds
 the default density most of the time is Qhull's triangulation, which grids do not need:
 """
 
+# Measured once: these files, of Open CASCADE, Gmsh and Netgen, are not in here.
+OF_PARTS = """\
+## CAD parts
+
+Meshes of CAD files with 8,000 vertices, measured once and not by `make meshes`: the mean angle
+between the normals of 150,000 places and those of the nearest triangles, the Hausdorff distance in
+% of the diagonal, and the smallest angle; Gmsh's vertices are within 2 %, sizes by curvature, of
+each figure the best of three largest sizes.
+"""
+ROWS_OF_PARTS = (
+    ("screw.step", "0.77 / 0.88", "0.020 / 0.019", "21.3 / 32.3"),
+    ("CrankArm.brep", "1.76 / 2.19", "0.050 / 0.069", "1.3 / 0.0"),
+    ("bottle.brep", "1.09 / 2.34", "0.130 / 0.738", "1.4 / 0.1"),
+    ("as1-tu-203.stp", "0.95 / 1.09", "0.093 / 0.100", "6.9 / 14.1"),
+    ("hammer.iges", "1.93 / 2.92", "0.065 / 0.074", "1.9 / 1.0"),
+)
+BY_NORMALS = """\
+5 % of the triangles have smaller angles than 15° to 27°, and of Gmsh's, 28° to 48°: where sizes
+change, at fillets beside planes, ours are worse.
+
+With `prefer="normals"` the mean angle is 0.35° on bottle.brep and 0.08° on as1-tu-203.stp, that of
+Open CASCADE's with as many vertices, for several deflections, at least 0.52° and 0.11°. Its
+distances are smaller: 0.041 % to 0.063 % on the bottle, of ours 0.085 %, and 0.001 % against
+0.003 % on as1. 99 % of the angles are below 5.1° on the bottle, of Open CASCADE's below 2.5° to
+5.5°, and below 1.2° and 1.4° on as1.
+"""
+
 
 def lattice() -> int:
     """Return how many points of a triangle are compared."""
@@ -278,6 +305,13 @@ def seconds(form: ClosedForm, count: int, density: str) -> float:
     return median(timed(mesh)[0] for _ in range(ROUNDS))
 
 
+def of_parts() -> str:
+    """Return the section on CAD parts."""
+    header = ["samples.mesh() / Gmsh", "mean angle", "distance in %", "smallest angle"]
+    table = markdown(header, [list(x) for x in ROWS_OF_PARTS])
+    return "\n".join([wrapped(OF_PARTS), table, wrapped(BY_NORMALS)])
+
+
 def main() -> None:
     """Measure everything and print the page."""
     counts = " and ".join(f"{x:,}" for x in COUNTS)
@@ -290,6 +324,7 @@ def main() -> None:
         shapes(),
         wrapped(TIME.format(rounds=ROUNDS)),
         times(),
+        of_parts(),
         "\n".join(machine()) + "\n",
     ]
     print("\n".join(parts), end="")
