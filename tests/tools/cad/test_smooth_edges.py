@@ -47,7 +47,7 @@ def test_each_point_of_a_sphere_is_there_once(matrix, trimmed):
     assert (gauss_map.degree(normals) == 1).all()
     samples = gauss_map.points(normals)
     np.testing.assert_allclose(samples.points, normals[samples.normal_index], atol=1e-14)
-    assert trimmed or (samples.face_index[samples.normal_index < 50] == 0).all()
+    assert trimmed or (np.asarray(samples.face_index)[samples.normal_index < 50] == 0).all()
 
 
 @pytest.mark.parametrize("v", [1.0, 2.0], ids=["elliptic", "hyperbolic"])
@@ -83,12 +83,12 @@ def test_faces_that_only_touch_have_points_of_their_own():
     matrix[0, 3] = -0.5  # inside of the sphere, in contact with it at its edge
     cap = cut(gm.surfaces.sphere(), (2.0, 4.0), (-1.0, 1.0), matrix)
     samples = gm.GaussMap(gm.Part([*halves(), cap])).points([[-1.0, 0.0, 0.0]])
-    assert samples.face_index.tolist() == [0, 2]
+    assert np.asarray(samples.face_index).tolist() == [0, 2]
     np.testing.assert_allclose(samples.points, [[-1.0, 0.0, 0.0]] * 2, atol=1e-14)
 
 
 def test_gaps_are_filled_beside_what_is_left():
     samples = gm.sample(gm.Part(halves()), normals=meridian(), coverage=0.3)
     assert (np.bincount(samples.normal_index[samples.normal_index >= 0]) == 1).all()
-    assert samples.report.coverage <= 0.3
+    assert (samples.report.coverage or np.inf) <= 0.3
     assert len(samples) == samples.report.samples > 50

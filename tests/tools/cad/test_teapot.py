@@ -1,6 +1,7 @@
 """Newell's teapot as a part: 32 patches that are sewn, with the borders that it really has."""
 
 from pathlib import Path
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -65,11 +66,12 @@ def test_the_tip_of_the_lid_is_no_point(teapot):
 @pytest.mark.compiled
 def test_it_is_sampled_and_meshed(teapot):
     samples = gm.sample(teapot, 3000)
-    assert set(samples.face_index.tolist()) == set(range(32))
-    rows = [teapot.faces[k].name == "body" for k in samples.face_index]
+    faces = np.asarray(samples.face_index).tolist()
+    assert set(faces) == set(range(32))
+    rows = [teapot.faces[k].name == "body" for k in faces]
     away = np.einsum("kx,kx->k", samples.normals[rows, :2], samples.points[rows, :2])
     assert (away > 0.0).all()
-    mesh = samples.mesh()
+    mesh: Any = samples.mesh()
     assert (len(mesh.vertices), mesh.failed, mesh.closed) == (3000, {}, False)
     # A body, a lid, and two tubes, one of which touches a corner of the body.
     assert mesh.euler_characteristic == 1
