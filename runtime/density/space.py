@@ -49,7 +49,7 @@ MOST_LOST = 4
 FEWEST_PIXELS, MOST_PIXELS = 64, 512
 # Cells with more parts than this, which the border passes, are cut in two steps.
 AT_ONCE = 64
-# Cells are not cut below this part of the domain of their piece, and of the size of the surface.
+# Cells are not cut below this part of the domain of their piece, and of its size.
 DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
 # The factor by which cells are made coarser if there were too many.
@@ -316,7 +316,7 @@ class Space:
         """Return which cells are so small that they are not cut any more."""
         sizes = cells.boxes[:, 2:] - cells.boxes[:, :2]
         small = np.all(sizes <= DEEPEST * self.sizes[cells.pieces], axis=1)
-        return small | (cells.radii <= DEEPEST * math.sqrt(self.area))
+        return small | (cells.radii <= DEEPEST * np.sqrt(self.areas[cells.pieces]))
 
     # --- steps ------------------------------------------------------------------------------------
 

@@ -182,6 +182,18 @@ def test_an_angle_takes_few_samples_of_tiny_fillets(made, radius):
     assert len(samples) < 1000
 
 
+def test_an_angle_holds_on_tiny_faces(made):
+    """A rounded corner of 1e-4 of the part: its cells are small for the part, not for the face."""
+    plane = made.face("plane", made.placement(), (0.0, 1.0), (0.0, 1.0), 1.0)
+    quarter, radius = (0.0, np.pi / 2), 1e-4
+    area = np.pi / 2 * radius**2
+    corner = made.face("sphere", [*made.placement(), radius], quarter, quarter, area)
+    samples = gm.sample(made.part([plane, corner]), angle=5.0)
+    normals = np.abs(gm.fibonacci(5000))
+    chords = cKDTree(samples.normals).query(normals)[0]
+    assert np.degrees(2 * np.arcsin(chords.max() / 2)) <= samples.report.angle <= 5.0
+
+
 def test_an_angle_that_takes_millions_of_samples_is_refused(made):
     radius, turn = 1e-4, (0.0, made.TURN)
     area = made.TURN * radius

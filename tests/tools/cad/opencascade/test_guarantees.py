@@ -202,6 +202,13 @@ SHAPES = {
     # cusps
     "lune": lambda: cut(cylinder(1.0, 0.5), cylinder(0.6, 2.0, (0.4, 0.0, -1.0))),
     "touching hole": lambda: cut(box(2.0, 2.0, 0.3), cylinder(1.0, 2.0, (1.0, 1.0, -1.0))),
+    "touching holes": lambda: cut(
+        cut(box(2.0, 1.0, 0.1), cylinder(0.2, 1.0, (0.7, 0.5, -0.5))),
+        cylinder(0.2, 1.0, (1.1, 0.5, -0.5)),
+    ),
+    "crescent": lambda: cut(cylinder(1.0, 0.2), cylinder(0.995, 1.0, (0.005, 0.0, -0.5))),
+    "hole through a pole": lambda: cut(ball(), cylinder(0.4, 3.0, (0.4, 0.0, -1.5))),
+    "flat cap": lambda: cut(ball(), half_space((0, 0, 0.995), (0, 0, -1))),
     "spike": spike,
     "spindle": spindle,
     "horn": lambda: BRepPrimAPI_MakeTorus(1.0, 1.0 - 1e-4).Shape(),
