@@ -73,13 +73,21 @@ def mesh_of_samples(samples: Samples, angle: float | None, prefer: str) -> PartM
             f'have "{density}"; use one of these, or prefer="normals".'
         )
     density = "uniform" if density == "uniform" and spaced.by_shape else "balanced"
-    return mesh_of_part(part, len(samples), density, spaced)
+    return mesh_of_part(part, len(samples), density, spaced, refuse=True)
 
 
 def mesh_of_part(
-    part: Part, count: int, density: str = "balanced", spaced: type[Spacing] = Spacing
+    part: Part,
+    count: int,
+    density: str = "balanced",
+    spaced: type[Spacing] = Spacing,
+    *,
+    refuse: bool = False,
 ) -> PartMesh:
-    """Return a mesh of a part with so many vertices."""
+    """Return a mesh of a part with so many vertices.
+
+    With `refuse`, raises InputError if it has faults, and one with somewhat more vertices has none.
+    """
     check_extra(*EXTRA)
     check_memory("mesh", count)
     if not any(x.wires for x in part.faces):
@@ -101,9 +109,10 @@ def mesh_of_part(
     try:
         mesh, is_proper = _meshed(part, whole, count, failed, spaced)
     except SurfaceError:
-        check_larger()
+        if refuse:
+            check_larger()
         raise
-    if not is_proper:
+    if refuse and not is_proper:
         check_larger()
     if failed := mesh.failed:
         text = (
