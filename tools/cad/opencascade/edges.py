@@ -4,9 +4,11 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -21,7 +23,7 @@ from ..units import scaled_parameters
 from .faces import FaceReader
 from .loops import EdgeCurves
 from .p_curves import PCurve
-from .shapes import Key, parts_of
+from .shapes import indexed_shapes, parts_of
 from .solids import PlacedFace
 
 __all__ = ["Topology", "topology_of"]
@@ -47,17 +49,11 @@ class Topology:
 
 @dataclass
 class Known:
-    """An edge: the faces at its sides, the p-curves there, and the edge as each face has it."""
+    """An edge: the faces at its sides, and the p-curves there."""
 
     edge: Any
     faces: list[int] = field(default_factory=list)
     curves: list[PCurve | None] = field(default_factory=list)
-    turns: list[Any] = field(default_factory=list)
-
-    def side(self, face: int, turn: Any) -> int:  # noqa: ANN401
-        """Return the place of a side among those of the edge."""
-        pairs = zip(self.faces, self.turns, strict=True)
-        return next(k for k, pair in enumerate(pairs) if pair == (face, turn))
 
 
 def topology_of(
@@ -69,32 +65,27 @@ def topology_of(
     those of whose edges one has no p-curve, have no wires. Parameters that are lengths are
     multiplied by `factor`, as those of the faces will be.
     """
-    known: dict[Key, Known] = {}
-    ordered = []
+    numbers, known, wires = indexed_shapes(), list[Known](), list[Wires]()
     for k, (face, record) in enumerate(zip(placed, faces, strict=True)):
         forward = face.sewn.Oriented(FORWARD)
-        ordered.append([] if record.reason else _ordered(forward, reader))
-        curves = {(Key(x), x.Orientation()): curve for wire in ordered[-1] for x, curve in wire}
-        for edge in parts_of(forward, EDGE):
-            key, turn = Key(edge), edge.Orientation()
-            at = known.setdefault(key, Known(TopoDS.Edge(edge.Oriented(FORWARD))))
-            at.faces.append(k)
-            at.turns.append(turn)
-            at.curves.append(curves.get((key, turn)))
-    scales = [np.tile(scaled_parameters(x.geometry, factor), 2) for x in faces]
-    vertices = _Vertices()
-    edges = [_record(x, scales, vertices) for x in known.values()]
-    places = {key: place for place, key in enumerate(known)}
-    wires = [
-        [
-            [
-                (places[Key(x)], known[Key(x)].side(k, x.Orientation()), curve.reversed)
-                for x, curve in wire
-            ]
+        found = [] if record.reason else _ordered(forward, reader)
+        sides = [(numbers.Add(x) - 1, x) for x in parts_of(forward, EDGE)]
+        steps = [
+            [((numbers.FindIndex(x) - 1, x.Orientation()), curve) for x, curve in wire]
             for wire in found
         ]
-        for k, found in enumerate(ordered)
-    ]
+        curves, places = dict(itertools.chain(*steps)), dict[tuple[int, Any], int]()
+        for number, edge in sides:
+            if number == len(known):
+                known.append(Known(TopoDS.Edge(edge.Oriented(FORWARD))))
+            side = number, edge.Orientation()
+            places.setdefault(side, len(known[number].faces))
+            known[number].faces.append(k)
+            known[number].curves.append(curves.get(side))
+        wires.append([[(x[0], places[x], curve.reversed) for x, curve in wire] for wire in steps])
+    scales = [np.tile(scaled_parameters(x.geometry, factor), 2) for x in faces]
+    vertices = _Vertices()
+    edges = [_record(x, scales, vertices) for x in known]
     return Topology(edges, factor * vertices.points, wires)
 
 
@@ -108,14 +99,15 @@ def _ordered(face: Any, reader: FaceReader) -> EdgeCurves:  # noqa: ANN401
 
 def _record(known: Known, scales: list[Array], vertices: _Vertices) -> EdgeRecord:
     """Return an edge; places on a side are NaN where there is no p-curve."""
-    shares = np.linspace(0.0, 1.0, max((_points(x) for x in known.curves if x), default=2))
-    nothing = np.full((len(shares), 4), np.nan)
-    sides = [nothing if x is None else _uv(x, shares) for x in known.curves]
-    sides = [x * scales[k] for k, x in zip(known.faces, sides, strict=True)]
+    shares = _shares(max((_points(x) for x in known.curves if x), default=2))
+    sides = np.full((len(shares), len(known.faces), 4), np.nan)
+    for k, (face, curve) in enumerate(zip(known.faces, known.curves, strict=True)):
+        if curve is not None:
+            sides[:, k] = _uv(curve, shares) * scales[face]
     return EdgeRecord(
         tuple(known.faces),
-        np.concatenate([x[:, :2] for x in sides], axis=1),
-        np.concatenate([x[:, 2:] for x in sides], axis=1),
+        sides[:, :, :2].reshape(len(shares), -1),
+        sides[:, :, 2:].reshape(len(shares), -1),
         (vertices.place(TopExp.FirstVertex_s(known.edge)),
          vertices.place(TopExp.LastVertex_s(known.edge))),
         bool(BRep_Tool.Degenerated_s(known.edge)),
@@ -126,7 +118,7 @@ class _Vertices:
     """The vertices that edges have, each once."""
 
     def __init__(self) -> None:
-        self._places: dict[Key, int] = {}
+        self._numbers = indexed_shapes()
         self._points: list[tuple[float, float, float]] = []
 
     @property
@@ -137,12 +129,15 @@ class _Vertices:
         """Return the place of a vertex; −1 for none."""
         if vertex.IsNull():
             return -1
-        key = Key(vertex)
-        if key not in self._places:
-            self._places[key] = len(self._points)
-            point = BRep_Tool.Pnt_s(vertex)
-            self._points.append((point.X(), point.Y(), point.Z()))
-        return self._places[key]
+        place = self._numbers.Add(vertex) - 1
+        if place == len(self._points):
+            self._points.append(BRep_Tool.Pnt_s(vertex).Coord())
+        return place
+
+
+@cache
+def _shares(number: int) -> Array:
+    return np.linspace(0.0, 1.0, number)
 
 
 def _points(curve: PCurve) -> int:

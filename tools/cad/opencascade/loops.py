@@ -64,11 +64,11 @@ def _polygons(wires: list[list[PCurve]], size: Array, tolerance: float) -> list[
     polygons = []
     for curves in wires:
         lines = [x.polyline(tolerance * size) for x in curves]
-        for line, following in zip(lines, [*lines[1:], *lines[:1]], strict=True):
-            if (np.abs(line[-1] - following[0]) > GAP * size).any():
-                raise UnusableError("its boundary is not closed")
+        ends = np.array([x[-1] for x in lines[-1:] + lines[:-1]])
+        if (np.abs(ends - [x[0] for x in lines]) > GAP * size).any():
+            raise UnusableError("its boundary is not closed")
         polygon = np.concatenate(lines)
-        step = np.abs(polygon - np.roll(polygon, 1, axis=0))
+        step = np.abs(polygon - np.concatenate([polygon[-1:], polygon[:-1]]))
         polygon = polygon[(step > SAME * size).any(axis=1)]
         if len(polygon) >= 3:
             polygons.append(polygon)
@@ -80,7 +80,7 @@ def _mean_width(loops: list[Array], size: Array) -> float:
     area = length = 0.0
     for loop in loops:
         scaled = (loop - loop[0]) / size
-        steps = np.roll(scaled, -1, axis=0) - scaled
+        steps = np.concatenate([scaled[1:], scaled[:1]]) - scaled
         area += float(scaled[:, 0] @ steps[:, 1] - scaled[:, 1] @ steps[:, 0])
         length += float(np.hypot(*steps.T).sum())
     return abs(area) / length if length else 0.0

@@ -72,10 +72,10 @@ def curve_of(edge: Any, face: Any) -> PCurve:  # noqa: ANN401
     ends = float(curve.FirstParameter()), float(curve.LastParameter())
     kind = curve.GetType()
     if kind == Kinds.GeomAbs_Line:
-        return PCurve(_any(curve), ends, 0, backwards)
+        return PCurve(_line(curve.Line()), ends, 0, backwards)
     if kind == Kinds.GeomAbs_Circle:
-        radius = float(curve.Circle().Radius())
-        return PCurve(_any(curve), ends, FIRST_PIECES, backwards, radius)
+        circle = curve.Circle()
+        return PCurve(_circle(circle), ends, FIRST_PIECES, backwards, float(circle.Radius()))
     if kind == Kinds.GeomAbs_BSplineCurve:
         corners, spans = _corners(curve.BSpline(), ends)
         pieces = max(FIRST_PIECES, PIECES_A_SPAN * spans // (len(corners) - 1))
@@ -98,6 +98,38 @@ def _corners(spline: Any, ends: tuple[float, float]) -> tuple[tuple[float, ...],
     return (ends[0], *(spline.Knot(k) for k in multiple), ends[1]), len(inside) + 1
 
 
+# A point of Open CASCADE takes a microsecond and more, and most curves are lines and circles: their
+# points are computed here, as Open CASCADE does it.
+
+
+def _line(line: Any) -> Callable[[Array], Array]:  # noqa: ANN401
+    origin, along = np.array(line.Location().Coord()), np.array(line.Direction().Coord())
+
+    def evaluate(t: Array) -> Array:
+        rows = np.empty((len(t), 4))
+        rows[:, :2] = t[:, None] * along + origin
+        rows[:, 2:] = along
+        return rows
+
+    return evaluate
+
+
+def _circle(circle: Any) -> Callable[[Array], Array]:  # noqa: ANN401
+    origin, radius = np.array(circle.Location().Coord()), float(circle.Radius())
+    axes = circle.XAxis().Direction().Coord(), circle.YAxis().Direction().Coord()
+    x, y = map(np.array, axes)
+
+    def evaluate(t: Array) -> Array:
+        rows, angles = np.empty((len(t), 4)), t.tolist()
+        across = radius * np.array([*map(math.cos, angles)])[:, None]
+        along = radius * np.array([*map(math.sin, angles)])[:, None]
+        rows[:, :2] = across * x + along * y + origin
+        rows[:, 2:] = -along * x + across * y
+        return rows
+
+    return evaluate
+
+
 def _any(curve: Any) -> Callable[[Array], Array]:  # noqa: ANN401
     point, tangent = gp_Pnt2d(), gp_Vec2d()
 
@@ -105,7 +137,7 @@ def _any(curve: Any) -> Callable[[Array], Array]:  # noqa: ANN401
         rows = np.empty((len(t), 4))
         for k, x in enumerate(t.tolist()):
             curve.D1(x, point, tangent)
-            rows[k] = point.X(), point.Y(), tangent.X(), tangent.Y()
+            rows[k] = *point.Coord(), *tangent.Coord()
         return rows
 
     return evaluate

@@ -8,12 +8,13 @@ Only names that its versions 7.9 and 8.0 share are used.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import Any
 
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
 
-__all__ = ["Key", "direct_class", "parts_of", "sequence"]
+__all__ = ["Key", "direct_class", "indexed_shapes", "parts_of", "sequence"]
 
 
 def parts_of(shape: Any, kind: Any, avoided: Any = None) -> Iterator[Any]:  # noqa: ANN401
@@ -42,14 +43,24 @@ class Key:
 
 
 def sequence(old: str, new: str) -> Any:  # noqa: ANN401
-    """Return an empty sequence, whose class version 7.9 calls `module.name` and 8.0 `new`."""
+    """Return an empty collection, whose class version 7.9 calls `module.name` and 8.0 `new`."""
+    return _collection(old, new)()
+
+
+def indexed_shapes() -> Any:  # noqa: ANN401
+    """Return an empty map that numbers shapes from 1 on; the reverse of one has its number."""
+    return sequence(
+        "TopTools.TopTools_IndexedMapOfShape", "IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher"
+    )
+
+
+@cache
+def _collection(old: str, new: str) -> Any:  # noqa: ANN401
     import importlib
 
     module, name = old.split(".")
     made = getattr(importlib.import_module(f"OCP.{module}"), name, None)
-    if made is None:
-        made = getattr(importlib.import_module("OCP.collections"), new)
-    return made()
+    return made or getattr(importlib.import_module("OCP.collections"), new)
 
 
 def direct_class(thing: Any) -> str:  # noqa: ANN401

@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.BinTools import BinTools_SurfaceSet
 
 from ..records import Geometry, Net
 from .curves import UnusableError, curve_net, knots_of
@@ -25,6 +27,15 @@ ELEMENTARY: dict[str, tuple[str, tuple[str, ...]]] = {
     "Geom_ConicalSurface": ("cone", ("RefRadius", "SemiAngle")),
     "Geom_SphericalSurface": ("sphere", ("Radius",)),
     "Geom_ToroidalSurface": ("torus", ("MajorRadius", "MinorRadius")),
+}
+
+# The bytes before the control points in what Open CASCADE writes of a single surface: the title,
+# its kind, whether it is rational and, if it may be, periodic; its degrees, and numbers of control
+# points and of knots.
+TITLE = len(b"Surfaces 1\n")
+BEFORE_POLES = {
+    "Geom_BezierSurface": TITLE + 1 + 2 + 2 * 2,
+    "Geom_BSplineSurface": TITLE + 1 + 4 + 2 * 2 + 4 * 4,
 }
 
 
@@ -89,13 +100,16 @@ def _degrees(surface: Any) -> tuple[int, int]:  # noqa: ANN401
 
 def _net(surface: Any) -> tuple[Array, Array | None]:  # noqa: ANN401
     """Return the control points (m, n, 3) and the weights (m, n), or None for weights of 1."""
-    shape = surface.NbUPoles(), surface.NbVPoles()
-    places = [(i + 1, j + 1) for i, j in np.ndindex(*shape)]
-    pole = surface.Pole  # dense nets are read in the time of these calls
-    points = np.array([pole(i, j).Coord() for i, j in places]).reshape(*shape, 3)
-    if not (surface.IsURational() or surface.IsVRational()):
-        return points, None
-    return points, np.array([surface.Weight(i, j) for i, j in places]).reshape(shape)
+    m, n = surface.NbUPoles(), surface.NbVPoles()
+    rational = surface.IsURational() or surface.IsVRational()
+    numbers = 4 if rational else 3
+    # A call for each control point would take longer than all the rest: they are written at once.
+    written, buffer = BinTools_SurfaceSet(), io.BytesIO()
+    written.Add(surface)
+    written.Write(buffer)
+    first = BEFORE_POLES[direct_class(surface)]
+    net = np.frombuffer(buffer.getvalue(), "<f8", m * n * numbers, first).reshape(m, n, numbers)
+    return net[:, :, :3].astype(np.float64), net[:, :, 3].astype(np.float64) if rational else None
 
 
 def _revolution(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
