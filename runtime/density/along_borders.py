@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -14,20 +15,22 @@ from ..kernels.sizing import TargetDensity
 from .cells import LIMIT, Cells, by_piece
 from .piece import Piece
 
-__all__ = ["BorderLine", "places_along", "polygons_of"]
+__all__ = ["BorderLines", "places_along", "polygons_of"]
 
 # Borders are measured at places that are this part of the domain apart, or less.
 FINE = 1.0 / 48.0
 
 
 @dataclass(frozen=True, eq=False)
-class BorderLine:
-    """A closed polygon of the border of a piece: places (k, 2), the first one repeated.
+class BorderLines:
+    """Closed polygons of the borders of `pieces` (L,): places (k, 2), the first of each repeated.
 
-    rows (k, 8) and limits (k,) are those of cells there.
+    Those of polygon l are from starts[l] on, up to starts[l + 1]. rows (k, 8) and limits (k,) are
+    those of cells there.
     """
 
-    piece: int
+    pieces: Indices
+    starts: Indices
     places: Array
     rows: Array
     limits: Array
@@ -51,38 +54,55 @@ def polygons_of(pieces: Sequence[Piece], first: Cells) -> Iterator[tuple[int, Ar
 
 def places_along(
     pieces: Sequence[Piece],
-    lines: Sequence[BorderLine],
+    lines: BorderLines,
     target: TargetDensity,
     step: float,
     turn: float,
 ) -> tuple[Indices, Array, Array]:
     """Return places inside, beside borders, that are about step/√w apart, w the target density.
 
-    And normals turn by about `turn` between them at most, in radians. The places (k, 2) come with
-    the numbers of their pieces (k,) and with their limits (k,).
+    And normals turn by about `turn` between them at most, in radians. The numbers of their pieces
+    (k,) come first, and their limits (k,) last. Along each line, those at its left are first.
     """
-    owners, places, limits = [np.empty(0, np.int64)], [np.empty((0, 2))], [np.empty(0)]
-    for line in lines:
-        piece, at = pieces[line.piece], _spaced(line, target, step, turn)
-        number = np.minimum(at.astype(np.int64), len(line.places) - 2)
-        steps = np.diff(line.places, axis=0)
-        on = line.places[number] + (at - number)[:, None] * steps[number]
-        inside, owner = piece.beside(on, steps[number])
-        owners.append(np.full(len(inside), line.piece))
-        places.append(inside)
-        limits.append(line.limits[number[owner]])
-    return np.concatenate(owners), np.concatenate(places), np.concatenate(limits)
+    owner, number, share = _spaced(lines, target, step, turn)
+    steps = lines.places[number + 1] - lines.places[number]
+    on = lines.places[number] + share[:, None] * steps
+    found, places = [np.empty(0, np.int64)], [np.empty((0, 2))]
+    ends = np.flatnonzero(np.diff(lines.pieces[owner], prepend=-1, append=-1))
+    for first, last in itertools.pairwise(ends.tolist()):
+        piece, here = pieces[lines.pieces[owner[first]]], slice(first, last)
+        inside, numbers, sides = piece.beside(on[here], steps[here])
+        order = np.lexsort((sides, owner[here][numbers]))
+        found.append(first + numbers[order])
+        places.append(inside[order])
+    every = np.concatenate(found)
+    return lines.pieces[owner[every]], np.concatenate(places), lines.limits[number[every]]
 
 
-def _spaced(line: BorderLine, target: TargetDensity, step: float, turn: float) -> Array:
-    """Return where places are: 1.5 is between the second and the third place of the line."""
-    rates = np.sqrt(np.clip(line.rows[:, 6], target.floor, target.ceiling))
-    lengths = np.linalg.norm(np.diff(line.rows[:, :3], axis=0), axis=1)
+def _spaced(
+    lines: BorderLines, target: TargetDensity, step: float, turn: float
+) -> tuple[Indices, Indices, Array]:
+    """Return where places are: their lines (k,), the places before them, and how far from these.
+
+    The last are parts of the way to the next place of the line.
+    """
+    rates = np.sqrt(np.clip(lines.rows[:, 6], target.floor, target.ceiling))
+    lengths = np.linalg.norm(np.diff(lines.rows[:, :3], axis=0), axis=1)
     costs = lengths * np.maximum(rates[1:], rates[:-1]) / step
-    normals = line.rows[:, 3:6]
+    normals = lines.rows[:, 3:6]
     chords = np.linalg.norm(np.diff(normals, axis=0), axis=1)
     regular = np.asarray(normals.any(axis=1))
     turns = np.where(regular[1:] & regular[:-1], chords, 0.0) / turn
-    total = np.concatenate([[0.0], np.cumsum(np.maximum(costs, turns))])
-    number = math.ceil(total[-1])
-    return np.interp(total[-1] * (np.arange(number) + 0.5) / number, total, np.arange(len(total)))
+    costs = np.maximum(costs, turns)
+    owners, numbers, shares = [np.empty(0, np.int64)], [np.empty(0, np.int64)], [np.empty(0)]
+    for k, (first, last) in enumerate(itertools.pairwise(lines.starts.tolist())):
+        if last == first:
+            continue
+        total = np.concatenate([[0.0], np.cumsum(costs[first : last - 1])])
+        count = math.ceil(total[-1])
+        at = np.interp(total[-1] * (np.arange(count) + 0.5) / count, total, np.arange(len(total)))
+        before = np.minimum(at.astype(np.int64), len(total) - 2)
+        owners.append(np.full(count, k))
+        numbers.append(first + before)
+        shares.append(at - before)
+    return np.concatenate(owners), np.concatenate(numbers), np.concatenate(shares)

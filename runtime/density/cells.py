@@ -38,14 +38,17 @@ POINT = 1e-9
 class Cells:
     """M cells of `pieces` (M,), by number: boxes (M, 4), u0, v0, u1, v1, and places (M, 2).
 
-    `whole` (M,) says that no border passes them. `rows` (M, 8) and `numbers` (M, 14) are those of
-    kernels/cells.py, lengths and curvatures scaled as in `Space`.
+    `whole` (M,) says that no border passes them. `limits` (M,) are the radii of curvature below
+    which curvature does not count, 0 if they are not known. `rows` (M, 8) and `numbers` (M, 14) are
+    those of kernels/cells.py, lengths and curvatures scaled as in `Space`. Cells that are not
+    evaluated have none: (M, 0), as most of the memory is theirs.
     """
 
     pieces: Indices
     boxes: Array
     places: Array
     whole: Flags
+    limits: Array
     rows: Array
     numbers: Array
 
@@ -62,7 +65,15 @@ class Cells:
 
     @property
     def _arrays(self) -> tuple[NDArray, ...]:
-        return (self.pieces, self.boxes, self.places, self.whole, self.rows, self.numbers)
+        return (
+            self.pieces, self.boxes, self.places, self.whole, self.limits, self.rows, self.numbers,
+        )  # fmt: skip
+
+    def with_rows(self) -> Cells:
+        """Return the same cells with rows and numbers, which are 0, but for the limits."""
+        numbers = np.zeros((len(self), NUMBERS))
+        numbers[:, LIMIT] = self.limits
+        return replace(self, limits=numbers[:, LIMIT], rows=np.zeros((len(self), 8)), numbers=numbers)
 
     def sorted(self) -> Cells:
         """Return the same cells, sorted by their pieces."""
@@ -111,9 +122,7 @@ def into_parts(cells: Cells, parts: Indices) -> Cells:
     boxes = np.concatenate([low + place * steps, low + (place + 1) * steps], axis=1)
     last = place + 1 == parts[owner]
     boxes[:, 2:] = np.where(last, cells.boxes[owner, 2:], boxes[:, 2:])
-    made = new_cells(cells.pieces[owner], boxes)
-    made.numbers[:, LIMIT] = cells.numbers[owner, LIMIT]
-    return replace(made, whole=cells.whole[owner])
+    return new_cells(cells.pieces[owner], boxes, cells.whole[owner], cells.limits[owner])
 
 
 def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
@@ -125,18 +134,22 @@ def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
         first = last
 
 
-def new_cells(pieces: Indices, boxes: Array, whole: bool = False) -> Cells:
+def new_cells(
+    pieces: Indices, boxes: Array, whole: Flags | bool = False, limits: Array | float = 0.0
+) -> Cells:
     """Return cells of pieces (M,) that are not evaluated."""
     count = len(pieces)
-    places = (boxes[:, :2] + boxes[:, 2:]) / 2.0
-    flags = np.full(count, whole)
-    return Cells(pieces, boxes, places, flags, np.zeros((count, 8)), np.zeros((count, NUMBERS)))
+    places, nothing = (boxes[:, :2] + boxes[:, 2:]) / 2.0, np.empty((count, 0))
+    whole, limits = np.full(count, whole), np.full(count, limits, dtype=np.float64)
+    return Cells(pieces, boxes, places, whole, limits, nothing, nothing)
 
 
-def points_of(pieces: Indices, places: Array, sizes: Array) -> Cells:
+def points_of(
+    pieces: Indices, places: Array, sizes: Array, limits: Array | float = 0.0
+) -> Cells:
     """Return cells without an extent at places (k, 2) of pieces (k,), not evaluated.
 
     `sizes` (k, 2) are the lengths of their domains.
     """
     boxes = np.concatenate([places - POINT * sizes, places + POINT * sizes], axis=1)
-    return new_cells(pieces, boxes, whole=True)
+    return new_cells(pieces, boxes, True, limits)

@@ -147,11 +147,12 @@ class Piece(ABC):
             found.append(self.beside(line[:-1] + steps / 2.0, steps)[0])
         return np.concatenate(found)
 
-    def beside(self, places: Array, steps: Array) -> tuple[Array, Indices]:
+    def beside(self, places: Array, steps: Array) -> tuple[Array, Indices, Indices]:
         """Return which places are inside, of those left and right of places (k, 2) on a border.
 
         And the numbers of these; the border runs along steps (k, 2). Where neither is, in tips too
-        narrow for that, the place on the border stands for both.
+        narrow for that, the place on the border stands for both. Those at the left come first, and
+        are 0 in what is returned last; those at the right are 1, and those in tips 2.
         """
         along = steps / self.sizes
         lengths = np.hypot(*along.T)
@@ -168,6 +169,7 @@ class Piece(ABC):
         return (
             np.concatenate([both[inside], on[allowed]]),
             np.concatenate([numbers, narrow[allowed]]),
+            np.concatenate([np.repeat([0, 1], len(places))[inside], np.full(allowed.sum(), 2)]),
         )
 
     def _allows(self, places: Array) -> Flags:

@@ -17,7 +17,7 @@ from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
 from ..kernels.cells import evaluate_cells
 from ..kernels.sizing import TargetDensity
-from .along_borders import BorderLine, places_along, polygons_of
+from .along_borders import BorderLines, places_along, polygons_of
 from .cells import (
     ALONG_U,
     ALONG_V,
@@ -206,7 +206,7 @@ class Space:
 
     def nothing(self) -> Cells:
         """Return no cells."""
-        return new_cells(np.empty(0, dtype=np.int64), np.empty((0, 4)))
+        return new_cells(np.empty(0, dtype=np.int64), np.empty((0, 4))).with_rows()
 
     @property
     def first(self) -> Cells:
@@ -216,7 +216,7 @@ class Space:
         return self._held["first"]
 
     @property
-    def borders(self) -> list[BorderLine]:
+    def borders(self) -> BorderLines:
         """The borders of all pieces, without the floor."""
         if "borders" not in self._held:
             self._held["borders"] = self._borders()
@@ -224,15 +224,13 @@ class Space:
 
     def along_borders(self, step: float, turn: float = math.inf) -> Cells:
         """Return places along borders as cells without an extent; see `places_along`."""
-        return self.at(*places_along(self.pieces, self.borders, self.target, step, turn))
+        return self.known(self._beside_borders(step, turn))
 
     def at(
         self, pieces: Indices, places: Array, limits: Array | float = 0.0, *, keep: bool = False
     ) -> Cells:
         """Return cells without an extent at places (k, 2) of pieces (k,); see `known`."""
-        cells = points_of(pieces, places, self.sizes[pieces])
-        cells.numbers[:, LIMIT] = limits
-        return self.known(cells, keep=keep)
+        return self.known(points_of(pieces, places, self.sizes[pieces], limits), keep=keep)
 
     def middles(self, pieces: Indices) -> Cells:
         """Return the cell nearest to the middle of each of some pieces."""
@@ -258,8 +256,8 @@ class Space:
         steps = np.where(many[:, None], np.ceil(np.sqrt(parts)).astype(np.int64), 1)
         owner = np.repeat(np.arange(len(steps)), steps.prod(axis=1))
         cells, owner = sifted(self.pieces, into_parts(cells, steps), pixels, owner)
-        cells = self.evaluated(into_parts(cells, -(-parts[owner] // steps[owner])), pixels)
-        return (cells + self.along_borders(radius)).sorted()
+        cells = self._inside(into_parts(cells, -(-parts[owner] // steps[owner])), pixels)
+        return self.known((cells + self._beside_borders(radius)).sorted())
 
     def parts(self, radius: float) -> Indices:
         """Return into how many parts (M, 2) `cut` divides the first cells along u and v.
@@ -296,9 +294,7 @@ class Space:
 
     def evaluated(self, cells: Cells, pixels: Indices | None = None) -> Cells:
         """Return those of cells that have a place inside the trim, with their rows and numbers."""
-        pixels = self._fewest if pixels is None else pixels
-        cells, _ = sifted(self.pieces, cells.sorted(), pixels)
-        return self.known(placed(self.pieces, cells)[0])
+        return self.known(self._inside(cells, self._fewest if pixels is None else pixels))
 
     def halves(self, cells: Cells) -> Cells:
         """Return cells bisected across their longer sides, without those outside the trim."""
@@ -320,6 +316,15 @@ class Space:
 
     # --- steps ------------------------------------------------------------------------------------
 
+    def _inside(self, cells: Cells, pixels: Indices) -> Cells:
+        """Return those of cells that have a place inside the trim, with it."""
+        return placed(self.pieces, sifted(self.pieces, cells.sorted(), pixels)[0])[0]
+
+    def _beside_borders(self, step: float, turn: float = math.inf) -> Cells:
+        """Return the cells of `along_borders`, not evaluated."""
+        pieces, *found = places_along(self.pieces, self.borders, self.target, step, turn)
+        return points_of(pieces, found[0], self.sizes[pieces], found[1])
+
     def _first(self) -> Cells:
         boxes = [x.boxes for x in self.pieces]
         pieces = np.repeat(np.arange(len(boxes)), [len(x) for x in boxes])
@@ -327,7 +332,7 @@ class Space:
         cells = new_cells(pieces, np.concatenate(boxes))
         done = [space.nothing()]
         for step in range(MOST_BENDS):
-            cells.numbers[:, LIMIT] = 0.0
+            cells = replace(cells, limits=np.zeros(len(cells)))
             cells, _ = sifted(self.pieces, cells, self._fewest)
             cells, lost = placed(self.pieces, cells)
             cells = space.known(cells)
@@ -344,17 +349,17 @@ class Space:
                 break
         return joined(done).sorted()
 
-    def _borders(self) -> list[BorderLine]:
+    def _borders(self) -> BorderLines:
         lines = list(polygons_of(self.pieces, self.first))
-        if not lines:
-            return []
-        numbers, polygons, inside, limits = zip(*lines, strict=True)
+        nothing = (0, np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
+        numbers, polygons, inside, limits = zip(*lines or [nothing], strict=True)
         counts = [len(x) for x in polygons]
-        owners, ends = np.repeat(numbers, counts), np.cumsum(counts)[:-1]
-        places, near = np.concatenate(inside), np.concatenate(limits)
-        cells = self.between(0.0).at(owners, places, near, keep=True)
-        rows, limits = np.split(cells.rows, ends), np.split(cells.numbers[:, LIMIT].copy(), ends)
-        return list(map(BorderLine, numbers, polygons, rows, limits))
+        owners, places = np.repeat(numbers, counts), np.concatenate(inside)
+        cells = self.between(0.0).at(owners, places, np.concatenate(limits), keep=True)
+        starts = np.cumsum([0, *counts])
+        return BorderLines(
+            np.array(numbers), starts, np.concatenate(polygons), cells.rows, cells.limits
+        )
 
     @cached_property
     def _fewest(self) -> Indices:
@@ -390,7 +395,7 @@ class Space:
                     cells.rows[rows], cells.numbers[rows],
                 )  # fmt: skip
 
-        cells = replace(cells, rows=np.empty_like(cells.rows), numbers=cells.numbers.copy())
+        cells = cells.with_rows()
         parts = [
             (k, slice(first, min(first + CELLS_AT_A_TIME, rows.stop)))
             for k, rows in by_piece(cells)

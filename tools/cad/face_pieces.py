@@ -140,7 +140,7 @@ class FacePiece(Piece):
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return 2-jets (k, 6, 3) at parameters."""
-        return self.surface.jets(u, v)
+        return self.surface._jets(u, v)  # without checks: many faces have few places each
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
         """Return what is searched for points with a normal; GaussmapError if it has no spline."""

@@ -16,7 +16,8 @@ SIDE, FINER = 12, 4  # cells along a side of the unit square, and places along a
 def plane() -> Cells:
     """Return the cells of the unit square of a plane; the density grows along u."""
     low = np.stack(np.meshgrid(*2 * [np.arange(SIDE) / SIDE], indexing="ij"), -1).reshape(-1, 2)
-    cells = new_cells(np.zeros(SIDE**2, dtype=np.int64), np.hstack([low, low + 1.0 / SIDE]), True)
+    boxes = np.hstack([low, low + 1.0 / SIDE])
+    cells = new_cells(np.zeros(SIDE**2, dtype=np.int64), boxes, True).with_rows()
     cells.rows[:, :2], cells.rows[:, 5] = cells.places, 1.0
     cells.rows[:, 6] = 1.0 + 3.0 * cells.places[:, 0]
     cells.numbers[:, 6] = 1.0 / SIDE**2  # the area, and the sides
