@@ -54,10 +54,11 @@ class Border:
         return low, self.n / (high - low)
 
     @cached_property
-    def _sums(self) -> NDArray[np.int32]:
+    def _sums(self) -> NDArray[np.signedinteger]:
         """(n + 1, n + 1): the number of pixels below and left that the border may pass."""
         passed, all_known = self.trim.cells_of_border(self.domain, (self.n, self.n))
-        sums = np.zeros((self.n + 1, self.n + 1), dtype=np.int32)
+        dtype = np.int16 if self.n**2 <= np.iinfo(np.int16).max else np.int32
+        sums = np.zeros((self.n + 1, self.n + 1), dtype=dtype)
         np.cumsum(passed, axis=0, out=sums[1:, 1:])
         np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
         return (

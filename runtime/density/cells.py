@@ -22,6 +22,7 @@ __all__ = [
     "halved",
     "into_parts",
     "joined",
+    "merged",
     "new_cells",
     "points_of",
 ]
@@ -73,7 +74,9 @@ class Cells:
         """Return the same cells with rows and numbers, which are 0, but for the limits."""
         numbers = np.zeros((len(self), NUMBERS))
         numbers[:, LIMIT] = self.limits
-        return replace(self, limits=numbers[:, LIMIT], rows=np.zeros((len(self), 8)), numbers=numbers)
+        return replace(
+            self, limits=numbers[:, LIMIT], rows=np.zeros((len(self), 8)), numbers=numbers
+        )
 
     def sorted(self) -> Cells:
         """Return the same cells, sorted by their pieces."""
@@ -101,8 +104,23 @@ class Cells:
 
 def joined(parts: Sequence[Cells]) -> Cells:
     """Return the cells of some parts, one part after another."""
+    parts = [x for x in parts if len(x)] or parts[:1]
+    if len(parts) == 1:
+        return parts[0]
     arrays = zip(*(x._arrays for x in parts), strict=True)
     return Cells(*(np.concatenate(x) for x in arrays))
+
+
+def merged(parts: Sequence[Cells]) -> Cells:
+    """Return the cells of some parts, sorted by their pieces.
+
+    One array after another is sorted: copies of all of them are large.
+    """
+    pieces = np.concatenate([x.pieces for x in parts])
+    if (np.diff(pieces) >= 0).all():
+        return joined(parts)
+    order, arrays = np.argsort(pieces, kind="stable"), zip(*(x._arrays for x in parts), strict=True)
+    return Cells(*(np.concatenate(x)[order] for x in arrays))
 
 
 def halved(cells: Cells, along_u: Flags) -> Cells:
@@ -144,9 +162,7 @@ def new_cells(
     return Cells(pieces, boxes, places, whole, limits, nothing, nothing)
 
 
-def points_of(
-    pieces: Indices, places: Array, sizes: Array, limits: Array | float = 0.0
-) -> Cells:
+def points_of(pieces: Indices, places: Array, sizes: Array, limits: Array | float = 0.0) -> Cells:
     """Return cells without an extent at places (k, 2) of pieces (k,), not evaluated.
 
     `sizes` (k, 2) are the lengths of their domains.

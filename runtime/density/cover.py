@@ -10,7 +10,7 @@ import numpy as np
 from ..base.aliases import Array, Indices
 from .at_normals import Given
 from .candidates import Candidates
-from .cells import CHORD, LIMIT, RADIUS, Cells, joined
+from .cells import CHORD, LIMIT, RADIUS, Cells, joined, merged
 from .grid import Grid
 from .space import Space
 from .voronoi import Voronoi
@@ -165,7 +165,7 @@ class Cover:
         space = self.space
         borders = space.along_borders(math.inf, turn)
         borders.numbers[:, CHORD] += turn / 2.0
-        return (space.evaluated(space.first) + borders).sorted()
+        return merged([space.evaluated(space.first), borders])
 
     def missing(self) -> Cells:
         """Return a cell near the middle of each piece that has no sample, if it has a cell."""
@@ -318,7 +318,7 @@ class Cover:
             candidates = self._with_distances(cells.rows, radius, radius)
             self._choose(cells, candidates, radius, most)
         small.append(self._borders(radius))
-        self._cover_small_cells(joined(small).sorted(), radius, most)
+        self._cover_small_cells(merged(small), radius, most)
         self._candidates.update_distances(self.points[first:], radius)
 
     def _borders(self, radius: float) -> Cells:

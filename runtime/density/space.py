@@ -25,13 +25,12 @@ from .cells import (
     BEND_U,
     BEND_V,
     CHORD,
-    LIMIT,
     RADIUS,
     Cells,
     by_piece,
     halved,
     into_parts,
-    joined,
+    merged,
     new_cells,
     points_of,
 )
@@ -54,6 +53,8 @@ DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
 # The factor by which cells are made coarser if there were too many.
 COARSER = 1.2
+# The places on borders that are measured at a time.
+PLACES_AT_A_TIME = 1 << 17
 # Of a piece, this number of cells is evaluated at a time, and about the RANGES-th part of all that
 # is evaluated by one thread.
 CELLS_AT_A_TIME, RANGES = 1 << 12, 32
@@ -251,13 +252,17 @@ class Space:
 
         And places along borders, about as far apart, as cells without an extent.
         """
+        return self.known(self._cut(radius))
+
+    def _cut(self, radius: float) -> Cells:
+        """Return the cells of `cut`, not evaluated."""
         cells, parts, pixels = self.first, self.parts(radius), self._pixels(radius)
         many = (parts.prod(axis=1) > AT_ONCE) & ~cells.whole
         steps = np.where(many[:, None], np.ceil(np.sqrt(parts)).astype(np.int64), 1)
         owner = np.repeat(np.arange(len(steps)), steps.prod(axis=1))
         cells, owner = sifted(self.pieces, into_parts(cells, steps), pixels, owner)
         cells = self._inside(into_parts(cells, -(-parts[owner] // steps[owner])), pixels)
-        return self.known((cells + self._beside_borders(radius)).sorted())
+        return merged([cells, self._beside_borders(radius)])
 
     def parts(self, radius: float) -> Indices:
         """Return into how many parts (M, 2) `cut` divides the first cells along u and v.
@@ -338,7 +343,7 @@ class Space:
             cells = space.known(cells)
             bends = cells.numbers[:, [BEND_U, BEND_V]]
             bent = (bends > FLAT).any(axis=1) & ~self.deepest(cells)
-            done.append(cells[~bent])
+            done.append(cells[~bent] if bent.any() else cells)
             cells = halved(cells[bent], bends[bent, 0] >= bends[bent, 1])
             if len(lost) and step < MOST_LOST:
                 cells += into_parts(lost, np.full((len(lost), 2), 2))
@@ -347,19 +352,25 @@ class Space:
                 done.append(space.at(*beside(self.pieces, lost, self._fewest)))
             if not len(cells):
                 break
-        return joined(done).sorted()
+        return merged(done)
 
     def _borders(self) -> BorderLines:
-        lines = list(polygons_of(self.pieces, self.first))
+        lines, space = list(polygons_of(self.pieces, self.first)), self.between(0.0)
         nothing = (0, np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
-        numbers, polygons, inside, limits = zip(*lines or [nothing], strict=True)
+        numbers, polygons, inside, near = map(list, zip(*lines or [nothing], strict=True))
         counts = [len(x) for x in polygons]
-        owners, places = np.repeat(numbers, counts), np.concatenate(inside)
-        cells = self.between(0.0).at(owners, places, np.concatenate(limits), keep=True)
-        starts = np.cumsum([0, *counts])
-        return BorderLines(
-            np.array(numbers), starts, np.concatenate(polygons), cells.rows, cells.limits
+        owners, inside, near = (
+            np.repeat(numbers, counts),
+            np.concatenate(inside),
+            np.concatenate(near),
         )
+        rows, limits = np.empty((len(owners), 8)), np.empty(len(owners))
+        for first in range(0, len(owners), PLACES_AT_A_TIME):
+            some = slice(first, first + PLACES_AT_A_TIME)
+            cells = space.at(owners[some], inside[some], near[some], keep=True)
+            rows[some], limits[some] = cells.rows, cells.limits
+        starts = np.cumsum([0, *counts])
+        return BorderLines(np.array(numbers), starts, np.concatenate(polygons), rows, limits)
 
     @cached_property
     def _fewest(self) -> Indices:

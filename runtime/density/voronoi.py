@@ -30,9 +30,7 @@ class Voronoi:
         self, candidates: Candidates, cells: Cells, samples: Array, radius: float, margin: float
     ) -> None:
         self.cells, numbers = cells, cells.numbers
-        if not cells.whole.all():
-            numbers = numbers.copy()
-            numbers[~cells.whole, SIDES] = 0.0
+        numbers[~cells.whole, SIDES] = 0.0  # nothing else asks for these, and a copy is large
         samples = np.ascontiguousarray(samples)
 
         def listed(first: int, last: int) -> tuple[Block, Lists]:

@@ -42,8 +42,9 @@ Array = NDArray[np.float64]
 
 # Angles are divided into parts of at most this, in radians.
 ANGLE = 0.25
-# The parts between two knots, at least: polynomials of higher degrees turn in between.
-PARTS_OF_SPAN = 2
+# The parts between two knots, at least, unless there are more parts than MOST_PARTS along a
+# parameter: polynomials of higher degrees turn in between.
+PARTS_OF_SPAN, MOST_PARTS = 2, 64
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
 # Of surfaces whose function is not known, the domain is divided into this number of parts.
@@ -265,7 +266,10 @@ def _lines(face: Face, axis: int, ends: tuple[float, float]) -> Array:
         inside = np.sort(knots[(knots > ends[0] + slack) & (knots < ends[1] - slack)])
         inside = inside[np.diff(inside, prepend=-np.inf) > slack]
         lines = np.concatenate([[ends[0]], inside, [ends[1]]])
-    parts = max(PARTS_OF_SPAN, math.ceil(degree / 2)) if len(knots) else 1
+    parts = 1
+    if len(knots):
+        most = max(MOST_PARTS // (len(lines) - 1), 1)
+        parts = min(max(PARTS_OF_SPAN, math.ceil(degree / 2)), most)
     if geometry.surface is not None:
         parts = PARTS_OF_SURFACE
     if ANGLES.get(geometry.kind, (False, False))[axis]:
