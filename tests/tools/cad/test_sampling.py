@@ -463,3 +463,26 @@ def test_samples_beside_borders_are_inside(plates):
     samples = gm.sample(plates, 2000, density="uniform")
     hole = np.linalg.norm(samples.uv[samples.face_index == 0] - 0.5, axis=1)
     assert 0.2999 < hole.min() < 0.3001  # a circle of 720 chords
+
+
+@pytest.mark.parametrize(("points", "parts"), [(10, 2), (35, 2), (36, 1)])
+def test_dense_nets_have_one_first_cell_for_each_span(made, points, parts):
+    """Two for each span along a parameter, as long as there are no more than 64."""
+    spans = points - 3
+    knots = np.concatenate([[0.0] * 3, np.arange(spans + 1.0), [float(spans)] * 3])
+    grid = np.stack(np.meshgrid(*2 * [np.arange(float(points))], indexing="ij"), axis=-1)
+    net = Net((3, 3), (knots, knots), np.dstack([grid, np.sin(grid[:, :, 0])]))
+    ends = 0.0, float(spans)
+    loops = [made.rectangle(*ends, *ends)]
+    face = FaceRecord(Geometry("nurbs", net=net), (ends, ends), loops=loops, area=1.0)
+    assert len(space_of(made.part([face]), 1).pieces[0].boxes) == (parts * spans) ** 2
+
+
+def test_borders_are_measured_in_groups(made, monkeypatch):
+    """What is found does not depend on the size of the groups."""
+    whole = space_of(made.cylinder(), 1).borders
+    monkeypatch.setattr("gaussmap.runtime.density.space.PLACES_AT_A_TIME", 1000)
+    some = space_of(made.cylinder(), 1).borders
+    assert len(whole.rows) > 2000
+    for name in ("pieces", "starts", "places", "rows", "limits"):
+        np.testing.assert_array_equal(getattr(whole, name), getattr(some, name))
