@@ -78,8 +78,8 @@ class Mesh(Methods):
     (True, True)
     >>> len(mesh.edges), len(mesh.boundary_edges), mesh.euler_characteristic
     (600, 0, 0)
-    >>> mesh.left_out, mesh.domain == gm.surfaces.torus().domain, mesh.boundary[0]
-    (0, True, ('periodic', 'periodic'))
+    >>> mesh.left_out, mesh.unit, mesh.domain == gm.surfaces.torus().domain, mesh.boundary[0]
+    (0, '', True, ('periodic', 'periodic'))
     >>> bool(mesh.angles.mean() < 30), bool(mesh.smallest_angles.min() > 5)
     (True, True)
 
