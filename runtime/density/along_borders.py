@@ -70,7 +70,7 @@ def places_along(
     found, places = [np.empty(0, np.int64)], [np.empty((0, 2))]
     ends = np.flatnonzero(np.diff(lines.pieces[owner], prepend=-1, append=-1))
     for first, last in itertools.pairwise(ends.tolist()):
-        piece, here = pieces[lines.pieces[owner[first]]], slice(first, last)
+        piece, here = pieces[int(lines.pieces[owner[first]])], slice(first, last)
         inside, numbers, sides = piece.beside(on[here], steps[here])
         order = np.lexsort((sides, owner[here][numbers]))
         found.append(first + numbers[order])
