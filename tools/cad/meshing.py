@@ -107,7 +107,7 @@ def mesh_of_part(
     }
     check_larger = partial(_check_larger, part, whole, count, failed, spaced, known)
     try:
-        mesh, is_proper = _meshed(part, whole, count, failed, spaced)
+        mesh, is_proper = mesh_and_soundness(part, whole, count, failed, spaced)
     except SurfaceError:
         if refuse:
             check_larger()
@@ -122,7 +122,7 @@ def mesh_of_part(
     return mesh
 
 
-def _meshed(
+def mesh_and_soundness(
     part: Part, whole: PartSpace, count: int, failed: Mapping[int, str], spaced: type[Spacing]
 ) -> tuple[PartMesh, bool]:
     """Return a mesh, and whether no face failed beside those, and no triangle points inward."""
@@ -137,7 +137,7 @@ def _meshed(
                 bad = {error.face: f"of face {error.face}, {error}."}
             else:
                 if not bad:
-                    return mesh, len(lacking) == len(failed) and not len(_inverted(mesh))
+                    return mesh, len(lacking) == len(failed) and not len(inverted_triangles(mesh))
         lacking |= bad
 
 
@@ -153,7 +153,7 @@ def _check_larger(
     larger = math.ceil(MORE * count)
     while larger < MANY * edges.least:
         with suppress(SurfaceError):  # no face has triangles
-            if _meshed(part, whole, larger, failed, spaced)[1]:
+            if mesh_and_soundness(part, whole, larger, failed, spaced)[1]:
                 raise InputError(
                     f"a mesh of part {part.name!r} with {count:,} vertices would lack faces, or "
                     f"have triangles that point inward; {larger:,} are enough."
@@ -292,7 +292,7 @@ class Meshing:
                 if best is None:
                     raise
                 break
-            wrong, inverted = _wrong(sampled, mesh, self.edges), _inverted(mesh)
+            wrong, inverted = wrong_edges(sampled, mesh, self.edges), inverted_triangles(mesh)
             if best is None or (len(wrong), len(inverted)) < least:
                 best, least, wrong_of_best = mesh, (len(wrong), len(inverted)), wrong
             coarse = _between(np.concatenate([wrong, inverted]), sampled)
@@ -348,7 +348,7 @@ class Meshing:
             chosen = np.setdiff1d(np.arange(len(added)), left_out)
             corners = self._corners(borders, added[chosen], first + chosen)
             mesh = self._mesh(sampled, corners)
-            bad = np.unique(_inverted(mesh))
+            bad = np.unique(inverted_triangles(mesh))
             left_out = np.union1d(left_out, bad[bad >= first] - first)
             used = np.setdiff1d(mesh.triangles, bad)
             lacking = self.count - first - int(np.count_nonzero(used >= first))
@@ -436,7 +436,7 @@ class Meshing:
 # --- what is wrong --------------------------------------------------------------------------------
 
 
-def _wrong(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:
+def wrong_edges(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:
     """Return the edges (k, 2) of a mesh that are not in as many triangles as they are to be.
 
     These are two, or, along edges of a part, as many as these have faces around.
@@ -460,7 +460,7 @@ def _wrong(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:
     return np.stack(np.divmod(found, count), axis=1)
 
 
-def _inverted(mesh: PartMesh) -> Indices:
+def inverted_triangles(mesh: PartMesh) -> Indices:
     """Return the edges (k, 2) of triangles that point away from the mean normal of their corners.
 
     From one at a corner they may, where a face of a file folds over at its end.

@@ -242,13 +242,13 @@ def test_a_face_whose_border_crosses_itself_is_missing():
 
 def test_larger_counts_are_tried_up_to_a_bound(monkeypatch):
     """The edges of a box need 8 vertices: counts below 16 times that are tried."""
-    tried, meshed = [], meshing._meshed
+    tried, meshed = [], meshing.mesh_and_soundness
 
     def noted(part, whole, count, failed, spaced):
         tried.append(count)
         return meshed(part, whole, count, failed, spaced)
 
-    monkeypatch.setattr(meshing, "_meshed", noted)
+    monkeypatch.setattr(meshing, "mesh_and_soundness", noted)
     with pytest.warns(gm.GaussmapWarning, match="crosses itself"):
         gm.sample(crossed_box(), 60).mesh()
     assert tried == [60, 72, 87, 105, 126]
@@ -256,14 +256,14 @@ def test_larger_counts_are_tried_up_to_a_bound(monkeypatch):
 
 def test_edges_are_divided_again_as_long_as_triangles_point_inward(monkeypatch):
     """But not more often than that: here, an edge never gets better."""
-    rounds, wrong = [], meshing._wrong
+    rounds, wrong = [], meshing.wrong_edges
 
     def noted(sampled, mesh, edges):
         rounds.append(len(mesh.lines[0]))
         return wrong(sampled, mesh, edges)
 
-    monkeypatch.setattr(meshing, "_wrong", noted)
-    monkeypatch.setattr(meshing, "_inverted", lambda mesh: mesh.lines[0][None, :2])
+    monkeypatch.setattr(meshing, "wrong_edges", noted)
+    monkeypatch.setattr(meshing, "inverted_triangles", lambda mesh: mesh.lines[0][None, :2])
     monkeypatch.setattr(meshing, "REFILLS", 1)
     assert len(meshed(box(*SIZES), 150).vertices) == 150
     assert len(rounds) == 15

@@ -7,15 +7,10 @@ import math
 import pickle
 import pkgutil
 import re
-from contextlib import nullcontext
-from types import SimpleNamespace
-from typing import cast
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density.filling import GREEDY, _refuse_too_many
-from gaussmap.runtime.samples.request import checked_request
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import PartSpace, space_of
@@ -214,19 +209,6 @@ def test_an_angle_that_takes_millions_of_samples_is_refused(made):
     millions, enough = map(float, found.groups())  # of two digits and more
     assert enough == pytest.approx(3.5 * math.sqrt(millions / 2.0), rel=0.06)
     assert len(gm.sample(part, 50)) == 50
-
-
-@pytest.mark.parametrize("spheres", [250, 350])
-def test_many_spheres_may_take_millions_of_samples(spheres):
-    """An angle is not refused because it is small."""
-    integral = np.array([spheres * 4.0 * np.pi])
-    radius = math.sqrt(integral[0] / (GREEDY * 3e6))  # of three million samples
-    piece = SimpleNamespace(label="face 0")
-    space = SimpleNamespace(integrals=integral, integral=integral[0], pieces=[piece], label="part")
-    asked = checked_request(None, None, 1.0, None, None, 0, None)
-    is_refused = pytest.raises(gm.errors.InputError, match=r"3\.0 million")
-    with is_refused if spheres > 300 else nullcontext():
-        _refuse_too_many(cast(PartSpace, space), radius, asked)
 
 
 def test_prescribed_normals(plates):
