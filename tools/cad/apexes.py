@@ -21,8 +21,9 @@ __all__ = ["Apex", "apexes_of"]
 Array = NDArray[np.float64]
 
 SINGULAR = KINDS.index("singular")
-# A side is one point if its points at so many places are equal up to so many roundings of the
-# largest coordinate of all sides: what is computed of these is not more exact next to the origin.
+# A side of the domain is mapped to one point if the points at PLACES parameters along it differ by
+# at most ROUNDINGS units in the last place of the largest coordinate of all sides. Those of the
+# point itself do not do: near the origin they are small, but their rounding errors are not.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the place of the coefficient of u v in Taylor polynomials; those of u and v are 1 and 2
 

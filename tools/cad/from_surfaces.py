@@ -85,7 +85,7 @@ def _checked(surfaces: object) -> list[Surface]:
 
 
 def _face(surface: Surface) -> FaceRecord:
-    """Return a surface as a face: as numbers if these give it, and else as it is."""
+    """Return a face of the kind that `geometry_of_surface` finds."""
     geometry, parameters = geometry_of_surface(surface)
     corners = np.array(list(itertools.product(*surface.domain))) @ parameters.T
     loops = [x @ parameters.T for x in _loops(surface)]

@@ -50,8 +50,8 @@ INSIDE = 1e-6
 # Edges are divided further so many times, until triangles are proper; samples that fell outside of
 # the polygons around faces are replaced so many times.
 ROUNDS, REFILLS = 15, 8
-# If a mesh has faults, larger counts are tried, each this many times the one before, up to so many
-# times what edges need at least: if one has none, that is what the error says.
+# If a mesh has faults, larger counts are tried: each is MORE times the one before, and below MANY
+# times the least count of the edges. The error names the first one whose mesh has no faults.
 MORE, MANY = 1.2, 16
 # The densities of samples that meshes follow.
 DENSITIES = ("balanced", "uniform")
@@ -84,9 +84,9 @@ def mesh_of_part(
     *,
     refuse: bool = False,
 ) -> PartMesh:
-    """Return a mesh of a part with so many vertices.
+    """Return a mesh of a part with `count` vertices.
 
-    With `refuse`, raises InputError if it has faults, and one with somewhat more vertices has none.
+    With `refuse`, raises InputError if the mesh has faults and a larger count gives one without.
     """
     check_extra(*EXTRA)
     check_memory("mesh", count)

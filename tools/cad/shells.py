@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Shell", "shells_of"]
 
-# A shell lies inside another one if of about so many of its points at least this share does.
+# A shell lies inside another one if of about PROBES of its points at least the share INSIDE does.
 PROBES, INSIDE = 100, 0.9
 
 

@@ -26,10 +26,10 @@ SAME = 1e-9
 
 
 def geometry_of_surface(surface: Surface) -> tuple[Geometry, Array]:
-    """Return a surface as numbers if these give it, and else as it is.
+    """Return the geometry of a face, of its kind in CAD files; "surface" for any other surface.
 
-    The matrix (2, 2) maps its parameters to those of the geometry: they are others where they are
-    lengths in CAD files. Both have the same normals.
+    The matrix (2, 2) maps the parameters of the surface to those of the geometry, some of
+    which are lengths. Both have the same normals.
     """
     moved = Moved.of(surface)
     function = moved.surface.function
