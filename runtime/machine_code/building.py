@@ -12,12 +12,12 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from importlib import import_module
 from inspect import getsource
+from itertools import accumulate
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -39,7 +39,7 @@ OPTIONS = {"NUMBA_CPU_FEATURES": "", "NUMBA_DISABLE_INTEL_SVML": "1"}
 # Numba numbers functions in the order in which a process compiles them, and machine code has these
 # numbers in it. So each process compiles one share, and shares are the same for any number of
 # cores: the same sources, in the same folder, give the same bytes.
-SHARES = 8
+SHARES = 4
 
 
 class _Taken(NullCache):
@@ -97,15 +97,24 @@ def _is_built(path: Path) -> bool:
 
 
 def _shares() -> list[dict[str, Any]]:
-    """Deal out the signatures of modules, whose kernels share parts; the longest sources first."""
-    modules: dict[str, dict[str, Any]] = defaultdict(dict)
-    for name, kinds in signatures.read().items():
-        modules[name.rpartition(".")[0]][name] = kinds
-    longest_first = sorted(modules, key=lambda x: -len(getsource(import_module(x))))
-    shares: list[dict[str, Any]] = [{} for _ in range(min(SHARES, len(modules)))]
-    for place, name in enumerate(longest_first):
-        shares[place % len(shares)].update(modules[name])
+    """Deal out the signatures: modules that call one another have names that begin alike.
+
+    What they call is compiled in each share again, so they stay together.
+    """
+    listing = signatures.read()
+    names = sorted(listing)
+    lengths = {x: len(getsource(import_module(x))) for x in map(_module_of, names)}
+    ends = dict(zip(lengths, accumulate(lengths.values()), strict=True))
+    size = sum(lengths.values()) / SHARES
+    shares: list[dict[str, Any]] = [{} for _ in range(SHARES)]
+    for name in names:
+        middle = ends[_module_of(name)] - lengths[_module_of(name)] / 2
+        shares[int(middle / size)][name] = listing[name]
     return shares
+
+
+def _module_of(name: str) -> str:
+    return name.rpartition(".")[0]
 
 
 def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:

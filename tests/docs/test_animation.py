@@ -35,6 +35,7 @@ def test_a_dozen_seconds_in_two_megabytes() -> None:
     assert (pictures[0][:2] == 255).all()  # white, also beside the text
 
 
+@pytest.mark.slow
 def test_the_dark_one_differs_by_its_colours_only() -> None:
     light, dark = (frames(x) for x in (animation.FILE, animation.DARK))
     assert light[1] == dark[1]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
+from types import CodeType
 from typing import Any
 
 import pytest
@@ -39,12 +41,19 @@ def of_symbol(letter: str, values: dict[str, Any]) -> dict[str, Any]:
     return {f"{letter}_{axis}": value for axis, value in values.items()}
 
 
+@cache
+def lines_of(name: str) -> list[tuple[str, CodeType]]:
+    """Return the code that is printed for a formula, as names and values."""
+    lines = straight_line(formulas[name]).assignments
+    return [(x.name, compile(source_of(value), name, "eval")) for x, value in lines]
+
+
 def run(name: str, values: dict[str, Any]) -> dict[str, Any]:
     """Return the outputs of a formula, from the code that is printed, for any kind of number."""
-    formula, names = formulas[name], dict(values)
-    for symbol, value in straight_line(formula).assignments:
-        names[symbol.name] = eval(source_of(value), {"math": math}, names)
-    return {x.name: names[x.name] for x in formula.outputs}
+    names = dict(values)
+    for symbol, value in lines_of(name):
+        names[symbol] = eval(value, {"math": math}, names)
+    return {x.name: names[x.name] for x in formulas[name].outputs}
 
 
 A, B = sp.sin(u * v) + u**3, sp.exp(u - v) + v**2 * u

@@ -164,7 +164,9 @@ def one_gib(monkeypatch: pytest.MonkeyPatch) -> None:
         ["plot", "torus", "--count", "150000000", "-o", "a.png"],
         ["sample", "torus", "--count", "100000000", "--density", "gauss", "-o", "a.npz"],
         ["sample", "torus", "--angle", "0.01", "-o", "a.npz"],
-        ["sample", "torus", "--coverage", "0.0005", "-o", "a.npz"],
+        pytest.param(
+            ["sample", "torus", "--coverage", "0.0005", "-o", "a.npz"], marks=pytest.mark.slow
+        ),
         ["sample", "torus", "--cells", "10000", "10000", "-o", "a.npz"],
     ],
     ids=lambda x: " ".join(x[2:4]),

@@ -140,6 +140,7 @@ def test_angle_and_coverage_hold_for_the_surface():
     assert np.degrees(2.0 * np.arcsin(chord / 2.0)) <= samples.report.angle <= 12.0
 
 
+@pytest.mark.slow
 def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
     """That is for surfaces that do not know their derivatives; others are covered by these."""
     known = gm.surfaces.torus()

@@ -173,6 +173,7 @@ def test_curvatures_of_a_sphere() -> None:
 
 @pytest.mark.usefixtures("unproved")
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_next_to_singular_points_normals_are_those_that_are_prescribed() -> None:
     """A spindle cyclide, with two conical points."""
     a, b, c, d = 1.0, math.sqrt(0.75), 0.5, 1.5
@@ -385,6 +386,7 @@ TWICE = [0.04430118180966494, 0.19546534701936175, -0.9797094994971047]
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize("cells", [(20, 20), None])
 @pytest.mark.parametrize("name", CURVED)
+@pytest.mark.quick_for("cells0")
 def test_no_sample_of_a_normal_is_repeated(name: str, cells: tuple[int, int] | None) -> None:
     surface, periodic = CURVED[name]
     normals = np.concatenate([[TWICE], gm.directions.random(3000, seed=3)])

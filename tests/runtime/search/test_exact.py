@@ -140,6 +140,7 @@ def no_long_integers(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.compiled
 @pytest.mark.usefixtures("no_long_integers")
 @pytest.mark.parametrize("size", [1.0, 0.3, 1e-5, 1e150, 1e-150])
+@pytest.mark.quick_for("0.3", "1e+150")
 def test_compiled_forms_are_those_of_long_integers(size: float) -> None:
     spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
     spline.coefficients[...] *= size

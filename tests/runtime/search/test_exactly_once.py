@@ -80,6 +80,7 @@ def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
 
 
 @pytest.mark.parametrize("cells", [16, 32, 64, 96])
+@pytest.mark.quick_for("16")
 def test_torus_fibonacci(cells: int) -> None:
     normals = gm.fibonacci(10**6)
     samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")
@@ -134,6 +135,7 @@ def test_sphere_like_surfaces_have_every_normal_once(name: str, cells: tuple[int
         assert (elliptic - hyperbolic == 1).all()
 
 
+@pytest.mark.quick_for("128", "32")
 @pytest.mark.parametrize(
     ("cells", "shift"), [(512, 1e6), (128, 1e8), (128, 1e9), (32, 1e10), (32, 1e12)]
 )

@@ -219,6 +219,7 @@ def test_where_derivatives_have_no_bounds_is_said() -> None:
 
 
 @pytest.mark.parametrize("name", ["knobby", "waves"])
+@pytest.mark.quick_for("waves")
 def test_radii_hold_the_exact_parameters(name: str) -> None:
     position, _, _ = FORMULAS[name]
     u, v = sp.symbols("u v", real=True)

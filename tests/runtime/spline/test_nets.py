@@ -148,6 +148,7 @@ def test_closed_spline_of_8_patches() -> None:
 
 
 @pytest.mark.parametrize("bumps", [0.0, 0.15, 0.6])
+@pytest.mark.quick_for("0.15")
 def test_powell_sabin_spline(bumps: float) -> None:
     nets = powell_sabin(30, 3, bumps)
     spline = gm.Spline.from_nets(nets, name="Powell-Sabin")
@@ -162,6 +163,7 @@ def test_powell_sabin_spline(bumps: float) -> None:
 
 
 @pytest.mark.parametrize("bumps", [0.0, 0.15, 0.6])
+@pytest.mark.quick_for("0.15")
 def test_normals_on_joints_and_at_corners(bumps: float) -> None:
     """They have what normals next to them have: Σ sign K does not change at folds either."""
     nets = powell_sabin(30, 3, bumps)

@@ -114,6 +114,7 @@ def test_wavy_patches_are_a_closed_body():
     ],
     ids=["crossing", "meeting in T"],
 )  # fmt: skip
+@pytest.mark.quick_for("meeting in T")
 def test_a_torus_in_pieces_is_sampled_as_in_one(pieces):
     part = gm.Part([ring(u, v, flipped=flipped) for u, v, flipped in pieces])
     assert (part.closed, part.gap < 1e-14) == (True, True)

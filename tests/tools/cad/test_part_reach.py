@@ -34,6 +34,7 @@ def test_parts_have_samples_on_faces_that_can_be_reached() -> None:
     assert {*(top.face_index if top.face_index is not None else ())} == {5}
 
 
+@pytest.mark.slow
 def test_weights_and_deviation_are_those_of_what_is_in_reach() -> None:
     """Of a surface of revolution, of which a sixth is in reach."""
     part, reach = all_kinds().select(kind="revolution"), ((1, 1, 1), 60.0)
