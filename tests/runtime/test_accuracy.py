@@ -179,7 +179,7 @@ def test_support_function_of_a_torus_in_closed_form() -> None:
 
 
 @pytest.mark.parametrize("name", [*THREE, *OTHERS, "ellipsoid", "sphere"])
-@pytest.mark.quick_for("torus", "sphere", "wavy_graph")
+@pytest.mark.quick_for("torus", "wavy_graph")
 def test_curvatures_have_order_one(name: str) -> None:
     """The curvatures of the spline jump from patch to patch; errors are as large as a cell."""
     exact, normals = Exact(name), gm.fibonacci(20_000)

@@ -29,6 +29,7 @@ def places_in_reach(surface: gm.Surface) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("name", ["torus", "ellipsoid"])
+@pytest.mark.quick_for("torus")
 def test_every_request_keeps_to_the_reach_and_its_guarantee(name: str) -> None:
     surface = gm.surfaces.torus() if name == "torus" else gm.surfaces.ellipsoid()
     points, normals = places_in_reach(surface)

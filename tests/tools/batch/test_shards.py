@@ -132,13 +132,14 @@ def test_a_part_that_is_cut_is_done_again(tmp_path, undisturbed, left):
     assert finished(path) == undisturbed
 
 
-def test_cut_at_any_byte(tmp_path):
+@pytest.mark.parametrize("step", [7, pytest.param(1, marks=pytest.mark.slow)])
+def test_cut_at_any_byte(tmp_path, step):
     path, known = folder(tmp_path)
     shard = Shard(path, 0, known)
     add(shard, 0)
     add(shard, 4)
     data = part_path(path, 4).read_bytes()
-    for size in range(len(data)):
+    for size in range(0, len(data), step):
         part_path(path, 4).write_bytes(data[:size])
         assert read_part(path, 4, shard.schema) is None, size
     part_path(path, 4).write_bytes(data)
