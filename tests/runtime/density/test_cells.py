@@ -111,6 +111,7 @@ def test_cells_bound_what_the_curvature_of_a_ridge_counts():
     assert largest == pytest.approx(bound[cells.rows[:, 6].argmax()])
 
 
+@pytest.mark.compiled
 def test_a_surface_within_a_predicate():
     torus = gm.surfaces.torus().trimmed(within=lambda u, v: u < 3)
     assert len(gm.sample(torus, 100, cells=(12, 8))) == 100

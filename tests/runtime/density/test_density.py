@@ -324,6 +324,7 @@ def test_balanced_is_dense_where_it_bends_and_not_blind_where_it_is_flat():
     assert (~bent).sum() > 300
 
 
+@pytest.mark.compiled
 def test_a_surface_without_curvature_is_covered_evenly_by_any_power():
     spline = gm.fit(gm.surfaces.cylinder(), (8, 6))
     uniform = gm.sample(spline, count=100, density="uniform")

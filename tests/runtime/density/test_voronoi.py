@@ -47,6 +47,7 @@ def voronoi(cells: Cells, samples: Array, margin: float) -> Voronoi:
 
 
 @pytest.mark.parametrize("cut", [False, True])
+@pytest.mark.compiled
 def test_samples_move_to_the_place_nearest_to_the_mean(cut):
     """Weighted by the third derivative of w² d⁴; fixed samples and those on another side stay."""
     cells, samples = plane(), samples_of(14, 1)

@@ -335,6 +335,7 @@ def test_next_to_a_pole_parameters_do_not_matter_and_nothing_goes_along() -> Non
     assert kept(*fold, at_pole=True) == [True, False, True]
 
 
+@pytest.mark.compiled
 def test_a_point_that_is_covered_twice_is_two_samples() -> None:
     """A torus around which u goes twice: at one point the parameters are a turn apart."""
     torus = gm.surfaces.torus()

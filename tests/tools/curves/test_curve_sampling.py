@@ -233,6 +233,7 @@ def test_density_is_the_curvature() -> None:
     assert lengths.max() > 50 * lengths.min()
 
 
+@pytest.mark.compiled
 def test_normals_of_any_length() -> None:
     curve = closed("eight")
     lengths = np.geomspace(1e-300, 1e300, 100)[:, None]

@@ -867,6 +867,7 @@ def test_what_cannot_be_known_is_said(shift: float) -> None:
     assert not found.developable
 
 
+@pytest.mark.compiled
 def test_curvature_is_known_where_points_have_no_digits() -> None:
     """The operations of z = u³ + v³ + 10⁹ have exact derivatives: K ∝ u v."""
     found = gm.gauss_map.parabolic_points(graph(lambda u, v: u**3 + v**3 + 1e9))

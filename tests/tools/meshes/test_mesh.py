@@ -102,6 +102,7 @@ class TestMesh:
             square(**changes)
 
 
+@pytest.mark.compiled
 def test_faces_are_the_triangles():
     """By the name of trimesh; the field is one, so that both stay the same."""
     mesh = gm.sample("torus", 60, cells=(8, 8)).mesh()
