@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["tree_of"]
+__all__ = ["tree_of", "tree_of_directions"]
+
+# Decimal places to which directions differ in a tree.
+DIGITS = 9
 
 
 def tree_of(points: NDArray[np.float64], periods: NDArray[np.float64] | None = None) -> KDTree:
@@ -18,3 +21,12 @@ def tree_of(points: NDArray[np.float64], periods: NDArray[np.float64] | None = N
     from scipy.spatial import KDTree  # its import takes as long as many a sampling
 
     return KDTree(points, boxsize=periods)
+
+
+def tree_of_directions(directions: NDArray[np.float64]) -> KDTree:
+    """Return the k-d tree of some of unit vectors (N, 3): nearly equal ones are in it once.
+
+    Searches among many of these, as among the normals of planes and cones, would be slow.
+    """
+    rows = np.unique(directions.round(DIGITS), axis=0, return_index=True)[1]
+    return tree_of(directions[rows])

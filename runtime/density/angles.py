@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..base.aliases import Array, Indices
 from ..base.threads import thread_count
-from ..base.trees import tree_of
+from ..base.trees import tree_of, tree_of_directions
 from .candidates import Candidates
 from .cover import STEP, Cover
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 # Normals at places are covered within an angle that is smaller by this part, which is left for
 # the normals around them: along borders, half of the steps between places.
@@ -36,28 +41,31 @@ def cover_normals(cover: Cover, angle: float) -> float:
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
     cover.evaluate_exactly()
     near, largest, cells = (1.0 - MARGIN) * limit, 0.0, cover.whole(2.0 * MARGIN * limit)
+    trees, threads = [tree_of_directions(cover.points[:, 3:])], cover.space.threads
     while len(cells):
-        distances = _distances(cover, 0, cells.rows)
+        distances = _distances(trees, cells.rows, threads)
         far = distances > near
         if far.any():
             first = cover.count
-            chosen = choose_apart(cells.rows[far, 3:6], near, cover.space.threads)
+            chosen = choose_apart(cells.rows[far, 3:6], near, threads)
             cover.add(cells[np.flatnonzero(far)[chosen]])
-            distances[far] = _distances(cover, first, cells.rows[far])
+            trees.append(tree_of_directions(cover.points[first:, 3:]))
+            distances[far] = _distances(trees[-1:], cells.rows[far], threads)
         chords = distances + cells.chords
         far = (chords > limit) & ~cover.space.deepest(cells)
         largest = max(largest, float(chords[~far].max(initial=0.0)))
         cells = cover.space.quarters(cells[far])
-    return math.degrees(2.0 * math.asin(min(largest, limit) / 2.0))
+    return angle if largest >= limit else math.degrees(2.0 * math.asin(largest / 2.0))
 
 
-def _distances(cover: Cover, first: int, rows: Array) -> Array:
-    """Return the chords (M,) from normals of rows to those of the samples from number `first` on.
+def _distances(trees: Sequence[KDTree], rows: Array, threads: int | None) -> Array:
+    """Return the chords (M,) from normals of rows to the nearest ones in trees.
 
     They are 0 where there is no normal.
     """
-    tree, threads = tree_of(cover.points[first:, 3:]), thread_count(cover.space.threads)
-    return np.where(rows[:, 3:6].any(axis=1), tree.query(rows[:, 3:6], workers=threads)[0], 0.0)
+    workers = thread_count(threads)
+    chords = [x.query(rows[:, 3:6], workers=workers)[0] for x in trees]
+    return np.where(rows[:, 3:6].any(axis=1), np.min(chords, axis=0), 0.0)
 
 
 def choose_apart(

@@ -28,15 +28,15 @@ PACKED = 0.6
 FINE, SMALLER = 0.4, 1.3
 # Where all of the surface is to be covered, and not candidates only, cells that may hold an
 # uncovered point are bisected until they have this radius, relative to the covering radius.
-FINEST = 0.1
+FINEST = 0.07
 # And borders are covered at places that are apart by twice this part of the covering radius.
 ON_BORDERS = 0.05
 # Samples that move to centres move by less than this part of the radius, but for few.
 HARDLY = 0.3
 # Gaps between candidates are searched down to the radius, and then to this part of it, and so on.
 STEP_DOWN, ROUNDS = 0.9, 3
-# The most cells at a time: this number, or this multiple of the candidates.
-MANY, TIMES = 2e7, 8
+# Cells are bisected so many at a time, for the memory.
+BLOCK = 1 << 18
 
 
 class Cover:
@@ -300,26 +300,27 @@ class Cover:
         return self
 
     def _to_radius_asked(self, widest: float, most: int | None) -> None:
-        self.narrow(widest, self.radius_asked, most)
+        radius = self.radius_asked
+        self.narrow(widest, radius, most)
         if self.count != most:
-            self._cover_whole_surface(self.radius_asked, most)
+            first = self.count
+            self._cover_cells(self.cells, self._candidates, radius, most)
+            self._cover_small_cells(self._borders(radius), radius, most)
+            self._candidates.update_distances(self.points[first:], radius)
 
-    def _cover_whole_surface(self, radius: float, most: int | None) -> None:
-        """Add samples until not only candidates are covered, but all points."""
-        cells, candidates, small, first = self.cells, self._candidates, [], self.count
-        while len(cells):
-            shares = cells.radii * np.sqrt(cells.rows[:, 6]) / radius
-            far = candidates.distances > (1.0 - shares) * radius
-            smallest = far & (shares <= FINEST)
-            small.append(cells[smallest])
-            far &= ~smallest
-            self._refuse_more(4 * int(far.sum()))
-            cells = self.space.halves(self.space.halves(cells[far]))
-            candidates = self._with_distances(cells.rows, radius, radius)
-            self._choose(cells, candidates, radius, most)
-        small.append(self._borders(radius))
-        self._cover_small_cells(merged(small), radius, most)
-        self._candidates.update_distances(self.points[first:], radius)
+    def _cover_cells(
+        self, cells: Cells, candidates: Candidates, radius: float, most: int | None
+    ) -> None:
+        """Add samples until cells, whose places are covered candidates, are covered as a whole."""
+        shares = cells.radii * np.sqrt(cells.rows[:, 6]) / radius
+        far, small = candidates.distances > (1.0 - shares) * radius, shares <= FINEST
+        large = np.flatnonzero(far & ~small)
+        for first in range(0, len(large), BLOCK):
+            halves = self.space.halves(cells[large[first : first + BLOCK]])
+            places = self._with_distances(halves.rows, radius, radius)
+            self._choose(halves, places, radius, most)
+            self._cover_cells(halves, places, radius, most)
+        self._cover_small_cells(cells[far & small], radius, most)
 
     def _borders(self, radius: float) -> Cells:
         """Return places along borders, whose radii reach half of the way to the next ones.
@@ -330,14 +331,10 @@ class Cover:
         borders.numbers[:, RADIUS] += ON_BORDERS * radius / np.sqrt(borders.rows[:, 6])
         return borders
 
-    def _refuse_more(self, number: int) -> None:
-        """Raise InputError if a number of cells is too large."""
-        most = max(MANY, TIMES * len(self.cells))
-        if number > most:
-            raise self.space.too_many(most)
-
     def _cover_small_cells(self, cells: Cells, radius: float, most: int | None) -> None:
         """Add places of small cells until these are covered as a whole."""
+        if not len(cells):
+            return
         rows = cells.rows.copy()
         # A cell is covered by a sample that is closer to its place by its radius.
         rows[:, 6] /= (1.0 - cells.radii * np.sqrt(rows[:, 6]) / radius) ** 2
@@ -346,5 +343,6 @@ class Cover:
     def _with_distances(self, rows: Array, radius: float, widest: float) -> Candidates:
         """Return rows as candidates with their distances from all samples, within `widest`."""
         candidates = Candidates(rows, radius, self.space.threads, split=True)
-        candidates.update_distances(self.points, widest)
+        for rows in (self._points, *(x.rows[:, :6] for x in self._waiting)):
+            candidates.update_distances(rows, widest)
         return candidates

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..base.aliases import Array
 from ..base.threads import thread_count
-from ..base.trees import tree_of
+from ..base.trees import tree_of, tree_of_directions
 from ..samples.whole import NormalDeviation
+from .cells import Cells
 from .space import Space
 
 __all__ = ["normal_deviation", "widest_angle"]
@@ -21,9 +22,7 @@ PLACES, FEWEST = 16, 20_000
 CUTS = 6
 # There are no more of these places than MOST; their cells are cut as much more often, BLOCK of them
 # at a time, for the memory.
-MOST, BLOCK = 1 << 21, 1 << 18
-# Decimal places to which normals have to differ in the search for the nearest one.
-DIGITS = 9
+MOST, BLOCK = 1 << 21, 1 << 16
 
 
 def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDeviation:
@@ -44,35 +43,43 @@ def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDevia
     )
 
 
-def widest_angle(space: Space, normals: Array) -> float:
-    """Return the largest angle in degrees that is found from a normal to the nearest of (N, 3)."""
+def widest_angle(space: Space, normals: Array, least: float = 0.0) -> float:
+    """Return the largest angle in degrees that is found from a normal to the nearest of (N, 3).
+
+    Or `least`, if it is larger, which spares the search for smaller ones.
+    """
     if len(normals) == 0:
         return 180.0
-    # Searches among many nearly equal normals, as on a cone, would be slow.
-    distinct = np.unique(normals.round(DIGITS), axis=0)
-    tree, workers = tree_of(distinct), thread_count(space.threads)
+    tree, workers = tree_of_directions(normals), thread_count(space.threads)
 
     def nearest_normal(rows: Array) -> Array:
         return tree.query(rows[:, 3:6], workers=workers)[0]
 
-    return _largest(space, len(normals), nearest_normal)
+    return _largest(space, len(normals), nearest_normal, least)
 
 
-def _largest(space: Space, samples: int, chord_of: Callable[[Array], Array]) -> float:
-    """Return the largest angle in degrees that is found of chords at places."""
-    even, found = space.uniform.exact, 0.0
+def _largest(
+    space: Space, samples: int, chord_of: Callable[[Array], Array], least: float = 0.0
+) -> float:
+    """Return the largest angle in degrees that is found of chords at places, beyond `least`."""
+    even = space.uniform.exact
+    begin = found = 2.0 * math.sin(math.radians(least) / 2.0)
     wanted = max(PLACES * samples, FEWEST)
     first = min(wanted, MOST)
-    all_cells, cuts = even.cut(math.sqrt(even.area / first)), CUTS
+    cells, cuts = even.cut(math.sqrt(even.area / first)), CUTS
     while first < wanted:
         first, cuts = 4 * first, cuts + 1
-    for start in range(0, len(all_cells), BLOCK):
-        cells = all_cells[start : start + BLOCK]
-        for _ in range(cuts):
-            chords = np.where(cells.rows[:, 3:6].any(axis=1), chord_of(cells.rows), 0.0)
-            found = max(found, float(chords.max(initial=0.0)))
-            # Within a cell the normal turns by no more than this.
-            cells = even.quarters(cells[chords + cells.chords > found])
-            if len(cells) == 0:
-                break
-    return math.degrees(2.0 * math.asin(min(found, 2.0) / 2.0))
+
+    def search(cells: Cells, cuts: int) -> None:
+        nonlocal found
+        chords = np.where(cells.rows[:, 3:6].any(axis=1), chord_of(cells.rows), 0.0)
+        found = max(found, float(chords.max(initial=0.0)))
+        # Within a cell the normal turns by no more than this.
+        bounds = chords + cells.chords
+        far = np.flatnonzero(bounds > found)
+        for start in range(0, len(far) if cuts else 0, BLOCK):
+            some = far[start : start + BLOCK]
+            search(even.quarters(cells[some[bounds[some] > found]]), cuts - 1)
+
+    search(cells, cuts - 1)
+    return least if found == begin else math.degrees(2.0 * math.asin(min(found, 2.0) / 2.0))

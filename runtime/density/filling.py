@@ -99,7 +99,7 @@ def fill(
             cover.angle = cover_normals(cover, request.angle)
             if any(x.trim is not None for x in space.pieces):
                 # Tips may be too narrow for cells.
-                cover.angle = max(cover.angle, widest_angle(space, cover.points[:, 3:]))
+                cover.angle = widest_angle(space, cover.points[:, 3:], cover.angle)
         if request.coverage is not None:
             cover.coverage = filling.reached(cover) / space.unit
     return cover
