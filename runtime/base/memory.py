@@ -60,7 +60,7 @@ COSTS: dict[str, Cost] = {
     "balanced": Cost("samples", 3900.0, 0.0, FEWER),
     "uniform": Cost("samples", 3900.0, 0.0, FEWER),
     "aligned": Cost("samples", 900.0, 0.0, FEWER),
-    "candidates": Cost("candidates for samples", 740.0, 0.0, LARGER),
+    "candidates": Cost("candidates for samples", 600.0, 0.0, LARGER),
     "part": Cost("samples", 6.6e3, 0.0, "use fewer"),
     "curve": Cost("samples", 420.0, 0.0, "use fewer"),
     # 450 in arrays, and what Qhull takes.
