@@ -1,10 +1,14 @@
 """No point of a surface is too far from a sample, whatever density, surface, size or place."""
 
 import math
+from collections.abc import Callable
 
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.density import cover, deviation, filling
+from gaussmap.runtime.density.cells import Cells
+from gaussmap.runtime.density.space import Space
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
@@ -250,6 +254,56 @@ def test_a_coverage_takes_few_samples(name, area):
     samples = gm.sample(gm.fit(name, (16, 16)), coverage=0.05, density="uniform")
     lattice = 2.0 * area / (3.0 * math.sqrt(3.0) * 0.05**2)
     assert len(samples) < 2.05 * lattice
+
+
+# --- memory ---------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def cut(monkeypatch) -> list[int]:
+    """Return how many cells at a time are cut from now on."""
+    numbers: list[int] = []
+
+    def counted(cut: Callable[[Space, Cells], Cells]) -> Callable[[Space, Cells], Cells]:
+        def counting(space: Space, cells: Cells) -> Cells:
+            numbers.append(len(cells))
+            return cut(space, cells)
+
+        return counting
+
+    for name in ("halves", "quarters"):
+        monkeypatch.setattr(Space, name, counted(getattr(Space, name)))
+    return numbers
+
+
+def test_few_cells_are_bisected_at_a_time(cut, monkeypatch):
+    """All at once took three times the memory; in blocks the surface is covered as well."""
+    monkeypatch.setattr(filling, "coverage", lambda *_: 0.0)
+    monkeypatch.setattr(cover, "BLOCK", 500)
+    spline = gm.fit("torus", (16, 16))
+    samples = gm.sample(spline, density="uniform", coverage=0.1)
+    assert 100 < max(cut) <= 500 < sum(cut)
+    assert farthest(samples, places(spline)[0]) <= 0.1
+    assert len(samples) < 1000  # 958 with all at once
+
+
+def test_few_cells_are_searched_for_wide_angles_at_a_time(cut, monkeypatch):
+    samples = gm.sample(gm.fit("wavy_graph", (16, 16)), 300)
+    whole = samples.normal_deviation()
+    most = max(cut)
+    monkeypatch.setattr(deviation, "BLOCK", most // 4)
+    cut.clear()
+    assert samples.normal_deviation() == whole
+    assert max(cut) == most // 4
+
+
+def test_an_angle_that_is_just_reached_is_reported_as_it_was_asked():
+    """Next to a singular point that is the bound of angles; its rounding was warned of."""
+    surface = gm.Surface.from_callable(
+        lambda u, v: np.stack(np.broadcast_arrays(u, v**2, u * v), axis=-1),
+        ((-1.0, 1.0), (-1.0, 1.0)),
+    )
+    assert gm.sample(gm.fit(surface, (20, 20)), angle=24.0).report.angle == 24.0
 
 
 # --- relaxing -------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ import re
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.base import memory
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import PartSpace, space_of
@@ -196,11 +197,14 @@ def test_an_angle_holds_on_tiny_faces(made):
     assert np.degrees(2 * np.arcsin(chords.max() / 2)) <= samples.report.angle <= 5.0
 
 
+def needle(made, radius):
+    """Return a cylinder of length 1: κ² integrates to 1/(2 radius) spheres."""
+    ends = (0.0, made.TURN), (0.0, 1.0), made.TURN * radius, (made.TURN, 0.0)
+    return made.part([made.face("cylinder", [*made.placement(), radius], *ends)], "needle")
+
+
 def test_an_angle_that_takes_millions_of_samples_is_refused(made):
-    radius, turn = 1e-4, (0.0, made.TURN)
-    area = made.TURN * radius
-    ends = turn, (0.0, 1.0), area, (made.TURN, 0.0)
-    part = made.part([made.face("cylinder", [*made.placement(), radius], *ends)], "needle")
+    part = needle(made, 1e-4)
     said = r"about (\S+) million samples .* on face 0 .* ask for angle=(\S+) or more, or"
     with pytest.raises(gm.errors.InputError, match=said) as refused:
         gm.sample(part, angle=3.5)
@@ -209,6 +213,16 @@ def test_an_angle_that_takes_millions_of_samples_is_refused(made):
     millions, enough = map(float, found.groups())  # of two digits and more
     assert enough == pytest.approx(3.5 * math.sqrt(millions / 2.0), rel=0.06)
     assert len(gm.sample(part, 50)) == 50
+
+
+@pytest.mark.parametrize(
+    ("spheres", "said"), [(150, "need about .* memory"), (600, "narrow and sharply curved")]
+)
+def test_narrow_faces_are_blamed_where_they_are(made, monkeypatch, spheres, said):
+    """An angle of 0.2° takes millions of samples of every part, which memory may have room for."""
+    monkeypatch.setattr(memory, "free_memory", lambda: 2.0**30)
+    with pytest.raises(gm.errors.InputError, match=said):
+        gm.sample(needle(made, 0.5 / spheres), angle=0.2)
 
 
 def test_prescribed_normals(plates):

@@ -206,6 +206,11 @@ SHAPES = {
         cut(box(2.0, 1.0, 0.1), cylinder(0.2, 1.0, (0.7, 0.5, -0.5))),
         cylinder(0.2, 1.0, (1.1, 0.5, -0.5)),
     ),
+    "touching holes of a torus": lambda: cut(
+        cut(BRepPrimAPI_MakeTorus(2.0, 0.6).Shape(), cylinder(0.25, 3.0, (2.0, 0.25, -1.5))),
+        cylinder(0.25, 3.0, (2.0, -0.25, -1.5)),
+    ),
+    "hole at a rim": lambda: cut(cylinder(1.0, 1.0), cylinder(0.3, 3.0, (0.9, 0.0, -1.0))),
     "crescent": lambda: cut(cylinder(1.0, 0.2), cylinder(0.995, 1.0, (0.005, 0.0, -0.5))),
     "hole through a pole": lambda: cut(ball(), cylinder(0.4, 3.0, (0.4, 0.0, -1.5))),
     "flat cap": lambda: cut(ball(), half_space((0, 0, 0.995), (0, 0, -1))),
