@@ -184,6 +184,7 @@ class Piece(ABC):
 
 def boxes_between(u: Array, v: Array) -> Array:
     """Return the boxes (M, 4) between neighbouring lines u = const and v = const."""
-    low = np.stack(np.meshgrid(u[:-1], v[:-1], indexing="ij"), axis=-1)
-    high = np.stack(np.meshgrid(u[1:], v[1:], indexing="ij"), axis=-1)
-    return np.concatenate([low, high], axis=-1).reshape(-1, 4)
+    boxes = np.empty((len(u) - 1, len(v) - 1, 4))
+    boxes[:, :, 0], boxes[:, :, 2] = u[:-1, None], u[1:, None]
+    boxes[:, :, 1], boxes[:, :, 3] = v[:-1], v[1:]
+    return boxes.reshape(-1, 4)

@@ -119,7 +119,8 @@ class FacePiece(Piece):
     @cached_property
     def boxes(self) -> Array:
         """Boxes (M, 4) that the domain is made of, in each of which the surface is smooth."""
-        u, v = (_lines(self.face, axis, self.surface.domain[axis]) for axis in (0, 1))
+        geometry, domain = self.face.geometry, self.surface.domain
+        u, v = (_lines(self.face, geometry, axis, domain[axis]) for axis in (0, 1))
         return boxes_between(u, v)
 
     def lines(self, axis: int) -> Array:
@@ -249,33 +250,37 @@ def pieces_of(
     return pieces, reasons
 
 
-def _lines(face: Face, axis: int, ends: tuple[float, float]) -> Array:
+def _lines(face: Face, geometry: Geometry, axis: int, ends: tuple[float, float]) -> Array:
     """Return where the domain is cut along an axis: at knots, and into parts of them."""
-    (knots, degree), geometry = _knots(face.geometry, axis), face.geometry
+    knots, degree = _knots(geometry, axis)
     while geometry.basis is not None:
         geometry = geometry.basis
     if axis == 0 and face.reversed:  # as u of its surface is
         knots = sum(ends) - knots
-    period = face.periods[axis]
-    if period > 0.0 and len(knots):
-        turns = np.arange(-2, 3) * period
-        knots = np.unique(knots + turns[:, None])
-    lines = np.array(ends)
+    lines, parts = np.array(ends), 1
     if len(knots):
-        slack = SAME_LINE * (ends[1] - ends[0])
-        inside = np.sort(knots[(knots > ends[0] + slack) & (knots < ends[1] - slack)])
-        inside = inside[np.diff(inside, prepend=-np.inf) > slack]
-        lines = np.concatenate([[ends[0]], inside, [ends[1]]])
-    parts = 1
-    if len(knots):
+        lines = _between(knots, ends, face.periods[axis])
         most = max(MOST_PARTS // (len(lines) - 1), 1)
         parts = min(max(PARTS_OF_SPAN, math.ceil(degree / 2)), most)
     if geometry.surface is not None:
         parts = PARTS_OF_SURFACE
     if ANGLES.get(geometry.kind, (False, False))[axis]:
         parts = math.ceil((ends[1] - ends[0]) / ANGLE)
+    if parts == 1:
+        return lines
     between = [np.linspace(a, b, parts + 1)[:-1] for a, b in itertools.pairwise(lines)]
     return np.concatenate([*between, lines[-1:]])
+
+
+def _between(knots: Array, ends: tuple[float, float], period: float) -> Array:
+    """Return the knots, and those of other periods, between the ends, and these."""
+    if period > 0.0:
+        turns = np.arange(-2, 3) * period
+        knots = np.unique(knots + turns[:, None])
+    slack = SAME_LINE * (ends[1] - ends[0])
+    inside = np.sort(knots[(knots > ends[0] + slack) & (knots < ends[1] - slack)])
+    inside = inside[np.diff(inside, prepend=-np.inf) > slack]
+    return np.concatenate([[ends[0]], inside, [ends[1]]])
 
 
 def _knots(geometry: Geometry, axis: int) -> tuple[Array, int]:

@@ -18,14 +18,16 @@ from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError
 from ...runtime.domain.domain import Boundary, BoundaryPair, Domain, Interval, checked_domain
+from ...runtime.domain.loops import checked_loops
+from ...runtime.domain.trim import Trim
 from ...runtime.surface.derivatives import Differentiable
-from ...runtime.surface.moved import AffineMap, Moved
+from ...runtime.surface.moved import AffineMap, Moved, turned_trim
 from ...runtime.surface.nurbs import Nurbs
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import CatalogueFunction
-from .nets import SAME_END, curve_of_net, nurbs_of_curve, nurbs_of_net, nurbs_over
+from .nets import SAME_END, curve_of_net, line_of, nurbs_of_curve, nurbs_of_net, nurbs_over
 from .offset_surface import OffsetSurface, Turned
-from .records import Geometry, Net
+from .records import Geometry
 
 __all__ = ["face_surface", "own_parameters", "simplest"]
 
@@ -70,14 +72,18 @@ def face_surface(
         surface = replace(geometry.surface, name=name)
         return surface.flipped() if is_reversed else surface
     shape = _shape(geometry, checked_domain(domain))
-    assumed = (shape.collapses, shape.collapses)
-    surface = Surface(name, shape.function, shape.domain, shape.boundary, assumed_open=assumed)
-    if shape.placement is not None:
-        moved = Moved(surface, shape.placement, turned=False, ends=shape.domain[0])
-        surface = replace(surface, function=moved)
-    if len(loops) and not _is_whole(loops, surface.domain):
-        surface = surface.trimmed(loops)
-    return surface.flipped() if is_reversed else surface
+    ends, assumed = (shape.domain, shape.boundary), (shape.collapses, shape.collapses)
+    trim, function = None, shape.function
+    if len(loops) and not _is_whole(loops, shape.domain):
+        trim = Trim(*ends, (checked_loops(loops, *ends),))
+    if shape.placement is None:
+        surface = Surface(name, function, *ends, trim=trim, assumed_open=assumed)
+        return surface.flipped() if is_reversed else surface
+    # At once, for there are many of these faces. Both ends of u are of one kind.
+    moved = Moved(Surface(name, function, *ends), shape.placement, is_reversed, shape.domain[0])
+    if is_reversed and trim is not None:
+        trim = turned_trim(trim, shape.boundary)
+    return Surface(name, moved, *ends, trim=trim, assumed_open=assumed)
 
 
 def own_parameters(surface: Surface, uv: Array, *, is_reversed: bool) -> Array:
@@ -99,7 +105,7 @@ def _is_whole(loops: Sequence[Array], domain: Domain) -> bool:
     if not at_border.all():
         return False
     x, y = places.T
-    area = (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2.0
+    area = (x[:-1] @ y[1:] - y[:-1] @ x[1:] + x[-1] * y[0] - y[-1] * x[0]) / 2.0
     return abs(abs(area) - 1.0) <= 4.0 * ON_BORDER
 
 
@@ -124,25 +130,22 @@ def _plane(geometry: Geometry, domain: Domain) -> Shape:
 
 
 def _cylinder(geometry: Geometry, domain: Domain) -> Shape:
-    radius = float(geometry.numbers[12])
-    return _turned_line(geometry, domain, radius, (0.0, 0.0, 1.0))
+    function = CatalogueFunction("cylinder", (float(geometry.numbers[12]), 1.0))
+    around, ends = _around(domain[0])
+    return Shape(function, (around, domain[1]), (ends, OPEN), _placement(geometry.numbers))
 
 
 def _cone(geometry: Geometry, domain: Domain) -> Shape:
     radius, angle = geometry.numbers[12:].tolist()
-    return _turned_line(geometry, domain, radius, (math.sin(angle), 0.0, math.cos(angle)))
-
-
-def _turned_line(
-    geometry: Geometry, domain: Domain, radius: float, along: tuple[float, float, float]
-) -> Shape:
+    start, way = np.array([radius, 0.0, 0.0]), np.array([math.sin(angle), 0.0, math.cos(angle)])
+    first, last = (start + v * way for v in domain[1])
     around, ends = _around(domain[0])
-    places = np.array(domain[1])
-    line = Net((1,), (np.repeat(places, 2),), [radius, 0.0, 0.0] + places[:, None] * along)
-    function = Turned(curve_of_net(line))
-    collapses = along[0] != 0.0
     return Shape(
-        function, (around, domain[1]), (ends, OPEN), _placement(geometry.numbers), collapses
+        Turned(line_of(first, last, domain[1])),
+        (around, domain[1]),
+        (ends, OPEN),
+        _placement(geometry.numbers),
+        collapses=True,
     )
 
 

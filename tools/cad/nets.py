@@ -15,7 +15,7 @@ from ...runtime.surface.nurbs import Nurbs
 from ...runtime.surface.nurbs_input import nurbs_of
 from .records import Net
 
-__all__ = ["SAME_END", "curve_of_net", "nurbs_of_curve", "nurbs_of_net", "nurbs_over"]
+__all__ = ["SAME_END", "curve_of_net", "line_of", "nurbs_of_curve", "nurbs_of_net", "nurbs_over"]
 
 Array = NDArray[np.float64]
 
@@ -49,6 +49,18 @@ def curve_of_net(net: Net) -> Nurbs:
     points = net.points - net.points.mean(axis=0)
     direction = np.linalg.svd(points, full_matrices=True)[2][-1]
     return nurbs_of_curve(net, direction * np.abs(points).max(), (0.0, 1.0))
+
+
+def line_of(first: Array, last: Array, ends: Interval) -> Nurbs:
+    """Return a line in the plane y = 0, between points (3,) at the ends of its parameter.
+
+    It is the line v = 0 of a surface, as in `curve_of_net`, which goes along y.
+    """
+    middle, half = (first + last) / 2.0, (last - first) / 2.0
+    across = np.array([(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)])
+    points = np.stack([-half, half])[:, None] + across
+    knots = np.repeat(ends, 2), np.repeat((0.0, 1.0), 2)
+    return Nurbs((1, 1), knots, points, middle, (ends, (0.0, 1.0)))
 
 
 def nurbs_over(nurbs: Nurbs, domain: tuple[Interval, Interval]) -> Nurbs:
