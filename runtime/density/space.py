@@ -55,8 +55,8 @@ MOST_CELLS = 2e9
 COARSER = 1.2
 # The places on borders that are measured at a time.
 PLACES_AT_A_TIME = 1 << 17
-# Of a piece, this number of cells is evaluated at a time, and about the RANGES-th part of all that
-# is evaluated by one thread.
+# This number of cells is evaluated at a time, at most, and about the RANGES-th part of all that is
+# evaluated by one thread.
 CELLS_AT_A_TIME, RANGES = 1 << 12, 32
 # Where |K| is below this part of 1/area, a part counts as developable.
 FLAT_CURVATURE = 1e-6
@@ -398,27 +398,43 @@ class Space:
         """
 
         def work(first: int, last: int) -> None:
-            for k, rows in parts[first:last]:
-                jets = self.pieces[k].jets(*cells.places[rows].T.copy())
+            for parts in groups[first:last]:
+                jets = [self.pieces[k].jets(*cells.places[rows].T.copy()) for k, rows in parts]
+                (k, begin), (_, end) = parts[0], parts[-1]
+                rows = slice(begin.start, end.stop)
                 evaluate_cells(
-                    jets, cells.boxes[rows], cells.places[rows], self.unit, self.centre,
+                    jets[0] if len(jets) == 1 else np.concatenate(jets),
+                    cells.boxes[rows], cells.places[rows], self.unit, self.centre,
                     self.pieces[k].finest, self._target_of(k),
                     cells.rows[rows], cells.numbers[rows],
                 )  # fmt: skip
 
         cells = cells.with_rows()
-        parts = [
-            (k, slice(first, min(first + CELLS_AT_A_TIME, rows.stop)))
-            for k, rows in by_piece(cells)
-            for first in range(rows.start, rows.stop, CELLS_AT_A_TIME)
-        ]
-        list(over_ranges(work, len(parts), len(parts) // RANGES + 1, self.threads))
+        groups = self._groups(cells)
+        list(over_ranges(work, len(groups), len(groups) // RANGES + 1, self.threads))
         rows, numbers = (np.isfinite(x).all(axis=1) for x in (cells.rows, cells.numbers))
         finite = np.asarray(rows & numbers)
         if keep:
             cells.rows[~finite] = 0.0
             return cells
         return cells if finite.all() else cells[finite]
+
+    def _groups(self, cells: Cells) -> list[list[tuple[int, slice]]]:
+        """Return the rows of cells that are evaluated at a time, and of which pieces they are.
+
+        In a group `finest` and the target density are the same: pieces may have few cells each.
+        """
+        groups, last, room = list[list[tuple[int, slice]]](), None, 0
+        for k, rows in by_piece(cells):
+            kind = k in self.developable, *self.pieces[k].finest.tolist()
+            for first in range(rows.start, rows.stop, CELLS_AT_A_TIME):
+                part = slice(first, min(first + CELLS_AT_A_TIME, rows.stop))
+                room -= part.stop - part.start
+                if kind != last or room < 0:
+                    groups.append([])
+                    last, room = kind, CELLS_AT_A_TIME - (part.stop - part.start)
+                groups[-1].append((k, part))
+        return groups
 
     def _target_of(self, piece: int) -> TargetDensity:
         flat = piece in self.developable
