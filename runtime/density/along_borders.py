@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,12 +13,13 @@ from ..base.aliases import Array, Indices
 from ..base.trees import tree_of
 from ..kernels.sizing import TargetDensity
 from .cells import LIMIT, Cells, by_piece
-from .piece import Piece
+from .trims import Trims
 
 __all__ = ["BorderLines", "places_along", "polygons_of"]
 
 # Borders are measured at places that are this part of the domain apart, or less.
 FINE = 1.0 / 48.0
+PLACES_AT_A_TIME = 1 << 17
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,14 +37,14 @@ class BorderLines:
     limits: Array
 
 
-def polygons_of(pieces: Sequence[Piece], first: Cells) -> Iterator[tuple[int, Array, Array, Array]]:
+def polygons_of(trims: Trims, first: Cells) -> Iterator[tuple[int, Array, Array, Array]]:
     """Yield the closed polygons (k, 2) of all pieces that have a trim, with the numbers of these.
 
     Places are `FINE` apart at most. With them come the same places less whole periods, and the
     limits (k,) of the first cells near them.
     """
     for k, rows in by_piece(first):
-        piece, cells = pieces[k], first[rows]
+        piece, cells = trims.pieces[k], first[rows]
         if piece.trim is None:
             continue
         tree = tree_of(cells.places / piece.sizes)
@@ -53,7 +54,7 @@ def polygons_of(pieces: Sequence[Piece], first: Cells) -> Iterator[tuple[int, Ar
 
 
 def places_along(
-    pieces: Sequence[Piece],
+    trims: Trims,
     lines: BorderLines,
     target: TargetDensity,
     step: float,
@@ -67,16 +68,15 @@ def places_along(
     owner, number, share = _spaced(lines, target, step, turn)
     steps = lines.places[number + 1] - lines.places[number]
     on = lines.places[number] + share[:, None] * steps
-    found, places = [np.empty(0, np.int64)], [np.empty((0, 2))]
-    ends = np.flatnonzero(np.diff(lines.pieces[owner], prepend=-1, append=-1))
-    for first, last in itertools.pairwise(ends.tolist()):
-        piece, here = pieces[int(lines.pieces[owner[first]])], slice(first, last)
-        inside, numbers, sides = piece.beside(on[here], steps[here])
-        order = np.lexsort((sides, owner[here][numbers]))
-        found.append(first + numbers[order])
-        places.append(inside[order])
-    every = np.concatenate(found)
-    return lines.pieces[owner[every]], np.concatenate(places), lines.limits[number[every]]
+    pieces, found = lines.pieces[owner], [(np.empty((0, 2)), *np.empty((2, 0), np.int64))]
+    for first in range(0, len(owner), PLACES_AT_A_TIME):
+        here = slice(first, first + PLACES_AT_A_TIME)
+        inside, numbers, sides = trims.beside(pieces[here], on[here], steps[here])
+        found.append((inside, first + numbers, sides))
+    places, numbers, sides = map(np.concatenate, zip(*found, strict=True))
+    order = np.lexsort((numbers, sides, owner[numbers]))
+    every = numbers[order]
+    return pieces[every], places[order], lines.limits[number[every]]
 
 
 def _spaced(

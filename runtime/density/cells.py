@@ -25,6 +25,7 @@ __all__ = [
     "merged",
     "new_cells",
     "points_of",
+    "runs",
 ]
 
 
@@ -145,11 +146,17 @@ def into_parts(cells: Cells, parts: Indices) -> Cells:
 
 def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
     """Yield the pieces of cells, which are sorted by them, and the rows of each."""
-    ends = np.flatnonzero(np.diff(cells.pieces, append=-1)) + 1
-    first = 0
-    for last in ends.tolist():
-        yield int(cells.pieces[first]), slice(first, last)
-        first = last
+    yield from runs(cells.pieces)
+
+
+def runs(numbers: Indices) -> Iterator[tuple[int, slice]]:
+    """Yield the numbers (k,) that differ from those before them, and the rows of each."""
+    ends = (np.flatnonzero(np.diff(numbers)) + 1).tolist()
+    if len(numbers):
+        firsts = [0, *ends]
+        yield from zip(
+            numbers[firsts].tolist(), map(slice, firsts, [*ends, len(numbers)]), strict=True
+        )
 
 
 def new_cells(

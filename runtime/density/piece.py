@@ -11,19 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..base.aliases import Array, Flags, Indices
+from ..base.aliases import Array, Flags
 from ..domain.domain import Domain, brought_inside
-from ..domain.loops import Loops
 from ..domain.trim import Trim
 from ..place.on_spline import OnSpline
 from ..samples.samples import Samples
 from .borders import Border
 
 __all__ = ["Piece", "boxes_between"]
-
-
-# The distance from the border of places beside it, relative to the domain.
-BESIDE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -138,48 +133,6 @@ class Piece(ABC):
             number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
             inner = polygon[owner] + (number / parts[owner])[:, None] * steps[owner]
             yield np.concatenate([inner, polygon[:1]])
-
-    def beside_border(self, step: float) -> Array:
-        """Return places (k, 2) inside, close to the border, at distances `step` along it."""
-        found = [np.empty((0, 2))]
-        for line in self.border_lines(step):
-            steps = np.diff(line, axis=0)
-            found.append(self.beside(line[:-1] + steps / 2.0, steps)[0])
-        return np.concatenate(found)
-
-    def beside(self, places: Array, steps: Array) -> tuple[Array, Indices, Indices]:
-        """Return which places are inside, of those left and right of places (k, 2) on a border.
-
-        And the numbers of these; the border runs along steps (k, 2). Where neither is, in tips too
-        narrow for that, the place on the border stands for both. Those at the left come first, and
-        are 0 in what is returned last; those at the right are 1, and those in tips 2.
-        """
-        along = steps / self.sizes
-        lengths = np.hypot(*along.T)
-        unit = along / np.where(lengths > 0.0, lengths, 1.0)[:, None]
-        across = BESIDE * self.sizes * np.stack([-unit[:, 1], unit[:, 0]], axis=1)
-        both = self.wrapped(np.concatenate([places + across, places - across]))
-        low, high = np.array(self.domain).T
-        inside = ((both > low) & (both < high)).all(axis=1)
-        inside[inside] = self.contains(both[inside])
-        narrow = np.flatnonzero(~inside.reshape(2, -1).any(axis=0))
-        on = np.clip(self.wrapped(places[narrow]), low, high)
-        allowed = self._allows(on)
-        numbers = np.tile(np.arange(len(places)), 2)[inside]
-        return (
-            np.concatenate([both[inside], on[allowed]]),
-            np.concatenate([numbers, narrow[allowed]]),
-            np.concatenate([np.repeat([0, 1], len(places))[inside], np.full(allowed.sum(), 2)]),
-        )
-
-    def _allows(self, places: Array) -> Flags:
-        """Return which places (k, 2) on its loops fulfil all other conditions of the trim."""
-        assert self.trim is not None
-        allowed = np.ones(len(places), np.bool_)
-        for part in self.trim.parts:
-            if len(places) and not isinstance(part, Loops):
-                allowed &= part.contains(places)
-        return allowed
 
 
 def boxes_between(u: Array, v: Array) -> Array:

@@ -36,6 +36,7 @@ from .cells import (
 )
 from .piece import Piece
 from .sifting import beside, placed, sifted
+from .trims import Trims
 
 __all__ = ["Space"]
 
@@ -99,6 +100,11 @@ class Space:
     def sizes(self) -> Array:
         """The lengths (P, 2) of the domains of the pieces."""
         return np.array([x.sizes for x in self.pieces])
+
+    @cached_property
+    def trims(self) -> Trims:
+        """The trims of the pieces."""
+        return Trims(self.pieces)
 
     @property
     def size(self) -> float:
@@ -197,7 +203,7 @@ class Space:
     @property
     def _shared(self) -> dict[str, object]:
         """What spaces of the same pieces share."""
-        return {x: getattr(self, x) for x in ("areas", "unit", "centre", "sizes")}
+        return {x: getattr(self, x) for x in ("areas", "unit", "centre", "sizes", "trims")}
 
     def scaled_points(self, points: NDArray[np.floating]) -> Array:
         """Return scaled points (N, 3); InputError unless they are finite."""
@@ -260,7 +266,7 @@ class Space:
         many = (parts.prod(axis=1) > AT_ONCE) & ~cells.whole
         steps = np.where(many[:, None], np.ceil(np.sqrt(parts)).astype(np.int64), 1)
         owner = np.repeat(np.arange(len(steps)), steps.prod(axis=1))
-        cells, owner = sifted(self.pieces, into_parts(cells, steps), pixels, owner)
+        cells, owner = sifted(self.trims, into_parts(cells, steps), pixels, owner)
         cells = self._inside(into_parts(cells, -(-parts[owner] // steps[owner])), pixels)
         return merged([cells, self._beside_borders(radius)])
 
@@ -323,11 +329,11 @@ class Space:
 
     def _inside(self, cells: Cells, pixels: Indices) -> Cells:
         """Return those of cells that have a place inside the trim, with it."""
-        return placed(self.pieces, sifted(self.pieces, cells.sorted(), pixels)[0])[0]
+        return placed(self.trims, sifted(self.trims, cells.sorted(), pixels)[0])[0]
 
     def _beside_borders(self, step: float, turn: float = math.inf) -> Cells:
         """Return the cells of `along_borders`, not evaluated."""
-        pieces, *found = places_along(self.pieces, self.borders, self.target, step, turn)
+        pieces, *found = places_along(self.trims, self.borders, self.target, step, turn)
         return points_of(pieces, found[0], self.sizes[pieces], found[1])
 
     def _first(self) -> Cells:
@@ -338,8 +344,8 @@ class Space:
         done = [space.nothing()]
         for step in range(MOST_BENDS):
             cells = replace(cells, limits=np.zeros(len(cells)))
-            cells, _ = sifted(self.pieces, cells, self._fewest)
-            cells, lost = placed(self.pieces, cells)
+            cells, _ = sifted(self.trims, cells, self._fewest)
+            cells, lost = placed(self.trims, cells)
             cells = space.known(cells)
             bends = cells.numbers[:, [BEND_U, BEND_V]]
             bent = (bends > FLAT).any(axis=1) & ~self.deepest(cells)
@@ -349,13 +355,13 @@ class Space:
                 cells += into_parts(lost, np.full((len(lost), 2), 2))
                 cells = cells.sorted()
             elif len(lost):
-                done.append(space.at(*beside(self.pieces, lost, self._fewest)))
+                done.append(space.at(*beside(self.trims, lost, self._fewest)))
             if not len(cells):
                 break
         return merged(done)
 
     def _borders(self) -> BorderLines:
-        lines, space = list(polygons_of(self.pieces, self.first)), self.between(0.0)
+        lines, space = list(polygons_of(self.trims, self.first)), self.between(0.0)
         nothing = (0, np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
         numbers, polygons, inside, near = map(list, zip(*lines or [nothing], strict=True))
         counts = [len(x) for x in polygons]

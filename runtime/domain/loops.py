@@ -51,7 +51,7 @@ class Loops:
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether points (k, 2) of the domain are inside, as booleans (k,)."""
-        cells, shifts = self._cells
+        cells, shifts = self.cells
         places, inside = np.ascontiguousarray(self._inwards(uv)), np.empty(len(uv), dtype=np.bool_)
 
         def work(first: int, last: int) -> None:
@@ -97,10 +97,10 @@ class Loops:
 
     def _inwards(self, uv: Array) -> Array:
         """Move points on open sides into the domain, by far less than its size."""
-        return uv.clip(*self._limits)
+        return uv.clip(*self.limits)
 
     @cached_property
-    def _limits(self) -> tuple[Array, Array]:
+    def limits(self) -> tuple[Array, Array]:
         """The smallest and the largest parameters (2,) of points that count as inside."""
         low, high = np.array(self.domain).T
         nudge = INSIDE * (high - low)
@@ -139,7 +139,7 @@ class Loops:
         return sorted({0, *range(first, last + 1)}, key=abs)
 
     @cached_property
-    def _cells(self) -> tuple[kernels.Cells, Array]:
+    def cells(self) -> tuple[kernels.Cells, Array]:
         """The segments sorted into cells, and the shifts, both scaled by powers of two."""
         sizes = self.box[1] - self.box[0]
         scales = np.array([scale_to_one(float(x)) for x in sizes])

@@ -22,7 +22,15 @@ from ...generated.spline import CORNERS
 from ..machine_code.jit import inline, jit, loop
 from .patch import place_of
 
-__all__ = ["Cells", "find_inside", "find_parities", "list_segments", "to_cells"]
+__all__ = [
+    "Cells",
+    "Joined",
+    "find_inside",
+    "find_inside_each",
+    "find_parities",
+    "list_segments",
+    "to_cells",
+]
 
 
 class Cells(NamedTuple):
@@ -128,6 +136,44 @@ def find_inside(cells, shifts, places, first, last, inside):
             if not inside[k]:
                 u = shifts[s, 0] * places[k, 0] + shifts[s, 1]
                 v = shifts[s, 2] * places[k, 1] + shifts[s, 3]
+                inside[k] = is_inside(cells, u, v)
+
+
+class Joined(NamedTuple):
+    """The cells of L sets of polygons, one after another, and their shifts (s, 4).
+
+    starts (L + 1, 6): where segments, starts, members, parities and shifts of each begin, and its
+    number of rows, which is that of its columns. `cell_starts` and `members` count from there.
+    """
+
+    segments: NDArray[np.float64]
+    frames: NDArray[np.float64]
+    cell_starts: NDArray[np.int64]
+    members: NDArray[np.int32]
+    parity: NDArray[np.bool_]
+    shifts: NDArray[np.float64]
+    starts: NDArray[np.int64]
+
+
+@jit
+def find_inside_each(joined, owners, places, inside):
+    """Write whether places (k, 2) are inside those polygons whose numbers are `owners` (k,)."""
+    for k in range(owners.shape[0]):
+        owner = owners[k]
+        first = joined.starts[owner]
+        last = joined.starts[owner + 1]
+        cells = Cells(
+            joined.segments[first[0] : last[0]],
+            joined.frames[owner],
+            joined.cell_starts[first[1] : last[1]],
+            joined.members[first[2] : last[2]],
+            joined.parity[first[3] : last[3]].reshape(first[5], first[5]),
+        )
+        inside[k] = False
+        for s in range(first[4], last[4]):
+            if not inside[k]:
+                u = joined.shifts[s, 0] * places[k, 0] + joined.shifts[s, 1]
+                v = joined.shifts[s, 2] * places[k, 1] + joined.shifts[s, 3]
                 inside[k] = is_inside(cells, u, v)
 
 
