@@ -74,7 +74,7 @@ class Trims:
         return found
 
     def beside_border(self, piece: int, step: float) -> Array:
-        """Return places (k, 2) inside a piece, close to its border, at distances `step` along it."""
+        """Return places (k, 2) inside a piece, close to its border, at distances `step`."""
         lines = list(self.pieces[piece].border_lines(step))
         steps = np.concatenate([np.empty((0, 2)), *(np.diff(x, axis=0) for x in lines)])
         places = np.concatenate([np.empty((0, 2)), *(x[:-1] for x in lines)]) + steps / 2.0
