@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,13 +11,15 @@ import numpy as np
 from ..base.aliases import Array, Indices
 from ..base.trees import tree_of
 from ..kernels.sizing import TargetDensity
-from .cells import LIMIT, Cells, by_piece
+from .cells import LIMIT, Cells
 from .trims import Trims
 
 __all__ = ["BorderLines", "places_along", "polygons_of"]
 
 # Borders are measured at places that are this part of the domain apart, or less.
 FINE = 1.0 / 48.0
+# Places of two pieces are this far apart in a search for neighbours; domains are 1 wide.
+FAR = 16.0
 PLACES_AT_A_TIME = 1 << 17
 
 
@@ -37,20 +38,33 @@ class BorderLines:
     limits: Array
 
 
-def polygons_of(trims: Trims, first: Cells) -> Iterator[tuple[int, Array, Array, Array]]:
-    """Yield the closed polygons (k, 2) of all pieces that have a trim, with the numbers of these.
+def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Array, Array]:
+    """Return the closed polygons of all pieces that have a trim: the pieces (L,), and `starts`.
 
-    Places are `FINE` apart at most. With them come the same places less whole periods, and the
-    limits (k,) of the first cells near them.
+    Places (k, 2) are `FINE` apart at most. With them come the same places less whole periods, and
+    the limits (k,) of the first cells near them.
     """
-    for k, rows in by_piece(first):
-        piece, cells = trims.pieces[k], first[rows]
-        if piece.trim is None:
-            continue
-        tree = tree_of(cells.places / piece.sizes)
-        for places in piece.border_lines(FINE):
-            inside = np.clip(piece.wrapped(places), *np.array(piece.domain).T)
-            yield k, places, inside, cells.numbers[tree.query(inside / piece.sizes)[1], LIMIT]
+    used = np.unique(first.pieces)
+    numbers, lines = list[int](), [np.empty((0, 2))]
+    for k in used[trims.trimmed[used]].tolist():
+        lines += trims.pieces[k].border_lines(FINE)
+        numbers += [k] * (len(lines) - 1 - len(numbers))
+    counts = [len(x) for x in lines[1:]]
+    pieces, places = np.repeat(np.array(numbers, np.int64), counts), np.concatenate(lines)
+    low, high = trims.domains[pieces, :, 0], trims.domains[pieces, :, 1]
+    inside = np.clip(trims.wrapped(pieces, places), low, high)
+    near = first[trims.trimmed[first.pieces]]
+    limits = np.empty(len(places))
+    if len(near):
+        tree = tree_of(_apart(near.pieces, near.places, trims))
+        limits[:] = near.numbers[tree.query(_apart(pieces, inside, trims))[1], LIMIT]
+    return np.array(numbers, np.int64), np.cumsum([0, *counts]), places, inside, limits
+
+
+def _apart(pieces: Indices, places: Array, trims: Trims) -> Array:
+    """Return places of pieces, relative to their domains, far from those of other pieces."""
+    low, high = trims.domains[pieces, :, 0], trims.domains[pieces, :, 1]
+    return np.column_stack([places / (high - low), FAR * pieces])
 
 
 def places_along(

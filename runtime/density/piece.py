@@ -51,7 +51,7 @@ class Piece(ABC):
     def size(self) -> float:
         """The root of the area inside the trim, in L."""
 
-    @cached_property
+    @property
     @abstractmethod
     def boxes(self) -> Array:
         """Boxes (M, 4) that the domain is made of, in each of which the surface is smooth."""

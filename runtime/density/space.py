@@ -361,22 +361,14 @@ class Space:
         return merged(done)
 
     def _borders(self) -> BorderLines:
-        lines, space = list(polygons_of(self.trims, self.first)), self.between(0.0)
-        nothing = (0, np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
-        numbers, polygons, inside, near = map(list, zip(*lines or [nothing], strict=True))
-        counts = [len(x) for x in polygons]
-        owners, inside, near = (
-            np.repeat(numbers, counts),
-            np.concatenate(inside),
-            np.concatenate(near),
-        )
+        numbers, starts, places, inside, near = polygons_of(self.trims, self.first)
+        owners, space = np.repeat(numbers, np.diff(starts)), self.between(0.0)
         rows, limits = np.empty((len(owners), 8)), np.empty(len(owners))
         for first in range(0, len(owners), PLACES_AT_A_TIME):
             some = slice(first, first + PLACES_AT_A_TIME)
             cells = space.at(owners[some], inside[some], near[some], keep=True)
             rows[some], limits[some] = cells.rows, cells.limits
-        starts = np.cumsum([0, *counts])
-        return BorderLines(np.array(numbers), starts, np.concatenate(polygons), rows, limits)
+        return BorderLines(numbers, starts, places, rows, limits)
 
     @cached_property
     def _fewest(self) -> Indices:

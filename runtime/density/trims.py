@@ -144,12 +144,13 @@ class Trims:
     @cached_property
     def _joined(self) -> Joined:
         """The cells of all loops, and their shifts, one after another."""
-        cells, shifts = zip(*(x.cells for x in self._loops), strict=True)
+        # Loops do not keep theirs, which take as much memory.
+        cells, shifts = zip(*(x.in_cells() for x in self._loops), strict=True)
         segments = _starts(x.segments for x in cells)
         return Joined(
             np.concatenate([x.segments for x in cells]),
             np.array([x.frame for x in cells]),
-            np.concatenate([x.starts for x in cells]),
+            np.concatenate([x.starts for x in cells], dtype=np.int32, casting="same_kind"),
             np.concatenate([x.members for x in cells]),
             np.concatenate([x.parity.ravel() for x in cells]),
             np.concatenate(shifts),

@@ -51,7 +51,7 @@ class Loops:
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
         """Return whether points (k, 2) of the domain are inside, as booleans (k,)."""
-        cells, shifts = self.cells
+        cells, shifts = self._cells
         places, inside = np.ascontiguousarray(self._inwards(uv)), np.empty(len(uv), dtype=np.bool_)
 
         def work(first: int, last: int) -> None:
@@ -139,8 +139,12 @@ class Loops:
         return sorted({0, *range(first, last + 1)}, key=abs)
 
     @cached_property
-    def cells(self) -> tuple[kernels.Cells, Array]:
-        """The segments sorted into cells, and the shifts, both scaled by powers of two."""
+    def _cells(self) -> tuple[kernels.Cells, Array]:
+        """What `in_cells` returns."""
+        return self.in_cells()
+
+    def in_cells(self) -> tuple[kernels.Cells, Array]:
+        """Return the segments sorted into cells, and the shifts, both scaled by powers of two."""
         sizes = self.box[1] - self.box[0]
         scales = np.array([scale_to_one(float(x)) for x in sizes])
         ends = [np.stack([x, np.roll(x, -1, axis=0)], axis=1) for x in self.polygons]

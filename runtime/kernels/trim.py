@@ -148,7 +148,7 @@ class Joined(NamedTuple):
 
     segments: NDArray[np.float64]
     frames: NDArray[np.float64]
-    cell_starts: NDArray[np.int64]
+    cell_starts: NDArray[np.int32]
     members: NDArray[np.int32]
     parity: NDArray[np.bool_]
     shifts: NDArray[np.float64]

@@ -116,7 +116,7 @@ class FacePiece(Piece):
         places = places if trim is None else places[trim.contains(places)]
         return self.surface.jets(*places.T.copy())
 
-    @cached_property
+    @property
     def boxes(self) -> Array:
         """Boxes (M, 4) that the domain is made of, in each of which the surface is smooth."""
         geometry, domain = self.face.geometry, self.surface.domain
