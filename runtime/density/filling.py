@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.aliases import Array
 from ..base.errors import InputError
 from ..base.shares import apportioned
 from ..base.threads import counted
@@ -21,7 +22,7 @@ from ..samples.fields import dtype_of
 from ..samples.request import BY_CURVATURE, Request
 from .angles import choose_apart, cover_normals
 from .at_normals import Given, at_count, at_lattices, at_normals
-from .cells import Cells, by_piece
+from .cells import Cells, by_piece, joined
 from .cover import Cover
 from .coverage import coverage
 from .deviation import widest_angle
@@ -378,11 +379,14 @@ def _fill_normals(cover: Cover, number: int) -> None:
     """Add samples where normals are farthest from those of all samples."""
     chord = NORMALS_APART * spacing(max(cover.count + number, 1) / (4 * math.pi))
     most = CANDIDATES + cover.count
-    cells = cover.space.cut_by_normals(max(chord, LEAST_CHORD), most)
+    cells, normals = list[Cells](), list[Array]()
+    for block in cover.space.cut_by_normals(max(chord, LEAST_CHORD), most):
+        normals.append(block.rows[:, 3:6].copy())
+        cells.append(block.without_rows())  # most of the memory is theirs
     known = np.unique(cover.points[:, 3:].round(DIGITS), axis=0)
-    opposite = 2.0  # the largest chord between normals
-    chosen = choose_apart(cells.rows[:, 3:6], chord, cover.space.threads, opposite, number, known)
-    cover.add(cells[chosen])
+    opposite, threads = 2.0, cover.space.threads  # the largest chord between normals
+    chosen = choose_apart(np.concatenate(normals), chord, threads, opposite, number, known)
+    cover.add(cover.space.known(joined(cells)[chosen]))
 
 
 def spacing(density: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -33,6 +34,7 @@ from .cells import (
     merged,
     new_cells,
     points_of,
+    runs,
 )
 from .piece import Piece
 from .sifting import beside, placed, sifted
@@ -59,6 +61,8 @@ PLACES_AT_A_TIME = 1 << 17
 # This number of cells is evaluated at a time, at most, and about the RANGES-th part of all that is
 # evaluated by one thread.
 CELLS_AT_A_TIME, RANGES = 1 << 12, 32
+# Cells that are cut by their normals are evaluated in blocks of about this number.
+BLOCK = 1 << 16
 # Where |K| is below this part of 1/area, a part counts as developable.
 FLAT_CURVATURE = 1e-6
 
@@ -290,8 +294,8 @@ class Space:
             "larger coverage or angle, or for fewer samples or normals."
         )
 
-    def cut_by_normals(self, chord: float, most: float) -> Cells:
-        """Return cells whose normals are about within a chord from that at their places.
+    def cut_by_normals(self, chord: float, most: float) -> Iterator[Cells]:
+        """Yield cells whose normals are about within a chord from that at their places, in blocks.
 
         The chord is made larger until there are about `most` cells at most.
         """
@@ -301,7 +305,9 @@ class Space:
         while parts.prod(axis=1).sum() > most + len(first):
             chord *= COARSER
             parts = np.maximum(np.ceil(bends / (2.0 * chord)), 1.0)
-        return self.evaluated(into_parts(first, parts.astype(np.int64)))
+        blocks = np.cumsum(parts.prod(axis=1)) // BLOCK
+        for _, rows in runs(blocks):
+            yield self.evaluated(into_parts(first[rows], parts[rows].astype(np.int64)))
 
     def evaluated(self, cells: Cells, pixels: Indices | None = None) -> Cells:
         """Return those of cells that have a place inside the trim, with their rows and numbers."""

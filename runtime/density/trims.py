@@ -56,7 +56,8 @@ class Trims:
             rows = asked[first : first + PLACES_AT_A_TIME]
             is_joined = self._place[pieces[rows]] >= 0
             joined = rows[is_joined]
-            inside[joined] = self._inside_loops(pieces[joined], places[joined])
+            if len(joined):
+                inside[joined] = self._inside_loops(pieces[joined], places[joined])
             for k, here in _by_number(pieces, rows[~is_joined]):
                 inside[here] = self.pieces[k].contains(places[here])
         return inside

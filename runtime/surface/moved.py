@@ -96,7 +96,7 @@ class Moved(Differentiable):
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return positions and derivatives (k, 6, 3)."""
-        jets = self.map.directions(self.surface._jets(self._own(u), v))
+        jets = self.map.directions(self.surface.unchecked_jets(self._own(u), v))
         jets[:, 0] += self.map.shift
         if self.turned:
             jets[:, 1::3] *= -1.0  # x_u and x_uv

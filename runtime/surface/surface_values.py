@@ -237,7 +237,7 @@ class SurfaceValues(Immutable):
         """
         u_array = checked_array("u", u, ("k",), np.float64)
         v_array = checked_array("v", v, u_array.shape, np.float64)
-        return self._jets(u_array, v_array)
+        return self.unchecked_jets(u_array, v_array)
 
     @property
     def differences(self) -> Differences | None:
@@ -250,7 +250,7 @@ class SurfaceValues(Immutable):
         True
 
         """
-        owner = getattr(self._jets, "__self__", None)
+        owner = getattr(self.unchecked_jets, "__self__", None)
         if isinstance(owner, Differentiable):
             return owner.differences(self.boundary)
         return owner if isinstance(owner, Differences) else None
@@ -279,8 +279,19 @@ class SurfaceValues(Immutable):
         return traced_tape(self.function, self.domain)
 
     @cached_property
-    def _jets(self) -> Function:
-        """The function that `jets` calls."""
+    def unchecked_jets(self) -> Function:
+        """The function that `jets` calls when it has checked u and v, for many calls with few.
+
+        It gets float64 arrays (k,) whose entries follow one another in memory.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> gm.surfaces.torus().unchecked_jets(np.zeros(5), np.ones(5)).shape
+        (5, 6, 3)
+
+        """
         return jet_function(
             self.function, self.derivative_function, self.domain, self.boundary, self.name
         )

@@ -142,7 +142,7 @@ class FacePiece(Piece):
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return 2-jets (k, 6, 3) at parameters."""
-        return self.surface._jets(*np.array([u, v]))  # unchecked: many faces have few places each
+        return self.surface.unchecked_jets(*np.array([u, v]))  # faces are many, and have few places
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
         """Return what is searched for points with a normal; GaussmapError if it has no spline."""

@@ -158,7 +158,7 @@ def _uv(curve: PCurve, shares: Array) -> Array:
         found = curve.evaluate(first + (last - first) * shares)
         found[:, 2:] *= last - first
         return found
-    ends = curve.evaluate(np.array([first, last]))[:, :2]
+    ends = curve.chord
     found = np.empty((len(shares), 4))
     found[:, 2:] = ends[1] - ends[0]
     found[:, :2] = ends[0] + shares[:, None] * found[:, 2:]

@@ -97,6 +97,8 @@ def _edges_of(wire: Any, face: Any) -> list[tuple[Any, PCurve]]:  # noqa: ANN401
     while explorer.More():
         edges.append(explorer.Current())
         explorer.Next()
+    if len(edges) == wire.NbChildren():
+        return [(x, curve_of(x, face)) for x in edges]
     every = [x for x in parts_of(wire, EDGE) if x.Orientation() in (FORWARD, REVERSED)]
     if len(edges) == len(every):
         return [(x, curve_of(x, face)) for x in edges]

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -44,10 +45,15 @@ class PCurve:
     reversed: bool
     radius: float = 0.0
 
+    @cached_property
+    def chord(self) -> Array:
+        """The points (2, 2) at both ends."""
+        return self.evaluate(np.array([self.ends[0], self.ends[-1]]))[:, :2]
+
     def polyline(self, tolerance: Array) -> Array:
         """Return points (k, 2) in the direction of the wire, the kept side at its left."""
         if self.pieces == 0:
-            points = self.evaluate(np.array(self.ends))[:, :2]
+            points = self.chord
         else:
             pieces = self._pieces(tolerance)
             parts = [
@@ -120,14 +126,22 @@ def _circle(circle: Any) -> Callable[[Array], Array]:  # noqa: ANN401
     x, y = map(np.array, axes)
 
     def evaluate(t: Array) -> Array:
-        rows, angles = np.empty((len(t), 4)), t.tolist()
-        across = radius * np.array([*map(math.cos, angles)])[:, None]
-        along = radius * np.array([*map(math.sin, angles)])[:, None]
+        cosines, sines = _cosines_and_sines(t.tobytes())
+        rows = np.empty((len(t), 4))
+        across, along = radius * cosines, radius * sines
         rows[:, :2] = across * x + along * y + origin
         rows[:, 2:] = -along * x + across * y
         return rows
 
     return evaluate
+
+
+@lru_cache(maxsize=64)
+def _cosines_and_sines(angles: bytes) -> tuple[Array, Array]:
+    """Return those of angles, which are the same for many circles, (k, 1) each."""
+    values = np.frombuffer(angles).tolist()
+    cosines, sines = (np.array([*map(f, values)])[:, None] for f in (math.cos, math.sin))
+    return cosines, sines
 
 
 def _any(curve: Any) -> Callable[[Array], Array]:  # noqa: ANN401

@@ -70,7 +70,7 @@ def geometry_of(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  #
 
 def _placement(axes: Any) -> list[float]:  # noqa: ANN401
     origin, x, y, z = axes.Location(), axes.XDirection(), axes.YDirection(), axes.Direction()
-    return [number for p in (origin, x, y, z) for number in (p.X(), p.Y(), p.Z())]
+    return [number for p in (origin, x, y, z) for number in p.Coord()]
 
 
 def _nurbs(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
