@@ -113,12 +113,11 @@ class Trims:
     def _allow(self, pieces: Indices, places: Array) -> Flags:
         """Return which places (k, 2) on loops fulfil all other conditions of the trims."""
         allowed = np.ones(len(places), np.bool_)
-        rows = np.arange(len(places))
-        for k, here in _by_number(pieces, rows):
+        for k, here in _by_number(pieces, np.flatnonzero(self._place[pieces] < 0)):
             trim = self.pieces[k].trim
             assert trim is not None
             for part in trim.parts:
-                if not isinstance(part, Loops):
+                if not isinstance(part.part if isinstance(part, Turned) else part, Loops):
                     allowed[here] &= part.contains(places[here])
         return allowed
 

@@ -11,6 +11,7 @@ import re
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.density import along_borders
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import PartSpace, space_of
@@ -391,6 +392,22 @@ def test_candidates_for_normals_are_no_more_than_asked(plates):
         assert sum(map(len, cells)) <= most + len(space.first)
     (whole,) = space.cut_by_normals(0.2, np.inf)  # few are enough: the chord is the one asked for
     assert whole.numbers[:, 4].max() <= 0.5
+
+
+def test_places_along_borders_are_inside_with_limits_of_their_face(parts, monkeypatch):
+    space = space_of(parts.all_kinds(), 1)
+    numbers, starts, *_, limits = along_borders.polygons_of(space.trims, space.first)
+    assert len(numbers) > 1
+    for number, part in zip(numbers, np.split(limits, starts[1:-1]), strict=True):
+        own = space.first.limits[space.first.pieces == number]
+        assert len(part) > 4
+        assert np.isin(part, own).all()
+    step = 0.1 * math.sqrt(space.area)
+    found = space.along_borders(step)
+    assert set(found.pieces) == set(numbers)
+    assert space.trims.contains(found.pieces, found.places).all()
+    monkeypatch.setattr(along_borders, "PLACES_AT_A_TIME", 50)
+    np.testing.assert_array_equal(space.along_borders(step).rows, found.rows)
 
 
 def test_five_percent_of_a_count_go_where_normals_are_missing(parts, monkeypatch):
