@@ -55,7 +55,7 @@ def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Ar
     inside = np.clip(trims.wrapped(pieces, places), low, high)
     near = first[trims.trimmed[first.pieces]]
     limits = np.empty(len(places))
-    if len(near):
+    if len(places):  # a tree takes long to load
         tree = tree_of(_apart(near.pieces, near.places, trims))
         limits[:] = near.numbers[tree.query(_apart(pieces, inside, trims))[1], LIMIT]
     return np.array(numbers, np.int64), np.cumsum([0, *counts]), places, inside, limits
@@ -64,7 +64,7 @@ def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Ar
 def _apart(pieces: Indices, places: Array, trims: Trims) -> Array:
     """Return places of pieces, relative to their domains, far from those of other pieces."""
     low, high = trims.domains[pieces, :, 0], trims.domains[pieces, :, 1]
-    return np.column_stack([places / (high - low), FAR * pieces])
+    return np.column_stack([places / (high - low), FAR * pieces]).astype(np.float64, copy=False)
 
 
 def places_along(

@@ -64,7 +64,7 @@ class SurfacePiece(Piece):
         diagonal, area = float(np.linalg.norm(extents)), float(spline.measure[0].sum())
         return diagonal * math.sqrt(area) / spline.scale if area * diagonal > spline.noise else 0.0
 
-    @cached_property
+    @property
     def boxes(self) -> Array:
         """Boxes (M, 4) between lines of cells."""
         u0, v0, du, dv = self.geometry.spline.frame

@@ -98,7 +98,7 @@ class Trims:
         twice = np.concatenate([pieces, pieces])
         both = self.wrapped(twice, np.concatenate([places + across, places - across]))
         ends = self.domains[twice]
-        inside = ((both > ends[:, :, 0]) & (both < ends[:, :, 1])).all(axis=1)
+        inside = np.asarray(((both > ends[:, :, 0]) & (both < ends[:, :, 1])).all(axis=1))
         inside[inside] = self.contains(twice[inside], both[inside])
         narrow = np.flatnonzero(~inside.reshape(2, -1).any(axis=0))
         on = np.clip(self.wrapped(pieces[narrow], places[narrow]), low[narrow], high[narrow])

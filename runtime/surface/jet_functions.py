@@ -35,16 +35,16 @@ def jet_function(
     name: str,
 ) -> Function:
     """Return the function of u (k,) and v (k,) that gives the 2-jets (k, 6, 3) of a surface."""
-    differentiable = isinstance(function, Differentiable) and function.differentiable
-    if derivatives is None and differentiable and not function.has_gaps:
-        return function.jets
+    own = function if isinstance(function, Differentiable) and function.differentiable else None
+    if derivatives is None and own is not None and not own.has_gaps:
+        return own.jets
     label = f"surface {name!r}"
     numerical = Differences(guarded(function, (3,), f"the callable of {label}"), domain, boundary)
     if derivatives is not None:
         given = guarded(derivatives, (len(NAMES), 3), f"derivatives of {label}")
         compare(given, numerical, label)
         return given
-    return filled(function, numerical) if differentiable else numerical.jets
+    return numerical.jets if own is None else filled(own, numerical)
 
 
 def guarded(function: Evaluation, shape: tuple[int, ...], label: str) -> Function:

@@ -44,9 +44,9 @@ def test_places_are_inside_as_each_piece_says(pieces, monkeypatch):
 def test_cells_do_not_depend_on_blocks(pieces, monkeypatch):
     def cells():
         space = space_on(gm.fit(gm.surfaces.torus(), (16, 16)), gm.surfaces.torus(), None)
-        space = type(space)("several", tuple(pieces), space.target, None)
+        space = type(space)("several", tuple(pieces[:3]), space.target, None)
         return space.cut(0.1 * np.sqrt(space.area))
 
     whole = cells()
-    monkeypatch.setattr(sifting, "BOXES_AT_A_TIME", 7)
+    monkeypatch.setattr(sifting, "BOXES_AT_A_TIME", 5000)
     np.testing.assert_array_equal(cells().rows, whole.rows)

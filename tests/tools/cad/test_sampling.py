@@ -11,7 +11,6 @@ import re
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density import along_borders
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import PartSpace, space_of
@@ -394,20 +393,18 @@ def test_candidates_for_normals_are_no_more_than_asked(plates):
     assert whole.numbers[:, 4].max() <= 0.5
 
 
-def test_places_along_borders_are_inside_with_limits_of_their_face(parts, monkeypatch):
+def test_places_along_borders_are_inside_with_limits_of_their_face(parts):
     space = space_of(parts.all_kinds(), 1)
-    numbers, starts, *_, limits = along_borders.polygons_of(space.trims, space.first)
-    assert len(numbers) > 1
-    for number, part in zip(numbers, np.split(limits, starts[1:-1]), strict=True):
+    lines = space.borders
+    assert len(lines.pieces) > 1
+    limits = np.split(lines.limits, lines.starts[1:-1])
+    for number, part in zip(lines.pieces, limits, strict=True):
         own = space.first.limits[space.first.pieces == number]
         assert len(part) > 4
         assert np.isin(part, own).all()
-    step = 0.1 * math.sqrt(space.area)
-    found = space.along_borders(step)
-    assert set(found.pieces) == set(numbers)
+    found = space.along_borders(0.1 * math.sqrt(space.area))
+    assert set(found.pieces) == set(lines.pieces)
     assert space.trims.contains(found.pieces, found.places).all()
-    monkeypatch.setattr(along_borders, "PLACES_AT_A_TIME", 50)
-    np.testing.assert_array_equal(space.along_borders(step).rows, found.rows)
 
 
 def test_five_percent_of_a_count_go_where_normals_are_missing(parts, monkeypatch):
