@@ -13,7 +13,6 @@ import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -105,21 +104,37 @@ def mesh_of_part(
         for x in whole.pieces
         if not known.is_known(x.face)
     }
-    check_larger = partial(_check_larger, part, whole, count, failed, spaced, known)
+    made: tuple[PartMesh, bool] | SurfaceError
     try:
-        mesh, is_proper = mesh_and_soundness(part, whole, count, failed, spaced)
-    except SurfaceError:
-        if refuse:
-            check_larger()
-        raise
-    if refuse and not is_proper:
-        check_larger()
+        made = mesh_and_soundness(part, whole, count, failed, spaced)
+    except SurfaceError as error:
+        made = error
+    if refuse and (isinstance(made, SurfaceError) or not made[1]):
+        _check_larger(part, whole, count, failed, spaced, known)
+    if isinstance(made, SurfaceError):
+        raise made
+    mesh, is_proper = made
+    text = ""
     if failed := mesh.failed:
         text = (
             f"lacks {plural(len(failed), 'face')} of {len(part):,}: {next(iter(failed.values()))}"
         )
+    elif refuse and not is_proper:
+        text = _inward(mesh, whole)
+    if text:
         warnings.warn(f"the mesh of part {part.name!r} {text}", GaussmapWarning, stacklevel=5)
     return mesh
+
+
+def _inward(mesh: PartMesh, whole: PartSpace) -> str:
+    """Say that triangles point inward, and on which face."""
+    rows = inverted_triangles(mesh)
+    face = mesh.face_index[rows[0]]
+    label = next(x.label for x in whole.pieces if x.face.index == face)
+    return (
+        f"has {plural(len(rows), 'triangle')} pointing inward, the first one on {label}; no larger "
+        "count is known to be without: repair the face in a CAD program, or leave it out."
+    )
 
 
 def mesh_and_soundness(
@@ -293,9 +308,10 @@ class Meshing:
                     raise
                 break
             wrong, inverted = wrong_edges(sampled, mesh, self.edges), inverted_triangles(mesh)
+            around = mesh.triangles[inverted][:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
             if best is None or (len(wrong), len(inverted)) < least:
                 best, least, wrong_of_best = mesh, (len(wrong), len(inverted)), wrong
-            coarse = _between(np.concatenate([wrong, inverted]), sampled)
+            coarse = _between(np.concatenate([wrong, around]), sampled)
             if not coarse or not self._refine(sampled, coarse):
                 break
         assert best is not None
@@ -348,7 +364,7 @@ class Meshing:
             chosen = np.setdiff1d(np.arange(len(added)), left_out)
             corners = self._corners(borders, added[chosen], first + chosen)
             mesh = self._mesh(sampled, corners)
-            bad = np.unique(inverted_triangles(mesh))
+            bad = np.unique(mesh.triangles[inverted_triangles(mesh)])
             left_out = np.union1d(left_out, bad[bad >= first] - first)
             used = np.setdiff1d(mesh.triangles, bad)
             lacking = self.count - first - int(np.count_nonzero(used >= first))
@@ -461,14 +477,13 @@ def wrong_edges(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indi
 
 
 def inverted_triangles(mesh: PartMesh) -> Indices:
-    """Return the edges (k, 2) of triangles that point away from the mean normal of their corners.
+    """Return the triangles (k,) that point away from the mean normal of their corners.
 
     From one at a corner they may, where a face of a file folds over at its end.
     """
     a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
-    found = mesh.triangles[np.einsum("tx,tkx->t", across, mesh.corner_normals) < 0.0]
-    return found[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    return np.flatnonzero(np.einsum("tx,tkx->t", across, mesh.corner_normals) < 0.0)
 
 
 def _between(pairs: Indices, sampled: SampledEdges) -> dict[int, Flags]:
