@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -132,7 +132,7 @@ class Space:
         """The integrals (P,) of the target density over the pieces."""
         cells = self.first
         weights, count = cells.numbers[:, AREA], len(self.pieces)
-        values = self._densities
+        values = self.densities
         sums = np.bincount(cells.pieces, weights, count)
         with np.errstate(divide="ignore", invalid="ignore"):
             means = np.bincount(cells.pieces, weights * values, count) / sums
@@ -148,7 +148,7 @@ class Space:
     @property
     def smallest(self) -> float:
         """The smallest target density of a cell."""
-        return float(self._densities.min())
+        return float(self.densities.min())
 
     @property
     def images(self) -> Array:
@@ -193,6 +193,16 @@ class Space:
         made.__dict__.update(self._shared)
         return made
 
+    def to_power(self, exponent: float) -> Self:
+        """Return the same space with another exponent of the target density, and its cells."""
+        first, borders = (replace(x, rows=x.rows.copy()) for x in (self.first, self.borders))
+        for found in (first, borders):
+            found.rows[:, 6] **= exponent / self.target.exponent
+        target, held = self.target._replace(exponent=exponent), {"first": first, "borders": borders}
+        made = replace(self, target=target, _held=held)
+        made.__dict__.update(self._shared)
+        return made
+
     def between(self, floor: float, ceiling: float = math.inf) -> Space:
         """Return the same space with another floor and ceiling of the target density."""
         made = replace(self, target=self.target._replace(floor=floor, ceiling=ceiling))
@@ -200,7 +210,7 @@ class Space:
         return made
 
     @property
-    def _densities(self) -> Array:
+    def densities(self) -> Array:
         """The target densities of the first cells."""
         return np.clip(self.first.rows[:, 6], self.target.floor, self.target.ceiling)
 
@@ -281,7 +291,7 @@ class Space:
         """
         lengths = self.first.numbers[:, [ALONG_U, ALONG_V]]
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
-            rates = np.sqrt(self._densities) / (math.sqrt(2.0) * radius)
+            rates = np.sqrt(self.densities) / (math.sqrt(2.0) * radius)
             parts = np.fmax(np.ceil(np.fmin(lengths * rates[:, None], MOST_CELLS)), 1.0)
         if parts.prod(axis=1).sum() > MOST_CELLS:
             raise self.too_many(MOST_CELLS)
@@ -383,7 +393,7 @@ class Space:
     def _pixels(self, radius: float) -> Indices:
         """Return for each piece the pixels of its raster: half a radius wide, if that is enough."""
         cells, count = self.first, len(self.pieces)
-        rates = np.sqrt(self._densities)
+        rates = np.sqrt(self.densities)
         low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
         np.minimum.at(low, cells.pieces, cells.rows[:, :3])
         np.maximum.at(high, cells.pieces, cells.rows[:, :3])

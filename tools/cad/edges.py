@@ -23,6 +23,7 @@ __all__ = [
     "between_two",
     "edges_of",
     "exact_places",
+    "grouped",
     "sides_at",
 ]
 
@@ -116,14 +117,14 @@ def _of_surfaces(space: PartSpace, pieces: Indices, points: Array) -> Array:
     found = points.copy()
     for side in (0, 1):
         columns = slice(2 * side, 2 * side + 2)
-        for k, rows in _grouped(pieces[:, side]):
+        for k, rows in grouped(pieces[:, side]):
             if k >= 0 and (face := space.pieces[k].face).reversed:
                 uv = found[rows, columns]
                 found[rows, columns] = own_parameters(face.surface, uv, is_reversed=True)
     return found
 
 
-def _grouped(pieces: Indices) -> Iterator[tuple[int, Indices]]:
+def grouped(pieces: Indices) -> Iterator[tuple[int, Indices]]:
     """Yield the pieces, and the rows of each."""
     order = np.argsort(pieces, kind="stable")
     ends = np.flatnonzero(np.diff(pieces[order])) + 1
@@ -204,7 +205,7 @@ def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
     places, scales = _inside(space, owner, uv), np.array([space.unit, 1.0, 1.0])
     vectors, normals = np.empty((len(owner), 3, 3)), np.empty((len(owner), 3))
     curvatures = np.empty((len(owner), 2))
-    for k, rows in _grouped(owner):
+    for k, rows in grouped(owner):
         jets = space.pieces[k].surface.jets(*places[rows].T.copy())
         scales[1:] = space.sizes[k]
         n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from .edges import at_places
+from .edges import at_places, grouped
 from .faces import own_parameters
 from .mesh_spacing import Spacing, least_enough
 from .part import Face
@@ -157,8 +157,9 @@ class MeshEdges:
         points, ends = list(self.arrays["vertices"]), self.arrays["edge_vertices"].copy()
         for row in np.flatnonzero(self.used & (ends < 0).any(axis=1)).tolist():
             side = int(np.flatnonzero(self.owner == row)[0])
-            uv = self._uv(side, np.array([0.0, 1.0]))
-            there = at_places(self.space, self.pieces[[side, side]], uv).vectors[:, 0]
+            both = np.array([side, side])
+            uv = self._uv(both, np.array([0.0, 1.0]))
+            there = at_places(self.space, self.pieces[both], uv).vectors[:, 0]
             closed = np.linalg.norm(there[1] - there[0]) <= SAME * self.space.size / self.space.unit
             ends[row] = len(points), len(points) + (not closed)
             points += list(there[: 2 - closed])
@@ -183,23 +184,33 @@ class MeshEdges:
         The largest one of those on the faces around counts.
         """
         shares = np.linspace(0.0, 1.0, PLACES + 1)
-        uv = [self._uv(k, shares) for k in range(len(self.sides))]
-        owner = np.repeat(self.pieces, len(shares))
-        places = at_places(self.space, owner, np.concatenate([np.empty((0, 2)), *uv])).uv
+        sides = np.repeat(np.arange(len(self.sides)), len(shares))
+        uv = self._uv(sides, np.tile(shares, len(self.sides)))
+        places = at_places(self.space, self.pieces[sides], uv).uv
         found = np.zeros((len(self.around), PLACES))
         costs = self.spacing.costs(self.pieces, places.reshape(-1, len(shares), 2))
         np.maximum.at(found, self.owner, costs)
         return np.pad(np.cumsum(found, axis=1), ((0, 0), (1, 0)))
 
-    def _uv(self, k: int, shares: Array) -> Array:
-        """Return u, v (M, 2) on its surface at shares (M,) of an edge, on side k of these."""
-        from scipy.interpolate import CubicHermiteSpline
+    def _uv(self, sides: Indices, shares: Array) -> Array:
+        """Return u, v (M, 2) on their surfaces at shares (M,) of edges, on some of the sides (M,).
 
-        side, face = self.sides[k], self.space.pieces[self.pieces[k]].face
-        first, last = self.arrays["side_point_starts"][side : side + 2]
-        points = self.arrays["side_points"][first:last]
-        curve = CubicHermiteSpline(np.linspace(0.0, 1.0, len(points)), points[:, :2], points[:, 2:])
-        return own_parameters(face.surface, curve(shares), is_reversed=face.reversed)
+        Between points of the part, which have derivatives, they are cubic.
+        """
+        starts, points = self.arrays["side_point_starts"], self.arrays["side_points"]
+        first, last = (starts[self.sides[sides] + k] for k in (0, 1))
+        steps = last - first - 1
+        before = np.minimum((shares * steps).astype(np.int64), steps - 1)
+        t = (shares * steps - before)[:, None]
+        one, other = points[first + before], points[first + before + 1]
+        slopes = (1.0 - t) * one[:, 2:] - t * other[:, 2:]
+        found = one[:, :2] + t**2 * (3.0 - 2.0 * t) * (other - one)[:, :2]
+        found += t * (1.0 - t) * slopes / steps[:, None]
+        for k, rows in grouped(self.pieces[sides]):
+            face = self.space.pieces[k].face
+            if face.reversed:
+                found[rows] = own_parameters(face.surface, found[rows], is_reversed=True)
+        return found
 
     def sampled(self, count: int) -> SampledEdges:
         """Return the vertices on edges in a mesh of a count, `least` or more.
@@ -218,7 +229,10 @@ class MeshEdges:
             numbers[edge] = np.concatenate([ends[edge, :1], inner, ends[edge, 1:]])
             first += len(inner)
         edges = dict(zip(self.sides.tolist(), self.owner.tolist(), strict=True))
-        uv = {side: self._uv(k, shares[edge]) for k, (side, edge) in enumerate(edges.items())}
+        along = [shares[edge] for edge in edges.values()]
+        counts = [len(x) for x in along]
+        found = self._uv(np.repeat(np.arange(len(along)), counts), np.concatenate(along))
+        uv = dict(zip(edges, np.split(found, np.cumsum(counts)[:-1]), strict=True))
         return SampledEdges(self._points(points, first, numbers, uv), numbers, shares, uv, edges)
 
     def _points(

@@ -37,6 +37,7 @@ from ..meshes.triangulated import ENOUGH, LARGEST_DEVIATION, checked_prefer
 from .edges import Places, at_places
 from .mesh_edges import MeshEdges, SampledEdges
 from .mesh_faces import EXTRA, Crossing, FaceBorder, triangles_of
+from .mesh_grading import graded
 from .mesh_spacing import ByNormals, Spacing
 from .part import Part
 from .part_mesh import PartMesh
@@ -94,10 +95,9 @@ def mesh_of_part(
             f"part {part.name!r} does not say how its edges go around its faces, as those in files "
             "of older versions of gaussmap; read the CAD file again."
         )
-    target = target_of(request_of(count, density))
-    if target.curvature_weight > 0.0:
-        target = target._replace(exponent=spaced.exponent)
-    whole = space_of(part, None, target)
+    whole = space_of(part, None, target_of(request_of(count, density)))
+    if whole.target.curvature_weight > 0.0 and spaced.exponent != whole.target.exponent:
+        whole = whole.to_power(spaced.exponent)
     known = MeshEdges.of(Spacing(whole, count))
     failed = dict(whole.failed) | {
         x.face.index: f"{x.label} has edges whose places on it are not known."
@@ -258,14 +258,19 @@ class Meshing:
         if not pieces:
             reason = next(iter(failed.values()))
             raise SurfaceError(f"no face of part {part.name!r} can be meshed: {reason}")
-        made: Space = replace(whole, pieces=pieces, _held={})
+        held = whole._held if len(pieces) == len(whole.pieces) else {}
+        made: Space = replace(whole, pieces=pieces, _held=held)
         if whole.target.curvature_weight > 0.0:
             request = request_of(count, "balanced")
             made = Filling(made, request, False, lambda number: None).balanced(capped=True)
         else:
             made = made.between(1.0)
         assert isinstance(made, PartSpace)
-        return cls(part, made, MeshEdges.of(spaced(made, count)), count, failed)
+        edges = MeshEdges.of(spaced(made, count))
+        if spaced.by_shape and edges.least <= count:
+            made = graded(edges, count)
+            edges = MeshEdges.of(spaced(made, count))
+        return cls(part, made, edges, count, failed)
 
     def refine(self) -> dict[int, str]:
         """Divide edges until no border crosses itself; return the faces for which that fails."""

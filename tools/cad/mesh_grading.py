@@ -1,0 +1,127 @@
+"""Sizes that grow slowly from the edges of a part into its faces, so that triangles stay even.
+
+Edges are as fine as the finer one of the faces at them needs. A plane beside a fillet would have
+long triangles at the edge between them if its vertices followed its own curvature only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Indices
+from ...runtime.base.trees import tree_of
+from ...runtime.density.along_borders import BorderLines
+from ...runtime.density.cells import Cells, merged
+from .edge_sampling import step_of
+from .mesh_edges import MeshEdges
+from .results import PartSpace
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
+__all__ = ["graded"]
+
+# From an edge on, distances between vertices grow by at most this part of the way.
+GROWTH = 0.5
+# Of the steps of edges, so many of the nearest ones are compared.
+NEAREST = 4
+# Cells are halved until sizes differ by about this part of the smallest in them.
+UNEVEN = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Sources:
+    """Sizes, the last one infinite, at the places of a tree; with the distance they grow.
+
+    Farther than `reach` from all places there is no bound.
+    """
+
+    tree: KDTree
+    sizes: Array
+    growth: float
+    reach: float
+
+    def sizes_at(self, points: Array) -> Array:
+        """Return the largest sizes (M,) at points (M, 3)."""
+        distances, rows = self.tree.query(points, NEAREST, distance_upper_bound=self.reach)
+        return (self.sizes[rows] + self.growth * distances).min(axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class GradedSpace(PartSpace):
+    """A space whose sizes are at most those of the `sources` of a piece, where there are any.
+
+    Sizes are 1/√w, with the target density w.
+    """
+
+    sources: Mapping[int, Sources] = field(default_factory=dict)
+
+    def known(self, cells: Cells, *, keep: bool = False) -> Cells:
+        """Return what `Space.known` returns."""
+        found = super().known(cells, keep=keep)
+        self.grade(found.pieces, found.rows)
+        return found
+
+    def grade(self, pieces: Indices, rows: Array) -> Array:
+        """Raise densities in rows (M, 8) of pieces (M,), sorted; return bounds of sizes (M,)."""
+        sizes = np.full(len(rows), np.inf)
+        for k, sources in self.sources.items():
+            here = slice(*np.searchsorted(pieces, [k, k + 1]))
+            sizes[here] = sources.sizes_at(rows[here, :3])
+        rows[:, 6] = np.maximum(rows[:, 6], np.minimum(sizes**-2.0, self.target.ceiling))
+        return sizes
+
+
+def graded(edges: MeshEdges, count: int) -> PartSpace:
+    """Return the space of edges, with sizes that grow slowly from their steps in a mesh.
+
+    Where they would have grown to those of the face within one of these, nothing changes.
+    """
+    space, sampled = edges.space, edges.sampled(count)
+    step, points = step_of(space, count), space.scaled_points(sampled.points)
+    largest, sources = np.zeros(len(space.pieces)), dict[int, Sources]()
+    np.maximum.at(largest, space.first.pieces, space.densities**-0.5)
+    for k, most in enumerate(largest.tolist()):
+        lines = [sampled.numbers[x] for x in np.unique(edges.owner[edges.pieces == k]).tolist()]
+        ends = np.concatenate([np.stack([x[:-1], x[1:]], axis=1) for x in lines])
+        sizes = np.linalg.norm(points[ends[:, 1]] - points[ends[:, 0]], axis=1) / step
+        small = (sizes > 0.0) & (sizes < (1.0 - GROWTH) * most)
+        if small.any():
+            tree, sizes = tree_of(points[ends[small]].mean(axis=1)), sizes[small]
+            reach = (most - sizes.min()) * step / GROWTH
+            sources[k] = Sources(tree, np.append(sizes, np.inf), GROWTH / step, reach)
+    if not sources:
+        return space
+    made = GradedSpace(
+        space.label, space.pieces, space.target, space.threads, space.developable,
+        failed=space.failed, sources=sources,
+    )  # fmt: skip
+    made._held.update(borders=_borders(made, space.borders), first=_first(made, space.first))
+    return made
+
+
+def _borders(space: GradedSpace, lines: BorderLines) -> BorderLines:
+    """Return the borders of a space, graded."""
+    lines = replace(lines, rows=lines.rows.copy())
+    space.grade(np.repeat(lines.pieces, np.diff(lines.starts)), lines.rows)
+    return lines
+
+
+def _first(space: GradedSpace, first: Cells) -> Cells:
+    """Return the first cells of a space, graded, and halved until sizes are even in each."""
+    cells, done, bare = replace(first, rows=first.rows.copy()), list[Cells](), space.between(0.0)
+    growth = np.zeros(len(space.pieces))
+    for k, sources in space.sources.items():
+        growth[k] = sources.growth
+    while len(cells):
+        bounds = space.grade(cells.pieces, cells.rows)
+        sizes = np.clip(cells.rows[:, 6], space.target.floor, space.target.ceiling) ** -0.5
+        change = growth[cells.pieces] * cells.radii
+        uneven = (change > UNEVEN * sizes) & (bounds - change < sizes) & ~space.deepest(cells)
+        done.append(cells[~uneven])
+        cells = bare.halves(cells[uneven])
+    return merged(done)
