@@ -6,6 +6,7 @@ long triangles at the edge between them if its vertices followed its own curvatu
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -37,7 +38,7 @@ UNEVEN = 0.5
 class Sources:
     """Sizes, the last one infinite, at the places of a tree; with the distance they grow.
 
-    Farther than `reach` from all places there is no bound.
+    Farther than `reach` from all places they are too large to matter.
     """
 
     tree: KDTree
@@ -45,9 +46,9 @@ class Sources:
     growth: float
     reach: float
 
-    def sizes_at(self, points: Array) -> Array:
-        """Return the largest sizes (M,) at points (M, 3)."""
-        distances, rows = self.tree.query(points, NEAREST, distance_upper_bound=self.reach)
+    def sizes_at(self, points: Array, reach: float) -> Array:
+        """Return the largest sizes (M,) at points (M, 3); infinite farther than a reach."""
+        distances, rows = self.tree.query(points, NEAREST, distance_upper_bound=reach)
         return (self.sizes[rows] + self.growth * distances).min(axis=1)
 
 
@@ -66,12 +67,15 @@ class GradedSpace(PartSpace):
         self.grade(found.pieces, found.rows)
         return found
 
-    def grade(self, pieces: Indices, rows: Array) -> Array:
-        """Raise densities in rows (M, 8) of pieces (M,), sorted; return bounds of sizes (M,)."""
+    def grade(self, pieces: Indices, rows: Array, *, far: bool = False) -> Array:
+        """Raise densities in rows (M, 8) of pieces (M,), sorted; return bounds of sizes (M,).
+
+        These are infinite where they are too large to matter, but for `far`.
+        """
         sizes = np.full(len(rows), np.inf)
         for k, sources in self.sources.items():
             here = slice(*np.searchsorted(pieces, [k, k + 1]))
-            sizes[here] = sources.sizes_at(rows[here, :3])
+            sizes[here] = sources.sizes_at(rows[here, :3], math.inf if far else sources.reach)
         rows[:, 6] = np.maximum(rows[:, 6], np.minimum(sizes**-2.0, self.target.ceiling))
         return sizes
 
@@ -118,7 +122,7 @@ def _first(space: GradedSpace, first: Cells) -> Cells:
     for k, sources in space.sources.items():
         growth[k] = sources.growth
     while len(cells):
-        bounds = space.grade(cells.pieces, cells.rows)
+        bounds = space.grade(cells.pieces, cells.rows, far=True)
         sizes = np.clip(cells.rows[:, 6], space.target.floor, space.target.ceiling) ** -0.5
         change = growth[cells.pieces] * cells.radii
         uneven = (change > UNEVEN * sizes) & (bounds - change < sizes) & ~space.deepest(cells)
