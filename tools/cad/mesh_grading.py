@@ -27,16 +27,14 @@ if TYPE_CHECKING:
 __all__ = ["graded"]
 
 # From an edge on, distances between vertices grow by at most this part of the way.
-GROWTH = 0.5
-# Of the steps of edges, so many of the nearest ones are compared.
-NEAREST = 4
+GROWTH = 0.55
 # Cells are halved until sizes differ by about this part of the smallest in them.
 UNEVEN = 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class Sources:
-    """Sizes, the last one infinite, at the places of a tree; with the distance they grow.
+    """Sizes, the last one infinite, at the places of a tree; from the nearest one on, they grow.
 
     Farther than `reach` from all places they are too large to matter.
     """
@@ -48,8 +46,8 @@ class Sources:
 
     def sizes_at(self, points: Array, reach: float) -> Array:
         """Return the largest sizes (M,) at points (M, 3); infinite farther than a reach."""
-        distances, rows = self.tree.query(points, NEAREST, distance_upper_bound=reach)
-        return (self.sizes[rows] + self.growth * distances).min(axis=1)
+        distances, rows = self.tree.query(points, distance_upper_bound=reach)
+        return self.sizes[rows] + self.growth * distances
 
 
 @dataclass(frozen=True, eq=False)

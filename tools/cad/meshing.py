@@ -38,6 +38,7 @@ from .edges import Places, at_places
 from .mesh_edges import MeshEdges, SampledEdges
 from .mesh_faces import EXTRA, Crossing, FaceBorder, triangles_of
 from .mesh_grading import graded
+from .mesh_smoothing import smoothed
 from .mesh_spacing import ByNormals, Spacing
 from .part import Part
 from .part_mesh import PartMesh
@@ -195,11 +196,14 @@ class Corners:
     triangles: Indices
     fixed: Indices
 
-    def flipped(self, points: Array, by_shape: bool) -> Indices:
-        """Return triangles between places with points (C, 3) that flips of edges have improved.
+    def improved(
+        self, space: PartSpace, points: Array, first: int, by_shape: bool
+    ) -> tuple[Corners, Array]:
+        """Return these with triangles that flips of edges have improved, and points (C, 3).
 
-        They are closer to the normals; `by_shape`, better shaped, and then closer to the normals
-        where no angle becomes small. Triangles at places without a normal, as at tips, stay.
+        They are closer to the normals; `by_shape`, better shaped, also by moving vertices from the
+        number `first` on, and then closer to the normals where no angle becomes small. Triangles
+        at places without a normal, as at tips, stay.
         """
         count, normals = len(self.pieces), self.known.normals
         triangles = self.triangles.copy()
@@ -208,14 +212,21 @@ class Corners:
         without = ~np.asarray(normals.any(axis=1))[triangles].all(axis=1)
         stay = np.concatenate([np.sort(self.fixed, axis=1) @ [count, 1], numbers[without].ravel()])
         adjacent[np.isin(numbers, stay)] = -1
-        ways = [(True, math.cos(math.radians(LARGEST_DEVIATION)))] if by_shape else []
-        ways.append((False, math.tan(math.radians(ENOUGH)) if by_shape else 0.0))
-        for way, least in ways:
+
+        def flip(normals: Array, by_shape: bool, least: float) -> None:
             flip_edges(
-                scaled(points), normals, triangles, np.ones_like(triangles), adjacent, way, least,
-                np.arange(len(triangles)), np.ones(len(triangles), dtype=np.bool_),
+                scaled(points), normals, triangles, np.ones_like(triangles), adjacent, by_shape,
+                least, np.arange(len(triangles)), np.ones(len(triangles), dtype=np.bool_),
             )  # fmt: skip
-        return triangles
+
+        known, least = self.known, math.cos(math.radians(LARGEST_DEVIATION))
+        if by_shape:
+            flip(normals, True, least)
+            free = self.numbers >= first
+            known, points = smoothed(space, self.pieces, known, triangles, points, free)
+            flip(known.normals, True, least)
+        flip(known.normals, False, math.tan(math.radians(ENOUGH)) if by_shape else 0.0)
+        return replace(self, known=known, triangles=triangles), points
 
     def normals(self, space: PartSpace, triangles: Indices) -> Array:
         """Return unit normals (T, 3, 3) at the corners of triangles.
@@ -433,11 +444,14 @@ class Meshing:
 
     def _mesh(self, sampled: SampledEdges, corners: Corners) -> PartMesh:
         count = max(int(corners.numbers.max()) + 1, len(sampled.points))
-        points, uv = np.zeros((count, 3)), np.zeros((count, 2))
-        points[corners.numbers[::-1]] = corners.known.vectors[::-1, 0]
-        points[: len(sampled.points)] = sampled.points
+        points, uv, first = np.zeros((count, 3)), np.zeros((count, 2)), len(sampled.points)
+        at, by_shape = corners.known.vectors[:, 0].copy(), self.edges.spacing.by_shape
+        on_edges = corners.numbers < first
+        at[on_edges] = sampled.points[corners.numbers[on_edges]]
+        corners, at = corners.improved(self.space, at, first, by_shape)
+        points[corners.numbers], points[:first] = at, sampled.points
         uv[corners.numbers[::-1]] = corners.known.uv[::-1]
-        triangles = corners.flipped(points[corners.numbers], self.edges.spacing.by_shape)
+        triangles = corners.triangles
         vertices, normals = corners.numbers[triangles], corners.normals(self.space, triangles)
         faces = np.array([x.face.index for x in self.space.pieces])
         return PartMesh(
