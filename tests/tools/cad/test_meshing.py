@@ -113,6 +113,8 @@ def test_a_ball_has_one_vertex_at_each_pole(made, count):
 def test_faces_of_all_kinds_are_open():
     part = all_kinds()
     mesh = sound(meshed(part, 2000), 2000)
+    assert mesh.smallest_angles.min() > 17.0  # 11.5 if vertices of thin triangles do not move
+    assert np.quantile(mesh.smallest_angles, 0.01) > 25.0  # 21.8
     assert not mesh.closed
     assert np.isnan(mesh.volume)
     assert mesh.euler_characteristic == len(part.faces)  # disks
@@ -272,6 +274,26 @@ def test_edges_are_divided_again_as_long_as_triangles_point_inward(monkeypatch):
         assert len(meshed(box(*SIZES), 150).vertices) == 150
     assert len(rounds) == 15
     assert rounds[-1] > rounds[0]
+
+
+def test_vertices_of_triangles_that_point_inward_are_replaced(monkeypatch):
+    """Seven times, and not more: here, each mesh has one such triangle inside of a face."""
+    meshes, bad = [], []
+
+    def one_inside(mesh):
+        row = np.flatnonzero(~np.isin(mesh.triangles, np.concatenate(mesh.lines)).any(axis=1))[:1]
+        meshes.append(mesh)
+        bad.append(mesh.vertices[mesh.triangles[row[0]]])
+        return row
+
+    monkeypatch.setattr(meshing, "inverted_triangles", one_inside)
+    with pytest.warns(gm.GaussmapWarning, match="pointing inward"):
+        assert len(meshed(box(*SIZES), 300).vertices) == 300
+    tried = list({id(x): x for x in meshes}.values())[:-1]  # the last one is what is returned
+    assert len(tried) == 8
+    for old, mesh in zip(bad, tried[1:], strict=False):
+        used = mesh.vertices[np.unique(mesh.triangles)]
+        assert np.linalg.norm(used[:, None] - old, axis=2).min(axis=0).max() > 0.01
 
 
 def test_edges_without_places_leave_their_faces_out():
@@ -471,6 +493,17 @@ def test_faces_whose_normals_are_the_same_do_not_share_vertices():
     inside = mesh.vertices[inner(mesh)][:, 0]
     assert len(inside) > 100
     assert (inside > 2.0).mean() == pytest.approx(0.5, abs=0.05)
+
+
+def test_sizes_grow_slowly_from_edges(made):
+    """The edges of disks of a low cylinder are several times as fine as the inside needs."""
+    mesh = sound(meshed(made.cylinder(height=0.02), 1500), 1500)
+    flat = mesh.face_index > 0
+    assert 24.0 < np.quantile(mesh.smallest_angles[flat], 0.05) < 28.0  # 4 without growth
+    corners = mesh.vertices[mesh.triangles[flat]]
+    lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    inside = np.linalg.norm(corners.mean(axis=1)[:, :2], axis=1) < 0.6
+    assert lengths[inside].mean() > 6.0 * 2.0 * np.pi / (len(mesh.lines[0]) - 1)
 
 
 def test_steps_along_edges_are_even_whatever_their_parameters():
