@@ -16,6 +16,8 @@ __all__ = ["smoothed"]
 
 # Vertices move if a triangle around them has a smaller angle than this, in degrees; so many times.
 SMALL, ROUNDS = 30.0, 6
+# The height of an even triangle, by its side.
+EVEN = math.sqrt(0.75)
 
 
 def smoothed(
@@ -26,45 +28,74 @@ def smoothed(
     Of the triangles around one that moves the smallest angle grows, and none turns away from the
     normals by more than `LARGEST_DEVIATION` degrees, unless it did before.
     """
-    known, points = Places(*(x.copy() for x in known)), points.copy()
-    sides = np.ones_like(triangles)
+    known, points = Places._make(x.copy() for x in known), points.copy()
     for _ in range(ROUNDS):
-        tangents = tangents_of(points, triangles)
-        thin = np.zeros(len(points), dtype=np.bool_)
+        tangents, thin = tangents_of(points, triangles), np.zeros(len(points), dtype=np.bool_)
         thin[triangles[tangents < math.tan(math.radians(SMALL))]] = True
         chosen = np.flatnonzero(thin & free)
-        if not len(chosen):
-            break
-        place = np.full(len(points), -1)
-        place[chosen] = np.arange(len(chosen))
-        rows, corner = np.nonzero(place[triangles] >= 0)
-        around = triangles[rows[:, None], (corner[:, None] + np.arange(3)) % 3]
-        owner = place[around[:, 0]]
-        moved = _moved(space, pieces, known, points, chosen, around, owner, tangents[rows])
-        new_points, new_normals = points[around], known.normals[around]
-        new_points[:, 0], new_normals[:, 0] = moved.vectors[owner, 0], moved.normals[owner]
-        own = np.arange(3 * len(rows)).reshape(-1, 3)
-        after = tangents_of(new_points.reshape(-1, 3), own)
-        turned = cosines_of(new_points.reshape(-1, 3), new_normals.reshape(-1, 3), own, sides[rows])
-        before = cosines_of(points, known.normals, triangles[rows], sides[rows])
-        least = np.minimum(before, math.cos(math.radians(LARGEST_DEVIATION)))
-        after[turned < least] = -1.0
+        rows, corners = np.nonzero((thin & free)[triangles])
+        # The triangles around the chosen vertices, each of which is their first corner.
+        around = triangles[rows[:, None], (corners[:, None] + np.arange(3)) % 3]
+        owner = np.searchsorted(chosen, around[:, 0])
+        steps = _steps(points[around], tangents[rows], owner, len(chosen))
+        moved = _moved(space, pieces[chosen], known, chosen, steps)
+        new = points[around], known.normals[around]
+        new[0][:, 0], new[1][:, 0] = moved.vectors[owner, 0], moved.normals[owner]
+        before = cosines_of(points, known.normals, around, np.ones_like(around))
+        after = _tangents(*new, np.minimum(before, math.cos(math.radians(LARGEST_DEVIATION))))
         now, then = (_least(x, owner, len(chosen)) for x in (tangents[rows], after))
         better = then > now
-        # Of neighbours, that with the smallest angle moves.
-        for k in (1, 2):
-            other = place[around[:, k]]
-            both = (other >= 0) & better[owner] & better[other]
-            one, other = owner[both], other[both]
-            later = (now[other] < now[one]) | ((now[other] == now[one]) & (other < one))
-            better[one[later]] = False
         if not better.any():
             break
-        at = chosen[better]
-        for mine, new in zip(known, moved, strict=True):
-            mine[at] = new[better]
-        points[at] = moved.vectors[better, 0]
+        at = _first(chosen, better, now, around, len(points))
+        for mine, others in zip(known, moved, strict=True):
+            mine[chosen[at]] = others[at]
+        points[chosen[at]] = moved.vectors[at, 0]
     return known, points
+
+
+def _steps(corners: Array, tangents: Array, owner: Indices, count: int) -> Array:
+    """Return how far (count, 3) the first corners of triangles (k, 3, 3) are to move.
+
+    That is to the mean of the tips of even triangles on the opposite sides; thin ones count more.
+    """
+    tip, one, other = corners.transpose(1, 0, 2)
+    side, up = other - one, tip - (one + other) / 2.0
+    lengths = np.linalg.norm(side, axis=1, keepdims=True)
+    along = side / np.where(lengths > 0.0, lengths, 1.0)
+    up -= np.einsum("kx,kx->k", up, along)[:, None] * along
+    heights = np.linalg.norm(up, axis=1, keepdims=True)
+    even = (one + other) / 2.0 + EVEN * lengths * up / np.where(heights > 0.0, heights, 1.0)
+    weights = 1.0 / np.maximum(tangents, np.finfo(np.float64).eps) ** 2
+    sums = [np.bincount(owner, weights * x, count) for x in (even - tip).T]
+    return np.stack(sums, axis=1) / np.bincount(owner, weights, count)[:, None]
+
+
+def _moved(
+    space: PartSpace, pieces: Indices, known: Places, chosen: Indices, steps: Array
+) -> Places:
+    """Return the places of chosen vertices after steps (k, 3), in the tangent plane."""
+    x_u, x_v = known.vectors[chosen, 1:].transpose(1, 0, 2)
+    E, F, G, a, b = (
+        np.einsum("kx,kx->k", *x)
+        for x in ((x_u, x_u), (x_u, x_v), (x_v, x_v), (x_u, steps), (x_v, steps))
+    )
+    square = E * G - F * F
+    shares = np.stack([G * a - F * b, E * b - F * a], axis=1)
+    uv = known.uv[chosen] + shares / np.where(square > 0.0, square, np.inf)[:, None]
+    low, high = np.array([x.domain for x in space.pieces])[pieces].transpose(2, 0, 1)
+    return at_places(space, pieces, np.clip(uv, low, high))
+
+
+def _tangents(corners: Array, normals: Array, least: Array) -> Array:
+    """Return the tangents of the smallest angles of triangles (k, 3, 3).
+
+    They are −1 where the cosine with one of the normals at the corners is below `least` (k,).
+    """
+    own = np.arange(3 * len(corners)).reshape(-1, 3)
+    points, normals = corners.reshape(-1, 3), normals.reshape(-1, 3)
+    cosines = cosines_of(points, normals, own, np.ones_like(own))
+    return np.where(cosines < least, -1.0, tangents_of(points, own))
 
 
 def _least(values: Array, owner: Indices, count: int) -> Array:
@@ -73,36 +104,11 @@ def _least(values: Array, owner: Indices, count: int) -> Array:
     return found
 
 
-def _moved(
-    space: PartSpace, pieces: Indices, known: Places, points: Array, chosen: Indices,
-    around: Indices, owner: Indices, tangents: Array,
-) -> Places:  # fmt: skip
-    """Return where chosen vertices are to go: to the mean of the tips of even triangles.
-
-    These stand on the sides opposite to them; thin triangles count more.
-    """
-    x, a, b = points[around].transpose(1, 0, 2)
-    middle, side = (a + b) / 2.0, b - a
-    lengths = np.linalg.norm(side, axis=1, keepdims=True)
-    along = side / np.where(lengths > 0.0, lengths, 1.0)
-    up = x - middle
-    up -= (up * along).sum(axis=1, keepdims=True) * along
-    heights = np.linalg.norm(up, axis=1, keepdims=True)
-    tips = middle + math.sqrt(0.75) * lengths * up / np.where(heights > 0.0, heights, 1.0)
-    weights = 1.0 / np.maximum(tangents, 1e-3) ** 2
-    sums = [np.bincount(owner, weights * y, len(chosen)) for y in (tips - x).T]
-    step = np.stack(sums, axis=1) / np.bincount(owner, weights, len(chosen))[:, None]
-    tangent = known.vectors[chosen, 1:]
-    metric = np.einsum("kix,kjx->kij", tangent, tangent)
-    product = np.einsum("kix,kx->ki", tangent, step)
-    det = metric[:, 0, 0] * metric[:, 1, 1] - metric[:, 0, 1] ** 2
-    inverse = np.stack(
-        [
-            metric[:, 1, 1] * product[:, 0] - metric[:, 0, 1] * product[:, 1],
-            metric[:, 0, 0] * product[:, 1] - metric[:, 0, 1] * product[:, 0],
-        ],
-        axis=1,
-    )
-    uv = known.uv[chosen] + inverse / np.where(det > 0.0, det, np.inf)[:, None]
-    low, high = np.array([p.domain for p in space.pieces])[pieces[chosen]].transpose(2, 0, 1)
-    return at_places(space, pieces[chosen], np.clip(uv, low, high))
+def _first(chosen: Indices, better: Flags, now: Array, around: Indices, count: int) -> Indices:
+    """Return which of the chosen vertices (k,) move at once: of neighbours, the worst one."""
+    rank = np.full(count, len(chosen))
+    rank[chosen[better]] = np.argsort(np.argsort(now[better]))
+    nearest = rank[around].min(axis=1)
+    found = np.full(count, len(chosen))
+    np.minimum.at(found, around[:, 0], nearest)
+    return np.flatnonzero(better & (found[chosen] == rank[chosen]))
