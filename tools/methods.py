@@ -188,7 +188,8 @@ def mesh(
     Warns
     -----
     GaussmapWarning
-        If faces of a CAD part are missing, see `PartMesh.failed`.
+        If faces of a CAD part are missing, see `PartMesh.failed`, or triangles of it point inward
+        and no larger count is known without them.
 
     Notes
     -----
