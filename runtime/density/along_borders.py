@@ -64,7 +64,7 @@ def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Ar
 def _apart(pieces: Indices, places: Array, trims: Trims) -> Array:
     """Return places of pieces, relative to their domains, far from those of other pieces."""
     low, high = trims.domains[pieces, :, 0], trims.domains[pieces, :, 1]
-    return np.column_stack([places / (high - low), FAR * pieces]).astype(np.float64, copy=False)
+    return np.column_stack([places / (high - low), FAR * pieces])
 
 
 def places_along(
@@ -110,8 +110,6 @@ def _spaced(
     costs = np.maximum(costs, turns)
     owners, numbers, shares = [np.empty(0, np.int64)], [np.empty(0, np.int64)], [np.empty(0)]
     for k, (first, last) in enumerate(itertools.pairwise(lines.starts.tolist())):
-        if last == first:
-            continue
         total = np.concatenate([[0.0], np.cumsum(costs[first : last - 1])])
         count = math.ceil(total[-1])
         at = np.interp(total[-1] * (np.arange(count) + 0.5) / count, total, np.arange(len(total)))

@@ -19,6 +19,7 @@ from ..base.memory import check_memory
 __all__ = [
     "Cells",
     "by_piece",
+    "grouped",
     "halved",
     "into_parts",
     "joined",
@@ -162,6 +163,13 @@ def runs(numbers: Indices) -> Iterator[tuple[int, slice]]:
         yield from zip(
             numbers[firsts].tolist(), map(slice, firsts, [*ends, len(numbers)]), strict=True
         )
+
+
+def grouped(numbers: Indices) -> Iterator[tuple[int, Indices]]:
+    """Yield the numbers (k,), each once and sorted, and the rows of each."""
+    rows = np.argsort(numbers, kind="stable")
+    for number, part in runs(numbers[rows]):
+        yield number, rows[part]
 
 
 def new_cells(

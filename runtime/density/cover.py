@@ -283,7 +283,8 @@ class Cover:
             self.show_count(self.count)
 
     def _append(self, cells: Cells) -> None:
-        self._waiting.append(cells)
+        if len(cells):
+            self._waiting.append(cells)
 
     def _replace_added(self, cells: Cells) -> None:
         self._points, self._curvatures = self._points[: self.given], self._curvatures[: self.given]
@@ -316,6 +317,8 @@ class Cover:
         far, small = candidates.distances > (1.0 - shares) * radius, shares <= FINEST
         large = np.flatnonzero(far & ~small)
         for first in range(0, len(large), BLOCK):
+            if self.count == most:
+                return
             halves = self.space.halves(cells[large[first : first + BLOCK]])
             places = self._with_distances(halves.rows, radius, radius)
             self._choose(halves, places, radius, most)
@@ -343,6 +346,6 @@ class Cover:
     def _with_distances(self, rows: Array, radius: float, widest: float) -> Candidates:
         """Return rows as candidates with their distances from all samples, within `widest`."""
         candidates = Candidates(rows, radius, self.space.threads, split=True)
-        for rows in (self._points, *(x.rows[:, :6] for x in self._waiting)):
-            candidates.update_distances(rows, widest)
+        for samples in (self._points, *(x.rows[:, :6] for x in self._waiting)):
+            candidates.update_distances(samples, widest)
         return candidates

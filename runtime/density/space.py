@@ -194,7 +194,10 @@ class Space:
         return made
 
     def to_power(self, exponent: float) -> Self:
-        """Return the same space with another exponent of the target density, and its cells."""
+        """Return the same space with another exponent of the target density, and its cells.
+
+        The target density is a power of κ, without a Gauss weight.
+        """
         first, borders = (replace(x, rows=x.rows.copy()) for x in (self.first, self.borders))
         for found in (first, borders):
             found.rows[:, 6] **= exponent / self.target.exponent
@@ -294,14 +297,14 @@ class Space:
             rates = np.sqrt(self.densities) / (math.sqrt(2.0) * radius)
             parts = np.fmax(np.ceil(np.fmin(lengths * rates[:, None], MOST_CELLS)), 1.0)
         if parts.prod(axis=1).sum() > MOST_CELLS:
-            raise self.too_many(MOST_CELLS)
+            raise self._too_many()
         return parts.astype(np.int64)
 
-    def too_many(self, cells: float) -> InputError:
-        """Return the error that the surface would have to be searched in more places than that."""
+    def _too_many(self) -> InputError:
+        """Return the error that the surface would have to be cut into more cells than allowed."""
         return InputError(
-            f"{self.label} would have to be searched in more than {cells:.0e} places; ask for a "
-            "larger coverage or angle, or for fewer samples or normals."
+            f"{self.label} would have to be searched in more than {MOST_CELLS:.0e} places; ask for "
+            "a larger coverage or angle, or for fewer samples or normals."
         )
 
     def cut_by_normals(self, chord: float, most: float) -> Iterator[Cells]:

@@ -12,7 +12,7 @@ from ..domain.domain import closes
 from ..domain.loops import Loops
 from ..kernels.trim import Joined, find_inside_each
 from ..surface.moved import Turned
-from .cells import runs
+from .cells import grouped
 from .piece import Piece
 
 __all__ = ["Trims"]
@@ -58,7 +58,9 @@ class Trims:
             joined = rows[is_joined]
             if len(joined):
                 inside[joined] = self._inside_loops(pieces[joined], places[joined])
-            for k, here in _by_number(pieces, rows[~is_joined]):
+            others = rows[~is_joined]
+            for k, found in grouped(pieces[others]):
+                here = others[found]
                 inside[here] = self.pieces[k].contains(places[here])
         return inside
 
@@ -70,7 +72,9 @@ class Trims:
         out = self._closes[pieces] & ((places < low) | (places > high)) & is_joined[:, None]
         low, size, high, values = low[out], (high - low)[out], high[out], places[out]
         found[out] = np.clip(values - np.floor((values - low) / size) * size, low, high)
-        for k, here in _by_number(pieces, np.flatnonzero(~is_joined)):
+        others = np.flatnonzero(~is_joined)
+        for k, rows in grouped(pieces[others]):
+            here = others[rows]
             found[here] = self.pieces[k].wrapped(places[here])
         return found
 
@@ -113,7 +117,9 @@ class Trims:
     def _allow(self, pieces: Indices, places: Array) -> Flags:
         """Return which places (k, 2) on loops fulfil all other conditions of the trims."""
         allowed = np.ones(len(places), np.bool_)
-        for k, here in _by_number(pieces, np.flatnonzero(self._place[pieces] < 0)):
+        others = np.flatnonzero(self._place[pieces] < 0)
+        for k, rows in grouped(pieces[others]):
+            here = others[rows]
             trim = self.pieces[k].trim
             assert trim is not None
             for part in trim.parts:
@@ -168,10 +174,3 @@ class Trims:
 def _starts(parts: Iterator[Array] | Sequence[Array]) -> Indices:
     """Return where each of some arrays begins in all of them, and where the last one ends."""
     return np.cumsum([0, *map(len, parts)], dtype=np.int64)
-
-
-def _by_number(numbers: Indices, rows: Indices) -> Iterator[tuple[int, Indices]]:
-    """Yield the numbers of some rows, each once, with the rows that have it."""
-    rows = rows[np.argsort(numbers[rows], kind="stable")]
-    for number, part in runs(numbers[rows]):
-        yield number, rows[part]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.density.cells import grouped
 from ...runtime.kernels.refine import evaluate_jets
 from .faces import own_parameters
 from .part import Part
@@ -122,14 +122,6 @@ def _of_surfaces(space: PartSpace, pieces: Indices, points: Array) -> Array:
                 uv = found[rows, columns]
                 found[rows, columns] = own_parameters(face.surface, uv, is_reversed=True)
     return found
-
-
-def grouped(pieces: Indices) -> Iterator[tuple[int, Indices]]:
-    """Yield the pieces, and the rows of each."""
-    order = np.argsort(pieces, kind="stable")
-    ends = np.flatnonzero(np.diff(pieces[order])) + 1
-    for rows in np.split(order, ends) if len(order) else ():
-        yield int(pieces[rows[0]]), rows
 
 
 # --- both sides -----------------------------------------------------------------------------------

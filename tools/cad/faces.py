@@ -138,10 +138,9 @@ def _cylinder(geometry: Geometry, domain: Domain) -> Shape:
 def _cone(geometry: Geometry, domain: Domain) -> Shape:
     radius, angle = geometry.numbers[12:].tolist()
     start, way = np.array([radius, 0.0, 0.0]), np.array([math.sin(angle), 0.0, math.cos(angle)])
-    first, last = (start + v * way for v in domain[1])
     around, ends = _around(domain[0])
     return Shape(
-        Turned(line_of(first, last, domain[1])),
+        Turned(line_of(start, way, domain[1])),
         (around, domain[1]),
         (ends, OPEN),
         _placement(geometry.numbers),

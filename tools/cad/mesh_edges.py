@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from .edges import at_places, grouped
+from ...runtime.density.cells import grouped
+from .edges import at_places
 from .faces import own_parameters
 from .mesh_spacing import Spacing, least_enough
 from .part import Face

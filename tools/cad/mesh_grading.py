@@ -16,7 +16,7 @@ import numpy as np
 from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.trees import tree_of
 from ...runtime.density.along_borders import BorderLines
-from ...runtime.density.cells import Cells, merged
+from ...runtime.density.cells import Cells, grouped, merged
 from .edge_sampling import step_of
 from .mesh_edges import MeshEdges
 from .results import PartSpace
@@ -34,8 +34,9 @@ UNEVEN = 0.5
 
 @dataclass(frozen=True, eq=False)
 class Sources:
-    """Sizes, the last one infinite, at the places of a tree; from the nearest one on, they grow.
+    """Sizes at the places of a tree, and an infinite one at last, for points that are near to none.
 
+    At other points they are those of the nearest place, and larger by `growth` times its distance.
     Farther than `reach` from all places they are too large to matter.
     """
 
@@ -66,14 +67,14 @@ class GradedSpace(PartSpace):
         return found
 
     def grade(self, pieces: Indices, rows: Array, *, far: bool = False) -> Array:
-        """Raise densities in rows (M, 8) of pieces (M,), sorted; return bounds of sizes (M,).
+        """Raise densities in rows (M, 8) of pieces (M,); return bounds of sizes (M,).
 
         These are infinite where they are too large to matter, but for `far`.
         """
         sizes = np.full(len(rows), np.inf)
-        for k, sources in self.sources.items():
-            here = slice(*np.searchsorted(pieces, [k, k + 1]))
-            sizes[here] = sources.sizes_at(rows[here, :3], math.inf if far else sources.reach)
+        for k, here in grouped(pieces):
+            if sources := self.sources.get(k):
+                sizes[here] = sources.sizes_at(rows[here, :3], math.inf if far else sources.reach)
         rows[:, 6] = np.maximum(rows[:, 6], np.minimum(sizes**-2.0, self.target.ceiling))
         return sizes
 
@@ -81,14 +82,15 @@ class GradedSpace(PartSpace):
 def graded(edges: MeshEdges, count: int) -> PartSpace:
     """Return the space of edges, with sizes that grow slowly from their steps in a mesh.
 
-    Where they would have grown to those of the face within one of these, nothing changes.
+    Nothing changes beside steps from which sizes would grow to those of the face at once.
     """
     space, sampled = edges.space, edges.sampled(count)
     step, points = step_of(space, count), space.scaled_points(sampled.points)
     largest, sources = np.zeros(len(space.pieces)), dict[int, Sources]()
     np.maximum.at(largest, space.first.pieces, space.densities**-0.5)
-    for k, most in enumerate(largest.tolist()):
-        lines = [sampled.numbers[x] for x in np.unique(edges.owner[edges.pieces == k]).tolist()]
+    for k, sides in grouped(edges.pieces):
+        most = float(largest[k])
+        lines = [sampled.numbers[x] for x in np.unique(edges.owner[sides]).tolist()]
         ends = np.concatenate([np.stack([x[:-1], x[1:]], axis=1) for x in lines])
         sizes = np.linalg.norm(points[ends[:, 1]] - points[ends[:, 0]], axis=1) / step
         small = (sizes > 0.0) & (sizes < (1.0 - GROWTH) * most)

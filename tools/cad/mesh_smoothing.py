@@ -39,6 +39,10 @@ def smoothed(
         owner = np.searchsorted(chosen, around[:, 0])
         steps = _steps(points[around], tangents[rows], owner, len(chosen))
         moved = _moved(space, pieces[chosen], known, chosen, steps)
+        # At the ends of a domain a surface may have no point.
+        lost = ~np.isfinite(moved.vectors[:, 0]).all(axis=1)
+        for mine, others in zip(moved, known, strict=True):
+            mine[lost] = others[chosen[lost]]
         new = points[around], known.normals[around]
         new[0][:, 0], new[1][:, 0] = moved.vectors[owner, 0], moved.normals[owner]
         before = cosines_of(points, known.normals, around, np.ones_like(around))

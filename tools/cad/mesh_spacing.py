@@ -276,7 +276,7 @@ class TurnedPiece(Piece):
         """Those of the face."""
         return self.piece.polygons
 
-    @cached_property
+    @property
     def boxes(self) -> Array:
         """Those of the face."""
         return self.piece.boxes

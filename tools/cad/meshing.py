@@ -115,26 +115,26 @@ def mesh_of_part(
     if isinstance(made, SurfaceError):
         raise made
     mesh, is_proper = made
-    text = ""
+    faults = list[str]()
     if failed := mesh.failed:
-        text = (
+        faults.append(
             f"lacks {plural(len(failed), 'face')} of {len(part):,}: {next(iter(failed.values()))}"
         )
-    elif refuse and not is_proper:
-        text = _inward(mesh, whole)
-    if text:
+    if refuse and not is_proper and len(rows := inverted_triangles(mesh)):
+        faults.append(_inward(mesh, whole, rows))
+    for text in faults:
         warnings.warn(f"the mesh of part {part.name!r} {text}", GaussmapWarning, stacklevel=5)
     return mesh
 
 
-def _inward(mesh: PartMesh, whole: PartSpace) -> str:
+def _inward(mesh: PartMesh, whole: PartSpace, rows: Indices) -> str:
     """Say that triangles point inward, and on which face."""
-    rows = inverted_triangles(mesh)
     face = mesh.face_index[rows[0]]
     label = next(x.label for x in whole.pieces if x.face.index == face)
     return (
-        f"has {plural(len(rows), 'triangle')} pointing inward, the first one on {label}; no larger "
-        "count is known to be without: repair the face in a CAD program, or leave it out."
+        f"has {plural(len(rows), 'triangle')} pointing inward, the first one on {label}, and "
+        "no larger count is known to be without them; repair the face in a CAD program, or leave "
+        "it out."
     )
 
 

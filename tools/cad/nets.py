@@ -51,12 +51,12 @@ def curve_of_net(net: Net) -> Nurbs:
     return nurbs_of_curve(net, direction * np.abs(points).max(), (0.0, 1.0))
 
 
-def line_of(first: Array, last: Array, ends: Interval) -> Nurbs:
-    """Return a line in the plane y = 0, between points (3,) at the ends of its parameter.
+def line_of(start: Array, way: Array, ends: Interval) -> Nurbs:
+    """Return the line start + v way, in the plane y = 0, between two values of v.
 
     It is the line v = 0 of a surface, as in `curve_of_net`, which goes along y.
     """
-    middle, half = (first + last) / 2.0, (last - first) / 2.0
+    middle, half = start + sum(ends) / 2.0 * way, (ends[1] - ends[0]) / 2.0 * way
     across = np.array([(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)])
     points = np.stack([-half, half])[:, None] + across
     knots = np.repeat(ends, 2), np.repeat((0.0, 1.0), 2)

@@ -3,7 +3,7 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.density import sifting, trims
+from gaussmap.runtime.density import along_borders, sifting, trims
 from gaussmap.runtime.density.methods import space_on
 from gaussmap.runtime.density.trims import Trims
 
@@ -48,5 +48,6 @@ def test_cells_do_not_depend_on_blocks(pieces, monkeypatch):
         return space.cut(0.1 * np.sqrt(space.area))
 
     whole = cells()
-    monkeypatch.setattr(sifting, "BOXES_AT_A_TIME", 5000)
+    monkeypatch.setattr(sifting, "BOXES_AT_A_TIME", 300)
+    monkeypatch.setattr(along_borders, "PLACES_AT_A_TIME", 50)
     np.testing.assert_array_equal(cells().rows, whole.rows)
