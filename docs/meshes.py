@@ -166,8 +166,9 @@ ROWS_OF_PARTS = (
     ("hammer.iges", "1.97 / 2.92", "0.065 / 0.074", "3.7 / 1.0"),
 )
 BY_NORMALS = """\
-5 % of our triangles have smaller angles than 27° to 29°, of Gmsh's, 28° to 48°: edges are flipped to
-the normals as long as angles stay above 25°, which makes mean angles smaller and triangles thinner.
+5 % of our triangles have smaller angles than 27° to 29°, of Gmsh's, 28° to 48°: edges are flipped
+to the normals as long as angles stay above 25°, which makes mean angles smaller and triangles
+thinner.
 
 With `prefer="normals"` the mean angle is 0.35° on bottle.brep and 0.08° on as1-tu-203.stp, that of
 Open CASCADE's with as many vertices, for several deflections, at least 0.52° and 0.11°. Its
