@@ -64,7 +64,9 @@ def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Ar
 def _apart(pieces: Indices, places: Array, trims: Trims) -> Array:
     """Return places of pieces, relative to their domains, far from those of other pieces."""
     low, high = trims.domains[pieces, :, 0], trims.domains[pieces, :, 1]
-    return np.column_stack([places / (high - low), FAR * pieces])
+    found = np.empty((len(places), 3))
+    found[:, :2], found[:, 2] = places / (high - low), FAR * pieces
+    return found
 
 
 def places_along(
