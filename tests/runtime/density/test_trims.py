@@ -27,6 +27,7 @@ def pieces():
     return [space_on(gm.fit(x, (16, 16)), x, None).pieces[0] for x in surfaces]
 
 
+@pytest.mark.compiled
 def test_places_are_inside_as_each_piece_says(pieces, monkeypatch):
     """Those of whole periods away, too, and however many at a time."""
     rng, every = np.random.default_rng(1), Trims(pieces)

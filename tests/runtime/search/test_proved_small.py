@@ -63,6 +63,7 @@ def test_a_double_point() -> None:
     assert max(u_high - u_low, v_high - v_low) < 1e-6
 
 
+@pytest.mark.compiled
 def test_points_at_poles() -> None:
     normals = [(0, 0, 1), (0, 0, -1), (0.02, 0.01, 1), (1e-9, 1e-9, 1), (1, 1, 0.1)]
     found = query(gm.surfaces.sphere(), normals, (8, 8))
