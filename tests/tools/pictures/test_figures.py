@@ -52,7 +52,7 @@ def test_it_is_the_picture_of_the_command_line(samples: gm.Samples, tmp_path: Pa
 @pytest.mark.slow
 def test_notebooks_show_it(samples: gm.Samples) -> None:
     content = samples.plot()._repr_png_()  # pyright: ignore[reportAttributeAccessIssue]
-    assert image.imread(BytesIO(content)).shape == (980, 1800, 4)
+    assert image.imread(BytesIO(content)).shape == (920, 1800, 4)
 
 
 @pytest.mark.parametrize(
@@ -193,4 +193,4 @@ def test_the_command_draws_parts(
     parts.box().save(tmp_path / "box.npz")
     path = tmp_path / "box.png"
     assert main(["plot", str(tmp_path / "box.npz"), "--count", "40", "-o", str(path)]) == 0
-    assert image.imread(path).shape == (980, 1800, 4)
+    assert image.imread(path).shape == (920, 1800, 4)
