@@ -41,16 +41,16 @@ def cover_normals(cover: Cover, angle: float) -> float:
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
     cover.evaluate_exactly()
     near, largest, cells = (1.0 - MARGIN) * limit, 0.0, cover.whole(2.0 * MARGIN * limit)
-    trees, threads = [tree_of_directions(cover.points[:, 3:])], cover.space.threads
+    first, threads = cover.count, cover.space.threads
+    trees = [tree_of_directions(cover.points[:, 3:])]
     while len(cells):
         distances = _distances(trees, cells.rows, threads)
         far = distances > near
         if far.any():
-            first = cover.count
             chosen = choose_apart(cells.rows[far, 3:6], near, threads)
             cover.add(cells[np.flatnonzero(far)[chosen]])
-            trees.append(tree_of_directions(cover.points[first:, 3:]))
-            distances[far] = _distances(trees[-1:], cells.rows[far], threads)
+            trees[1:] = [tree_of_directions(cover.points[first:, 3:])]
+            distances[far] = _distances(trees[1:], cells.rows[far], threads)
         chords = distances + cells.chords
         far = (chords > limit) & ~cover.space.deepest(cells)
         largest = max(largest, float(chords[~far].max(initial=0.0)))
