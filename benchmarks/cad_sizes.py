@@ -4,6 +4,9 @@ Open CASCADE makes each part. It is read and sampled in a process of its own, on
 kernels. Names of parts are arguments; without, all but those that take long.
 """
 
+# Its extra is not installed for developers.
+# pyright: reportMissingImports=false
+
 from __future__ import annotations
 
 import itertools

@@ -127,7 +127,7 @@ def with_rational_root(formula, inputs: dict[str, Fraction]) -> dict[str, Fracti
     values = {scalar(x): sp.Rational(y.numerator, y.denominator) for x, y in inputs.items()}
     for symbol, value in formula.definitions[:3]:
         values[symbol] = value.xreplace(values)
-    g, h = (Fraction(int(x.p), int(x.q)) for x in (values[scalar("g")], values[scalar("h")]))
+    g, h = (Fraction(str(values[scalar(x)])) for x in "gh")
     c2 = abs(inputs["c2"])
     t = 4 * (abs(g) + (c2 + 1) * (abs(h) + 1))
     return {"c2": c2, "Q": (2 * g * t + t**2) / (2 * c2) - h}

@@ -111,7 +111,7 @@ def test_parts_of_candidates_have_the_centres_and_gaps_of_the_whole(monkeypatch)
         moved, rows, places = made.centres(samples, 4)
         far, gaps = made.widest(samples, 0.2)
         order = np.argsort(far)
-        return [moved, rows, places, far[order], gaps[order]]
+        return [moved, rows, places, far[order], gaps[order]]  # pyright: ignore[reportReturnType]
 
     whole = found(1)
     monkeypatch.setattr(candidates_module, "PART", 20)

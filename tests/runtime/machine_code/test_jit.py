@@ -165,7 +165,7 @@ def test_a_failed_compilation_keeps_no_lock(folder: Path, monkeypatch: pytest.Mo
     kernel = jit.jit(triple)
     for _ in range(2):
         with pytest.raises(numba.TypingError):
-            kernel(None)
+            kernel(None)  # pyright: ignore[reportArgumentType]
 
 
 @pytest.mark.compiled

@@ -205,7 +205,8 @@ class TestReport:
         ]  # fmt: skip
         assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "double", True, None),)
         assert report.reach == (0.0, 0.0, 1.0, 60.0)
-        (place,) = report.undecided or ()
+        assert report.undecided
+        place = report.undecided[0]
         assert [type(x) for x in place[:4]] == [int, tuple, str, bool]
 
     @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])

@@ -84,7 +84,7 @@ def test_surfaces_may_bend_along_any_axis():
         samples = gm.sample(surface, normals=gm.fibonacci(10), cells=(8, 8), on="spline")
         return samples.report.developable_patches
 
-    assert developable_patches([0, 1, 2]) > 0
+    assert (developable_patches([0, 1, 2]) or 0) > 0
     assert developable_patches([2, 0, 1]) == developable_patches([0, 1, 2])
     assert developable_patches([1, 2, 0]) == developable_patches([0, 1, 2])
 

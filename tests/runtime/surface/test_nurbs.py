@@ -270,7 +270,7 @@ def test_the_angle_of_a_crease(angle, pieces):
 
 
 def test_control_points_that_coincide_make_an_edge_on_a_simple_knot():
-    corner = [(0, 0), (1, 0), (2, 0), (2, 0), (2, 0), (2, 1), (2, 2)]
+    corner = [(0.0, 0), (1, 0), (2, 0), (2, 0), (2, 0), (2, 1), (2, 2)]
     knots = [0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4]
     surface = extruded(corner, 3, knots)
     assert nurbs_of(surface).creases == ((2.0,), ())

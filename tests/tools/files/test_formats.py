@@ -150,7 +150,7 @@ class TestEarlierVersions:
             arrays = dict(archive)
         text = str(arrays["report"]).replace('"density": null', f'"density": "{old}"')
         assert old in text
-        np.savez(path, **(arrays | {"report": np.array(text)}))
+        np.savez(path, **(arrays | {"report": np.array(text)}))  # pyright: ignore[reportArgumentType]
         assert read_samples(path).report.density == new
 
 

@@ -77,7 +77,7 @@ def test_what_is_refused(parts, monkeypatch):
     with pytest.raises(gm.errors.InputError, match="distance must be"):
         samples.unobstructed(-1.0)
     with pytest.raises(gm.errors.InputError, match=r"trimesh\.Trimesh, not str"):
-        samples.unobstructed(1.0, by="table")
+        samples.unobstructed(1.0, by="table")  # pyright: ignore[reportArgumentType]
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(gm.errors.MissingExtraError, match=r"needs trimesh.*gaussmap\[rays\]"):
         samples.unobstructed(1.0)
