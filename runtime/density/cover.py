@@ -35,7 +35,7 @@ ON_BORDERS = 0.05
 HARDLY = 0.3
 # Gaps between candidates are searched down to the radius, and then to this part of it, and so on.
 STEP_DOWN, ROUNDS = 0.9, 3
-# Cells are bisected so many at a time, for the memory.
+# At most this number of cells is bisected at a time, to bound the memory.
 BLOCK = 1 << 18
 
 

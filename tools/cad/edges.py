@@ -23,7 +23,6 @@ __all__ = [
     "between_two",
     "edges_of",
     "exact_places",
-    "grouped",
     "sides_at",
 ]
 

@@ -14,7 +14,7 @@ from .results import PartSpace
 
 __all__ = ["smoothed"]
 
-# Vertices move if a triangle around them has a smaller angle than this, in degrees; so many times.
+# Vertices of triangles with an angle below SMALL degrees move, at most ROUNDS times.
 SMALL, ROUNDS = 30.0, 6
 # The height of an even triangle, by its side.
 EVEN = math.sqrt(0.75)

@@ -302,7 +302,7 @@ def test_a_narrow_face_alone(made, is_reversed):
 
 @pytest.mark.parametrize("inner", [0.499, 0.4999])
 def test_coverage_holds_where_a_hole_touches_the_border(made, inner):
-    """The crescent between two circles: at its tips no place beside the borders is inside."""
+    """A face between two circles that touch is too narrow there for places beside its borders."""
     turns = np.linspace(0.0, made.TURN, 720, endpoint=False) - np.pi / 2
     circle, ends = np.stack([np.cos(turns), np.sin(turns)], axis=1), (-0.5, 0.5)
     loops = [0.5 * circle, inner * circle[::-1] + [0.0, inner - 0.5]]
