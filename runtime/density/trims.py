@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ..base.aliases import Array, Flags, Indices
-from ..domain.domain import closes
+from ..domain.domain import closes, less_periods
 from ..domain.loops import Loops
 from ..kernels.trim import Joined, find_inside_each
 from ..surface.moved import Turned
@@ -70,8 +70,7 @@ class Trims:
         is_joined = self._place[pieces] >= 0
         low, high = self.domains[pieces, :, 0], self.domains[pieces, :, 1]
         out = self._closes[pieces] & ((places < low) | (places > high)) & is_joined[:, None]
-        low, size, high, values = low[out], (high - low)[out], high[out], places[out]
-        found[out] = np.clip(values - np.floor((values - low) / size) * size, low, high)
+        found[out] = less_periods(places[out], low[out], high[out])[0]
         others = np.flatnonzero(~is_joined)
         for k, rows in grouped(pieces[others]):
             here = others[rows]

@@ -28,6 +28,7 @@ __all__ = [
     "checked_sides",
     "closes",
     "domain_text",
+    "less_periods",
 ]
 
 # The boundary condition of a side: open, periodic, mirrored (periodic, with the other parameter
@@ -112,6 +113,14 @@ def cells_between(shape: Sequence[int], boundary: Boundary) -> tuple[int, int]:
     return m, n
 
 
+def less_periods(
+    values: NDArray[np.float64], low: NDArray[np.float64] | float, high: NDArray[np.float64] | float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return values (k,) less whole periods, between the ends, and the numbers of these periods."""
+    periods = np.floor((values - low) / (high - low))
+    return np.clip(values - periods * (high - low), low, high), periods
+
+
 def brought_inside(
     u: NDArray[np.float64], v: NDArray[np.float64], domain: Domain, boundary: Boundary
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -123,8 +132,7 @@ def brought_inside(
         values, others = places[axis], places[1 - axis]
         out = np.flatnonzero((values < low) | (values > high))
         if len(out):
-            periods = np.floor((values[out] - low) / (high - low))
-            values[out] = np.clip(values[out] - periods * (high - low), low, high)
+            values[out], periods = less_periods(values[out], low, high)
             if boundary[axis][0] == "mirrored":
                 odd = out[periods % 2.0 == 1.0]
                 others[odd] = sum(domain[1 - axis]) - others[odd]
