@@ -40,7 +40,6 @@ DENSITIES = {
     "aligned-10k": {"count": 10_000, "density": "aligned"},
     "balanced-1M": {"count": 1_000_000},
     "aligned-1M": {"count": 1_000_000, "density": "aligned"},
-    "relaxed-10k": {"count": 10_000, "relax": 2},
     "angle-2-degrees": {"angle": 2.0},
 }
 

@@ -222,7 +222,7 @@ class GaussMap(Methods):
         """Return the points that have some normals, and these as unit vectors."""
         return unwarned(
             self.surface,
-            checked_request(normals, None, None, None, None, 0, threads),
+            checked_request(normals, None, None, None, None, threads),
             cells=self._cells,
             on=self._on,
             fields=fields,

@@ -44,7 +44,6 @@ def sample(
     coverage: float | None = None,
     density: str | float | None = None,
     reach: tuple[ArrayLike, float] | None = None,
-    relax: int = 0,
     cells: Sequence[int] | None = None,
     on: str | None = None,
     fields: Sequence[str] | None = None,
@@ -83,10 +82,6 @@ def sample(
         Only points whose normal is within an angle, in degrees, of a direction (3,): a probe, a
         camera or a printer comes from there. Count, angle and coverage hold for these points. Not
         with ``density="aligned"``.
-    relax : int, default 0
-        Further steps, at most 10, that move the samples that fill gaps to better places; with a
-        count, some samples go where normals are missing. Two are enough, and take at most twice as
-        long as the sampling.
     cells : (int, int), optional
         The numbers of cells along u and v of the spline that approximates the surface, see `fit`.
     on : {"surface", "spline"}, optional
@@ -209,7 +204,7 @@ def sample(
     """
     if isinstance(surface, NetSpline) and density is None:
         density = "gauss"
-    request = checked_request(normals, count, angle, coverage, density, relax, threads, reach)
+    request = checked_request(normals, count, angle, coverage, density, threads, reach)
     with busy("sampling", progress):
         return sample_and_normals(
             surface,

@@ -97,7 +97,7 @@ def sample_stream(
     surface, number = named(surface), checked_dtype(dtype)
     is_on_surface = place_of_samples(surface, on) == "surface"
     wanted = checked_fields(fields, is_on_surface, proved=is_on_surface)
-    request = checked_request(normals, count, None, None, "gauss", 0, threads)
+    request = checked_request(normals, count, None, None, "gauss", threads)
     if pieces := pieces_to_sample(surface):
         raise InputError(
             f"surface {surface.name!r} has {len(pieces)} smooth pieces between creases; "

@@ -61,7 +61,7 @@ def surface(form: ClosedForm, on_net: bool) -> gm.Surface:
 @cache
 def normals_for(form: ClosedForm, count: int) -> Array:
     """Return normals that give about `count` samples: those that gaussmap itself chooses."""
-    request = checked_request(None, count, None, None, "gauss", 0, None)
+    request = checked_request(None, count, None, None, "gauss", None)
     return sample_and_normals(form.surface, request, cells=None, threads=None, progress=False)[1]
 
 

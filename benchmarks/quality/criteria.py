@@ -9,7 +9,7 @@ from ..peers.mesh_metrics import Quality
 from ..peers.peer import Peer
 from .measure import COUNTS, LAST, OnSurface
 from .meshers import GMSH_MESH, THROUGH_ALIGNED, THROUGH_BALANCED, Mesher
-from .ways import ALIGNED, BALANCED, GAUSS, GMSH, PERFECT, POISSON, RELAXED
+from .ways import ALIGNED, BALANCED, GAUSS, PERFECT, POISSON
 
 __all__ = ["CRITERIA", "Criterion", "Verdict", "verdicts", "worst"]
 
@@ -22,7 +22,7 @@ CURVED = ("torus", "ellipsoid_patch", "boss", "boss0.3")
 class Criterion:
     """A value that is to stay below `limit` on `surfaces` (all, if none are named) at `counts`.
 
-    With `at_least`, above it. A `goal` is to be approached, not met.
+    With `at_least`, above it.
     """
 
     title: str
@@ -32,7 +32,6 @@ class Criterion:
     counts: tuple[int, ...] = COUNTS
     strict: bool = False
     at_least: bool = False
-    goal: bool = False
 
     def met(self, value: float) -> bool:
         """Whether a value is good enough."""
@@ -133,10 +132,6 @@ def _criteria() -> Iterator[Criterion]:
     yield from _aligned()
     yield from _meshes()
     yield Criterion("gauss : exact, G", errors_over(GAUSS, PERFECT, "G"), 1.05)
-    yield Criterion("relaxed : Gmsh, G", errors_over(RELAXED, GMSH, "G"), 1.0, strict=True)
-    yield Criterion("relaxed : Gmsh, E", errors_over(RELAXED, GMSH, "E"), 1.15)
-    goal = errors_over(RELAXED, GMSH, "E")
-    yield Criterion("goal: relaxed : Gmsh, E", goal, 1.0, strict=True, goal=True)
     for peer in POISSON:
         name = peer.title.partition(",")[0]
         yield Criterion(f"balanced : {name}, E", errors_over(BALANCED, peer, "E"), 1.0)

@@ -17,7 +17,7 @@ from .measure import COUNTS, LAST, Found, OnSurface
 from .meshers import MESHERS
 from .opening import opening
 from .small import Few, section
-from .ways import ROUNDS, STEPS, WAYS
+from .ways import ROUNDS, WAYS
 
 __all__ = ["page"]
 
@@ -87,10 +87,9 @@ the boss; nothing was chosen on `bent_pipe` and `hills`.
 TARGETS = """\
 ## Targets
 
-Values and ratios at {counts} points, unless a count is given; *relaxed* is `relax={steps}`, *mesh*
-is that through the density named, with `prefer="normals"`. The goal is to be approached, not met.
-With the same normals, G of **gauss** can differ from the exact one only by points that appear or
-vanish, or change the sign of K, because of the spline.
+Values and ratios at {counts} points, unless a count is given; *mesh* is that through the density
+named, with `prefer="normals"`. With the same normals, G of **gauss** can differ from the exact one
+only by points that appear or vanish, or change the sign of K, because of the spline.
 """
 
 
@@ -110,7 +109,7 @@ def page(
         parts += [title, folded("Points and meshes", points_table(on), mesh_table(on))]
     parts += [section(small)] if small else []
     parts += ["## The machine\n", wrapped("\n".join([*machine(), *busy(load)]))]
-    parts += [wrapped(TARGETS.format(counts=counts, steps=STEPS)), targets(surfaces)]
+    parts += [wrapped(TARGETS.format(counts=counts)), targets(surfaces)]
     text = "\n".join(parts)
     return "\n".join([wrapped(HEAD.format(surfaces=len(surfaces))), opening(text), text])
 

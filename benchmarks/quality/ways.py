@@ -25,20 +25,17 @@ __all__ = [
     "OTHERS",
     "PERFECT",
     "POISSON",
-    "RELAXED",
     "ROUNDS",
-    "STEPS",
     "WAYS",
 ]
 
-STEPS = 2  # of relaxation, the same for all surfaces
 ROUNDS = 3  # of timing, and of judging Poisson disks; what takes long is timed once
 
 
 @cache
 def normals_of_gauss(form: ClosedForm, count: int) -> Array:
     """Return the normals that gaussmap itself chooses for density="gauss"."""
-    request = checked_request(None, count, None, None, "gauss", 0, None)
+    request = checked_request(None, count, None, None, "gauss", None)
     return sample_and_normals(form.surface, request, cells=None, threads=None, progress=False)[1]
 
 
@@ -63,14 +60,14 @@ def icosahedral(form: ClosedForm, count: int) -> Work:
     return lambda: form.evaluate(*form.preimages(normals))
 
 
-def sampled(density: str, steps: int = 0) -> Callable[[ClosedForm, int], Work]:
+def sampled(density: str) -> Callable[[ClosedForm, int], Work]:
     """Return a peer that is gaussmap, from the surface itself: every call fits a spline."""
 
     def prepare(form: ClosedForm, count: int) -> Work:
         surface = form.surface
 
         def work() -> Points:
-            samples = gm.sample(surface, count=count, density=density, relax=steps)
+            samples = gm.sample(surface, count=count, density=density)
             return samples.points, samples.normals
 
         return work
@@ -78,10 +75,9 @@ def sampled(density: str, steps: int = 0) -> Callable[[ClosedForm, int], Work]:
     return prepare
 
 
-def own(title: str, density: str, steps: int = 0) -> Peer:
+def own(title: str, density: str) -> Peer:
     """Return one way of gaussmap."""
-    rounds = 1 if steps else ROUNDS
-    return Peer(title, density, "gaussmap", sampled(density, steps), 0, rounds)
+    return Peer(title, density, "gaussmap", sampled(density), 0, ROUNDS)
 
 
 PERFECT = Peer("the paper's method, exact", "", "numpy", perfect, 0, rounds=ROUNDS)
@@ -89,7 +85,6 @@ ICOSAHEDRAL = Peer("the same, icosahedral normals", "", "numpy", icosahedral, 0,
 GAUSS = own("**gauss**", "gauss")
 BALANCED = own("**balanced**", "balanced")
 ALIGNED = own("**aligned**", "aligned")
-RELAXED = own(f"**balanced**, relax={STEPS}", "balanced", STEPS)
 UNIFORM = own("**uniform**", "uniform")
 DENSITIES = (BALANCED, ALIGNED, GAUSS, UNIFORM)
 POISSON = (
@@ -100,4 +95,4 @@ FARTHEST = Peer("Open3D, farthest point", "", "open3d", open3d_farthest, 0, roun
 GMSH = Peer("Gmsh, curvature size", "", "gmsh", gmsh_by_curvature, 0, rounds=1)
 OPENCASCADE = Peer("Open CASCADE, angular deflection", "", "OCP", opencascade_by_angle, 0, rounds=1)
 OTHERS = (*POISSON, FARTHEST, GMSH, OPENCASCADE)
-WAYS = (PERFECT, ICOSAHEDRAL, *DENSITIES, RELAXED, *OTHERS)
+WAYS = (PERFECT, ICOSAHEDRAL, *DENSITIES, *OTHERS)

@@ -18,8 +18,8 @@ print(gm.surfaces.describe("dupin_cyclide"))
 
 # %%
 COUNT = 1000
-even = gm.sample(surface, count=COUNT, density="uniform", relax=2)
-balanced = gm.sample(surface, count=COUNT, density="balanced", relax=2)
+even = gm.sample(surface, count=COUNT, density="uniform")
+balanced = gm.sample(surface, count=COUNT, density="balanced")
 for samples in (even, balanced):
     print(samples.summary())
 

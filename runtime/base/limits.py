@@ -1,10 +1,8 @@
 """The largest numbers that are accepted as arguments: larger ones are mistakes."""
 
-__all__ = ["MOST", "MOST_FREQUENCY", "MOST_STEPS"]
+__all__ = ["MOST", "MOST_FREQUENCY"]
 
 # The largest number of normals, cells or samples: more do not fit into memory.
 MOST = 10**9
 # An icosphere of this frequency has 10⁹ vertices, a HEALPix grid of this `nside` has more pixels.
 MOST_FREQUENCY = 10**4
-# More steps of relaxation hardly move samples.
-MOST_STEPS = 10

@@ -22,12 +22,8 @@ if TYPE_CHECKING:
 MARGIN = 0.02
 # Where normals are far from all others, the radii of the choice fall from this multiple on.
 FIRST = 2.0
-# The widest gaps between normals are searched down to this part of the widest radius.
-LEAST = 0.1
-# The widest angles are searched at one of this number of cells.
-EACH = 3
 
-__all__ = ["choose_apart", "cover_normals", "fill_widest_angles"]
+__all__ = ["choose_apart", "cover_normals"]
 
 
 def cover_normals(cover: Cover, angle: float) -> float:
@@ -85,10 +81,9 @@ def choose_apart(
     if known is not None:
         rows, radius = _apart(normals, known, near, radius, threads)
     room = len(rows) if most is None else most
-    candidates = Candidates(_in_normal_space(normals[rows], np.zeros(len(rows))), radius, threads)
+    candidates = Candidates(_in_normal_space(normals[rows]), radius, threads)
     if known is not None:
-        samples = _in_normal_space(known, np.zeros(len(known)))[:, :6]
-        candidates.update_distances(samples, radius)
+        candidates.update_distances(_in_normal_space(known)[:, :6], radius)
     chosen = np.empty(0, dtype=np.int64)
     while radius > near and len(chosen) < room:
         radius = max(STEP * radius, near)
@@ -108,27 +103,8 @@ def _apart(
     return np.flatnonzero(far), min(widest, float(distances[far].max(initial=near)) / STEP)
 
 
-def fill_widest_angles(cover: Cover, number: int, widest: float) -> None:
-    """Add samples where normals are farthest from those of all samples with the same sign of K.
-
-    Distances are searched from `widest` on. If the gaps get too narrow, fewer samples are added.
-    """
-    cells = cover.cells[np.arange(0, len(cover.cells), EACH)]
-    candidates = Candidates(_in_normal_space(cells.rows[:, 3:6], cells.rows[:, 7]), widest)
-    samples = _in_normal_space(cover.points[:, 3:], cover.curvatures)[:, :6]
-    candidates.update_distances(samples, widest)
-    chosen, radius = np.empty(0, dtype=np.int64), widest
-    while len(chosen) < number and radius > LEAST * widest:
-        radius *= STEP
-        chosen = np.append(chosen, candidates.choose(radius, number - len(chosen)))
-    cover.add(cells[chosen])
-
-
-def _in_normal_space(normals: Array, K: Array) -> Array:
-    """Return normals as points of candidates (M, 8), with opposite normals for the signs of K.
-
-    Then samples count for candidates with the same sign of K only.
-    """
+def _in_normal_space(normals: Array) -> Array:
+    """Return normals as points of candidates (M, 8), with one direction and one weight for all."""
     rows = np.zeros((len(normals), 8))
-    rows[:, :3], rows[:, 3], rows[:, 6] = normals, np.where(np.signbit(K), -1.0, 1.0), 1.0
+    rows[:, :3], rows[:, 3], rows[:, 6] = normals, 1.0, 1.0
     return rows

@@ -33,6 +33,11 @@ FINEST = 0.07
 ON_BORDERS = 0.05
 # Samples that move to centres move by less than this part of the radius, but for few.
 HARDLY = 0.3
+# When samples are spread, this part of them fills the gaps that are widest after the others have
+# moved. With half of it, samples in a row leave wider gaps than without moving.
+REST = 0.2
+# Gaps are at most this much wider than the radius while samples are missing.
+WIDEST_GAP = 2.0
 # Gaps between candidates are searched down to the radius, and then to this part of it, and so on.
 STEP_DOWN, ROUNDS = 0.9, 3
 # At most this number of cells is bisected at a time, to bound the memory.
@@ -53,13 +58,9 @@ class Cover:
 
     The first `fixed` samples, those given and those of the grid, are never removed.
 
-    `radius_asked`, if it is not 0, and `count_asked`, if it is not None, are what the cover was
-    last asked for. `coverage`, in L, and `angle`, in degrees, are what it has reached, if that is
-    known.
+    `coverage`, in L, and `angle`, in degrees, are what the cover has reached, if that is known.
     """
 
-    radius_asked: float
-    count_asked: int | None
     coverage: float | None = None
     angle: float | None = None
 
@@ -77,7 +78,6 @@ class Cover:
         self._points, self._curvatures = rows[:, :6], rows[:, 6]
         self._added, self._waiting = space.nothing(), list[Cells]()
         self.given = self.fixed = len(rows)
-        self.radius_asked, self.count_asked = 0.0, None
         if grid is not None:
             self._append(grid.cells)
             self.fixed = self.count
@@ -104,10 +104,14 @@ class Cover:
 
     def to_radius(self, radius: float, most: int | None = None) -> None:
         """Add samples until every point is within radius/√w of one, or there are `most`."""
-        self.radius_asked = radius
         first = radius if most is None else max(radius, self._radius_for(most))
         self.take_candidates(first, WIDEST * first)
-        self._to_radius_asked(WIDEST * first, most)
+        self.narrow(WIDEST * first, radius, most)
+        if self.count != most:
+            start = self.count
+            self._cover_cells(self.cells, self._candidates, radius, most)
+            self._cover_small_cells(self._borders(radius), radius, most)
+            self._candidates.update_distances(self.points[start:], radius)
 
     def to_count(self, count: int) -> None:
         """Add samples until there are `count`."""
@@ -120,18 +124,21 @@ class Cover:
             self._begin(radius, count)
         self.fill_up(count)
 
-    def fill_up(self, count: int) -> None:
-        """Add samples in the widest gaps until there are `count`, which is asked from now on."""
-        self.count_asked = count
-        self.narrow(self.radius, 0.0, count)
+    def spread(self, count: int) -> None:
+        """Add samples until there are `count`; most of them are moved once.
 
-    def to_what_was_asked(self, widest: float) -> None:
-        """Add samples, with radii that fall from `widest` on, until there is what was asked."""
-        if self.radius_asked > 0.0:
-            self._to_radius_asked(widest, self.count_asked)
-            widest = self.radius_asked
-        if self.count_asked is not None:
-            self.narrow(widest, 0.0, self.count_asked)
+        The move takes each sample towards the centre of the smallest ball around its Voronoi cell:
+        Lloyd's method for a high power of the distance instead of the mean of the squares.
+        """
+        self.to_count(count - round(REST * (count - self.count)))
+        if self.count > self.fixed:
+            widest = WIDEST_GAP * self.radius
+            self.renew_distances(widest)
+            self.fill_gaps(self.move_to_centres(), widest, count)
+
+    def fill_up(self, count: int) -> None:
+        """Add samples in the widest gaps until there are `count`."""
+        self.narrow(self.radius, 0.0, count)
 
     def narrow(self, widest: float, least: float, most: int | None) -> None:
         """Add samples, with radii that fall from `widest` to `least`, until there are `most`."""
@@ -182,7 +189,7 @@ class Cover:
             if numbers[self.added.pieces[k]] > 1:
                 numbers[self.added.pieces[k]] -= 1
                 removed.append(k)
-        self.keep(np.setdiff1d(np.arange(len(self.added)), removed))
+        self._replace_added(self.added[np.setdiff1d(np.arange(len(self.added)), removed)])
         self.renew_distances(self.radius)
 
     def add(self, cells: Cells) -> None:
@@ -250,11 +257,7 @@ class Cover:
 
     def remove_added(self) -> None:
         """Remove all samples that were added, except those of the grid."""
-        self.keep(np.arange(self.fixed - self.given))
-
-    def keep(self, numbers: Indices) -> None:
-        """Keep some of the added samples, and remove the others."""
-        self._replace_added(self.added[numbers])
+        self._replace_added(self.added[: self.fixed - self.given])
 
     def _radius_for(self, count: int) -> float:
         """Return the radius at which about `count` samples cover the surface.
@@ -299,15 +302,6 @@ class Cover:
             self._curvatures = np.concatenate([self._curvatures, added.rows[:, 7]])
             self._added = self._added + added
         return self
-
-    def _to_radius_asked(self, widest: float, most: int | None) -> None:
-        radius = self.radius_asked
-        self.narrow(widest, radius, most)
-        if self.count != most:
-            first = self.count
-            self._cover_cells(self.cells, self._candidates, radius, most)
-            self._cover_small_cells(self._borders(radius), radius, most)
-            self._candidates.update_distances(self.points[first:], radius)
 
     def _cover_cells(
         self, cells: Cells, candidates: Candidates, radius: float, most: int | None

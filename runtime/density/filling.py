@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -28,7 +27,6 @@ from .coverage import coverage
 from .deviation import widest_angle
 from .on_grid import cover_on_grid
 from .piece import Piece
-from .relaxation import relax, spread
 from .space import Space
 
 __all__ = ["Filling", "fields_of", "fill", "spacing", "target_of"]
@@ -255,7 +253,6 @@ class Filling:
         """Cover a space within a radius, each piece by a sample if that is not too many."""
         cover = self._new(space, given)
         cover.to_radius(radius)
-        cover = self._relaxed(cover)
         missing = cover.missing()
         if SAMPLES_A_PIECE * len(space.pieces) <= cover.count + len(missing):
             cover.add(missing)
@@ -273,7 +270,7 @@ class Filling:
             if len(given.found) < len(space.pieces) > 1:
                 rest = math.floor(FOR_NORMALS * count)
         cover = self._new(space, given)
-        spread(cover, max(count - rest, cover.count), self.request.relax)
+        cover.spread(max(count - rest, cover.count))
         missing = cover.missing()
         if SAMPLES_A_PIECE * len(space.pieces) <= count and len(missing):
             room = count - cover.count
@@ -308,22 +305,8 @@ class Filling:
         if best is None:  # not even without normals
             best = self._new(self.space.uniform, Given(self.space))
             best.to_count(count)
-        best = self._relaxed(best)
         best.fill_up(count)
         return best
-
-    def _relaxed(self, cover: Cover) -> Cover:
-        """Return the relaxed cover, or the given one if relaxing would exceed the coverage."""
-        if self.request.relax == 0 or cover.count == cover.fixed:
-            return cover
-        relaxed, asked = copy(cover), self.request.coverage
-        relax(relaxed, self.request.relax)
-        if self.request.count is None or asked is None:
-            return relaxed
-        if self.reached(relaxed) <= asked * self.space.unit:
-            return relaxed
-        cover.renew_distances(cover.radius)
-        return cover
 
     def _new(self, space: Space, given: Given) -> Cover:
         return Cover(space, given, self.show_count)

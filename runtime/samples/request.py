@@ -1,4 +1,4 @@
-"""The checked arguments of a sampling: normals, count, angle, coverage, density and relaxation."""
+"""The checked arguments of a sampling: normals, count, angle, coverage and density."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.checks import checked_count, known_name, positive_number, whole_number
+from ..base.checks import checked_count, known_name, positive_number
 from ..base.errors import InputError, UnknownNameError
-from ..base.limits import MOST_STEPS
 from ..base.threads import thread_count
 from ..directions.regions import Cap, checked_reach
 from ..directions.sets import frequency_within, icosphere
@@ -34,7 +33,7 @@ class Request:
     """What to sample: one of normals (S, 3), a count, an angle in degrees and a coverage.
 
     A coverage may also be given with one of the others. `density` is one of `DENSITIES`, or α for
-    |K|^α; `relax` is the number of steps of relaxation. Normals outside of `reach` get no samples.
+    |K|^α. Normals outside of `reach` get no samples.
     """
 
     normals: NDArray[np.float64] | None
@@ -42,7 +41,6 @@ class Request:
     angle: float | None
     coverage: float | None
     density: str | float
-    relax: int
     reach: Cap | None = None
 
     @property
@@ -75,7 +73,6 @@ def checked_request(
     angle: float | None,
     coverage: float | None,
     density: str | float | None,
-    relax: int,
     threads: int | None,
     reach: Any = None,  # noqa: ANN401
 ) -> Request:
@@ -91,11 +88,6 @@ def checked_request(
         )
     kind = _density(density, "gauss" if given == ["normals"] else "balanced")
     _check_that_they_fit(kind, given)
-    steps = whole_number(relax, "relax", least=0)
-    if steps > MOST_STEPS:
-        raise InputError(f"relax must be at most {MOST_STEPS}, not {steps}.")
-    if kind == "gauss" and steps:
-        raise InputError('relax moves the samples that fill gaps, and density="gauss" has none.')
     cap = checked_reach(reach)
     if cap is not None and kind == "aligned":
         raise InputError(
@@ -107,7 +99,6 @@ def checked_request(
         None if angle is None else positive_number(angle, "angle", " degrees", most=90.0),
         None if coverage is None else positive_number(coverage, "coverage"),
         kind,
-        steps,
         cap,
     )
 

@@ -168,7 +168,6 @@ CASES: dict[str, Case] = {
     "angle": of_sampling(angle=20.0),
     "coverage": of_sampling(coverage=0.25),
     "coverage beside a count": of_sampling(count=300, coverage=0.5),
-    "relaxed": of_sampling(count=100, relax=1),
 } | {
     x.__name__: x
     for x in (

@@ -41,7 +41,6 @@ class _How(TypedDict, total=False):
     coverage: float | None
     density: str | float | None
     reach: tuple[ArrayLike, float] | None
-    relax: int
     cells: Sequence[int] | None
     on: str | None
     fields: Sequence[str] | None
@@ -116,7 +115,6 @@ def sample_many(
     coverage: float | None = None,
     density: str | float | None = None,
     reach: tuple[ArrayLike, float] | None = None,
-    relax: int = 0,
     cells: Sequence[int] | None = None,
     on: str | None = None,
     fields: Sequence[str] | None = None,
@@ -145,7 +143,7 @@ def sample_many(
         The surfaces; they may be made one by one. With `out` also CAD parts and paths: CAD files,
         parts that were saved, GeoTIFFs, and points (m, n, 3) in .npy and .npz files (FILE.npz:NAME
         if that holds several arrays).
-    count, normals, angle, coverage, density, relax, cells, on, fields, dtype, threads : optional
+    count, normals, angle, coverage, density, cells, on, fields, dtype, threads : optional
         As in `sample`. With `out`, the fields are those without indices by default, and each
         process has one thread.
     reach : (axis, angle), optional
@@ -231,7 +229,7 @@ def sample_many(
     ['ok', 'failed']
 
     """
-    request = checked_request(normals, count, angle, coverage, density, relax, threads, reach)
+    request = checked_request(normals, count, angle, coverage, density, threads, reach)
     shows = yes_or_no(progress, "progress")
     if isinstance(surfaces, str | bytes) or not _iterates(surfaces):
         raise InputError(f"sample_many takes an iterable of surfaces, not {shown(surfaces)}.")

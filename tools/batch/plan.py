@@ -66,7 +66,7 @@ class Asked:
     Attributes
     ----------
     arguments : dict
-        Numbers and names: count, angle, coverage, density, reach, relax, cells, on.
+        Numbers and names: count, angle, coverage, density, reach, cells, on.
     normals : (S, 3) float64 array, str or None
         Directions, or the file that holds them.
     named : Named
@@ -160,7 +160,6 @@ def asked_of(
         "coverage": request.coverage,
         "density": request.density,
         "reach": None if reach is None else [reach.axis.tolist(), reach.angle],
-        "relax": request.relax,
         "cells": None if cells is None else list(pair_of_cells(cells)),
         "on": checked_place(on),
     }

@@ -25,7 +25,6 @@ from ...runtime.density.cells import Cells, by_piece
 from ...runtime.density.cover import Cover
 from ...runtime.density.filling import Filling, target_of
 from ...runtime.density.grid import Grid
-from ...runtime.density.relaxation import spread
 from ...runtime.density.space import Space
 from ...runtime.samples.request import Request, checked_request
 from ...runtime.samples.samples import Samples
@@ -179,7 +178,7 @@ def _check_larger(
 
 def request_of(count: int, density: str) -> Request:
     """Return the request for a count of samples of a density."""
-    return checked_request(None, count, None, None, density, 0, None)
+    return checked_request(None, count, None, None, density, None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -406,7 +405,7 @@ class Meshing:
         cover = Cover(space, grid=Grid(cells, none, none, (0, 0)))
         inside = self.count - len(sampled.points)
         if inside:
-            spread(cover, len(cells) + inside, 0)
+            cover.spread(len(cells) + inside)
         return cover
 
     def _corners(self, borders: list[FaceBorder], added: Cells, names: Indices) -> Corners:

@@ -51,7 +51,7 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
     asked = normals, options.count, options.angle, options.coverage
     count = default_count if all(x is None for x in asked) else options.count
     reach = None if options.reach is None else (options.reach[:3], options.reach[3])
-    how = options.density, options.relax, vars(options).get("threads"), reach
+    how = options.density, vars(options).get("threads"), reach
     return checked_request(normals, count, options.angle, options.coverage, *how)
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from ... import __version__
-from ...runtime.base.limits import MOST, MOST_FREQUENCY, MOST_STEPS
+from ...runtime.base.limits import MOST, MOST_FREQUENCY
 from ...runtime.samples.fields import ARRAY_NAMES_ON_SURFACE, EDGE_NAMES, PART_NAMES
 from .completion import (
     PROGRAM,
@@ -408,13 +408,5 @@ def _distribution() -> list[Option]:
             "probe, a camera or a printer comes.",
             number,
             group="how dense",
-        ),
-        Option(
-            "--relax STEPS",
-            "Move the samples that fill gaps to better places, in so many further steps; 2 are "
-            "enough, and take up to twice the time (default: 0).",
-            whole(MOST_STEPS, least=0),
-            group="how dense",
-            default="0",
         ),
     ]

@@ -121,14 +121,13 @@ def test_what_has_no_area_is_refused():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("relax", [0, 2])
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "ellipsoid"])
 @pytest.mark.quick_for("torus", "moebius_band")
-def test_all_samples_of_the_normals_are_kept(name, relax):
+def test_all_samples_of_the_normals_are_kept(name):
     spline = gm.fit(gm.surfaces.surface(name), (16, 16))
     for normals in (gm.icosphere(8), gm.fibonacci(500)):
         plain = gm.sample(spline, normals=normals)
-        samples = gm.sample(spline, normals=normals, density="balanced", relax=relax)
+        samples = gm.sample(spline, normals=normals, density="balanced")
         same(samples[: len(plain)], plain)
         assert len(samples) > len(plain)
         assert (samples.kind[: len(plain)] == "normal").all()
@@ -166,7 +165,6 @@ def test_covers_alone_answer_no_normals(density):
         for asked in (
             {"angle": 9.0},
             {"count": 900, "coverage": 0.12},
-            {"count": 400, "relax": 2},
             {"count": 700, "density": "uniform"},
             {"count": 500, "density": 0.7},
             {"coverage": 0.1},

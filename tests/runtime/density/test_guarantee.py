@@ -306,36 +306,6 @@ def test_an_angle_that_is_just_reached_is_reported_as_it_was_asked():
     assert gm.sample(gm.fit(surface, (20, 20)), angle=24.0).report.angle == 24.0
 
 
-# --- relaxing -------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", ["plane", "cylinder", "torus"])
-def test_relaxing_narrows_the_gaps(name):
-    """With uniform density the widest gap is what relaxing works on, and it costs no sample."""
-    spline = gm.fit(gm.surfaces.surface(name))
-    plain, relaxed = (
-        gm.sample(spline, count=1000, density="uniform", relax=steps) for steps in (0, 2)
-    )
-    points, _ = places(spline, 400)
-    assert len(relaxed) == len(plain) == 1000
-    assert farthest(relaxed, points) < farthest(plain, points)
-
-
-@pytest.mark.parametrize("name", ["torus", "wavy_graph", "cylinder"])
-@pytest.mark.slow
-def test_relaxing_keeps_what_was_asked(name):
-    spline = gm.fit(gm.surfaces.surface(name), (24, 24))
-    points, normals = places(spline)
-    by_coverage = gm.sample(spline, coverage=0.15, relax=2)
-    assert farthest(by_coverage, points) <= (by_coverage.report.coverage or 0.0) <= 0.15
-    assert len(by_coverage) <= 1.05 * len(gm.sample(spline, coverage=0.15))
-    by_angle = gm.sample(spline, angle=12.0, relax=2)
-    assert widest_angle(by_angle, normals) <= (by_angle.report.angle or 0.0) <= 12.0
-    both = gm.sample(spline, count=1500, coverage=0.15, relax=2)
-    assert len(both) == 1500
-    assert farthest(both, points) <= (both.report.coverage or 0.0) <= 0.15
-
-
 # --- the coverage of any samples ------------------------------------------------------------------
 
 

@@ -310,12 +310,6 @@ class TestSampling:
         points = surface.evaluate(*uv[trim_of(surface).contains(uv)].T)
         assert KDTree(samples.points).query(points)[0].max() <= 0.2
 
-    def test_relaxed_samples_stay_inside(self):
-        spline = gm.fit(PARTS["annulus"], (12, 12))
-        samples = gm.sample(spline, 100, relax=2)
-        assert len(samples) == 100
-        assert trim_of(spline).contains(samples.uv).all()
-
     def test_samples_at_normals_are_those_of_the_whole_that_are_inside(self):
         normals = gm.icosphere(12)
         whole = gm.sample("torus", normals=normals, cells=(12, 12))

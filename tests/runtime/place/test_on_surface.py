@@ -46,7 +46,7 @@ REQUESTS: list[dict[str, Any]] = [
     {"normals": gm.icosphere(6)},
     {"count": 300},
     {"count": 300, "density": "gauss"},
-    {"count": 300, "density": 0.5, "relax": 1},
+    {"count": 300, "density": 0.5},
     {"angle": 15.0},
     {"coverage": 0.2},
 ]

@@ -65,17 +65,6 @@ def test_what_a_density_cannot_be_asked_for(asked: dict[str, Any], use: str):
     refused("does not go with .*; use .*" + use.replace(".", r"\."), **asked)
 
 
-def test_relaxing_needs_samples_that_may_move():
-    refused("relax moves the samples that fill gaps", normals=[[0, 0, 1]], relax=1)
-    refused(
-        "relax moves the samples that fill gaps, and density", count=10, density="gauss", relax=1
-    )
-    bad: list[Any] = [-1, 1.0, "1", True, None]
-    for steps in bad:
-        refused("relax must be a whole number of at least 0", count=10, relax=steps)
-    refused("relax must be at most", count=10, relax=1000)
-
-
 @pytest.mark.compiled
 def test_defaults():
     """Normals alone give the paper's density, all else is balanced."""

@@ -17,7 +17,7 @@ pytest.importorskip("pyarrow")
 pytestmark = pytest.mark.filterwarnings("ignore:part [0-9]+ has")
 
 ASKED = {
-    "count": 40, "angle": 3.0, "coverage": 0.5, "density": "uniform", "relax": 2, "cells": [8, 9],
+    "count": 40, "angle": 3.0, "coverage": 0.5, "density": "uniform", "cells": [8, 9],
     "on": "surface", "normals": "5, SHA-256 0", "measured": False, "spacing": [30.0, -30.0],
     "set": [["minor", 0.5]], "crs": "EPSG:32617", "tolerance": 0.1, "band": 1,
 }  # fmt: skip

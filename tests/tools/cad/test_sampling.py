@@ -269,12 +269,6 @@ def test_threads_and_repeats_give_the_same(plates):
         assert np.array_equal(array, getattr(again, name))
 
 
-def test_relaxed(cylinder):
-    samples = gm.sample(cylinder, 150, relax=2, density="uniform")
-    assert len(samples) == 150
-    assert samples.coverage() < gm.sample(cylinder, 150, density="uniform").coverage()
-
-
 def test_a_narrow_face_keeps_its_coverage(made):
     """A sliver across the domain, thinner than cells: places next to its border cover it."""
     sliver = np.array([(0.0, 0.0), (1.0, 0.9999), (1.0, 1.0), (0.0, 0.0001)])

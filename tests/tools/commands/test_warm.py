@@ -22,7 +22,7 @@ EVERY_DAY = [
     ["sample", "wavy_graph", "--random", "500", "--fields", "points,normals", "-o", "a.ply"],
     ["sample", "heights.npy", "--spacing", "30", "30", "--angle", "5", "-o", "a.npz"],
     ["sample", "cylinder", "--coverage", "0.2", "--density", "uniform", "-o", "a.npz"],
-    ["sample", "monkey_saddle", "--count", "500", "--relax", "1", "--progressive", "-o", "a.npz"],
+    ["sample", "monkey_saddle", "--count", "500", "--progressive", "-o", "a.npz"],
     ["mesh", "sphere", "--count", "1000", "-o", "a.stl"],
     ["sample", "part.npz", "--count", "500", "-o", "a.ply"],
 ]
