@@ -91,8 +91,8 @@ verify: $(READY) $(VENV)/cad/8.0.0/.ready ## run what is slow: all tests with ma
 	$(BIN)/python -m pytest -q -m slow --hypothesis-profile=large --numprocesses auto --dist worksteal
 	$(VENV)/cad/8.0.0/bin/python -m pytest -q -m slow tests/tools/cad/opencascade
 	$(BIN)/python -m pytest -q -m "not slow" --hypothesis-profile=large --numprocesses auto --dist worksteal
-	.ci/check-html
 	$(MAKE) docs
+	$(VENV)/docs/bin/python -m pytest -q tests/docs/test_mathml.py
 	.ci/check-site
 	.ci/check-newcomers
 

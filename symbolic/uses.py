@@ -1,14 +1,14 @@
-"""Which generated functions a formula is, what it is a part of, and which kernels call it."""
+"""Which generated functions a formula is, and what it is a part of."""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 
 from .formula import Formula
 
-__all__ = ["callers", "functions", "wholes"]
+__all__ = ["functions", "wholes"]
 
 
 def functions(sources: Mapping[str, str]) -> dict[str, list[str]]:
@@ -41,46 +41,3 @@ def wholes(formula: Formula, formulas: Iterable[Formula]) -> list[str]:
         return not theirs.keys() <= mine.keys() and 2 * len(shared) > len(formula.outputs)
 
     return [x.name for x in formulas if is_whole(x)]
-
-
-def callers(sources: Mapping[str, str]) -> dict[str, list[str]]:
-    """Return the kernels `file.name` that call generated functions, by the names of these.
-
-    `sources` are the texts of the files of kernels by their names.
-    """
-    result: dict[str, list[str]] = {}
-    for file in sorted(sources):
-        tree = ast.parse(sources[file])
-        known = dict(_imported(tree))
-        for node in tree.body:
-            if name := _defined(node):
-                for called in dict.fromkeys(_read(node, known)):
-                    result.setdefault(called, []).append(f"{file.removesuffix('.py')}.{name}")
-    return result
-
-
-def _imported(tree: ast.Module) -> Iterator[tuple[str, str]]:
-    """Yield the names by which a file knows what it imports from generated/, and what that is."""
-    for node in tree.body:
-        folder, _, module = (getattr(node, "module", None) or "").partition(".")
-        if isinstance(node, ast.ImportFrom) and folder == "generated":
-            for x in node.names:
-                yield x.asname or x.name, f"{module}.{x.name}" if module else x.name
-
-
-def _defined(node: ast.stmt) -> str | None:
-    """Return the name that a statement gives to a function, if it does."""
-    if isinstance(node, ast.FunctionDef):
-        return node.name
-    if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-        return node.targets[0].id
-    return None
-
-
-def _read(node: ast.stmt, known: Mapping[str, str]) -> Iterator[str]:
-    """Yield the generated functions in a statement, alone or as parts of their modules."""
-    for x in ast.walk(node):
-        if isinstance(x, ast.Attribute) and isinstance(x.value, ast.Name) and x.value.id in known:
-            yield f"{known[x.value.id]}.{x.attr}"
-        elif isinstance(x, ast.Name) and x.id in known:
-            yield known[x.id]

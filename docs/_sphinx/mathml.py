@@ -1,12 +1,23 @@
-"""Formulas as MathML, by the same code as the page of `gaussmap formulas --html`: no scripts."""
+"""Formulas as MathML: no scripts, and nothing to load."""
 
 from __future__ import annotations
 
+import re
+from functools import cache
+from html import unescape
+from xml.etree import ElementTree
+
 from docutils import nodes
-from gaussmap.symbolic.html import mathml
+from math_core import LatexToMathML
 from sphinx.application import Sphinx
 from sphinx.util.math import get_node_equation_number
 from sphinx.writers.html5 import HTML5Translator
+
+BRACKETS = {"(": "prefix", "[": "prefix", ")": "postfix", "]": "postfix"}
+TALL = {"mfrac", "mtable"}
+SCRIPTED = {"msub", "msup", "msubsup"}
+HEIGHTS = {"mi": {"depth": "0"}, "mo": {"height": "0.6em", "depth": "0"}}
+STRUT = {"height": "0.75em", "depth": "0.3em"}
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -29,3 +40,49 @@ def _block(writer: HTML5Translator, node: nodes.math_block) -> None:
     formula = mathml(node.astext(), display=True)
     writer.body.append(writer.starttag(node, "div", CLASS="math") + formula + number + "</div>\n")
     raise nodes.SkipNode
+
+
+@cache
+def mathml(source: str, *, display: bool = False) -> str:
+    """Return LaTeX as MathML that is well-formed XML."""
+    # math-core knows no distances between rows: the stylesheet sets them.
+    rows = re.sub(r"\\\\\[\w+\]", r"\\\\", source)
+    converted = _converter().convert_with_local_state(rows, displaystyle=display)
+    # XML has no other named characters than these.
+    root = ElementTree.fromstring(
+        re.sub(r"&(?!(?:amp|lt|gt);)\w+;", lambda x: unescape(x[0]), converted)
+    )
+    for element in list(root.iter()):
+        _set_like_tex(element)
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _set_like_tex(element: ElementTree.Element) -> None:
+    """Change what browsers set worse than TeX does."""
+    grows = any(part.tag in TALL for part in element.iter())
+    for bracket in element.findall("mo"):
+        if bracket.text in BRACKETS:
+            # In the middle of a row it would be a binary operator, with space round it; and one
+            # that may grow gets the room of the widest that there is.
+            bracket.set("form", BRACKETS[bracket.text])
+            if bracket.attrib.pop("minsize", None) or not grows:
+                bracket.attrib.pop("maxsize", None)
+                bracket.set("stretchy", "false")
+    if element.tag in SCRIPTED and element[0].tag in HEIGHTS:
+        # An index hangs from the baseline, not from the tail of a letter such as p, and a power
+        # stands no higher for a bracket.
+        base = ElementTree.Element("mpadded", HEIGHTS[element[0].tag])
+        base.append(element[0])
+        element[0] = base
+    if element.tag == "mrow" and element.find("mtable") is not None:
+        # Only fonts made for mathematics have tall brackets: the stylesheet draws those of columns.
+        for bracket in element.findall("mo"):
+            element.remove(bracket)
+    if element.tag == "mtr":
+        # Rows are at equal distances, whether they hold powers or not.
+        element[0].insert(0, ElementTree.Element("mspace", STRUT))
+
+
+@cache
+def _converter() -> LatexToMathML:
+    return LatexToMathML(fancy_error=False)

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "bezier_triangle",
-    "formula_page",
     "formulas",
     "latex_of",
     "normal_components",
@@ -35,13 +34,6 @@ def bezier_triangle(control_points: Sequence[Sequence[Any]]) -> BezierTriangle:
     from ...symbolic import BezierTriangle
 
     return BezierTriangle(control_points, normal_components())
-
-
-def formula_page() -> str:
-    """Return the HTML page of all formulas."""
-    from ...symbolic import html
-
-    return html.page()
 
 
 def formulas() -> Mapping[str, Formula]:

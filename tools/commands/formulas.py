@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 
-from ...runtime.base.bridge import formula_page
 from ...runtime.base.checks import known_name
 from ...runtime.base.errors import InputError
-from ...runtime.base.extras import check_extra
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import names, surface
-from ..files.paths import atomic_path, check_target
 from .console import say, table
 from .formula_texts import formulas
 from .tape_texts import tape_text
@@ -21,13 +18,11 @@ ANYWHERE = ((0.0, 1.0), (0.0, 1.0))  # tapes do not depend on the domain
 
 
 def run(options: SimpleNamespace) -> None:
-    """List all formulas, show one, or write a page of all; or show the tape of a surface."""
+    """List all formulas, or show one; or show the tape of a surface."""
     if options.formula is not None and not options.tape:
         raise InputError("--formula is for --tape, which is not there.")
     if options.tape:
         _show_tape(options)
-    elif options.html is not None:
-        _write(options)
     elif options.name is not None:
         formula = formulas[options.name]
         head = f"{formula.name}: {formula.sentence}\nSource: {formula.source}.\n\n"
@@ -36,17 +31,6 @@ def run(options: SimpleNamespace) -> None:
         say("\n\n".join(f"% {name}\n{formula.latex()}" for name, formula in formulas.items()))
     else:
         table((name, f"{f.sentence} [{f.source}]") for name, f in formulas.items())
-
-
-def _write(options: SimpleNamespace) -> None:
-    if options.name is not None:
-        raise InputError("--html writes all formulas to one page; leave out the name.")
-    check_target(options.html, (".html",))
-    check_extra("math_core", "html", "the page")
-    page = formula_page()
-    with atomic_path(options.html) as temporary:
-        temporary.write_text(page, encoding="utf-8", newline="\n")
-    say(f"{options.html}: {len(formulas)} formulas and {len(names())} surfaces")
 
 
 def _show_tape(options: SimpleNamespace) -> None:

@@ -289,10 +289,6 @@ def _faces() -> Command:
 
 
 def _formulas() -> Command:
-    page = (
-        "Write all formulas, and the surfaces, to one page for browsers. Needs pip install "
-        "'gaussmap[html]'."
-    )
     tape = (
         "Show the operations that compute the surface NAME, or --formula, each on results of "
         "earlier rows: what samples at given normals are proved with."
@@ -302,7 +298,6 @@ def _formulas() -> Command:
         "List the formulas that the program computes with, or show one: that named NAME.",
         click.Argument(["name"], required=False, shell_complete=formula_names),
         Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
-        Option("--html FILE.html", page, FILE, exclusive=True),
         Option("--tape", tape, exclusive=True),
         Option("--formula X Y Z", "With --tape, in place of NAME: texts in u and v."),
         epilog=FORMULAS_EXAMPLES,
