@@ -101,8 +101,11 @@ class OnSurface(OnSpline):
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`.
 
-        The solid angle is that of the cell, in equal parts: K at its Gauss points.
+        The solid angle is that of the cell, in equal parts: K at its Gauss points. A function whose
+        derivatives are differences of many evaluations has that of its spline.
         """
+        if not self.knows_jets:
+            return self.spline.measure
         areas, inside = self.spline.measure[0], self.spline.inside
         solid_angles = np.repeat(self._at_gauss_points.reshape(-1, 4).sum(axis=1) / 16.0, 4)
         return areas, solid_angles if inside is None else solid_angles * inside.shares

@@ -6,6 +6,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.place.on_surface import geometry_of
 from scipy.spatial import KDTree
 
 CELLS = (12, 12)
@@ -122,6 +123,25 @@ def test_chosen_fields_are_those_of_all(fields, dtype):
             expected = getattr(every, name)
             expected = expected if expected.dtype == np.bool_ else expected.astype(dtype)
             np.testing.assert_array_equal(getattr(some, name), expected)
+
+
+def test_the_measure_of_an_opaque_function_is_that_of_its_spline():
+    """Derivatives of a function of floats are differences of many evaluations."""
+    places = []
+
+    def opaque(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        places.append(np.size(u))
+        return egg_at(np.asarray(u, dtype=float), np.asarray(v, dtype=float))
+
+    domain = ((0, 2 * np.pi), (-np.pi / 2, np.pi / 2))
+    surface = gm.Surface.from_callable(opaque, domain, periodic=(True, "pole"))
+    assert surface.tape is None
+    geometry = geometry_of(surface, (32, 16), "surface")
+    places.clear()
+    for found, expected in zip(geometry.measure, geometry.spline.measure, strict=True):
+        np.testing.assert_array_equal(found, expected)
+    assert geometry.cell_measure.developable_share(1.0) == 0.0
+    assert not places
 
 
 def test_angle_and_coverage_hold_for_the_surface():
