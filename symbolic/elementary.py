@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import sympy as sp
 
-from .formula import Formula
+from .formula import Formula, Parts, formula
 from .notation import scalar
 
 __all__ = [
@@ -82,6 +82,12 @@ CODES = {name: code for code, name in enumerate((*BASIC, *FUNCTIONS))}
 
 
 def _formula(name: str, function: Function) -> Formula:
+    coefficients = f"The Taylor coefficients $f1$, $f2$, $f3$ of {name} at $x$"
+    decorate = formula(f"{name}_taylor", f"{coefficients}, from $x$ or values there.")
+    return decorate(lambda: _taylor(function))
+
+
+def _taylor(function: Function) -> Parts:
     positive = sp.Dummy(positive=True)
     values = {key: value.xreplace({w: positive}) for key, value in function.values.items()}
     outputs: list[Any] = [
@@ -89,11 +95,9 @@ def _formula(name: str, function: Function) -> Formula:
         for f in function.coefficients[1:]
     ]
     given = sp.Tuple(*function.named.values(), *function.values.values(), *outputs).free_symbols
-    return Formula.build(
-        f"{name}_taylor",
-        f"The Taylor coefficients $f1$, $f2$, $f3$ of {name} at $x$, from $x$ or values there.",
+    return Parts(
         inputs=[z for z in (x, y, w) if z in given and z.name not in function.named],
-        terms=[*function.named.items()],
+        terms=function.named.items(),
         outputs=[(f"f{k + 1}", f) for k, f in enumerate(outputs)],
     )
 

@@ -8,23 +8,22 @@ extension is eq. (5) with eq. (6), and its Hessian is derived here.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import cache
 from typing import cast
 
 import sympy as sp
 
-from .formula import Formula
+from .formula import Formula, Parts, formula
 from .notation import Dot, dot, scalar, substitute, vectors
 
 __all__ = [
     "ENTRIES",
     "ENVELOPE_OPERATOR",
+    "HESSIAN_OF_EXTENSION",
     "HESSIAN_SYMBOLS",
     "INTRINSIC_GRADIENT",
     "SECOND_DERIVATIVES",
     "derivatives_of_extension",
     "entries",
-    "hessian_of_extension",
     "verified",
 ]
 
@@ -97,20 +96,21 @@ def verified(target: sp.Matrix, derived: sp.Matrix) -> sp.Matrix:
     return target
 
 
-INTRINSIC_GRADIENT = Formula.build(
+@formula(
     "intrinsic_gradient",
     "The intrinsic gradient $dh_S$ of a function on the unit sphere: the gradient $dh$ of any "
     "extension of it, projected into the tangent plane of the sphere.",
     source="eq. (6)",
-    inputs=[dh, n],
-    terms=[("g", Dot(dh, n))],
-    outputs=[("dh_S", dh - scalar("g") * n)],
 )
+def INTRINSIC_GRADIENT() -> Parts:
+    """Write eq. (6), and check by differentiation that h n + dh_S is eq. (5)."""
+    verified(
+        n.column * h + dh.column - n.column * dot(dh.column, n.column),
+        derivatives_of_extension(_to_second_order()[0], 1),
+    )
+    outputs = [("dh_S", dh - scalar("g") * n)]
+    return Parts(inputs=[dh, n], terms=[("g", Dot(dh, n))], outputs=outputs)
 
-verified(
-    n.column * h + dh.column - n.column * dot(dh.column, n.column),
-    derivatives_of_extension(_to_second_order()[0], 1),
-)
 
 ENVELOPE_OPERATOR = Formula.build(
     "envelope_operator",
@@ -122,8 +122,12 @@ ENVELOPE_OPERATOR = Formula.build(
 )
 
 
-@cache
-def hessian_of_extension() -> Formula:
+@formula(
+    "hessian_of_extension",
+    "The Hessian, at a unit normal $n$, of $|n| h(n/|n|)$: it follows from value, gradient and "
+    "second derivatives of any function $h$ that has the same values on the sphere.",
+)
+def HESSIAN_OF_EXTENSION() -> Parts:
     """Write the Hessian of |n| h(n/|n|) in h, dh, h_xx …, and check it by differentiation."""
     (along,) = vectors("q")
     g, k, r = (scalar(name) for name in "gkr")
@@ -139,11 +143,4 @@ def hessian_of_extension() -> Formula:
     values |= {r: dot(normal, along_normal), k: h - dot(dh.column, normal)}
     plain = written.applyfunc(lambda entry: substitute(entry, values))
     verified(plain, derivatives_of_extension(_to_second_order()[0], 2))
-    return Formula.build(
-        "hessian_of_extension",
-        "The Hessian, at a unit normal $n$, of $|n| h(n/|n|)$: it follows from value, gradient and "
-        "second derivatives of any function $h$ that has the same values on the sphere.",
-        inputs=[h, n, dh, *SECOND_DERIVATIVES],
-        terms=terms,
-        outputs=entries("H", written),
-    )
+    return Parts(inputs=[h, n, dh, *SECOND_DERIVATIVES], terms=terms, outputs=entries("H", written))

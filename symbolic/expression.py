@@ -13,14 +13,14 @@ from sympy.logic.boolalg import Boolean
 from .envelope import (
     ENTRIES,
     ENVELOPE_OPERATOR,
+    HESSIAN_OF_EXTENSION,
     HESSIAN_SYMBOLS,
     INTRINSIC_GRADIENT,
     SECOND_DERIVATIVES,
-    hessian_of_extension,
     n,
     x,
 )
-from .formula import Formula, compose
+from .formula import Content, Formula, compose
 from .notation import Definition, dot, flat, scalar
 from .printer import array_source_of, source_of
 from .simplify import straight_line
@@ -73,17 +73,15 @@ def branch(h: sp.Expr) -> Formula:
     names = (scalar("h"), *flat([INTRINSIC_GRADIENT.inputs[0]]), *SECOND_DERIVATIVES)
     parts = [
         _given((*zip(names, (h, *gradient, *hessian), strict=True),)),
-        *(
-            y.in_components()
-            for y in (INTRINSIC_GRADIENT, ENVELOPE_OPERATOR, hessian_of_extension())
-        ),
+        *(y.in_components() for y in (INTRINSIC_GRADIENT, ENVELOPE_OPERATOR, HESSIAN_OF_EXTENSION)),
     ]
     return compose("given", "", parts, source="eqs. (5) and (6)", outputs=outputs)
 
 
 def _given(definitions: tuple[Definition, ...]) -> Formula:
     symbols = tuple(symbol for symbol, _ in definitions)
-    return Formula("given", "", "eqs. (5) and (6)", NORMAL, definitions, symbols)
+    content = Content(NORMAL, definitions, symbols)
+    return Formula("given", "", "eqs. (5) and (6)", lambda: content)
 
 
 def is_homogeneous(h: sp.Expr, gradient: Sequence[sp.Expr] | None = None) -> bool:

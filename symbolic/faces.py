@@ -10,7 +10,7 @@ from typing import cast
 
 import sympy as sp
 
-from .formula import BEYOND_THE_PAPER, Formula
+from .formula import BEYOND_THE_PAPER, Content, Formula, Parts, formula
 from .jet import N_ALONG
 from .notation import Dot, VectorSymbol, derivative, scalar, substitute, vectors
 from .patch import VECTORS, a, b, c, d, e, p
@@ -25,7 +25,7 @@ x, y = scalar("x"), scalar("y")
 CURVE: tuple[VectorSymbol, ...] = vectors(("c", "c_v", "c_vv"))
 
 
-def _revolution() -> Formula:
+def _revolution() -> Content:
     """Turn a curve c(v) about the z axis, and differentiate."""
     u, v = sp.symbols("u v", real=True)
     along = [sp.Function(f"c_{axis}")(v) for axis in "xyz"]
@@ -46,19 +46,16 @@ def _revolution() -> Formula:
         for vector, order in zip(outputs, ORDERS, strict=True)
         for symbol, value in zip(vector.components, turned, strict=True)
     )
-    return Formula(
-        "revolution_jet",
-        "The point $p$ and the derivatives of a surface of revolution round the z axis, from those "
-        "of the curve $c(v)$ that is turned; $x$ and $y$ are the cosine and the sine of the angle "
-        "$u$.",
-        BEYOND_THE_PAPER,
-        (*CURVE, x, y),
-        definitions,
-        outputs,
-    )
+    return Content((*CURVE, x, y), definitions, outputs)
 
 
-REVOLUTION_JET = _revolution()
+REVOLUTION_JET = Formula(
+    "revolution_jet",
+    "The point $p$ and the derivatives of a surface of revolution round the z axis, from those of "
+    "the curve $c(v)$ that is turned; $x$ and $y$ are the cosine and the sine of the angle $u$.",
+    BEYOND_THE_PAPER,
+    _revolution,
+)
 
 THIRD: tuple[VectorSymbol, ...] = vectors(("x_uuu", "x_uuv", "x_uvv", "x_vvv"))
 n, n_u, n_v = vectors(("n", "n_u", "n_v"))
@@ -68,16 +65,18 @@ L, L_u, L_v, L_uu, L_uv, L_vv, R, g = map(
 )
 
 
-def _offset() -> Formula:
+@formula(
+    "offset_jet",
+    "The point $y = p + R n$ and the derivatives of the offset of a surface, from the point $p$, "
+    "the 2-jet and the third derivatives of the surface, its unit normal $n$, and the length $L$ "
+    "of $N = d × e$.",
+)
+def OFFSET_JET() -> Parts:
     """Differentiate N = x_u × x_v and N = L n, with |n| = 1, for the derivatives of n."""
     uuu, uuv, uvv, vvv = THIRD
     along_u, along_v = N_ALONG
     by_u, by_v = {d: a, e: b, a: uuu, b: uuv}, {d: b, e: c, a: uuv, b: uvv, c: vvv}
-    return Formula.build(
-        "offset_jet",
-        "The point $y = p + R n$ and the derivatives of the offset of a surface, from the point "
-        "$p$, the 2-jet and the third derivatives of the surface, its unit normal $n$, and the "
-        "length $L$ of $N = d × e$.",
+    return Parts(
         inputs=[*VECTORS, p, *THIRD, n, L, R],
         terms=[
             ("g", 1 / L),
@@ -103,9 +102,6 @@ def _offset() -> Formula:
             ("y_vv", c + R * g * (N_vv - L_vv * n - 2 * L_v * n_v)),
         ],
     )
-
-
-OFFSET_JET = _offset()
 
 
 OFFSET_SIDE = Formula.build(
@@ -135,25 +131,29 @@ def _quotient(field: Iterable[sp.Expr], longitude: sp.Expr, latitude: sp.Expr) -
     return quotient
 
 
-def _torus_normal() -> Formula:
+@formula(
+    "torus_normal",
+    "The quotient $q$ of $x_u × x_v$ and the unit vector with the longitude $u$ and the latitude "
+    "$v$, on a torus with the radii $R$ and $r$, a sphere if $R = 0$; $x$ is the cosine of $v$.",
+)
+def TORUS_NORMAL() -> Parts:
     """Divide the normal field of a torus by the unit vector at the same angles."""
     quotient = _quotient(TORUS.normal_field, TORUS.u, TORUS.v)
     R, r, x = map(scalar, ("R", "r", "x"))
     major, minor = TORUS.defaults
-    return Formula.build(
-        "torus_normal",
-        "The quotient $q$ of $x_u × x_v$ and the unit vector with the longitude $u$ and the "
-        "latitude $v$, on a torus with the radii $R$ and $r$, a sphere if $R = 0$; $x$ is the "
-        "cosine of $v$.",
+    return Parts(
         inputs=[R, r, x],
         outputs=[("q", substitute(quotient, {major: R, minor: r, sp.cos(TORUS.v): x}))],
     )
 
 
-TORUS_NORMAL = _torus_normal()
-
-
-def _cone_normal() -> Formula:
+@formula(
+    "cone_normal",
+    "The quotient $q$ of $x_u × x_v$ and the unit vector with the longitude $u$ and the latitude "
+    "that is minus the half angle, on a cone whose radius is $R$ where $v = 0$, or a cylinder; $x$ "
+    "is the sine of the half angle, $y$ is $v$.",
+)
+def CONE_NORMAL() -> Parts:
     """Turn a line about the z axis, and divide the normal by the unit vector along it."""
     u, v, angle, radius = sp.symbols("u v angle radius", real=True)
     across = radius + v * sp.sin(angle)
@@ -161,16 +161,10 @@ def _cone_normal() -> Formula:
     along_u, along_v = sp.Matrix(position.diff(u)), sp.Matrix(position.diff(v))
     quotient = _quotient(along_u.cross(along_v), u, -angle)
     R, x, y = map(scalar, ("R", "x", "y"))
-    return Formula.build(
-        "cone_normal",
-        "The quotient $q$ of $x_u × x_v$ and the unit vector with the longitude $u$ and the "
-        "latitude that is minus the half angle, on a cone whose radius is $R$ where $v = 0$, or a "
-        "cylinder; $x$ is the sine of the half angle, $y$ is $v$.",
+    return Parts(
         inputs=[R, x, y],
         outputs=[("q", substitute(quotient, {radius: R, sp.sin(angle): x, v: y}))],
     )
 
-
-CONE_NORMAL = _cone_normal()
 
 FORMULAS = (REVOLUTION_JET, OFFSET_JET, OFFSET_SIDE, TORUS_NORMAL, CONE_NORMAL)

@@ -207,7 +207,7 @@ def offset_source() -> str:
 def patch_source() -> str:
     """Return generated/patch.py: every formula of a patch as a function."""
     title = "One quadratic patch: the formulas of symbolic/patch.py as functions of vectors."
-    node = f"NODE = {source_of(patch.QUADRATURE_NODE)}"
+    node = f"NODE = {source_of(patch.quadrature_node())}"
     return mathematics(title, node, functions(patch.FORMULAS))
 
 

@@ -6,46 +6,59 @@ what is computed are their components.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import NamedTuple
 
 import sympy as sp
 
 from .display import latex, text
 from .notation import Definition, components, flat, named, substitute
 
-__all__ = ["BEYOND_THE_PAPER", "Formula", "compose"]
+__all__ = ["BEYOND_THE_PAPER", "Content", "Formula", "Parts", "compose", "formula"]
 
 BEYOND_THE_PAPER = "beyond the paper"
+Named = Iterable[tuple[str, sp.Expr]]
 
 
-@dataclass(frozen=True)
+class Content(NamedTuple):
+    """What a formula holds: its inputs, all its definitions, and which of them are outputs."""
+
+    inputs: tuple[sp.Symbol, ...]
+    definitions: tuple[Definition, ...]
+    outputs: tuple[sp.Symbol, ...]
+
+
+class Parts(NamedTuple):
+    """What a formula takes, computes on the way and is for."""
+
+    inputs: Iterable[sp.Symbol]
+    outputs: Named
+    terms: Named = ()
+
+    def named(self) -> Content:
+        """Make symbols of names; what is a vector follows from the expression."""
+        terms, outputs = (
+            tuple((named(x, y), y) for x, y in row) for row in (self.terms, self.outputs)
+        )
+        return Content(tuple(self.inputs), terms + outputs, tuple(x for x, _ in outputs))
+
+
+@dataclass(frozen=True, eq=False)
 class Formula:
     """A straight-line computation with a name, a description and its place in the paper.
 
     `description` is a sentence or two, with mathematics between dollar signs. `definitions` are in
     the order in which they are computed: each may use the inputs and what stands before it.
-    `outputs` are those of them that the formula is for; the others are named terms.
+    `outputs` are those of them that the formula is for; the others are named terms. All three are
+    derived when one of them is first read.
     """
 
     name: str
     description: str
     source: str
-    inputs: tuple[sp.Symbol, ...]
-    definitions: tuple[Definition, ...]
-    outputs: tuple[sp.Symbol, ...]
-
-    def __post_init__(self) -> None:
-        """Raise ValueError if a symbol is used before it is defined, or is defined twice."""
-        known = {*self.inputs, *flat(self.inputs)}
-        for symbol, value in self.definitions:
-            if unknown := value.free_symbols - known:
-                raise ValueError(
-                    f"{self.name}: {symbol} uses undefined {sorted(map(str, unknown))}"
-                )
-            if symbol in known:
-                raise ValueError(f"{self.name}: {symbol} is defined twice")
-            known |= {symbol, *flat([symbol])}
+    derive: Callable[[], Content] = field(repr=False)
 
     @classmethod
     def build(
@@ -55,16 +68,57 @@ class Formula:
         *,
         source: str = BEYOND_THE_PAPER,
         inputs: Iterable[sp.Symbol],
-        terms: Sequence[tuple[str, sp.Expr]] = (),
-        outputs: Sequence[tuple[str, sp.Expr]],
+        terms: Named = (),
+        outputs: Named,
     ) -> Formula:
         """Make a formula of names and expressions; what is a vector follows from the expression.
 
-        Raises ValueError if an expression is neither a scalar nor a vector.
+        Raises ValueError if an expression is neither a scalar nor a vector, if a symbol is used
+        before it is defined, or is defined twice.
         """
-        pairs = tuple((named(x, y), y) for x, y in (*terms, *outputs))
-        symbols = tuple(symbol for symbol, _ in pairs[len(terms) :])
-        return cls(name, description, source, tuple(inputs), pairs, symbols)
+        content = Parts(inputs, outputs, terms).named()
+        made = cls(name, description, source, lambda: content)
+        made._content  # noqa: B018 - raises
+        return made
+
+    @cached_property
+    def _content(self) -> Content:
+        content = self.derive()
+        known = {*content.inputs, *flat(content.inputs)}
+        for symbol, value in content.definitions:
+            if unknown := value.free_symbols - known:
+                raise ValueError(
+                    f"{self.name}: {symbol} uses undefined {sorted(map(str, unknown))}"
+                )
+            if symbol in known:
+                raise ValueError(f"{self.name}: {symbol} is defined twice")
+            known |= {symbol, *flat([symbol])}
+        return content
+
+    @property
+    def inputs(self) -> tuple[sp.Symbol, ...]:
+        """The symbols that have to be given."""
+        return self._content.inputs
+
+    @property
+    def definitions(self) -> tuple[Definition, ...]:
+        """The named terms and the outputs, in the order in which they are computed."""
+        return self._content.definitions
+
+    @property
+    def outputs(self) -> tuple[sp.Symbol, ...]:
+        """The symbols that the formula is for."""
+        return self._content.outputs
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Formula) and self._identity == other._identity
+
+    def __hash__(self) -> int:
+        return hash(self.name)
+
+    @property
+    def _identity(self) -> tuple[object, ...]:
+        return self.name, self.description, self.source, self._content
 
     @property
     def sentence(self) -> str:
@@ -78,14 +132,8 @@ class Formula:
             for symbol, value in self.definitions
             for pair in zip(flat([symbol]), components(value), strict=True)
         ]
-        return Formula(
-            self.name,
-            self.description,
-            self.source,
-            flat(self.inputs),
-            tuple(pairs),
-            flat(self.outputs),
-        )
+        content = Content(flat(self.inputs), tuple(pairs), flat(self.outputs))
+        return replace(self, derive=lambda: content)
 
     def expanded(self) -> dict[str, sp.Expr]:
         """Return each component of the outputs as one expression in those of the inputs."""
@@ -108,6 +156,20 @@ class Formula:
         return f"$\\displaystyle {self.latex()}$"
 
 
+def formula(
+    name: str, description: str, *, source: str = BEYOND_THE_PAPER
+) -> Callable[[Callable[[], Parts]], Formula]:
+    """Make a formula of the parts that a function derives: it is called when they are first read.
+
+    This decorates the function, in whose place the formula stands.
+    """
+
+    def decorate(parts: Callable[[], Parts]) -> Formula:
+        return Formula(name, description, source, lambda: parts().named())
+
+    return decorate
+
+
 def compose(
     name: str,
     description: str,
@@ -118,9 +180,14 @@ def compose(
 ) -> Formula:
     """Chain formulas into one: what an earlier part computes feeds the later ones.
 
-    Only the definitions that `outputs` need are kept. Raises ValueError if two parts define a term
-    differently, or none defines an output.
+    Only the definitions that `outputs` need are kept. When it is read, ValueError is raised if two
+    parts define a term differently, or none defines an output.
     """
+    ends = tuple(outputs)
+    return Formula(name, description, source, lambda: _chained(name, parts, ends))
+
+
+def _chained(name: str, parts: Sequence[Formula], outputs: tuple[sp.Symbol, ...]) -> Content:
     defined: dict[sp.Symbol, sp.Expr] = {}
     inputs: dict[sp.Symbol, None] = {}
     for part in parts:
@@ -128,21 +195,14 @@ def compose(
         for symbol, value in part.definitions:
             if defined.setdefault(symbol, value) != value:
                 raise ValueError(f"{name}: two parts define {symbol} differently")
-    ends = tuple(outputs)
-    if missing := set(ends) - defined.keys():
+    if missing := set(outputs) - defined.keys():
         raise ValueError(f"{name}: no part defines {sorted(map(str, missing))}")
-    needed = set(ends)
+    needed = set(outputs)
 
     def is_needed(symbol: sp.Symbol) -> bool:
         return not needed.isdisjoint({symbol, *flat([symbol])})
 
     for symbol in filter(is_needed, reversed(defined)):
         needed |= defined[symbol].free_symbols
-    return Formula(
-        name,
-        description,
-        source,
-        tuple(filter(is_needed, inputs)),
-        tuple(pair for pair in defined.items() if is_needed(pair[0])),
-        ends,
-    )
+    pairs = tuple(pair for pair in defined.items() if is_needed(pair[0]))
+    return Content(tuple(filter(is_needed, inputs)), pairs, outputs)

@@ -21,7 +21,7 @@ from itertools import product
 
 import sympy as sp
 
-from .formula import Formula
+from .formula import Formula, Parts, formula
 from .notation import Cross, Det, Dot, scalar, substitute, vectors
 from .patch import (
     FORM_TERMS,
@@ -57,7 +57,13 @@ p_u, p_v, N, q, n_t, N0, N1, N2, f1, f2, f3, x = vectors(
 # --- the boundary ---------------------------------------------------------------------------------
 
 
-def _cones() -> Formula:
+@formula(
+    "boundary_cones",
+    "The rows of the symmetric matrices of the three quadratic cones $U = 0$, $V = 0$, $W = 0$ "
+    "that bound the Gaussian image of a patch.",
+    source="Sect. 3.2",
+)
+def BOUNDARY_CONES() -> Parts:
     """Take half the Hessians of U, V, W with respect to n, row by row, by the chain rule."""
     forms = {"U": SOLUTION.U, "V": SOLUTION.V, "W": SOLUTION.D - SOLUTION.U - SOLUTION.V}
     pairs = list(zip(LINEAR_FORMS, VECTORS, strict=True))
@@ -72,20 +78,17 @@ def _cones() -> Formula:
         for name, form in forms.items()
         for axis in "xyz"
     }
-    return Formula.build(
-        "boundary_cones",
-        "The rows of the symmetric matrices of the three quadratic cones $U = 0$, $V = 0$, $W = 0$ "
-        "that bound the Gaussian image of a patch.",
-        source="Sect. 3.2",
-        inputs=VECTORS,
-        outputs=list(rows.items()),
-    )
+    return Parts(inputs=VECTORS, outputs=rows.items())
 
 
-BOUNDARY_CONES = _cones()
-
-
-def _edge_vectors() -> Formula:
+@formula(
+    "edge_vectors",
+    "The vectors of a patch on which its form $V$ depends, from the tangents $T = p_u$ and "
+    "$X = p_v$ at the ends $(0, 0)$ and $(1, 0)$ of the edge $v = 0$: $V = 0$ is the boundary cone "
+    "of this edge.",
+    source="Sect. 3.2",
+)
+def EDGE_VECTORS() -> Parts:
     """Solve p_u = T0, p_v = X0 at (0, 0) and p_u = T1, p_v = X1 at (1, 0) for a, b, d, e."""
     T0, X0, T1, X1 = tangents = vectors(("T0", "X0", "T1", "X1"))
     equations = [
@@ -96,18 +99,8 @@ def _edge_vectors() -> Formula:
     (solution,) = sp.solve(equations, [a, b, d, e], dict=True)
     if C in SOLUTION.V.free_symbols:
         raise ArithmeticError("V = 0 depends on more than the edge v = 0")
-    return Formula.build(
-        "edge_vectors",
-        "The vectors of a patch on which its form $V$ depends, from the tangents $T = p_u$ and "
-        "$X = p_v$ at the ends $(0, 0)$ and $(1, 0)$ of the edge $v = 0$: $V = 0$ is the boundary "
-        "cone of this edge.",
-        source="Sect. 3.2",
-        inputs=tangents,
-        outputs=[(z.name, solution[z]) for z in (a, b, d, e)],
-    )
+    return Parts(inputs=tangents, outputs=[(z.name, solution[z]) for z in (a, b, d, e)])
 
-
-EDGE_VECTORS = _edge_vectors()
 
 TANGENTIAL = Formula.build(
     "tangential",
@@ -165,25 +158,23 @@ def _determinant(names: tuple[str, ...]) -> sp.Expr:
     return sp.LeviCivita(*(key.index(x) for x in names)) * Det(*vectors(key))
 
 
-def _directions() -> Formula:
+@formula(
+    "parabolic_directions",
+    "The coefficients of the binary cubic $det[t a − s b, t b − s c, t d − s e]$ in $(s, t)$: its "
+    "real roots are the directions of the parabolic lines $s u + t v =$ const. It vanishes where "
+    "the patch is developable, and where $a$, $b$, $c$ are multiples of one vector, so that the "
+    "curvature has one sign.",
+    source="Sect. 3.2",
+)
+def PARABOLIC_DIRECTIONS() -> Parts:
     """Expand det[t a − s b, t b − s c, t d − s e] by the powers of s and t."""
     coefficients = [sp.S.Zero] * 4
     for choice in product((0, 1), repeat=3):
         names = tuple(pair[k] for pair, k in zip(("ab", "bc", "de"), choice, strict=True))
         coefficients[sum(choice)] += (-1) ** sum(choice) * _determinant(names)
-    return Formula.build(
-        "parabolic_directions",
-        "The coefficients of the binary cubic $det[t a − s b, t b − s c, t d − s e]$ in $(s, t)$: "
-        "its real roots are the directions of the parabolic lines $s u + t v =$ const. It vanishes "
-        "where the patch is developable, and where $a$, $b$, $c$ are multiples of one vector, so "
-        "that the curvature has one sign.",
-        source="Sect. 3.2",
-        inputs=VECTORS,
-        outputs=[(f"k{k}{3 - k}", coefficients[k]) for k in (3, 2, 1, 0)],
-    )
+    outputs = [(f"k{k}{3 - k}", coefficients[k]) for k in (3, 2, 1, 0)]
+    return Parts(inputs=VECTORS, outputs=outputs)
 
-
-PARABOLIC_DIRECTIONS = _directions()
 
 PARABOLIC_NORMAL = Formula.build(
     "parabolic_normal",

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from .formula import Formula
+from .formula import Formula, Parts, formula
 from .notation import Cross, Dot, derivative, scalar, substitute, vectors
 from .patch import FORM_TERMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d, e, n, r
 
@@ -131,7 +131,13 @@ def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
     ]
 
 
-def _polar_chart() -> Formula:
+@formula(
+    "polar_chart",
+    "The 2-jet in the regular chart $s = r x$, $t = r y$ at a pole, from that by the polar angle "
+    "($a$ and $d$ twice and once, $b$ mixed) and the distance $r > 0$ from the pole; $x$ and $y$ "
+    "are the cosine and the sine of the angle.",
+)
+def POLAR_CHART() -> Parts:
     """Write the 2-jet by s and t, and check it: by the chain rule it has to give that by φ and r.
 
     Raises ArithmeticError if it does not.
@@ -149,21 +155,19 @@ def _polar_chart() -> Formula:
     for given, derived in zip(VECTORS, _along_polar(plain), strict=True):
         if sp.rem(sp.expand(derived - given), x**2 + y**2 - 1, x) != 0:
             raise ArithmeticError(f"the chart does not give {given}")
-    return Formula.build(
-        "polar_chart",
-        "The 2-jet in the regular chart $s = r x$, $t = r y$ at a pole, from that by the polar "
-        "angle ($a$ and $d$ twice and once, $b$ mixed) and the distance $r > 0$ from the pole; $x$ "
-        "and $y$ are the cosine and the sine of the angle.",
+    return Parts(
         inputs=[*VECTORS, r, x, y],
         terms=[(z.name, value) for z, value in terms.items()],
-        outputs=list(outputs.items()),
+        outputs=outputs.items(),
     )
 
 
-POLAR_CHART = _polar_chart()
-
-
-def _at_pole() -> Formula:
+@formula(
+    "at_pole",
+    "The 2-jet at a pole itself, in the chart, from the first and second derivatives $e$ and $c$ "
+    "by the distance from it, along the directions of 0, 45 and 90 degrees.",
+)
+def AT_POLE() -> Parts:
     """Solve for the 2-jet at a pole: along each direction it gives two derivatives by r."""
     known = vectors(("e0", "c0", "c1", "e2", "c2"))
     e0, c0, c1, e2, c2 = known
@@ -179,16 +183,8 @@ def _at_pole() -> Formula:
     )
     equations = [first0 - e0, second0 - c0, second1 - c1, first2 - e2, second2 - c2]
     (solution,) = sp.solve(equations, X, dict=True)
-    return Formula.build(
-        "at_pole",
-        "The 2-jet at a pole itself, in the chart, from the first and second derivatives $e$ and "
-        "$c$ by the distance from it, along the directions of 0, 45 and 90 degrees.",
-        inputs=known,
-        outputs=[(z.name, solution[z]) for z in X],
-    )
+    return Parts(inputs=known, outputs=[(z.name, solution[z]) for z in X])
 
-
-AT_POLE = _at_pole()
 
 # Any parameters u around a pole and r, 0 at it, make the surface a graph h over its tangent plane,
 # with coordinates q1, q2. There q_u, q_uu and h_r, h_ur vanish with r, and h_u, h_uu with r².
@@ -217,31 +213,30 @@ GRAPH_SLOPES = Formula.build(
 )
 
 
-def _graph_at_pole() -> Formula:
+@formula(
+    "graph_at_pole",
+    "The second derivatives $H11$, $H12$, $H22$ of a graph $h$ by the coordinates $q1$, $q2$ of "
+    "its tangent plane, near a pole with the parameters $u$ around it and $r$, $0$ at it. With "
+    "$i11$, … and $G1$, $G2$, those of `graph_slopes` over $r$; the second derivatives of $q1$, "
+    "$q2$: $a$ by $u$, over $r$, $b$ by both, $c$ by $r$; and those of $h$: $h11$ by $u$, over "
+    "$r^2$, $h12$ by both, over $r$, $h22$ by $r$.",
+)
+def GRAPH_AT_POLE() -> Parts:
     """Write the second derivatives of a graph, and check them by the chain rule.
 
     Raises ArithmeticError if it gives others.
     """
     A, B, C = (scalar(z) for z in "ABC")
-    formula = Formula.build(
-        "graph_at_pole",
-        "The second derivatives $H11$, $H12$, $H22$ of a graph $h$ by the coordinates $q1$, $q2$ "
-        "of its tangent plane, near a pole with the parameters $u$ around it and $r$, $0$ at it. "
-        "With $i11$, … and $G1$, $G2$, those of `graph_slopes` over $r$; the second derivatives of "
-        "$q1$, $q2$: $a$ by $u$, over $r$, $b$ by both, $c$ by $r$; and those of $h$: $h11$ by "
-        "$u$, over $r^2$, $h12$ by both, over $r$, $h22$ by $r$.",
-        inputs=[*INVERSE, *SLOPES, a1, a2, b1, b2, c1, c2, h11, h12, h22, r],
-        terms=[
-            ("A", h11 - G1 * a1 - G2 * a2),
-            ("B", h12 - G1 * b1 - G2 * b2),
-            ("C", h22 - r * (G1 * c1 + G2 * c2)),
-        ],
-        outputs=[
-            ("H11", i11**2 * A + 2 * i11 * i21 * B + i21**2 * C),
-            ("H12", i11 * i12 * A + (i11 * i22 + i12 * i21) * B + i21 * i22 * C),
-            ("H22", i12**2 * A + 2 * i12 * i22 * B + i22**2 * C),
-        ],
-    )
+    terms = {
+        A: h11 - G1 * a1 - G2 * a2,
+        B: h12 - G1 * b1 - G2 * b2,
+        C: h22 - r * (G1 * c1 + G2 * c2),
+    }
+    outputs = {
+        "H11": i11**2 * A + 2 * i11 * i21 * B + i21**2 * C,
+        "H12": i11 * i12 * A + (i11 * i22 + i12 * i21) * B + i21 * i22 * C,
+        "H22": i12**2 * A + 2 * i12 * i22 * B + i22**2 * C,
+    }
     jacobian = sp.Matrix([[r * o1, e1], [r * o2, e2]])
     slopes = jacobian.T.inv() * sp.Matrix([r**2 * h1, r * h2])
     second = sp.Matrix([[r**2 * h11, r * h12], [r * h12, h22]])
@@ -250,12 +245,15 @@ def _graph_at_pole() -> Formula:
     hessian = jacobian.T.inv() * second * jacobian.inv()
     first = {scalar(name): value for name, value in GRAPH_SLOPES.expanded().items()}
     for name, (i, j) in {"H11": (0, 0), "H12": (0, 1), "H22": (1, 1)}.items():
-        if sp.cancel(substitute(formula.expanded()[name], first) - hessian[i, j]) != 0:
+        written = substitute(substitute(outputs[name], terms), first)
+        if sp.cancel(written - hessian[i, j]) != 0:
             raise ArithmeticError(f"the chain rule does not give {name}")
-    return formula
+    return Parts(
+        inputs=[*INVERSE, *SLOPES, a1, a2, b1, b2, c1, c2, h11, h12, h22, r],
+        terms=[(z.name, value) for z, value in terms.items()],
+        outputs=outputs.items(),
+    )
 
-
-GRAPH_AT_POLE = _graph_at_pole()
 
 FORMULAS = (
     AT_JET,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from .formula import Formula
+from .formula import Formula, Parts, formula
 from .notation import Cross, Dot, scalar, vectors
 
 __all__ = ["FORMULAS"]
@@ -44,8 +44,13 @@ BORDER_SPACING = Formula.build(
 )
 
 
-def _bulge() -> sp.Expr:
-    """Return how far along n0 + n1 the middle Bézier point of an edge is, by least squares.
+@formula(
+    "edge_over_surface",
+    "The middle Bézier point of a quadratic curve from $p0$ to $p1$ that is as nearly as possible "
+    "perpendicular to the unit normals $n0$ and $n1$ at its ends.",
+)
+def EDGE_OVER_SURFACE() -> Parts:
+    """Solve for how far along n0 + n1 the middle Bézier point of an edge is, by least squares.
 
     With it the ends of the edge, a quadratic curve, should be perpendicular to the normals: the
     products with n0 and n1 of its first and last leg, e/2 ± beta (n0 + n1), should vanish.
@@ -53,16 +58,11 @@ def _bulge() -> sp.Expr:
     towards = 1 + Dot(n0, n1)
     legs = Dot(e, n0) / 2 + beta * towards, Dot(e, n1) / 2 - beta * towards
     (bulge,) = sp.solve(sp.diff(legs[0] ** 2 + legs[1] ** 2, beta), beta)
-    return sp.factor(bulge)
+    return Parts(
+        inputs=[p0, p1, n0, n1],
+        terms=[("e", p1 - p0), ("beta", sp.factor(bulge))],
+        outputs=[("b", (p0 + p1) / 2 + beta * (n0 + n1))],
+    )
 
-
-EDGE_OVER_SURFACE = Formula.build(
-    "edge_over_surface",
-    "The middle Bézier point of a quadratic curve from $p0$ to $p1$ that is as nearly as possible "
-    "perpendicular to the unit normals $n0$ and $n1$ at its ends.",
-    inputs=[p0, p1, n0, n1],
-    terms=[("e", p1 - p0), ("beta", _bulge())],
-    outputs=[("b", (p0 + p1) / 2 + beta * (n0 + n1))],
-)
 
 FORMULAS = (CORNER_PRODUCTS, CORNER_COTANGENTS, BORDER_SPACING, EDGE_OVER_SURFACE)

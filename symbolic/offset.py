@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from .formula import Formula, compose
+from .formula import Formula, Parts, compose, formula
 from .notation import dot, scalar, substitute, vectors
 from .patch import ENVELOPE, FORMS, PARAMETERS
 
@@ -40,18 +40,20 @@ LINEAR_NORMALS = compose(
 )
 
 
-def _spherical_field() -> Formula:
+@formula(
+    "spherical_field",
+    "A field of normals whose length $q$ is a polynomial: the stereographic projection, with "
+    "respect to an orthonormal basis. It gives every direction but $-e_3$.",
+    source=SOURCE,
+)
+def SPHERICAL_FIELD() -> Parts:
     """Project the plane of e_1, e_2 onto the unit sphere from −e_3, and clear the denominators."""
     k = sp.Symbol("k")
     on_line = sp.Matrix([k * s, k * t, k - 1])  # −e_3 at k = 0
     (place,) = (x for x in sp.solve(dot(on_line, on_line) - 1, k) if x != 0)
     below = sp.denom(sp.together(place))
     along = (sp.expand(sp.cancel(substitute(x, {k: place}) * below)) for x in on_line.flat())
-    return Formula.build(
-        "spherical_field",
-        "A field of normals whose length $q$ is a polynomial: the stereographic projection, with "
-        "respect to an orthonormal basis. It gives every direction but $-e_3$.",
-        source=SOURCE,
+    return Parts(
         inputs=[*BASIS, s, t],
         outputs=[
             ("n", sum((x * y for x, y in zip(along, BASIS, strict=True)), start=sp.S.Zero)),
@@ -59,8 +61,6 @@ def _spherical_field() -> Formula:
         ],
     )
 
-
-SPHERICAL_FIELD = _spherical_field()
 
 MOVED = Formula.build(
     "moved",

@@ -13,10 +13,10 @@ from itertools import combinations, product
 
 import sympy as sp
 
-from .formula import Formula, compose
+from .formula import Formula, Parts, compose, formula
 from .notation import Cross, Det, Dot, scalar, substitute, vectors
 
-__all__ = ["FORMULAS", "Elimination", "bernstein", "eliminate"]
+__all__ = ["FORMULAS", "Elimination", "bernstein", "eliminate", "quadrature_node"]
 
 a, b, c, d, e, p, n = vectors("abcdepn")
 VECTORS = (a, b, c, d, e)
@@ -36,7 +36,14 @@ def multinomial(i: int, j: int, k: int) -> int:
     return int(sp.binomial(i + j + k, i) * sp.binomial(j + k, j))
 
 
-def _power_form() -> Formula:
+@formula(
+    "power_form",
+    "The vectors of eq. (8), $a = a_20$, $b = a_11$, $c = a_02$, $d = a_10$, "
+    "$e = a_01$ and $p = a_00$ in the paper, from the control points of a quadratic Bézier "
+    "triangle.",
+    source="eqs. (8) and (10)",
+)
+def POWER_FORM() -> Parts:
     """Take the derivatives of the Bernstein form (10) at the origin: the vectors of eq. (8)."""
     point = sp.S.Zero
     for control_point in NET:
@@ -44,21 +51,11 @@ def _power_form() -> Formula:
         point += multinomial(i, j, k) * u**i * v**j * (1 - u - v) ** k * control_point
     orders = {"a": (2, 0), "b": (1, 1), "c": (0, 2), "d": (1, 0), "e": (0, 1), "p": (0, 0)}
     origin = {u: sp.S.Zero, v: sp.S.Zero}
-    return Formula.build(
-        "power_form",
-        "The vectors of eq. (8), $a = a_20$, $b = a_11$, $c = a_02$, $d = a_10$, "
-        "$e = a_01$ and $p = a_00$ in the paper, from the control points of a quadratic Bézier "
-        "triangle.",
-        source="eqs. (8) and (10)",
-        inputs=NET,
-        outputs=[
-            (name, sp.expand(substitute(sp.diff(point, (u, i), (v, j)), origin)))
-            for name, (i, j) in orders.items()
-        ],
-    )
-
-
-POWER_FORM = _power_form()
+    outputs = [
+        (name, sp.expand(substitute(sp.diff(point, (u, i), (v, j)), origin)))
+        for name, (i, j) in orders.items()
+    ]
+    return Parts(inputs=NET, outputs=outputs)
 
 
 # --- eq. (9): elimination -------------------------------------------------------------------------
@@ -199,7 +196,12 @@ def hessian_factors(x: sp.Expr, y: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     return (B * y - C * x) / D, (B * x - A * y) / D
 
 
-def _hessian() -> Formula:
+@formula(
+    "hessian",
+    "The Hessian of the support function; for a unit normal its eigenvalues on the tangent plane "
+    "are the signed principal radii, positive on a sphere with outward normals.",
+)
+def HESSIAN() -> Parts:
     """Check Hess h = p_u sᵀ + p_v tᵀ in coordinates with respect to a … e, and write it so."""
     derived = sp.hessian(SOLUTION.h, LINEAR_FORMS)
     x, y = ([sp.diff(g, by) for g in GRADIENT] for by in (u, v))
@@ -211,20 +213,15 @@ def _hessian() -> Formula:
     def entry(i: int, j: int) -> sp.Expr:
         return p_u.components[i] * s.components[j] + p_v.components[i] * t.components[j]
 
-    return Formula.build(
-        "hessian",
-        "The Hessian of the support function; for a unit normal its eigenvalues on the tangent "
-        "plane are the signed principal radii, positive on a sphere with outward normals.",
+    return Parts(
         inputs=[A, B, C, D, p_u, p_v],
-        terms=list(zip("st", hessian_factors(p_u, p_v), strict=True)),
+        terms=zip("st", hessian_factors(p_u, p_v), strict=True),
         outputs=[
             (f"H_{name}", entry(*("xyz".index(axis) for axis in name)))
             for name in ("xx", "yy", "zz", "xy", "xz", "yz")
         ],
     )
 
-
-HESSIAN = _hessian()
 
 E, F, G, g = (scalar(x) for x in "EFGg")
 FIRST_FORM = [("E", Dot(p_u, p_u)), ("F", Dot(p_u, p_v)), ("G", Dot(p_v, p_v))]
@@ -306,7 +303,13 @@ def bernstein(polynomial: sp.Expr, degree: int) -> dict[str, sp.Expr]:
     return result
 
 
-def _control_normals() -> Formula:
+@formula(
+    "control_normals",
+    "The Bézier net of the normal field $N(u,v) = p_u × p_v$: every oriented normal of the patch "
+    "is a non-negative combination of these six vectors.",
+    source="Sect. 3.2, eq. (14)",
+)
+def CONTROL_NORMALS() -> Parts:
     """Multiply the linear fields p_u and p_v, both given at the corners, in Bernstein form."""
     corners = {"100": (1, 0), "010": (0, 1), "001": (0, 0)}
     tangents = [
@@ -320,21 +323,17 @@ def _control_normals() -> Formula:
         s, t = vectors((f"s{left}", f"t{right}"))
         share = sp.S.One if left == right else sp.S.Half
         outputs[f"N{index}"] = outputs.get(f"N{index}", sp.S.Zero) + share * Cross(s, t)
-    return Formula.build(
-        "control_normals",
-        "The Bézier net of the normal field $N(u,v) = p_u × p_v$: every oriented normal of the "
-        "patch is a non-negative combination of these six vectors.",
-        source="Sect. 3.2, eq. (14)",
-        inputs=VECTORS,
-        terms=tangents,
-        outputs=sorted(outputs.items(), reverse=True),
-    )
+    return Parts(inputs=VECTORS, terms=tangents, outputs=sorted(outputs.items(), reverse=True))
 
 
-CONTROL_NORMALS = _control_normals()
-
-
-def _parabolic_cubic() -> Formula:
+@formula(
+    "parabolic_cubic",
+    "The Bézier net of $D(N(u,v))$, a cubic whose zeros are the parabolic points of the patch and "
+    "whose sign is that of the Gaussian curvature; it vanishes when the patch is developable. "
+    "$abc$ is the determinant of $a$, $b$, $c$, and so on.",
+    source="Sect. 3.2 and Remark 3.1",
+)
+def PARABOLIC_CUBIC() -> Parts:
     """Put n = N(u,v) into D; in triple products the quartic terms cancel and a cubic is left."""
     triples = {"".join(x): Det(*vectors(x)) for x in combinations("abcde", 3)}
     along_u, along_v = (
@@ -353,19 +352,9 @@ def _parabolic_cubic() -> Formula:
 
     at_normal = {A: along_normal("a"), B: along_normal("b"), C: along_normal("c")}
     cubic = sp.expand(substitute(SOLUTION.D, at_normal))
-    return Formula.build(
-        "parabolic_cubic",
-        "The Bézier net of $D(N(u,v))$, a cubic whose zeros are the parabolic points of the patch "
-        "and whose sign is that of the Gaussian curvature; it vanishes when the patch is "
-        "developable. $abc$ is the determinant of $a$, $b$, $c$, and so on.",
-        source="Sect. 3.2 and Remark 3.1",
-        inputs=VECTORS,
-        terms=list(triples.items()),
-        outputs=[(f"D{index}", value) for index, value in bernstein(cubic, 3).items()],
-    )
+    outputs = [(f"D{index}", value) for index, value in bernstein(cubic, 3).items()]
+    return Parts(inputs=VECTORS, terms=triples.items(), outputs=outputs)
 
-
-PARABOLIC_CUBIC = _parabolic_cubic()
 
 area = scalar("dA")
 
@@ -384,14 +373,12 @@ MEASURE = Formula.build(
 )
 
 
-def _quadrature_node() -> sp.Rational:
+def quadrature_node() -> sp.Rational:
     """Return t of the three nodes (1 − 2t, t, t), inside, whose mean integrates all quadratics."""
     t = sp.Symbol("t")
     second_moment = sp.integrate(u**2, (u, 0, 1 - v), (v, 0, 1))
     return min(sp.solve(((1 - 2 * t) ** 2 + 2 * t**2) / 6 - second_moment, t))
 
-
-QUADRATURE_NODE = _quadrature_node()
 
 (x,) = vectors("x")
 K, H = scalar("K"), scalar("H")

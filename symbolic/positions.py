@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .formula import BEYOND_THE_PAPER, Formula
+from .formula import BEYOND_THE_PAPER, Content, Formula
 from .notation import vectors
 from .surfaces import ParametricSurface
 
@@ -12,14 +12,12 @@ __all__ = ["position", "surface_jet"]
 def position(surface: ParametricSurface) -> Formula:
     """Return x(u,v) of a surface as a formula of u, v and its parameters."""
     (x,) = vectors("x")
-    return Formula(
-        surface.name,
-        surface.sentence,
-        BEYOND_THE_PAPER,
+    content = Content(
         (surface.u, surface.v, *surface.defaults),
         tuple(zip(x.components, surface.position, strict=True)),
         (x,),
     )
+    return Formula(surface.name, surface.sentence, BEYOND_THE_PAPER, lambda: content)
 
 
 def surface_jet(surface: ParametricSurface) -> Formula:
@@ -32,11 +30,6 @@ def surface_jet(surface: ParametricSurface) -> Formula:
         for x, by in zip(outputs, orders.values(), strict=True)
         for pair in zip(x.components, surface.derivative(*by).flat(), strict=True)
     )
-    return Formula(
-        surface.name,
-        "Position and derivatives x, x_u, x_v, x_uu, x_uv, x_vv of the surface of this name.",
-        BEYOND_THE_PAPER,
-        (u, v, *surface.defaults),
-        definitions,
-        outputs,
-    )
+    sentence = "Position and derivatives x, x_u, x_v, x_uu, x_uv, x_vv of the surface of this name."
+    content = Content((u, v, *surface.defaults), definitions, outputs)
+    return Formula(surface.name, sentence, BEYOND_THE_PAPER, lambda: content)

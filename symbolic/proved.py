@@ -18,7 +18,7 @@ from itertools import product
 
 import sympy as sp
 
-from .formula import Formula
+from .formula import Formula, Parts, formula
 from .notation import Cross, scalar, substitute
 from .patch import LINEAR_FORMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d, e
 
@@ -79,7 +79,14 @@ REMAINDERS = Formula.build(
 )
 
 
-def _excesses() -> Formula:
+@formula(
+    "excesses",
+    "If one of these four numbers is positive then no point of the cell has the normal $n$: the "
+    "derivatives of the height along $n$, or the combinations of them from which one parameter is "
+    "eliminated, exceed what they change over the cell. $R$ and $S$ are bounds of what a quadratic "
+    "patch leaves out of the derivatives.",
+)
+def EXCESSES() -> Parts:
     """Bound both derivatives over the cell, and the combinations of them that are s and t."""
     along, across = P + A * s + B * t, Q + B * s + C * t
     linear = {
@@ -98,24 +105,20 @@ def _excesses() -> Formula:
             {sp.Abs(sign * SOLUTION.D): sp.Abs(D) for sign in (-1, 1)}
         )
         outputs.append((name, sp.Abs(sp.expand(value)) - slope - rest))
-    return Formula.build(
-        "excesses",
-        "If one of these four numbers is positive then no point of the cell has the normal $n$: "
-        "the derivatives of the height along $n$, or the combinations of them from which one "
-        "parameter is eliminated, exceed what they change over the cell. $R$ and $S$ are bounds of "
-        "what a quadratic patch leaves out of the derivatives.",
-        inputs=[*LINEAR_FORMS, R, S],
-        terms=[("D", SOLUTION.D)],
-        outputs=outputs,
-    )
+    return Parts(inputs=[*LINEAR_FORMS, R, S], terms=[("D", SOLUTION.D)], outputs=outputs)
 
-
-EXCESSES = _excesses()
 
 # --- one point ------------------------------------------------------------------------------------
 
 
-def _contraction() -> Formula:
+@formula(
+    "contraction",
+    "The inverse $y11$, $y12$, $y22$ of the Hessian $A$, $B$, $C$ at the centre, and bounds $q1$ "
+    "and $q2$ of the rows of its product with the change of the Hessian over the cell; the third "
+    "derivatives are $T0$, …, $T3$ up to $R0$, …, $R3$. If both are below 1 then at most one point "
+    "of the cell has the normal $n$ or $-n$.",
+)
+def CONTRACTION() -> Parts:
     """Multiply the change of the Hessian over the cell by the inverse of the Hessian."""
     hessian = sp.hessian(_cubic(THIRDS, s, t), (s, t))
     inverse = sp.Matrix([[y11, y12], [y12, y22]])
@@ -127,12 +130,7 @@ def _contraction() -> Formula:
         for k in (0, 1)
     ]
     entries = sp.Matrix([[C, -B], [-B, A]]) / D
-    return Formula.build(
-        "contraction",
-        "The inverse $y11$, $y12$, $y22$ of the Hessian $A$, $B$, $C$ at the centre, and bounds "
-        "$q1$ and $q2$ of the rows of its product with the change of the Hessian over the cell; "
-        "the third derivatives are $T0$, …, $T3$ up to $R0$, …, $R3$. If both are below 1 then at "
-        "most one point of the cell has the normal $n$ or $-n$.",
+    return Parts(
         inputs=[A, B, C, *THIRDS, *RADII],
         terms=[("D", SOLUTION.D)],
         outputs=[
@@ -145,8 +143,6 @@ def _contraction() -> Formula:
     )
 
 
-CONTRACTION = _contraction()
-
 # --- normals --------------------------------------------------------------------------------------
 
 
@@ -158,7 +154,12 @@ def _ordinate(polynomial: sp.Expr, places: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
     return polynomial
 
 
-def _normal_ordinates() -> Formula:
+@formula(
+    "normal_ordinates",
+    "The Bernstein ordinates over the cell of $x_s × x_t$ of a patch: its normals lie in the cone "
+    "that they span.",
+)
+def NORMAL_ORDINATES() -> Parts:
     """Expand x_s × x_t of the patch by s and t; products of vectors stand for themselves."""
     along, across = (d, a, b), (e, b, c)
     powers = (sp.S.One, s, t)
@@ -173,10 +174,7 @@ def _normal_ordinates() -> Formula:
         start=sp.S.Zero,
     )
     names = (sp.S.NegativeOne, sp.S.Zero, sp.S.One)
-    return Formula.build(
-        "normal_ordinates",
-        "The Bernstein ordinates over the cell of $x_s × x_t$ of a patch: its normals lie in the "
-        "cone that they span.",
+    return Parts(
         inputs=VECTORS,
         outputs=[
             (f"N{k}", sp.expand(_ordinate(normal, {s: i, t: j})))
@@ -184,8 +182,6 @@ def _normal_ordinates() -> Formula:
         ],
     )
 
-
-NORMAL_ORDINATES = _normal_ordinates()
 
 # --- no point, two, or a double one ---------------------------------------------------------------
 #

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from .formula import Formula
+from .formula import Parts, formula
 from .notation import scalar, substitute, vectors
 
 __all__ = ["FORMULAS"]
@@ -20,8 +20,14 @@ def _symbol(kind: str, order: str) -> sp.Symbol:
     return scalar(name) if kind == "w" else vectors([name])[0]
 
 
-def _derivatives() -> list[tuple[str, sp.Expr]]:
-    """Return r = 1/w and the derivatives of x = A/w, solved from those of A = w x."""
+@formula(
+    "rational_jet",
+    "The point $x = A/w$ of a rational surface and its first and second derivatives, from those of "
+    "the numerator $A$ and the denominator $w$.",
+    source=SOURCE,
+)
+def RATIONAL_JET() -> Parts:
+    """Solve for the derivatives of x = A/w in those of A = w x, and write r = 1/w."""
     u, v = sp.symbols("u v")
     point, weight = (sp.Function(name)(u, v) for name in ("x", "w"))
     r = scalar("r")
@@ -38,17 +44,11 @@ def _derivatives() -> list[tuple[str, sp.Expr]]:
         (solution,) = sp.solve(equation, wanted)
         numerator = sp.expand(solution * scalar("w"))
         results.append((wanted.name, r * numerator))
-    return [("r", 1 / scalar("w")), *results]
+    return Parts(
+        inputs=[_symbol(kind, order) for kind in "Aw" for order in ORDERS],
+        terms=[("r", 1 / scalar("w"))],
+        outputs=results,
+    )
 
-
-RATIONAL_JET = Formula.build(
-    "rational_jet",
-    "The point $x = A/w$ of a rational surface and its first and second derivatives, from those of "
-    "the numerator $A$ and the denominator $w$.",
-    source=SOURCE,
-    inputs=[_symbol(kind, order) for kind in "Aw" for order in ORDERS],
-    terms=_derivatives()[:1],
-    outputs=_derivatives()[1:],
-)
 
 FORMULAS = (RATIONAL_JET,)

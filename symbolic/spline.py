@@ -11,7 +11,7 @@ origin.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
 from itertools import combinations_with_replacement, product
@@ -21,13 +21,14 @@ import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
 from . import patch
-from .formula import Formula
+from .formula import Formula, Parts, formula
 from .notation import VectorSymbol, scalar, substitute
 
 __all__ = ["FORMULAS", "NEIGHBOURS", "SCALE", "box_spline_net", "coefficient_weights"]
 
 Point = tuple[Fraction, Fraction]
 Triangle = tuple[Point, Point, Point]
+Moments = Callable[[], Mapping[tuple[int, int], Fraction]]
 ZERO, QUARTER, HALF = Fraction(0), Fraction(1, 4), Fraction(1, 2)
 
 # Bézier points of the south triangle of a cell in the order b200, b020, b002, b110, b101, b011.
@@ -199,7 +200,8 @@ def edge_moments() -> Mapping[tuple[int, int], Fraction]:
 
 
 def coefficient_weights(
-    *orbits: Sequence[Point], moments: Mapping[tuple[int, int], Fraction] | None = None
+    *orbits: Sequence[Point],
+    moments: Moments = functional_moments,
 ) -> list[Fraction]:
     """Return one weight for each orbit of points: the functional that has these moments.
 
@@ -208,7 +210,7 @@ def coefficient_weights(
     """
     unknown = sp.symbols(f"k:{len(orbits)}")
     equations = []
-    for powers, moment in (functional_moments() if moments is None else moments).items():
+    for powers, moment in moments().items():
         sums = (rational(sum(monomial(powers, x) for x in points)) for points in orbits)
         terms = (weight * x for weight, x in zip(unknown, sums, strict=True))
         equations.append(sp.Add(*terms) - rational(moment))
@@ -256,81 +258,72 @@ def _used(expressions: Iterable[sp.Expr]) -> list[VectorSymbol]:
     return [x for x in MU.values() if x in symbols]
 
 
-def _net() -> dict[sp.Symbol, sp.Expr]:
+@cache
+def control_points() -> Mapping[sp.Symbol, sp.Expr]:
     """Return the control points of the south triangle in the coefficients."""
     weights = {point: net_weights(SOUTH[point.name[1:]]) for point in patch.NET}
     return {point: _linear(x.values(), (MU[name] for name in x)) for point, x in weights.items()}
 
 
-NET = _net()
-
-CONTROL_NET = Formula.build(
+@formula(
     "control_net",
     "The Bézier net of the south triangle of a cell from the coefficients of the cell and its "
     "eight neighbours; the other three triangles follow by quarter turns.",
     source="Sect. 3.1",
-    inputs=_used(NET.values()),
-    outputs=[(point.name, value) for point, value in NET.items()],
 )
+def CONTROL_NET() -> Parts:
+    """Take the net of the box splines that do not vanish on the cell."""
+    net = control_points()
+    return Parts(inputs=_used(net.values()), outputs=[(x.name, y) for x, y in net.items()])
 
 
-def _vectors() -> dict[str, sp.Expr]:
-    """Return a … e of eq. (8) for the south triangle, and p − mu_c, in the coefficients.
-
-    Raises ArithmeticError if one of them changes under translation.
-    """
-    result = {x.name: sp.expand(substitute(y, NET)) for x, y in patch.POWER_FORM.definitions}
-    result["p"] -= MU["c"]
-    for name, value in result.items():
-        if sum(value.as_coefficients_dict().values()) != 0:
-            raise ArithmeticError(f"{name} changes under translation")
-    return result
+SCALE = 8  # the common denominator of the weights of a patch
 
 
-VECTORS = _vectors()
-SCALE = math.lcm(
-    *(
-        fraction(sp.sympify(x)).denominator
-        for vector in VECTORS.values()
-        for x in vector.as_coefficients_dict().values()
-    )
-)
-_SCALED = {
-    name: sp.expand(SCALE * substitute(x, {MU["c"]: sp.S.Zero})) for name, x in VECTORS.items()
-}
-
-TRIANGLE = Formula.build(
+@formula(
     "triangle",
     f"The vectors of the quadratic patch over the south triangle of a cell, times {SCALE}, from "
     "the differences $mu_s$, … of the neighbouring coefficients from that of the cell: integer "
     "weights, so that integers give exact results.",
     source="Sect. 3.1 and eq. (8)",
-    inputs=_used(_SCALED.values()),
-    outputs=list(_SCALED.items()),
 )
+def TRIANGLE() -> Parts:
+    """Put the control points into a … e of eq. (8), and into p − mu_c.
+
+    Raises ArithmeticError if one of them changes under translation, or SCALE is another number.
+    """
+    net = control_points()
+    found = {x.name: sp.expand(substitute(y, net)) for x, y in patch.POWER_FORM.definitions}
+    found["p"] -= MU["c"]
+    rows = [[*map(fraction, x.as_coefficients_dict().values())] for x in found.values()]
+    if any(map(sum, rows)):
+        raise ArithmeticError("a vector of the patch changes under translation")
+    if math.lcm(*(x.denominator for row in rows for x in row)) != SCALE:
+        raise ArithmeticError(f"{SCALE} is not the common denominator of the weights")
+    scaled = {k: sp.expand(SCALE * substitute(x, {MU["c"]: sp.S.Zero})) for k, x in found.items()}
+    return Parts(inputs=_used(scaled.values()), outputs=scaled.items())
 
 
 def _functional(
     name: str,
     sentence: str,
     orbits: Mapping[str, Sequence[Point]],
-    moments: Mapping[tuple[int, int], Fraction] | None = None,
+    moments: Moments = functional_moments,
 ) -> Formula:
-    """Build a functional from values at orbits of points, called name0, name1, …."""
+    """Return a functional of values at orbits of points, called name0, name1, …."""
     symbols = [
         scalar(f"{letter}{k}" if len(points) > 1 else letter)
         for letter, points in orbits.items()
         for k in range(len(points))
     ]
-    weights = coefficient_weights(*orbits.values(), moments=moments)
-    repeated = [x for x, points in zip(weights, orbits.values(), strict=True) for _ in points]
-    return Formula.build(
-        name,
-        f"{sentence}: exact on all quadratics.",
-        source="Sect. 3.1",
-        inputs=symbols,
-        outputs=[("mu", _linear(repeated, symbols))],
-    )
+
+    @formula(name, f"{sentence}: exact on all quadratics.", source="Sect. 3.1")
+    def functional() -> Parts:
+        weights = coefficient_weights(*orbits.values(), moments=moments)
+        repeated = [x for x, points in zip(weights, orbits.values(), strict=True) for _ in points]
+        return Parts(inputs=symbols, outputs=[("mu", _linear(repeated, symbols))])
+
+    return functional
 
 
 CENTRE = [(ZERO, ZERO)]
@@ -362,30 +355,30 @@ EDGE_POINT = _functional(
     "The middle Bézier point of an edge on the border from the values at its middle ($f$) and its "
     "ends ($g$)",
     {"f": CENTRE, "g": EDGE_ORBITS["f"]},
-    edge_moments(),
+    edge_moments,
 )
 EDGE_POINT_FROM_VERTICES = _functional(
     "edge_point_from_vertices",
     "The middle Bézier point of an edge on the border from the values at its ends ($f$) and at the "
     "next vertices along the border ($g$)",
     EDGE_ORBITS,
-    edge_moments(),
+    edge_moments,
 )
 
 
 def _solved(name: str, sentence: str, point: str, unknown: str) -> Formula:
     """Solve a Bézier point of the south triangle, of value f, for one coefficient."""
-    value = scalar("f")
-    equation = NET[next(x for x in NET if x.name == point)] - value
-    (solution,) = sp.solve(equation, MU[unknown])
-    names = {x: scalar(x.name) for x in _used([solution])}
-    return Formula.build(
-        name,
-        sentence,
-        source="Sect. 3.1",
-        inputs=[value, *names.values()],
-        outputs=[(f"mu_{unknown}", substitute(sp.expand(solution), names))],
-    )
+
+    @formula(name, sentence, source="Sect. 3.1")
+    def solved() -> Parts:
+        value, net = scalar("f"), control_points()
+        equation = net[next(x for x in net if x.name == point)] - value
+        (solution,) = sp.solve(equation, MU[unknown])
+        names = {x: scalar(x.name) for x in _used([solution])}
+        outputs = [(f"mu_{unknown}", substitute(sp.expand(solution), names))]
+        return Parts(inputs=[value, *names.values()], outputs=outputs)
+
+    return solved
 
 
 BEYOND_EDGE = _solved(

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import sympy as sp
 
 from .envelope import (
     ENVELOPE_OPERATOR,
     HESSIAN_MATRIX,
+    HESSIAN_OF_EXTENSION,
     HESSIAN_SYMBOLS,
     INTRINSIC_GRADIENT,
     TANGENTIAL,
     derivatives_of_extension,
     entries,
-    hessian_of_extension,
     n,
     named,
     symmetric,
     verified,
     x,
 )
-from .formula import Formula, compose
+from .formula import BEYOND_THE_PAPER, Content, Formula, Parts, compose, formula
 from .notation import Dot, scalar, substitute
 from .patch import CURVATURE, ENVELOPE, FORMS, HESSIAN, PARAMETERS, SUPPORT_FUNCTION, TANGENTS
 
@@ -50,33 +48,25 @@ TANGENT_PLANE = Formula.build(
 )
 
 
-def _offset() -> Formula:
+@formula(
+    "offset",
+    "The sphere of radius $R$, $h = R|n|$, at a unit normal $n$: envelope and Hessian. Its "
+    "convolution with a surface is the offset at the distance $R$.",
+    source="eqs. (5)-(7)",
+)
+def OFFSET() -> Parts:
     """Differentiate the support function R |n| of a sphere."""
     verified(n.column * R, derivatives_of_extension(R, 1))
     hessian = verified(TANGENTIAL * R, derivatives_of_extension(R, 2))
-    return Formula.build(
-        "offset",
-        "The sphere of radius $R$, $h = R|n|$, at a unit normal $n$: envelope and Hessian. Its "
-        "convolution with a surface is the offset at the distance $R$.",
-        source="eqs. (5)-(7)",
-        inputs=[R, n],
-        outputs=[("x", R * n), *entries("H", hessian)],
-    )
+    return Parts(inputs=[R, n], outputs=[("x", R * n), *entries("H", hessian)])
 
 
-OFFSET = _offset()
-
-
-def _curvature_from_hessian() -> Formula:
+def _curvature_from_hessian() -> Content:
     """Read the radii from the characteristic polynomial, of which 0 (with n) is one root."""
     _, minus_trace, minors, _ = HESSIAN_MATRIX.charpoly().all_coeffs()
     m, q = scalar("m"), scalar("q")
     squares = (x**2 for x in symmetric(named("T")).flat())
-    formula = Formula.build(
-        "curvature_from_hessian",
-        "Curvature from the Hessian of a support function at a unit normal $n$: half the sum $m$ "
-        "of the principal radii, their product $q$, and the square $S$ of half their difference, "
-        "so that they are $m$ plus and minus its root; Gaussian and mean curvature.",
+    parts = Parts(
         inputs=[n, *HESSIAN_SYMBOLS],
         terms=[("m", -minus_trace / 2), *entries("T", HESSIAN_MATRIX - m * TANGENTIAL)],
         outputs=[
@@ -86,11 +76,18 @@ def _curvature_from_hessian() -> Formula:
             ("H", m / q),
         ],
     )
-    return replace(formula, outputs=(m, *formula.outputs))
+    content = parts.named()
+    return content._replace(outputs=(m, *content.outputs))
 
 
-CURVATURE_FROM_HESSIAN = _curvature_from_hessian()
-
+CURVATURE_FROM_HESSIAN = Formula(
+    "curvature_from_hessian",
+    "Curvature from the Hessian of a support function at a unit normal $n$: half the sum $m$ of "
+    "the principal radii, their product $q$, and the square $S$ of half their difference, so that "
+    "they are $m$ plus and minus its root; Gaussian and mean curvature.",
+    BEYOND_THE_PAPER,
+    _curvature_from_hessian,
+)
 
 K, H = scalar("K"), scalar("H")
 AREA_GROWTH = 1 + 2 * R * H + R**2 * K
@@ -102,7 +99,12 @@ def _in_radii(value: sp.Expr, change: sp.Expr = sp.S.Zero) -> sp.Expr:
     return substitute(value, {K: 1 / (R_1 * R_2), H: (R_1 + R_2) / (2 * R_1 * R_2)})
 
 
-def _offset_curvature() -> Formula:
+@formula(
+    "offset_curvature",
+    "Gaussian and mean curvature of the offset at the distance $R$, of use also where a radius is "
+    "infinite. $s$ is how much the product of the radii grows: 0 where one becomes 0.",
+)
+def OFFSET_CURVATURE() -> Parts:
     """Add R to both radii, and write the result in the curvatures."""
     s = scalar("s")
     outputs = [("s", AREA_GROWTH), ("K_offset", K / s), ("H_offset", (H + R * K) / s)]
@@ -110,16 +112,16 @@ def _offset_curvature() -> Formula:
         moved = _in_radii(curvature, R)
         if sp.cancel(_in_radii(substitute(target, {s: AREA_GROWTH})) - moved) != 0:
             raise ArithmeticError(f"{target} is not {moved}")
-    return Formula.build(
-        "offset_curvature",
-        "Gaussian and mean curvature of the offset at the distance $R$, of use also where a radius "
-        "is infinite. $s$ is how much the product of the radii grows: 0 where one becomes 0.",
-        inputs=[K, H, R],
-        outputs=outputs,
-    )
+    return Parts(inputs=[K, H, R], outputs=outputs)
 
 
-def _offset_growth() -> Formula:
+@formula(
+    "offset_growth",
+    "The factors by which an offset at the distance $R$ stretches the surface along its two "
+    "principal directions: their product $s$ and their mean $m$. Both are positive where $R$ has "
+    "passed no radius of curvature; elsewhere the offset is folded.",
+)
+def OFFSET_GROWTH() -> Parts:
     """Say by which factors (R_i + R)/R_i the radii grow: their product and their mean."""
     factors = [1 + R / scalar(name) for name in ("R_1", "R_2")]
     outputs = {"s": AREA_GROWTH, "m": 1 + R * H}
@@ -127,18 +129,8 @@ def _offset_growth() -> Formula:
     for written, derived in zip(outputs.values(), expected, strict=True):
         if sp.cancel(_in_radii(written) - derived) != 0:
             raise ArithmeticError(f"{written} is not {derived}")
-    return Formula.build(
-        "offset_growth",
-        "The factors by which an offset at the distance $R$ stretches the surface along its two "
-        "principal directions: their product $s$ and their mean $m$. Both are positive where $R$ "
-        "has passed no radius of curvature; elsewhere the offset is folded.",
-        inputs=[K, H, R],
-        outputs=list(outputs.items()),
-    )
+    return Parts(inputs=[K, H, R], outputs=outputs.items())
 
-
-OFFSET_CURVATURE = _offset_curvature()
-OFFSET_GROWTH = _offset_growth()
 
 BRANCH = compose(
     "branch",
@@ -203,7 +195,7 @@ FORMULAS = (
     TANGENT_PLANE,
     INTRINSIC_GRADIENT,
     ENVELOPE_OPERATOR,
-    hessian_of_extension(),
+    HESSIAN_OF_EXTENSION,
     OFFSET,
     OFFSET_CURVATURE,
     OFFSET_GROWTH,

@@ -18,7 +18,7 @@ from typing import Any
 
 import sympy as sp
 
-from .formula import Formula
+from .formula import Formula, Parts, formula
 from .notation import CubicTaylorSymbol, TaylorSymbol, scalar
 
 __all__ = ["FORMULAS"]
@@ -88,10 +88,8 @@ def _roundings(value: sp.Expr) -> int:
     return len(terms) - 1 + max(len(row) - (number == 1) for number, row in terms)
 
 
-def _of_radii(
-    name: str, sentence: str, of: Coefficients, inputs: Sequence[sp.Symbol], errors: Symbols
-) -> Formula:
-    """Return the formula of bounds for coefficients that are sums of products.
+def _radii(of: Coefficients, inputs: Sequence[sp.Symbol], errors: Symbols) -> Parts:
+    """Return bounds for coefficients that are sums of products.
 
     Named terms are sizes with their errors, and the coefficients for these.
     """
@@ -103,12 +101,8 @@ def _of_radii(
         k: _change(value, errors, largest) + _roundings(value) * u * scalar(f"L_{k}")
         for k, value in of.items()
     }
-    return Formula.build(
-        name,
-        sentence,
-        inputs=[*inputs, u],
-        terms=[*sums, *_named("L", sizes)],
-        outputs=_named("r", radii),
+    return Parts(
+        inputs=[*inputs, u], terms=[*sums, *_named("L", sizes)], outputs=_named("r", radii)
     )
 
 
@@ -121,39 +115,40 @@ def _formulas(kind: type[TaylorSymbol], order: int) -> list[Formula]:
     f, g = ([scalar(f"{x}{k}") for k in range(1, order + 1)] for x in "fg")
     sizes = *a.components, *b.components, *f
     errors = dict(zip(sizes, (*d.components, *e.components, *g), strict=True))
-    product, composition = _product(a, b), _composition(f, a)
-    return [
-        Formula.build(
-            f"product_{order}",
-            f"The Taylor coefficients $c$ of the product of two functions, up to order {order}.",
-            inputs=[a, b],
-            outputs=_named("c", product),
-        ),
-        _of_radii(
-            f"product_radius_{order}",
-            f"Bounds $r$ of the errors of `product_{order}` if coefficients of absolute values up "
-            "to $a$ and $b$ have errors up to $d$ and $e$; $u$ is the unit of rounding.",
-            product,
-            [a, d, b, e],
-            errors,
-        ),
-        Formula.build(
-            f"composition_{order}",
-            f"The Taylor coefficients $c$, from order 1 to {order}, of a function of the function "
-            "with the coefficients $a$; $f1$, $f2$, … are those of the outer function at the value "
-            "of the inner one.",
-            inputs=[*f, a],
-            outputs=_named("c", composition),
-        ),
-        _of_radii(
-            f"composition_radius_{order}",
-            f"Bounds $r$ of the errors of `composition_{order}` if coefficients of absolute values "
-            "up to $f$ and $a$ have errors up to $g$ and $d$; $u$ is the unit of rounding.",
-            composition,
-            [*f, *g, a, d],
-            errors,
-        ),
-    ]
+
+    @formula(
+        f"product_{order}",
+        f"The Taylor coefficients $c$ of the product of two functions, up to order {order}.",
+    )
+    def product() -> Parts:
+        return Parts(inputs=[a, b], outputs=_named("c", _product(a, b)))
+
+    @formula(
+        f"product_radius_{order}",
+        f"Bounds $r$ of the errors of `product_{order}` if coefficients of absolute values up to "
+        "$a$ and $b$ have errors up to $d$ and $e$; $u$ is the unit of rounding.",
+    )
+    def product_radius() -> Parts:
+        return _radii(_product(a, b), [a, d, b, e], errors)
+
+    @formula(
+        f"composition_{order}",
+        f"The Taylor coefficients $c$, from order 1 to {order}, of a function of the function with "
+        "the coefficients $a$; $f1$, $f2$, … are those of the outer function at the value of the "
+        "inner one.",
+    )
+    def composition() -> Parts:
+        return Parts(inputs=[*f, a], outputs=_named("c", _composition(f, a)))
+
+    @formula(
+        f"composition_radius_{order}",
+        f"Bounds $r$ of the errors of `composition_{order}` if coefficients of absolute values up "
+        "to $f$ and $a$ have errors up to $g$ and $d$; $u$ is the unit of rounding.",
+    )
+    def composition_radius() -> Parts:
+        return _radii(_composition(f, a), [*f, *g, a, d], errors)
+
+    return [product, product_radius, composition, composition_radius]
 
 
 FORMULAS = (*_formulas(TaylorSymbol, 2), *_formulas(CubicTaylorSymbol, 3))

@@ -1,5 +1,7 @@
 """Formulas: vectors and scalars, components, composition, text and LaTeX."""
 
+import subprocess
+import sys
 from dataclasses import FrozenInstanceError
 
 import pytest
@@ -21,7 +23,7 @@ from gaussmap.symbolic import (
     support,
     taylor,
 )
-from gaussmap.symbolic.formula import BEYOND_THE_PAPER, compose
+from gaussmap.symbolic.formula import BEYOND_THE_PAPER, Parts, compose, formula
 from gaussmap.symbolic.notation import (
     Cross,
     Det,
@@ -147,9 +149,9 @@ def test_components_of_a_defined_vector_can_be_used():
 
 
 def test_expanded_has_inputs_only():
-    for formula in formulas.values():
-        for value in formula.expanded().values():
-            assert value.free_symbols <= set(formula.in_components().inputs)
+    for each in formulas.values():
+        for value in each.expanded().values():
+            assert value.free_symbols <= set(each.in_components().inputs)
 
 
 def test_undefined_symbols_are_refused():
@@ -166,6 +168,50 @@ def test_double_definitions_are_refused(name):
 def test_formulas_are_immutable():
     with pytest.raises(FrozenInstanceError):
         setattr(built(), "name", "other")  # noqa: B010
+
+
+def test_a_formula_is_derived_once_when_it_is_first_read():
+    calls = []
+
+    @formula("double", "Twice $s$.")
+    def double() -> Parts:
+        calls.append(s)
+        return Parts(inputs=[s], outputs=[("x", 2 * s)])
+
+    both = compose("both", "", [double], source="x", outputs=[scalar("x")])
+    assert (double.name, double.sentence, both.name, calls) == ("double", "Twice s.", "both", [])
+    assert both.expanded() == double.expanded() == {"x": 2 * s}
+    assert double.inputs == (s,)
+    assert calls == [s]
+
+
+def test_equal_formulas_have_the_same_definitions():
+    assert built() == built()
+    assert hash(built()) == hash(built())
+    assert built() != built(outputs=[("x", s * a)])
+    assert built() != "name"
+
+
+READ_ONE = """
+import sys
+from gaussmap.symbolic import formulas
+for formula in formulas.values():
+    assert formula.sentence
+formulas[sys.argv[1]].text()
+print(*(name for name, x in formulas.items() if "_content" in vars(x)))
+"""
+
+
+def test_only_what_is_read_is_derived():
+    """Those that are built of lists are there; of the others one is asked for."""
+    derived = []
+    for name in ("envelope", "at_pole"):
+        run = [sys.executable, "-c", READ_ONE, name]
+        derived.append(
+            {*subprocess.run(run, capture_output=True, text=True, check=True).stdout.split()}
+        )
+    assert derived[1] - derived[0] == {"at_pole"}
+    assert {"parabolic_cubic", "sample", "triangle", "product_3"}.isdisjoint(derived[1])
 
 
 # --- composition ----------------------------------------------------------------------------------
@@ -192,13 +238,15 @@ def test_compose_keeps_a_vector_of_which_one_component_is_needed():
 
 def test_compose_refuses_two_meanings_of_a_term():
     other = Formula.build("other", "", inputs=[s], outputs=[("r", s**2)])
+    both = compose("both", "", [FIRST, other], source="x", outputs=[scalar("r")])
     with pytest.raises(ValueError, match="two parts define r differently"):
-        compose("both", "", [FIRST, other], source="x", outputs=[scalar("r")])
+        both.definitions  # noqa: B018
 
 
 def test_compose_refuses_an_output_that_no_part_defines():
+    both = compose("both", "", [FIRST, SECOND], source="x", outputs=[scalar("h"), scalar("w")])
     with pytest.raises(ValueError, match=r"no part defines \['w'\]"):
-        compose("both", "", [FIRST, SECOND], source="x", outputs=[scalar("h"), scalar("w")])
+        both.outputs  # noqa: B018
 
 
 def test_a_sample_is_its_parts():

@@ -337,7 +337,7 @@ def test_bernstein_coefficients():
 
 
 def test_quadrature_is_exact_on_quadratics():
-    node = patch.QUADRATURE_NODE
+    node = patch.quadrature_node()
     nodes = [(1 - 2 * node, node), (node, 1 - 2 * node), (node, node)]
     for i, j in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)):
         integral = sp.integrate(u**i * v**j, (u, 0, 1 - v), (v, 0, 1))

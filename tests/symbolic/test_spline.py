@@ -11,7 +11,7 @@ from gaussmap.symbolic import patch, spline
 from gaussmap.symbolic.notation import substitute
 
 HALF = Fraction(1, 2)
-NET: Any = spline.NET
+NET: Any = spline.control_points()
 CELLS = [(i, j) for i in range(-2, 3) for j in range(-2, 3)]  # the support and one ring more
 ORDINATES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # pairs of corners
 MONOMIALS = [(r, s) for r, s in product(range(3), repeat=2) if r + s <= 2]
@@ -275,7 +275,7 @@ def test_edge_points_are_exact_on_quadratics(formula, points):
 def test_coefficients_beyond_the_border_give_the_point_on_it(formula, point):
     """In the net of the cell the coefficient gives back the Bézier point that it was made from."""
     ((unknown, value),) = formula.definitions
-    (weights,) = [y.as_coefficients_dict() for x, y in spline.NET.items() if x.name == point]
+    (weights,) = [y.as_coefficients_dict() for x, y in NET.items() if x.name == point]
     around = {symbol.name: weight for symbol, weight in weights.items()}
     others = sum(
         weight * sp.Symbol(name, real=True)
