@@ -14,7 +14,7 @@ from gaussmap.benchmarks.writing import Writers, new_arrays
 
 SURFACES = {"torus": gm.surfaces.torus(), "wavy-graph": gm.surfaces.wavy_graph()}
 # Normals, and how many rounds to time.
-NORMALS = {"1": (1, 25), "100": (100, 25), "10k": (10_000, 9), "1M": (1_000_000, 5)}
+NORMALS = {"1": (1, 25), "100": (100, 25), "10k": (10_000, 9), "1M": (1_000_000, 3)}
 
 
 @pytest.fixture(scope="module", params=SURFACES.values(), ids=list(SURFACES))

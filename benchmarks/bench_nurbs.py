@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import NdBSpline
 
-COUNT, SIZE = 100_000, 20
+COUNT, SIZE = 20_000, 20
 ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
 RNG = np.random.default_rng(0)
 KNOTS = np.concatenate([np.zeros(3), np.linspace(0.0, 1.0, SIZE - 2), np.ones(3)])

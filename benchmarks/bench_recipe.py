@@ -11,14 +11,13 @@ from gaussmap.benchmarks.peers.forms import Torus
 from gaussmap.benchmarks.peers.recipe import by_curvature
 
 
-@pytest.mark.parametrize("threads", [1, None], ids=["one-thread", "all-threads"])
 @pytest.mark.parametrize("count", [100_000, 1_000_000])
-def test_sample_count(compare, count, threads):
-    """From the surface to the samples, fit included; NumPy has one thread in either case."""
+def test_sample_count(compare, count):
+    """From the surface to the samples, fit included; NumPy has one thread."""
     torus = Torus()
     surface = torus.surface
     compare(
-        lambda: gm.sample(surface, count=count, density="gauss", threads=threads),
+        lambda: gm.sample(surface, count=count, density="gauss"),
         baselines={"numpy_recipe": lambda: by_curvature(torus, count)},
         units={"samples": count},
         rounds=5,

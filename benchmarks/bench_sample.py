@@ -93,15 +93,6 @@ def test_sample(against_limit, case):
     against_limit(lambda: gm.sample(replace(case.spline), normals=case.normals))
 
 
-def test_find_and_fill(against_limit, case):
-    def find_and_fill():
-        bins = NormalBins(case.normals)
-        hits = find(case.spline, bins)
-        return hits, fill(case.spline, bins, hits)
-
-    against_limit(find_and_fill)
-
-
 def test_find(against_limit, case):
     against_limit(lambda: find(case.spline, NormalBins(case.normals)))
 
