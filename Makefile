@@ -16,8 +16,7 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells
 
 .DEFAULT_GOAL := help
 .PHONY: help install demo generate check-generated compiled kernels check-kernels test coverage cad-tests verify bench bench-guard bench-record bench-peers \
-	quality parts-quality cold-start batch operations lint typecheck formulas orders errata curves figures gallery meshes registration \
-	alignment docs clean
+	quality parts-quality cold-start batch operations lint typecheck formulas orders errata curves figures gallery docs clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -134,7 +133,7 @@ parts-quality: $(VENV)/peers/.ready ## judge samples of CAD parts beside those o
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.parts > docs/parts_quality.tmp
 	mv docs/parts_quality.tmp docs/parts_quality.md
 
-quality: $(VENV)/peers/.ready meshes $(if $(GAUSSMAP_PARTS),parts-quality) ## judge samples, and meshes, beside those of others again (docs/quality.md)
+quality: $(VENV)/peers/.ready $(if $(GAUSSMAP_PARTS),parts-quality) ## judge samples and meshes beside those of others again (docs/quality.md)
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.quality > docs/quality.tmp
 	mv docs/quality.tmp docs/quality.md
 
@@ -167,20 +166,8 @@ figures: $(READY) demo ## draw the pictures of the README, and Figs. 2-7 of the 
 	$(BIN)/python docs/figures.py > docs/figures.tmp
 	mv docs/figures.tmp docs/figures.md
 
-meshes: $(VENV)/peers/.ready ## measure meshes beside Gmsh and Open CASCADE again (docs/meshes.md)
-	$(VENV)/peers/bin/python docs/meshes.py > docs/meshes.tmp
-	mv docs/meshes.tmp docs/meshes.md
-
-alignment: $(VENV)/peers/.ready ## measure what rows along lines of curvature save again (docs/alignment.md)
-	$(VENV)/peers/bin/python docs/alignment.py > docs/alignment.tmp
-	mv docs/alignment.tmp docs/alignment.md
-
 gallery: $(READY) ## run the notebooks of docs/gallery/ again
 	$(BIN)/python docs/notebooks.py
-
-registration: $(VENV)/peers/.ready ## measure registration by Open3D's ICP again (docs/registration.md)
-	$(VENV)/peers/bin/python docs/registration.py > docs/registration.tmp
-	mv docs/registration.tmp docs/registration.md
 
 # The site is built in an environment of its own, which sees the packages of .venv. Its pages call
 # the command `gaussmap`.

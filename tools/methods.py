@@ -197,7 +197,7 @@ def mesh(
     simulation, smoothing, simplification, discrete curvatures, and files of single precision,
     in which thin triangles lose their area. They cost accuracy: with the same number of
     vertices, distances and angles to the surface are larger by about a third than with
-    "normals", see docs/meshes.md. That is the better choice for rendering, and for areas,
+    "normals", see docs/guides/meshes.md. That is the better choice for rendering, and for areas,
     volumes and other integrals: `weights` uses it.
 
     Examples

@@ -55,8 +55,8 @@ COLUMNS = """\
 
 **balanced**, the default, makes distances the same in all directions; **aligned** puts samples in
 rows along parameter lines, which is best where these are lines of curvature
-([why](alignment.md)). **gauss** has the samples at given normals only, and nothing in planes and
-cylinders; **uniform** ignores curvature.
+([why](mathematics/densities.md)). **gauss** has the samples at given normals only, and nothing in
+planes and cylinders; **uniform** ignores curvature.
 
 ## What is measured
 

@@ -161,5 +161,5 @@ _ = compare({x: gm.sample(smooth, count=COUNT, density=x) for x in DENSITIES}, 0
 
 # %% [markdown]
 # **A bad start.** If the initial error is larger than a feature, ICP does not find the feature.
-# Then uniform points are better. [docs/registration.md](../registration.md) measures that, and more
-# parts and numbers of points, with the ICP of Open3D.
+# Then uniform points are better. The [guide](../guides/registration.md#measured) has figures for
+# more numbers of points, with the ICP of Open3D.

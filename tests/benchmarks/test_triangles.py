@@ -1,8 +1,12 @@
-"""What brings the meshes of others to one form."""
+"""What brings the meshes of others to one form, and how meshes are compared with a surface."""
+
+import math
 
 import numpy as np
 import pytest
-from gaussmap.benchmarks.peers.forms import FORMS
+from gaussmap.benchmarks.peers.forms import FORMS, Torus
+from gaussmap.benchmarks.peers.mesh_metrics import quality, to_surface
+from gaussmap.benchmarks.peers.metrics import Places
 from gaussmap.benchmarks.peers.triangles import by_grid, joined
 
 
@@ -23,3 +27,35 @@ def test_a_grid_has_the_topology_of_its_surface(form):
     characteristic = len(vertices) - len(np.unique(edges, axis=0)) + len(triangles)
     assert characteristic == (form.name == "wavy_graph")
     assert len(vertices) == pytest.approx(400, rel=0.05)
+
+
+@pytest.mark.slow
+def test_a_grid_on_the_torus_is_off_by_what_theory_says():
+    """Chords of the tube, of m sides, and of the outer circle, of n: R (1 − cos π/n) and so on."""
+    pytest.importorskip("pyvista")
+    form = Torus()
+    found = quality(form, Places.of(form, 20_000), by_grid(form, 2_000))
+    n = math.isqrt(found.vertices)
+    tube = form.minor * (1 - math.cos(math.pi / n))
+    ring = (form.major + form.minor) * (1 - math.cos(math.pi / n))
+    # in the middle of a diagonal both add up, to the order of the next power of 1/n
+    for distance in (found.to_mesh, found.to_surface):
+        assert distance == pytest.approx(tube + ring, rel=0.03)
+
+
+def test_distances_from_the_torus_are_exact():
+    form = Torus()
+    rng = np.random.default_rng(1)
+    u, v = rng.uniform(-np.pi, np.pi, (2, 500))
+    points, normals = form.evaluate(u, v)
+    away = rng.uniform(-0.1, 0.1, 500)
+    found = to_surface(form, points + away[:, None] * normals)
+    np.testing.assert_allclose(found, np.abs(away), rtol=0, atol=1e-14)
+
+
+def test_beyond_a_border_the_border_is_nearest():
+    form = FORMS[2]
+    points = np.array([[1.1, 0.2, 0.2 * np.sin(3) * np.cos(0.6)]])
+    ends = form.evaluate(np.array([1.0]), np.linspace(-1, 1, 200_001))[0]
+    nearest = np.linalg.norm(ends - points, axis=1).min()
+    assert to_surface(form, points)[0] == pytest.approx(nearest, rel=1e-9)
