@@ -16,7 +16,7 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells
 
 .DEFAULT_GOAL := help
 .PHONY: help install demo generate check-generated compiled kernels check-kernels test coverage cad-tests verify bench bench-guard bench-record bench-peers \
-	quality parts-quality cold-start batch operations lint typecheck formulas orders errata curves figures gallery docs clean
+	quality parts-quality cold-start batch operations lint typecheck formulas orders errata figures gallery docs clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -153,10 +153,6 @@ formulas: $(READY) ## list the formulas; `gaussmap formulas NAME` shows one
 orders: $(READY) ## measure the orders of approximation again (docs/orders.md)
 	$(BIN)/python docs/orders.py > docs/orders.tmp
 	mv docs/orders.tmp docs/orders.md
-
-curves: $(READY) ## measure curves sampled by normals again (docs/curves.md)
-	$(BIN)/python docs/curves.py > docs/curves.tmp
-	mv docs/curves.tmp docs/curves.md
 
 errata: $(READY) ## write the errata of the paper (docs/errata.md)
 	$(BIN)/python docs/errata.py > docs/errata.tmp

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
+
 import gaussmap as gm
 import numpy as np
 import sympy as sp
-from gaussmap.docs.curves import PIECES, TURN, Polygon, TrueCurve, by_normals, t
 from gaussmap.docs.drawing import HALO, Floats, panels
 from gaussmap.docs.orders import listed
 from gaussmap.symbolic.display import latex_of
@@ -17,14 +18,38 @@ from numpy.typing import NDArray
 
 __all__ = ["figure_4", "figure_5"]
 
+t = sp.Symbol("t", real=True)
 # A circle with one sharp corner and two concave arcs next to it, in polar coordinates.
 RADIUS = 1 + sp.sin(2 * t) / 6 + sp.Rational(4, 5) * sp.exp(24 * (sp.cos(t) - 1))
-DROP = TrueCurve("drop", (RADIUS * sp.cos(t), RADIUS * sp.sin(t)), TURN, True, "a drop")
+POSITION = (RADIUS * sp.cos(t), RADIUS * sp.sin(t))
+DROP = gm.curves.Curve.from_sympy(POSITION, t, (sp.S.Zero, 2 * sp.pi), True, name="drop")
+ROWS = sp.lambdify(t, [sp.diff(x, t, k) for k in range(3) for x in POSITION], "numpy", cse=True)
+PIECES = 4096  # so that the error of the spline is nothing beside that of the polygons
+DENSE = 40_000  # parameters at which curve and polygon are compared
 NORMALS = 24
 EVERY = 3  # so far apart are the numbered ones
 VERTICES = 24
 SMOOTH = 2001  # points of a drawn curve
 FINE = 100_001  # points at which the length of a curve is measured
+
+
+def derivatives(places: Floats) -> Floats:
+    """Return x, x_t and x_tt at parameters (k,), as an array (3, k, 2)."""
+    values = [np.broadcast_to(x, places.shape) for x in ROWS(places)]
+    return np.moveaxis(np.array(values).reshape(3, 2, -1), 1, 2)
+
+
+def by_parameter(count: int) -> Floats:
+    """Return equally spaced parameters, both ends included."""
+    return np.linspace(*DROP.domain, count)
+
+
+def by_normals(count: int) -> Floats:
+    """Return the parameters of about `count` points with uniform normals, and the first again."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", gm.GaussmapWarning)
+        found = gm.curves.sample(DROP, count=count, pieces=PIECES).parameters
+    return np.append(found, found[0] + np.ptp(DROP.domain))
 
 
 def figure_4() -> tuple[Figure, str]:
@@ -33,7 +58,7 @@ def figure_4() -> tuple[Figure, str]:
         6.6, 2.9, 1, 2, left=0.0, right=1.0, bottom=0.0, top=0.9, wspace=0.0, width_ratios=(1, 1.5)
     )
     normals = gm.directions.circle(NORMALS)
-    samples = gm.curves.sample(DROP.curve, normals=normals, pieces=PIECES)
+    samples = gm.curves.sample(DROP, normals=normals, pieces=PIECES)
     left.set_title(f"{NORMALS} uniform normals", pad=4)
     draw_normals(left, normals, normals[samples.normal_index[samples.curvature < 0.0]])
     left.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.26), anchor="N")
@@ -55,7 +80,7 @@ def draw_normals(axes: Axes, normals: Floats, negative: Floats) -> None:
 
 def draw_samples(axes: Axes, samples: gm.curves.CurveSamples) -> None:
     """Draw the curve, and samples with their normals, blue where κ > 0 and orange where κ < 0."""
-    draw_curve(axes, DROP.derivatives(DROP.places(SMOOTH))[0])
+    draw_curve(axes, derivatives(by_parameter(SMOOTH))[0])
     tips = samples.points + 0.17 * samples.normals
     numbered = samples.normal_index % EVERY == 0
     for chosen, colour in (
@@ -86,8 +111,8 @@ def figure_5() -> tuple[Figure, str]:
     figure, (axes,) = panels(
         6.6, 2.75, 1, 2, left=0.01, right=0.99, bottom=0.13, top=0.91, wspace=0.03
     )
-    normal = by_normals(DROP, VERTICES)
-    parameter = DROP.places(len(normal))
+    normal = by_normals(VERTICES)
+    parameter = by_parameter(len(normal))
     axes[0].set_title("Uniform in the parameter", pad=4)
     axes[1].set_title("Uniform normals", pad=4)
     for panel, places in zip(axes, (parameter, normal), strict=True):
@@ -100,29 +125,35 @@ def figure_5() -> tuple[Figure, str]:
         f"with uniform normals. Measured are the largest distance of the curve from the polygon "
         f"and the largest angle between them: {measured(parameter)} on the left, "
         f"{measured(normal)} on the right. Points that are uniform in arc length would give "
-        f"{measured(by_length(DROP, len(normal) - 1))}. On other curves uniform normals need not "
-        f"give the smaller distance: see [curves](curves.md)."
+        f"{measured(by_length(len(normal) - 1))}. On other curves uniform normals need not "
+        f"give the smaller distance: see [curves](guides/more.md#planar-curves)."
     )
 
 
 def measured(places: Floats) -> str:
     """Return how far the polygon through points is from the curve, and how it is turned."""
-    polygon = Polygon.through(DROP, places)
-    return f"distance {polygon.distance:#.3g}, angle {polygon.angle:#.3g}°"
+    dense = np.linspace(places[0], places[-1], DENSE)
+    point, tangent, _ = derivatives(dense)
+    vertices = derivatives(places)[0]
+    edge = np.clip(np.searchsorted(places, dense) - 1, 0, len(places) - 2)
+    (a, b), (x, y) = np.diff(vertices, axis=0)[edge].T, tangent.T
+    angle = np.degrees(np.abs(np.arctan2(a * y - b * x, a * x + b * y))).max()
+    distance = gm.curves.polygon_distance(point, vertices).max()
+    return f"distance {distance:#.3g}, angle {angle:#.3g}°"
 
 
-def by_length(true: TrueCurve, edges: int) -> Floats:
-    """Return the parameters (edges + 1,) of points at equal distances along a curve."""
-    places = true.places(FINE)
-    steps = np.hypot(*np.diff(true.derivatives(places)[0], axis=0).T)
+def by_length(edges: int) -> Floats:
+    """Return the parameters (edges + 1,) of points at equal distances along the curve."""
+    places = by_parameter(FINE)
+    steps = np.hypot(*np.diff(derivatives(places)[0], axis=0).T)
     length = np.concatenate([[0.0], np.cumsum(steps)])
     return np.interp(np.linspace(0.0, length[-1], edges + 1), length, places)
 
 
 def draw_polygon(axes: Axes, places: Floats) -> None:
     """Draw the polygon through the points at parameters, the curve behind it."""
-    points = DROP.derivatives(DROP.places(SMOOTH))[0]
-    vertices = DROP.derivatives(places)[0]
+    points = derivatives(by_parameter(SMOOTH))[0]
+    vertices = derivatives(places)[0]
     axes.plot(*points.T, color=ELLIPTIC, linewidth=0.8, zorder=2)
     axes.plot(*vertices.T, color=INK, linewidth=1.1, marker="o", markersize=3.0, zorder=3)
 

@@ -8,7 +8,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.docs import curve_figures, figures, patch_figures
-from gaussmap.docs.curves import by_normals
 from gaussmap.generated import patch as kernels
 from gaussmap.runtime.base.formula_calls import python_function, vector
 from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC
@@ -209,13 +208,12 @@ def test_the_patches_are_what_their_titles_say():
 
 # --- Fig. 4 and Fig. 5 ----------------------------------------------------------------------------
 
-TRUE = curve_figures.DROP
 TURN = np.linspace(0.0, 2 * np.pi, 200_001)
 
 
 def test_the_points_that_normals_have(captions):
     """Count on the exact curve where n·x_t changes its sign and the normal is n, not −n."""
-    _, tangent, _ = TRUE.derivatives(TURN)
+    _, tangent, bent = curve_figures.derivatives(TURN)
     counts, sums = [], []
     for x, y in gm.directions.circle(curve_figures.NORMALS):
         height = tangent @ [x, y]
@@ -228,7 +226,9 @@ def test_the_points_that_normals_have(captions):
     assert numbers is not None
     expected = [len(counts), counts.count(1), counts.count(3)]
     assert [int(x) for x in numbers.groups()] == expected
-    changes = np.count_nonzero(np.diff(np.sign(TRUE.curvature(TURN))))
+    changes = np.count_nonzero(
+        np.diff(np.sign(tangent[:, 0] * bent[:, 1] - tangent[:, 1] * bent[:, 0]))
+    )
     assert f"The curve has {changes} inflections" in captions[4]
 
 
@@ -236,7 +236,7 @@ def farthest(places: np.ndarray) -> tuple[float, float]:
     """Return the largest distance and angle between the chords and the arcs that they span."""
     distances, angles = [], []
     for first, last in itertools.pairwise(places):
-        points, tangents, _ = TRUE.derivatives(np.linspace(first, last, 2001))
+        points, tangents, _ = curve_figures.derivatives(np.linspace(first, last, 2001))
         chord = (points[-1] - points[0]) / np.hypot(*(points[-1] - points[0]))
         distances.append(np.abs((points - points[0]) @ [-chord[1], chord[0]]).max())
         cosines = tangents @ chord / np.hypot(*tangents.T)
@@ -245,8 +245,9 @@ def farthest(places: np.ndarray) -> tuple[float, float]:
 
 
 def test_polygons(captions):
-    normal = by_normals(TRUE, curve_figures.VERTICES)
-    parameter, length = TRUE.places(len(normal)), curve_figures.by_length(TRUE, len(normal) - 1)
+    normal = curve_figures.by_normals(curve_figures.VERTICES)
+    parameter = curve_figures.by_parameter(len(normal))
+    length = curve_figures.by_length(len(normal) - 1)
     assert f"Two polygons with {len(normal) - 1} vertices" in captions[5]
     found = re.findall(r"distance ([\d.]+), angle ([\d.]+)°", captions[5])
     assert len(found) == 3
@@ -256,12 +257,12 @@ def test_polygons(captions):
 
 
 def test_lengths_are_equal():
-    places = curve_figures.by_length(TRUE, 24)
+    places = curve_figures.by_length(24)
     nodes, weights = np.polynomial.legendre.leggauss(40)
     lengths = []
     for first, last in itertools.pairwise(places):
         half = (last - first) / 2
-        _, tangent, _ = TRUE.derivatives(first + half * (nodes + 1))
+        _, tangent, _ = curve_figures.derivatives(first + half * (nodes + 1))
         lengths.append(half * weights @ np.hypot(*tangent.T))
     np.testing.assert_allclose(lengths, np.mean(lengths), rtol=1e-6)
     np.testing.assert_allclose(places[[0, -1]], [0.0, 2 * np.pi], rtol=0, atol=1e-15)

@@ -21,7 +21,7 @@ def fit(curve: Curve, pieces: int | None = None) -> CurveSpline:
     """Approximate a planar curve by a C¹ quadratic spline.
 
     The quasi-interpolant is exact on quadratics. The error of positions falls with the third power
-    of the length of a piece, that of normals with the second (docs/curves.md).
+    of the length of a piece, that of normals with the second (docs/guides/more.md).
 
     Parameters
     ----------
