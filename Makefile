@@ -16,7 +16,7 @@ TERRAIN = "$$($(BIN)/python -c '$(DEM)'):elevation" --spacing 74.5 -92.5 --cells
 
 .DEFAULT_GOAL := help
 .PHONY: help install demo generate check-generated compiled kernels check-kernels test coverage cad-tests verify bench bench-guard bench-record bench-peers \
-	quality parts-quality cold-start batch operations lint typecheck formulas orders errata figures gallery docs clean
+	quality operations lint typecheck formulas orders errata figures gallery docs clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -104,18 +104,6 @@ bench-guard: $(READY) ## fail if sampling is 30 % slower than recorded, beside t
 bench-record: $(READY) ## record the ratios that bench-guard compares with
 	$(BIN)/python -m gaussmap.benchmarks.guard --record
 
-cold-start: $(READY) ## measure what the first call of a wheel costs again (docs/cold_start.md)
-	rm -rf out/wheel
-	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir out/wheel .
-	$(PYTHON) -m venv out/wheel/venv
-	out/wheel/venv/bin/python -m pip install --quiet "$$(ls out/wheel/*.whl)[batch]"
-	out/wheel/venv/bin/python benchmarks/cold_start.py > docs/cold_start.tmp
-	mv docs/cold_start.tmp docs/cold_start.md
-
-batch: $(READY) ## measure what data sets of many parts cost again (docs/batch.md)
-	$(BIN)/python -m gaussmap.benchmarks.batch > docs/batch.tmp
-	mv docs/batch.tmp docs/batch.md
-
 operations: $(READY) ## record the operation counts of all kernels
 	$(BIN)/python tests/generated/test_operations.py
 
@@ -128,12 +116,7 @@ bench-peers: $(VENV)/peers/.ready ## measure gaussmap beside others, and its sca
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.peers --largest $(LARGEST) > docs/performance.tmp
 	mv docs/performance.tmp docs/performance.md
 
-# GAUSSMAP_PARTS is a folder with the files that docs/parts_quality.md names; they are not in here.
-parts-quality: $(VENV)/peers/.ready ## judge samples of CAD parts beside those of others again (docs/parts_quality.md)
-	$(VENV)/peers/bin/python -m gaussmap.benchmarks.parts > docs/parts_quality.tmp
-	mv docs/parts_quality.tmp docs/parts_quality.md
-
-quality: $(VENV)/peers/.ready $(if $(GAUSSMAP_PARTS),parts-quality) ## judge samples and meshes beside those of others again (docs/quality.md)
+quality: $(VENV)/peers/.ready ## judge samples and meshes beside those of others again (docs/quality.md)
 	$(VENV)/peers/bin/python -m gaussmap.benchmarks.quality > docs/quality.tmp
 	mv docs/quality.tmp docs/quality.md
 

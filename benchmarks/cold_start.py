@@ -1,27 +1,24 @@
 """What the first call of a process costs: with the kernels of the package, and without.
 
-`make cold-start` writes docs/cold_start.md. `python cold_start.py --check` is run by CI in an
-environment that has a wheel: no call may compile a kernel, or cost many seconds more than its
-repetition. Each call runs in a process of its own, whose NUMBA_CACHE_DIR is empty. This file needs
-nothing but Python, so that it can be run there.
+`python cold_start.py --check` is run by CI in an environment that has a wheel: no call may compile
+a kernel, or cost many seconds more than its repetition. Each call runs in a process of its own,
+whose NUMBA_CACHE_DIR is empty. This file needs nothing but Python, so that it can be run there.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import math
 import os
 import resource
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-__all__ = ["CALLS", "COMMANDS", "Cost", "cost", "main", "page"]
+__all__ = ["CALLS", "COMMANDS", "Cost", "cost", "main"]
 
 # Seconds of the processor: of a first call, beyond those of its repetition; with SymPy's import and
 # derivatives, too.
@@ -89,31 +86,6 @@ json.dump(times, sys.stdout)
 PART = "from gaussmap.tools.cad.examples import all_kinds; all_kinds().save('part.npz')"
 HERE_ONLY = {"GAUSSMAP_KERNELS": "0"}
 
-# The calls that are also measured without the machine code of the package.
-ALSO_COMPILED = (*list(CALLS)[:4], "`SupportFunction.of_spline(torus)`")
-
-PAGE = """\
-# The first call
-
-Written by `make cold-start`: do not edit. A wheel has all kernels as machine code. Seconds of the
-processor (one core) in an environment with a wheel: from the start of Python to the end of the
-call, and those of the call beyond its repetition in the same process; for commands, all there is.
-
-| call | seconds | beyond its repetition |
-| :-- | --: | --: |
-{shipped}
-
-Without machine code of the package (`GAUSSMAP_KERNELS=0`), Numba compiles each kernel when it is
-first called, and keeps its machine code on disk: seconds of a process that finds nothing there, and
-of the next one.
-
-| call | compiling | kept | kernels |
-| :-- | --: | --: | --: |
-{compiled}
-
-Measured with Python {python}.
-"""
-
 
 class Cost(NamedTuple):
     """What a process cost: seconds of the processor in all, and of its first call."""
@@ -175,37 +147,12 @@ def check() -> int:
     return failed
 
 
-def page() -> str:
-    """Return docs/cold_start.md, measured now."""
-    shipped, compiled = [], []
-    with tempfile.TemporaryDirectory() as folder:
-        cost(["-c", PART], Path(folder, "cache"))
-        for number, (name, arguments) in enumerate(programs().items()):
-            each = cost(arguments, Path(folder, f"empty{number}"))
-            shipped.append(f"| {name} | {each.seconds:.2f} | {each.beyond or math.nan:.2f} |")
-            if name in ALSO_COMPILED:
-                own = Path(folder, f"own{number}")
-                first, kept = (cost(arguments, own, HERE_ONLY) for _ in range(2))
-                compiled.append(
-                    f"| {name} | {first.seconds:.1f} | {kept.seconds:.2f} | {first.compiled} |"
-                )
-    return PAGE.format(
-        shipped="\n".join(shipped).replace(" nan |", " |"),
-        compiled="\n".join(compiled),
-        python=sys.version.split()[0],
-    )
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the page, or check; return the exit code."""
+    """Print what first calls cost; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true", help="fail if a call compiles")
-    start = time.monotonic()
-    if parser.parse_args(arguments).check:
-        return 1 if check() else 0
-    print(page(), end="")
-    print(f"cold_start: {time.monotonic() - start:.0f} s", file=sys.stderr)
-    return 0
+    options = parser.parse_args(arguments)
+    return 1 if check() and options.check else 0
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ the fit of the spline included; more than {stream:,} points come in chunks (`gm.
 {table}
 
 A new process takes {warm} s for its first 10⁴ points, with imports and loading of machine code
-([details](cold_start.md)).
+([details](install.md#compiled-kernels)).
 
 A grid of parameters is faster, if there is a closed form: {ratio} times at {largest:,} points. Come
 here for what it does not have: the points that have given normals, each exactly once; density that

@@ -42,8 +42,7 @@ TOP = """\
 # Performance, measured
 
 Written by `make bench-peers`: do not edit. The speed of a shared machine drifts; each ratio is the
-median of ratios of two times that were taken right after each other. What the first call compiles
-has [a page of its own](cold_start.md).
+median of ratios of two times that were taken right after each other.
 
 """
 

@@ -14,7 +14,6 @@ pytestmark = [pytest.mark.compiled, pytest.mark.slow]
 def one_call(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cold_start, "CALLS", {"`fit`": CALL})
     monkeypatch.setattr(cold_start, "COMMANDS", {})
-    monkeypatch.setattr(cold_start, "ALSO_COMPILED", ["`fit`"])
 
 
 def test_only_an_empty_cache_compiles(tmp_path: Path) -> None:
@@ -32,11 +31,3 @@ def test_the_check_fails_if_kernels_are_compiled(
     monkeypatch.setenv("GAUSSMAP_KERNELS", "0")
     assert cold_start.main(["--check"]) == 1
     assert "FAILED `fit`" in capsys.readouterr().out
-
-
-def test_the_page_has_a_row_for_each_call() -> None:
-    rows = [x for x in cold_start.page().splitlines() if x.startswith("| `fit` |")]
-    (_, _, seconds, beyond, _), (_, _, compiling, kept, kernels, _) = (x.split("|") for x in rows)
-    assert float(seconds) > float(beyond) > 0.0
-    assert int(kernels) > 0
-    assert float(compiling) > float(kept) > 0.0

@@ -65,7 +65,7 @@ SIDE, TURN = 60.0, 5.0
 # Where places are on each edge: evenly, and close to its ends.
 NEAR_ENDS = 10.0 ** -np.arange(2.5, 7.0)
 ON_EDGE = np.concatenate([np.linspace(0.0, 1.0, 101), NEAR_ENDS, 1.0 - NEAR_ENDS])
-# The parts of the folder are not in here; docs/parts_quality.md says where they come from.
+# The parts of the folder are not in here; docs/cad.md says where they come from.
 FILES = (
     "screw.step",
     "CrankArm.brep",

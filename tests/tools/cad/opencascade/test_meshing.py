@@ -118,7 +118,7 @@ def test_solids_are_closed_by_normals(name, write, read):
     assert mesh.angles.mean() < 0.9 * even.angles.mean()
 
 
-# Files that are not part of gaussmap, see docs/parts_quality.md: their Euler characteristics.
+# Files that are not part of gaussmap, see docs/cad.md: their Euler characteristics.
 FOLDER = Path(os.environ.get("GAUSSMAP_PARTS", "none"))
 FILES = {
     "screw.step": 2, "CrankArm.brep": -4, "bottle.brep": 2, "as1-tu-203.stp": -8,
