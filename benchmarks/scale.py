@@ -11,12 +11,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from statistics import median
 from time import perf_counter
-from typing import Any
 
 import gaussmap as gm
 import numpy as np
 
-__all__ = ["LAST", "STREAM", "STREAMED", "Series", "measure", "slope"]
+__all__ = ["LAST", "STREAMED", "Series", "measure", "slope"]
 
 SIZES = tuple(10**k for k in range(3, 9))
 STREAMED = 10**7
@@ -24,16 +23,14 @@ LAST = 3  # the number of the largest sizes for the second slope
 FIXED_CELLS = 64
 FIXED_NORMALS = 500
 TORUS = gm.surfaces.torus()
-STREAM: Any = getattr(gm, "sample_stream", None)
 
 
 @dataclass(frozen=True)
 class Series:
-    """Times over growing sizes: (patches, samples, seconds) each; what is missing, and why."""
+    """Times over growing sizes: (patches, samples, seconds) each."""
 
     title: str
     rows: Sequence[tuple[int, int, float]]
-    missing: str = ""
 
     def slope(self, last: int = 0) -> float:
         """Return the slope of log(time) against log(patches + samples), over the `last` sizes."""
@@ -56,11 +53,8 @@ def measure(largest: int) -> list[Series]:
 def by_samples(largest: int) -> Series:
     """More and more normals for a spline of 64 × 64 cells."""
     spline = gm.fit(TORUS, (FIXED_CELLS, FIXED_CELLS))
-    rows, missing = [], ""
-    for size in SIZES:
-        if size > largest or (size > STREAMED and STREAM is None):
-            missing = f"{size:,} samples and more were not measured"
-            break
+    rows = []
+    for size in (x for x in SIZES if x <= largest):
         if size > STREAMED:
             taken, samples = _time(lambda size=size: _streamed(spline, size), size)
         else:
@@ -69,24 +63,21 @@ def by_samples(largest: int) -> Series:
                 lambda normals=normals: len(gm.sample(spline, normals=normals)), size
             )
         rows.append((spline.patches, samples, taken))
-    return Series(f"samples, {spline.patches:,} patches", rows, missing)
+    return Series(f"samples, {spline.patches:,} patches", rows)
 
 
 def by_patches(largest: int) -> Series:
     """Finer and finer splines for the same normals; their fit is not timed."""
     normals = gm.fibonacci(FIXED_NORMALS)
-    rows, missing = [], ""
-    for size in SIZES:
-        if size > largest:
-            missing = f"{size:,} patches and more were not measured"
-            break
+    rows = []
+    for size in (x for x in SIZES if x <= largest):
         cells = round(math.sqrt(size / 4))
         spline = gm.fit(TORUS, (cells, cells))
         taken, samples = _time(
             lambda spline=spline: len(gm.sample(_fresh(spline), normals=normals)), size
         )
         rows.append((spline.patches, samples, taken))
-    return Series(f"patches, {len(normals):,} normals", rows, missing)
+    return Series(f"patches, {len(normals):,} normals", rows)
 
 
 def _fresh(spline: gm.Spline) -> gm.Spline:
@@ -96,7 +87,7 @@ def _fresh(spline: gm.Spline) -> gm.Spline:
 
 def _streamed(spline: gm.Spline, count: int) -> int:
     """Count the samples of a stream, without keeping them."""
-    return sum(len(chunk) for chunk in STREAM(spline, count=count))
+    return sum(len(chunk) for chunk in gm.sample_stream(spline, count=count))
 
 
 def _time(work: Callable[[], int], size: int) -> tuple[float, int]:

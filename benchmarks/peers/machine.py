@@ -1,11 +1,14 @@
-"""What was measured on: the processor, the memory, and the versions of the packages."""
+"""When, of which commit and on which machine a page was measured."""
 
 from __future__ import annotations
 
+import datetime
 import os
 import platform
+import subprocess
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from time import monotonic
 
 __all__ = ["machine"]
 
@@ -15,13 +18,26 @@ PACKAGES = (
 )  # fmt: skip
 
 
+STARTED = monotonic()
+
+
 def machine() -> list[str]:
-    """Return the items of a list in Markdown."""
+    """Return the items of a list in Markdown; the time is that since this module was imported."""
+    minutes = (monotonic() - STARTED) / 60.0
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     return [
+        f"- {datetime.date.today():%-d %B %Y}, commit {commit()}, in {minutes:.0f} minutes",
         f"- {processor()}, {cores} cores, {memory()}, {platform.system()}",
         f"- Python {platform.python_version()}; {', '.join(versions())}",
     ]
+
+
+def commit() -> str:
+    """Return the commit that is checked out; "unknown" outside a checkout."""
+    command = ["git", "describe", "--always", "--dirty"]
+    folder = Path(__file__).parent
+    found = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    return found.stdout.strip() or "unknown"
 
 
 def processor() -> str:

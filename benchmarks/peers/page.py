@@ -4,28 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from gaussmap.docs.orders import markdown, wrapped
 
-from ..quality.opening import beside_gmsh
-from ..scale import LAST, STREAM, STREAMED, Series
-from .catalogue import GMSH, RECIPE, SPLIPY_RECIPE, K
+from ..scale import LAST, STREAMED, Series
+from .catalogue import K
 from .durations import Duration, durations
 from .forms import ClosedForm
 from .machine import machine
 from .measure import JUDGED, Measured, Own
 from .metrics import PLACES
 from .opening import opening
-from .peer import Peer
 from .splines import NET
 
 __all__ = ["OnSurface", "page"]
-
-# The least speed of gaussmap at 10⁶ points, relative to others.
-TARGETS: tuple[tuple[Peer, int], ...] = ((RECIPE, 20), (SPLIPY_RECIPE, 200), (GMSH, 1000))
-STEEPEST = 1.05
-QUALITY = Path(__file__).parents[2] / "docs" / "quality.md"
 
 
 @dataclass(frozen=True)
@@ -75,18 +67,13 @@ parameters, and so have those of NumPy's recipe. Each package uses its default n
 that of gaussmap is one for each core.
 """
 
-DENSITIES = """\
-## The densities, and Gmsh
-
-From [docs/quality.md](quality.md), which has more surfaces and tools.
-"""
-
 SCALE = """\
 ## Scale
 
 `gm.sample(spline, normals=normals)` on the torus, for growing numbers of samples and of patches.
 The slope is that of log(time) against log(patches + samples), by least squares, over all sizes and
-over the {last} largest; 1 is linear, and the target is at most {steepest}. {streamed}
+over the {last} largest; 1 is linear. More than {streamed:,} samples come from
+`gm.sample_stream`, and are only counted.
 """
 
 
@@ -95,18 +82,12 @@ def page(surfaces: Sequence[OnSurface], series: Sequence[Series], taken: Duratio
     parts = [head(surfaces)]
     for measured in surfaces:
         parts += [f"### {measured.form.label}\n", table(measured)]
-    first = [TOP + durations(taken), opening("\n".join(parts)), DENSITIES, densities()]
-    parts.insert(0, "\n".join(first))
-    parts.append(wrapped(SCALE.format(last=LAST, steepest=STEEPEST, streamed=streamed())))
+    won = opening("\n".join(parts))
+    parts.insert(0, f"{TOP}{durations(taken)}\n{won}")
+    parts.append(wrapped(SCALE.format(last=LAST, streamed=STREAMED)))
     parts += [scale_table(x) for x in series]
     parts += [slopes(series), "## The machine\n", wrapped("\n".join(machine()))]
-    parts += ["## Targets\n", targets(surfaces)]
     return "\n".join(parts)
-
-
-def densities() -> str:
-    """Return what docs/quality.md says of the densities."""
-    return beside_gmsh(QUALITY.read_text(encoding="utf-8"))
 
 
 def head(surfaces: Sequence[OnSurface]) -> str:
@@ -146,30 +127,6 @@ def _row(x: Measured) -> list[str]:
     ]
 
 
-def targets(surfaces: Sequence[OnSurface]) -> str:
-    """Return the table of targets, and of what is reached on each surface."""
-    header = ["speed of gaussmap for 10⁶ points, relative to", "target"]
-    header += [x.form.name for x in surfaces]
-    rows = []
-    for peer, target in TARGETS:
-        found = [next(x for x in on.peers if x.peer is peer) for on in surfaces]
-        rows.append([peer.title, f"≥ {target}", *(_reached(x, target) for x in found)])
-    return markdown(header, rows)
-
-
-def _reached(x: Measured, target: int) -> str:
-    if x.missing:
-        return "missing"
-    return f"{times(x.times_million)}, {'met' if x.times_million >= target else 'not met'}"
-
-
-def streamed() -> str:
-    """Return how samples that do not fit into memory were counted."""
-    if STREAM is None:
-        return ""
-    return f"More than {STREAMED:,} samples come from `gm.sample_stream`, and are only counted."
-
-
 def scale_table(series: Series) -> str:
     """Return the table of one series."""
     header = ["patches", "samples", "seconds", "ns for a patch or sample"]
@@ -177,18 +134,13 @@ def scale_table(series: Series) -> str:
         [f"{patches:,}", f"{samples:,}", f"{t:.2g}", f"{1e9 * t / (patches + samples):.0f}"]
         for patches, samples, t in series.rows
     ]
-    note = f"\n{series.missing}.\n" if series.missing else ""
-    return markdown(header, rows) + note
+    return markdown(header, rows)
 
 
 def slopes(series: Sequence[Series]) -> str:
     """Return the table of the slopes."""
-    header = ["growing number of", "slope", f"slope, {LAST} largest", f"≤ {STEEPEST}"]
-    rows = []
-    for x in series:
-        found = x.slope(), x.slope(LAST)
-        met = "yes" if max(found) <= STEEPEST else "no"
-        rows.append([x.title, *(f"{slope:.2f}" for slope in found), met])
+    header = ["growing number of", "slope", f"slope, {LAST} largest"]
+    rows = [[x.title, f"{x.slope():.2f}", f"{x.slope(LAST):.2f}"] for x in series]
     return markdown(header, rows)
 
 

@@ -9,11 +9,9 @@ import warnings
 import gaussmap as gm
 from tqdm import tqdm
 
-from ..peers.forms import FORMS
 from .measure import measured
 from .meshers import MESHERS
 from .page import page
-from .small import few
 from .surfaces import JUDGED
 from .ways import WAYS
 
@@ -34,7 +32,7 @@ def main() -> None:
             bar.update()
 
         surfaces = [measured(form, WAYS, MESHERS, done) for form in JUDGED]
-    print(page(surfaces, before, few(FORMS)), end="")
+    print(page(surfaces, before), end="")
 
 
 if __name__ == "__main__":

@@ -13,15 +13,7 @@ from ..peers.peer import Peer
 from ..peers.triangles import Triangles, by_grid, gmsh_triangles, opencascade_triangles
 from .ways import GMSH, OPENCASCADE, PERFECT
 
-__all__ = [
-    "GMSH_MESH",
-    "MESHERS",
-    "OTHER_MESHERS",
-    "OWN_MESHERS",
-    "THROUGH_ALIGNED",
-    "THROUGH_BALANCED",
-    "Mesher",
-]
+__all__ = ["MESHERS", "Mesher"]
 
 Prefer = Literal["shape", "normals"]
 
@@ -58,13 +50,11 @@ def own(density: str, prefer: Prefer) -> Mesher:
     return Mesher(call, PERFECT, through(density, prefer))
 
 
-THROUGH_BALANCED = own("balanced", "normals")
-THROUGH_ALIGNED = own("aligned", "normals")
-OWN_MESHERS = (own("balanced", "shape"), THROUGH_BALANCED, THROUGH_ALIGNED)
-GMSH_MESH = Mesher(GMSH.title, GMSH, gmsh_triangles)
-OTHER_MESHERS = (
+MESHERS = (
+    own("balanced", "shape"),
+    own("balanced", "normals"),
+    own("aligned", "normals"),
     Mesher("grid of parameters", PERFECT, by_grid),
-    GMSH_MESH,
+    Mesher(GMSH.title, GMSH, gmsh_triangles),
     Mesher(OPENCASCADE.title, OPENCASCADE, opencascade_triangles),
 )
-MESHERS = (*OWN_MESHERS, *OTHER_MESHERS)

@@ -18,11 +18,9 @@ __all__ = [
     "ALIGNED",
     "BALANCED",
     "DENSITIES",
-    "FARTHEST",
     "GAUSS",
     "GMSH",
     "OPENCASCADE",
-    "OTHERS",
     "PERFECT",
     "POISSON",
     "ROUNDS",
@@ -94,5 +92,4 @@ POISSON = (
 FARTHEST = Peer("Open3D, farthest point", "", "open3d", open3d_farthest, 0, rounds=1)
 GMSH = Peer("Gmsh, curvature size", "", "gmsh", gmsh_by_curvature, 0, rounds=1)
 OPENCASCADE = Peer("Open CASCADE, angular deflection", "", "OCP", opencascade_by_angle, 0, rounds=1)
-OTHERS = (*POISSON, FARTHEST, GMSH, OPENCASCADE)
-WAYS = (PERFECT, ICOSAHEDRAL, *DENSITIES, *OTHERS)
+WAYS = (PERFECT, ICOSAHEDRAL, *DENSITIES, *POISSON, FARTHEST, GMSH, OPENCASCADE)

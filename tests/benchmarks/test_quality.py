@@ -1,8 +1,7 @@
-"""What `make quality` judges by: surfaces, ways, tasks, criteria and page, without the peers."""
+"""What `make quality` judges by: surfaces, ways and page, without the peers."""
 
 # pyright: reportAttributeAccessIssue=false, reportArgumentType=false
 
-import math
 import re
 from itertools import pairwise
 from pathlib import Path
@@ -16,13 +15,10 @@ from gaussmap.benchmarks.peers.metrics import Errors, Places
 from gaussmap.benchmarks.peers.peer import Peer, Turns
 from gaussmap.benchmarks.peers.untuned import UNTUNED
 from gaussmap.benchmarks.quality import (
-    criteria,
     measure,
     meshers,
     page,
-    small,
     surfaces,
-    tasks,
     ways,
 )
 from gaussmap.benchmarks.quality.measure import Found, OnSurface
@@ -75,8 +71,6 @@ def test_ways_of_gaussmap(way):
 def test_every_way_stands_in_the_table_once():
     assert len({x.title for x in ways.WAYS}) == len(ways.WAYS)
     assert len({x.title for x in meshers.MESHERS}) == len(meshers.MESHERS)
-    for task in tasks.TASKS:
-        assert {*task.own, task.base, *task.others} <= {*ways.WAYS, *meshers.MESHERS}
 
 
 # --- surfaces -------------------------------------------------------------------------------------
@@ -84,7 +78,6 @@ def test_every_way_stands_in_the_table_once():
 
 def test_judged_surfaces_have_names_of_their_own():
     assert len({x.name for x in surfaces.JUDGED}) == len(surfaces.JUDGED) >= 10
-    assert {x for c in criteria.CRITERIA for x in c.surfaces} <= {x.name for x in surfaces.JUDGED}
 
 
 def test_sheared_parameters_give_the_same_torus():
@@ -174,7 +167,7 @@ def test_meshes_have_the_vertices_that_were_asked():
     assert len(np.unique(triangles)) == len(vertices)
 
 
-# --- criteria -------------------------------------------------------------------------------------
+# --- the page -------------------------------------------------------------------------------------
 
 
 def of(E, G, times=1.0, mean=1.0):
@@ -191,129 +184,6 @@ def surface(found, meshes=(), missing=(), form=UNTUNED[1]):
     return OnSurface(form, both, dict(meshes), dict.fromkeys(missing, "No module 'x'"))
 
 
-@pytest.mark.parametrize(
-    ("limit", "strict", "at_least", "good", "bad", "target"),
-    [
-        (1.05, False, False, 1.05, 1.0501, "≤ 1.05"),
-        (1.0, True, False, 0.999, 1.0, "< 1"),
-        (20.0, False, True, 20.0, 19.9, "≥ 20"),
-    ],
-)
-def test_limits(limit, strict, at_least, good, bad, target):
-    criterion = criteria.Criterion("x", str, limit, strict=strict, at_least=at_least)
-    assert criterion.met(good)
-    assert not criterion.met(bad)
-    assert criterion.target == target
-
-
-def test_each_criterion_compares_what_its_title_says():
-    """Values that are all different: E = 2, 3, 5 … and G = 20, 30, 50 …"""
-    numbers = {
-        ways.GAUSS: of(2, 20), ways.PERFECT: of(3, 30),
-        ways.BALANCED: of(11, 110), ways.ALIGNED: of(29, 290),
-        ways.POISSON[0]: of(13, 130, 17), ways.POISSON[1]: of(19, 190, 23),
-    }  # fmt: skip
-    on = surface(numbers, {
-        meshers.THROUGH_BALANCED: mesh(3), meshers.THROUGH_ALIGNED: mesh(5),
-        meshers.GMSH_MESH: mesh(4),
-    })  # fmt: skip
-    found = {x.title: x.value(on, measure.LAST) for x in criteria.CRITERIA}
-    assert found == pytest.approx({
-        "aligned, E": 29,
-        "aligned, G": 290,
-        "mesh, aligned : Gmsh, worst angle": 5 / 4,
-        "mesh, aligned : Gmsh, Hausdorff distance": 5 / 4,
-        "mesh, balanced : Gmsh, worst angle": 3 / 4,
-        "mesh, balanced : Gmsh, Hausdorff distance": 3 / 4,
-        "gauss : exact, G": 20 / 30,
-        "balanced : Open3D, E": 11 / 13,
-        "balanced : Open3D, G": 110 / 130,
-        "balanced : Open3D, speed": 17,
-        "balanced : PyMeshLab, E": 11 / 19,
-        "balanced : PyMeshLab, G": 110 / 190,
-        "balanced : PyMeshLab, speed": 23,
-    })  # fmt: skip
-
-
-def criterion(title, surfaces=()):
-    (found,) = (x for x in criteria.CRITERIA if x.title == title and x.surfaces == surfaces)
-    return found
-
-
-def test_a_criterion_is_judged_on_its_surfaces_and_counts():
-    every = (surface({ways.ALIGNED: of(2.5, 1)}, form=Torus()), surface({ways.ALIGNED: of(1, 1)}))
-    (found,) = criteria.verdicts(criterion("aligned, E", ("torus",)), every)
-    assert (found.surface, found.count, found.value, found.met) == (
-        "torus",
-        measure.LAST,
-        2.5,
-        True,
-    )
-    assert len(criteria.verdicts(criterion("gauss : exact, G"), every)) == 4
-
-
-def test_what_is_missing_is_neither_met_nor_not():
-    on = surface({ways.BALANCED: of(1, 1)}, missing=(ways.POISSON[0],))
-    found = criteria.verdicts(criterion("balanced : Open3D, G"), (on,))
-    assert [x.met for x in found] == [None, None]
-    assert criteria.worst(found) is None
-
-
-@pytest.mark.parametrize(("title", "worst"), [("E", 1), ("speed", 0)])
-def test_the_worst_is_farthest_from_the_target(title, worst):
-    """Speeds shall be large, errors small; what is missing is never the worst."""
-    every = tuple(
-        surface(found)
-        for found in (
-            {ways.BALANCED: of(2, 1), ways.POISSON[0]: of(4, 1, 30)},
-            {ways.BALANCED: of(3, 1), ways.POISSON[0]: of(4, 1, 40)},
-            {ways.BALANCED: of(3, 1)},
-        )
-    )
-    found = criteria.verdicts(criterion(f"balanced : Open3D, {title}"), every)
-    assert criteria.worst(found) is found[2 * worst]
-
-
-# --- tasks ----------------------------------------------------------------------------------------
-
-
-def by_density(**E):
-    """Errors by density: E, and G = 10 E."""
-    return {way: of(E[way.density], 10 * E[way.density]) for way in ways.DENSITIES}
-
-
-def test_the_best_density_is_taken_and_the_default_where_it_is_as_good():
-    task = tasks.TASKS[-1]
-    values = {"balanced": 1.0, "aligned": 2.0, "gauss": 8.0, "uniform": 1.0}
-    for uniform, expected in ((0.99, ways.BALANCED), (0.97, ways.DENSITIES[-1])):
-        on = surface(by_density(**values | {"uniform": uniform}))
-        assert tasks.taken(task, [on]) is expected
-
-
-def test_densities_are_compared_by_geometric_means():
-    values = {"balanced": 2.0, "aligned": 1.0, "gauss": 1.0, "uniform": 1.0}
-    every = [surface(by_density(**values | {"gauss": x})) for x in (1.0, 16.0)]
-    task = tasks.TASKS[-1]
-    found = tasks.compared(task.measures[0], task, ways.GAUSS, every)
-    assert found == pytest.approx(math.sqrt(0.5 * 8.0))
-
-
-def test_others_that_are_better_are_named():
-    task = tasks.TASKS[-1]
-    every = [
-        surface({ways.BALANCED: of(2, 1), ways.GMSH: of(x, 1), ways.FARTHEST: of(3, 1)}, form=form)
-        for form, x in zip(surfaces.JUDGED, (1.0, 1.5, 3.0), strict=False)
-    ]
-    found = list(tasks.better(task.measures[0], task, ways.BALANCED, every))
-    assert found == ["Gmsh: torus and ellipsoid_patch (0.50)"]
-    every.append(surface({ways.BALANCED: of(2, 1), ways.GMSH: of(1.9, 1)}))
-    found = list(tasks.better(task.measures[0], task, ways.BALANCED, every))
-    assert found == ["Gmsh: 3 surfaces (0.50)"]
-
-
-# --- the page -------------------------------------------------------------------------------------
-
-
 @pytest.fixture
 def text():
     found = {way: of(3.0, 2.0, 19.96) for way in ways.WAYS}
@@ -325,7 +195,7 @@ def text():
 
 
 def test_tables_are_whole(text):
-    assert text.count("\n| :--") == 2 + 1 + 2 * 2 + 1
+    assert text.count("\n| :--") == 2 + 2 * 2
     width = 0
     for line, after in pairwise(text.splitlines()):
         if after.startswith("| :--"):
@@ -333,13 +203,10 @@ def test_tables_are_whole(text):
         assert line.count("|") in (0, width)
 
 
-def test_the_page_opens_with_who_wins_and_ends_with_targets(text):
+def test_the_page_opens_with_who_wins_and_ends_with_the_machine(text):
     titles = re.findall(r"^## (.*)$", text, re.MULTILINE)
-    assert titles[:2] == [
-        "Where gaussmap wins, where it does not",
-        "Which density for which task",
-    ]
-    assert titles[-2:] == ["The machine", "Targets"]
+    assert titles[:2] == ["Where gaussmap wins, where it does not", "What is measured"]
+    assert titles[-1] == "The machine"
 
 
 def test_the_opening_counts_who_is_best():
@@ -389,15 +256,6 @@ def test_the_page_in_docs_opens_with_its_own_figures():
     assert opening(text) in text
 
 
-def test_the_page_says_what_is_met(text):
-    rows = {x.partition(" |")[0][2:]: x for x in text.splitlines() if x.startswith("| ")}
-    assert rows["gauss : exact, G"] == (
-        "| gauss : exact, G | all | ≤ 1.05 | 1.060 | boss, 2,000 | **not met**, 0 of 4 | "
-        "boss, 2,000: 1.060; boss, 10,000: 1.060; boss, 2,000: 1.060; boss, 10,000: 1.060 |"
-    )
-    assert "| 20 × | boss, 10,000 | **not met**" in rows["balanced : Open3D, speed"]  # 19.96
-
-
 def test_every_way_is_shown_and_the_missing_ones_say_why(text):
     for way in (*ways.WAYS, *meshers.MESHERS):
         assert f"\n| {way.title} |" in text
@@ -407,27 +265,3 @@ def test_every_way_is_shown_and_the_missing_ones_say_why(text):
 def test_the_page_says_that_others_were_computing(text):
     assert "a load of 0.9" in text
     assert page.busy(0.1) == page.busy(None) == []
-
-
-def test_few_points():
-    """The words count who has the smaller E; the table has each surface and count."""
-
-    def judged(form, count, *E):
-        return small.Few(form, count, {
-            way: Errors(E=x, mean=x / 2, G=x / 4, gap=1.0, plane=1.0)
-            for way, x in zip(small.WAYS, E, strict=True)
-        })  # fmt: skip
-
-    found = small.section([judged(FORMS[0], 200, 9, 8, 4, 5), judged(FORMS[1], 500, 9, 4, 6, 5)])
-    assert "smaller E than **balanced** in 1 of 2 comparisons" in " ".join(found.split())
-    assert "than the grid in 1 of 2." in " ".join(found.split())
-    assert "| torus | 200 | 9.00 / 4.50 / 2.25 | 8.00 / 4.00 / 2.00 | 4.00 / 2.00" in found
-    assert "| ellipsoid_patch | 500 |" in found
-
-
-@pytest.mark.compiled
-def test_grids_have_few_points():
-    for form in FORMS:
-        points, normals = small.by_grid(form, 200)()
-        assert len(points) == pytest.approx(200, rel=0.1)
-        assert points.shape == normals.shape
