@@ -29,7 +29,7 @@ class Measured:
 
     `preparation` is in seconds, `rate` in points a second. `times_same` and `times_million` are the
     rate of gaussmap over that of the peer, for the same count and for 10⁶ points. `errors` are E
-    and G of `judged` points.
+    and G of about JUDGED points.
     """
 
     peer: Peer
@@ -39,7 +39,6 @@ class Measured:
     rate: float = 0.0
     times_same: float = 0.0
     times_million: float = 0.0
-    judged: int = 0
     errors: tuple[float, float] = (0.0, 0.0)
 
 
@@ -86,7 +85,6 @@ def measure(form: ClosedForm, places: Places, peer: Peer) -> Measured:
         rate=turns.points / turns.seconds,
         times_same=turns.times["same"] * peer.count / turns.points,
         times_million=turns.times["million"] * MILLION / turns.points,
-        judged=len(judged[0]),
         errors=both(form, places, *judged, nearest_by_tree),
     )
 
@@ -110,8 +108,7 @@ def measure_own(form: ClosedForm) -> list[Own]:
     return rows
 
 
-def judge_own(form: ClosedForm, places: Places) -> tuple[int, float, float]:
-    """Return how many samples gaussmap gives for JUDGED, and E and G of them."""
+def judge_own(form: ClosedForm, places: Places) -> tuple[float, float]:
+    """Return E and G of about JUDGED samples of gaussmap."""
     samples = gm.sample(form.surface, count=JUDGED, density="gauss")
-    errors = both(form, places, samples.points, samples.normals, nearest_by_tree)
-    return len(samples), *errors
+    return both(form, places, samples.points, samples.normals, nearest_by_tree)

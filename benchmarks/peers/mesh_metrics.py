@@ -26,7 +26,7 @@ SETTLED = 1e-6  # how far, in the unit of the surface, the last step may still g
 
 @dataclass(frozen=True)
 class Quality:
-    """How well a mesh of `vertices` and `triangles` represents a surface.
+    """How well a mesh of so many vertices represents a surface.
 
     Distances are the largest from the surface to the mesh and back, in the unit of the surface;
     `worst` and `mean` are angles between the normals of both, in degrees. Of `small` degrees at
@@ -34,7 +34,6 @@ class Quality:
     """
 
     vertices: int
-    triangles: int
     to_mesh: float
     to_surface: float
     worst: float
@@ -57,7 +56,6 @@ def quality(form: ClosedForm, places: Places, mesh: Triangles) -> Quality:
     turned = angles(normals[cells], places.normals)
     return Quality(
         len(points),
-        len(triangles),
         float(np.linalg.norm(nearest - places.points, axis=1).max()),
         max(float(to_surface(form, part).max()) for part in on_mesh(corners)),
         float(turned.max()),

@@ -22,12 +22,12 @@ __all__ = ["OnSurface", "page"]
 
 @dataclass(frozen=True)
 class OnSurface:
-    """All that was measured on one surface; `judged` is how many samples gaussmap gave, E and G."""
+    """All that was measured on one surface; `judged` is E and G of gaussmap."""
 
     form: ClosedForm
     peers: Sequence[Measured]
     own: Sequence[Own]
-    judged: tuple[int, float, float]
+    judged: tuple[float, float]
 
 
 TOP = """\
@@ -52,8 +52,8 @@ Points **with normals**, as NumPy arrays, of three surfaces. Columns:
   to that of the row, timed in turns, for the same count and for 10⁶ points, including the fit of
   64 × 64 cells to values of the surface;
 - **E** and **G**, in degrees: the largest angles between the normals of {places:,} points of the
-  surface, uniform by area, and the normals of {judged} samples. For E the sample is the nearest
-  one in space; for G it is the nearest one in normal, among those with the same sign of K
+  surface, uniform by area, and the normals of about {judged:,} samples. For E the sample is the
+  nearest one in space; for G it is the nearest one in normal, among those with the same sign of K
   ([glossary](glossary.md)).
 
 Splipy and geomdl use a cubic B-spline that interpolates the surface at {net} × {net} points; in
@@ -79,7 +79,7 @@ over the {last} largest; 1 is linear. More than {streamed:,} samples come from
 
 def page(surfaces: Sequence[OnSurface], series: Sequence[Series], taken: Duration) -> str:
     """Return the page."""
-    parts = [head(surfaces)]
+    parts = [wrapped(HEAD.format(judged=JUDGED, places=PLACES, net=NET))]
     for measured in surfaces:
         parts += [f"### {measured.form.label}\n", table(measured)]
     won = opening("\n".join(parts))
@@ -90,21 +90,13 @@ def page(surfaces: Sequence[OnSurface], series: Sequence[Series], taken: Duratio
     return "\n".join(parts)
 
 
-def head(surfaces: Sequence[OnSurface]) -> str:
-    """Return what the columns mean."""
-    judged = [x.judged[0] for x in surfaces]
-    judged += [x.judged for on in surfaces for x in on.peers if not x.missing]
-    counts = f"about {JUDGED:,} ({min(judged):,} to {max(judged):,})"
-    return wrapped(HEAD.format(judged=counts, places=PLACES, net=NET))
-
-
 def table(measured: OnSurface) -> str:
     """Return the table of one surface: gaussmap first."""
     header = [
         "", "density follows", "points", "points/s", "preparation, s",
         "gaussmap, same count", "gaussmap, 10⁶", "E", "G",
     ]  # fmt: skip
-    errors = [f"{x:.1f}" for x in measured.judged[1:]]
+    errors = [f"{x:.1f}" for x in measured.judged]
     rows = [
         [f"**`{x.call}`**", K, f"{x.points:,}", rate(x.rate), "", "", "", *errors]
         for x in measured.own

@@ -29,7 +29,7 @@ def small(monkeypatch):
 def test_a_peer_is_timed_and_judged(form):
     peer = dataclasses.replace(RECIPE, count=1_000, rounds=1)
     found = measure.measure(form, Places.of(form, 300), peer)
-    assert (found.points, found.judged, found.missing) == (1_000, 500, "")
+    assert (found.points, found.missing) == (1_000, "")
     assert min(found.rate, found.times_same, found.times_million) > 0.0
     assert 0.0 < found.errors[1] <= 180.0
 
@@ -60,7 +60,6 @@ def test_gaussmap_itself(form, monkeypatch):
     assert len(rows) == len({(x.call, x.points) for x in rows}) == 4
     # count=… comes within 5 %, and its normals again give as many
     assert all(x.points == pytest.approx(2_000, rel=0.05) for x in rows[1:])
-    count, E, G = measure.judge_own(form, Places.of(form, 300))
-    assert count == pytest.approx(500, rel=0.05)
+    E, G = measure.judge_own(form, Places.of(form, 300))
     assert 0.0 < G < 45.0
     assert E > 0.0

@@ -297,7 +297,7 @@ def measured(missing=()):
     found = []
     for x in PEERS:
         times = 199.6 if x is RECIPE else 200.4
-        found.append(Measured(x, "", x.count, 0.1, 1e4, 10.0, times, 9_990, (2.0, 3.0)))
+        found.append(Measured(x, "", x.count, 0.1, 1e4, 10.0, times, (2.0, 3.0)))
     why = "No module named 'x'"
     return [Measured(x.peer, missing=why) if x.peer in missing else x for x in found]
 
@@ -306,8 +306,8 @@ def measured(missing=()):
 def text():
     own = [Own("gm.sample(surface, normals=normals)", 1_000_000, 1.23e7)]
     surfaces = [
-        page.OnSurface(FORMS[0], measured(), own, (10_010, 12.0, 2.5)),
-        page.OnSurface(FORMS[1], measured(missing=(GMSH,)), own, (10_000, 4.0, 1.5)),
+        page.OnSurface(FORMS[0], measured(), own, (12.0, 2.5)),
+        page.OnSurface(FORMS[1], measured(missing=(GMSH,)), own, (4.0, 1.5)),
     ]
     rows = [(1000, 10**k, 1e-6 * (1000 + 10**k)) for k in range(3, 7)]
     linear = scale.Series("samples, 1,000 patches", rows)
@@ -343,7 +343,6 @@ def test_every_peer_is_named_and_the_missing_ones_say_why(text):
     for x in PEERS:
         assert text.count(f"| {x.title} |") >= 2
     assert f"| {GMSH.title} | κmax | missing: No module named 'x' | – |" in text
-    assert "(9,990 to 10,010)" in text
 
 
 def test_the_page_opens_with_what_others_do_better(text):

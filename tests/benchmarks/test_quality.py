@@ -175,7 +175,7 @@ def of(E, G, times=1.0, mean=1.0):
 
 
 def mesh(worst):
-    return Quality(1_000, 2_000, 0.01 * worst, 0.02 * worst, worst, 0.5 * worst, 30.0)
+    return Quality(1_000, 0.01 * worst, 0.02 * worst, worst, 0.5 * worst, 30.0)
 
 
 def surface(found, meshes=(), missing=(), form=UNTUNED[1]):
