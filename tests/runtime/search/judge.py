@@ -1,8 +1,8 @@
-"""The proved search against another one: interval arithmetic, Krawczyk's operator and bisection.
+"""What judges the proof: surfaces, what is asked of them, and another search.
 
-What judges here shares no code and no bound with the library: it bounds first and second
-derivatives over boxes by intervals, where the library uses Taylor polynomials with bounds of third
-ones.
+The other search is interval arithmetic, Krawczyk's operator and bisection. It shares no code and no
+bound with the library: it bounds first and second derivatives over boxes by intervals, where the
+library uses Taylor polynomials with bounds of third ones.
 """
 
 from __future__ import annotations
@@ -13,14 +13,122 @@ from typing import Any
 
 import gaussmap as gm
 import numpy as np
-import pytest
 import sympy as sp
-from gaussmap.runtime.search.proved import ProvedIndex
+from gaussmap.runtime.search.proved import KINDS, ProvedIndex, ProvedPlaces
+from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 
-pytestmark = pytest.mark.compiled
-
 Array = NDArray[Any]
+
+# --- surfaces -------------------------------------------------------------------------------------
+
+TURN, OPEN, AROUND = (0, "2*pi"), "open", "periodic"
+SQUARE = ((-1, 1), (-1, 1))
+MINOR = "(7/20 + 3/50*sin(4*u + 3*v))"
+# Position, domain, boundary conditions of u and v; others are in the catalogue.
+FORMULAS: dict[str, tuple[Any, Any, Any]] = {
+    "knobby": (
+        (f"(1 + {MINOR}*cos(v))*cos(u)", f"(1 + {MINOR}*cos(v))*sin(u)", f"{MINOR}*sin(v)"),
+        (TURN, TURN), (AROUND, AROUND),
+    ),
+    "waves": (("u", "v", "sin(3*u)*cos(3*v)/5"), SQUARE, (OPEN, OPEN)),
+    # The third derivatives of its height are those of functions of one parameter.
+    "sum": (("u", "v", "exp(u) + cos(2*v)/2"), SQUARE, (OPEN, OPEN)),
+    "menn": (("u", "v", "u**4 + u**2*v - v**2"), (("-4/5", "4/5"),) * 2, (OPEN, OPEN)),
+    "rim": (("u*cos(v)", "u*sin(v)", "sqrt(u)"), (("1/2", 1), TURN), (OPEN, AROUND)),
+    "bump": (("u", "v", "exp(-4*(u**2 + v**2))/2 + u*v/10"), SQUARE, (OPEN, OPEN)),
+    "asphere": (
+        ("u*cos(v)", "u*sin(v)", "2*u**2/5 - 9*u**4/20 + 3*u**6/25"),
+        (("1/20", "13/10"), TURN), (OPEN, AROUND),
+    ),
+    "bohemian": (
+        ("cos(u)/2", "3*cos(v)/2 + sin(u)/2", "sin(v)"), (TURN, TURN), (AROUND, AROUND)
+    ),
+    "egg": (
+        ("cos(v)*cos(u)", "7/10*cos(v)*sin(u)", "13/10*sin(v)"),
+        (TURN, ("-pi/2", "pi/2")), (AROUND, "pole"),
+    ),
+    # The apex of a horn: a side of the domain that is one point, and not smooth.
+    "horn": (("v*cos(u)", "v*sin(u)", "v + v**2/4"), (TURN, (0, 1)), (AROUND, OPEN)),
+    "root": (("u", "v", "sqrt(u)/3 + v**2"), ((0, 1), (0, 1)), (OPEN, OPEN)),
+    # Its height has the slopes u² − 1 and v, and a fold at u = 0.
+    "folded": (("u", "v", "u**3/3 - u + v**2/2"), SQUARE, (OPEN, OPEN)),
+    "line": (("u + v", "u + v", "0"), ((0, 1), (0, 1)), (OPEN, OPEN)),
+}  # fmt: skip
+
+
+@cache
+def surface_of(name: str) -> gm.Surface:
+    if name not in FORMULAS:
+        return getattr(gm.surfaces, name)()
+    position, domain, boundary = FORMULAS[name]
+    return gm.Surface.from_sympy(position, ("u", "v"), domain, periodic=boundary)
+
+
+@cache
+def position_of(name: str) -> sp.Matrix:
+    """Return the exact coordinates of a surface as functions of u and v."""
+    u, v = sp.symbols("u v", real=True)
+    if name in FORMULAS:
+        return sp.Matrix([sp.sympify(x, locals={"u": u, "v": v}) for x in FORMULAS[name][0]])
+    known = CATALOGUE[name]
+    return sp.Matrix(known.position).subs({**known.defaults, known.u: u, known.v: v})
+
+
+# --- questions and answers ------------------------------------------------------------------------
+
+
+@cache
+def index_of(name: str, **options: Any) -> ProvedIndex:
+    return new_index(surface_of(name), **options)
+
+
+def new_index(surface: gm.Surface, **options: Any) -> ProvedIndex:
+    assert surface.tape is not None
+    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, **options)
+    assert index is not None
+    return index
+
+
+def unit(vectors: Any) -> Array:
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+def random_normals(count: int, seed: int = 0) -> Array:
+    return unit(np.random.default_rng(seed).normal(size=(count, 3)))
+
+
+def jets_at(surface: gm.Surface, u: Array, v: Array) -> list[Array]:
+    return list(np.moveaxis(surface.jets(u, v), 1, 0))
+
+
+def normals_at(surface: gm.Surface, u: Array, v: Array) -> Array:
+    _, x_u, x_v, *_ = jets_at(surface, u, v)
+    return unit(np.cross(x_u, x_v))
+
+
+def kinds(found: ProvedPlaces) -> set[str]:
+    return {KINDS[k] for k in found.undecided.kinds}
+
+
+def counts(found: ProvedPlaces, normals: Array) -> Array:
+    return np.bincount(found.numbers, minlength=len(normals))
+
+
+def apart(surface: gm.Surface, one: Array, other: Array) -> Array:
+    """Return distances (k, 2) of parameters, modulo periods."""
+    distance = np.abs(one - other)
+    for axis, ends in enumerate(surface.boundary):
+        if ends[0] == "periodic":
+            low, high = surface.domain[axis]
+            distance[:, axis] = np.minimum(distance[:, axis], high - low - distance[:, axis])
+    return distance
+
+
+def near(surface: gm.Surface, found: ProvedPlaces, u: Array, v: Array, within: float) -> Array:
+    """Return how many of the points that are found for normal k are near (u[k], v[k])."""
+    away = apart(surface, found.uv, np.stack([u, v], axis=1)[found.numbers])
+    return np.bincount(found.numbers[(away <= within).all(axis=1)], minlength=len(u))
 
 
 # --- intervals ------------------------------------------------------------------------------------
@@ -40,10 +148,8 @@ class Interval:
         return x if isinstance(x, Interval) else cls(np.asarray(float(x)), np.asarray(float(x)))
 
     def wider(self, ulps: float = 4.0) -> Interval:
-        pad = ulps * 2.0**-52
-        return Interval(
-            self.low - pad * np.abs(self.low) - 1e-300, self.high + pad * np.abs(self.high) + 1e-300
-        )
+        low, high = (ulps * 2.0**-52 * np.abs(x) + 1e-300 for x in (self.low, self.high))
+        return Interval(self.low - low, self.high + high)
 
     def __neg__(self) -> Interval:
         return Interval(-self.high, -self.low)
@@ -110,10 +216,6 @@ def cosine(x: Any) -> Any:
     return Interval(np.maximum(low, -1.0), np.where(holds(0.0), 1.0, np.maximum(*ends) + 1e-15))
 
 
-def sine(x: Any) -> Any:
-    return cosine(x - np.pi / 2.0) if isinstance(x, Interval) else np.sin(x)
-
-
 def monotone(function: Any) -> Any:
     def applied(x: Any) -> Any:
         if not isinstance(x, Interval):
@@ -123,97 +225,25 @@ def monotone(function: Any) -> Any:
     return applied
 
 
-def hyperbolic_cosine(x: Any) -> Any:
-    return 0.5 * (EXP(x) + EXP(-x))
-
-
 EXP = monotone(np.exp)
 MODULES: Any = [
     {
-        "sin": sine, "cos": cosine, "exp": EXP, "sinh": monotone(np.sinh),
-        "cosh": hyperbolic_cosine, "sqrt": lambda x: x**0.5,
+        "sin": lambda x: cosine(x - np.pi / 2.0) if isinstance(x, Interval) else np.sin(x),
+        "cos": cosine, "exp": EXP, "sinh": monotone(np.sinh), "sqrt": lambda x: x**0.5,
+        "cosh": lambda x: 0.5 * (EXP(x) + EXP(-x)),
     },
     "numpy",
 ]  # fmt: skip
 
-
 # --- the other search -----------------------------------------------------------------------------
-
-TAU = "2*pi"
-KNOBBY = "(7/20 + 3/50*sin(4*u + 3*v))"
-TORUS_LIKE = "(1 + {r}*cos(v))*cos(u)", "(1 + {r}*cos(v))*sin(u)", "{r}*sin(v)"
-DENOMINATOR = "(1 - cos(u)*cos(v)/2)"
-OPEN, AROUND, MIRRORED, POLE = "open", "periodic", "mirrored", "pole"
-# Position, domain, boundary conditions of u and v.
-SURFACES: dict[str, tuple[Any, Any, Any]] = {
-    "torus": (
-        tuple(x.format(r="7/20") for x in TORUS_LIKE), ((0, TAU), (0, TAU)), (AROUND, AROUND)
-    ),
-    "knobby": (
-        tuple(x.format(r=KNOBBY) for x in TORUS_LIKE), ((0, TAU), (0, TAU)), (AROUND, AROUND)
-    ),
-    "waves": (("u", "v", "sin(3*u)*cos(3*v)/5"), ((-1, 1), (-1, 1)), (OPEN, OPEN)),
-    "monkey": (("u", "v", "u**3 - 3*u*v**2"), ((-1, 1), (-1, 1)), (OPEN, OPEN)),
-    "enneper": (
-        ("u - u**3/3 + u*v**2", "v - v**3/3 + v*u**2", "u**2 - v**2"), ((-1, 1), (-1, 1)),
-        (OPEN, OPEN),
-    ),
-    "catenoid": (
-        ("cosh(v)*cos(u)", "cosh(v)*sin(u)", "v"), ((0, TAU), (-1, 1)), (AROUND, OPEN)
-    ),
-    "bump": (
-        ("u", "v", "exp(-4*(u**2 + v**2))/2 + u*v/10"), ((-1, 1), (-1, 1)), (OPEN, OPEN)
-    ),
-    "asphere": (
-        ("u*cos(v)", "u*sin(v)", "2*u**2/5 - 9*u**4/20 + 3*u**6/25"),
-        (("1/20", "13/10"), (0, TAU)), (OPEN, AROUND),
-    ),
-    "bohemian": (
-        ("cos(u)/2", "3*cos(v)/2 + sin(u)/2", "sin(v)"), ((0, TAU), (0, TAU)), (AROUND, AROUND)
-    ),
-    "cyclide": (
-        (
-            f"(7/10*(1/2 - cos(u)*cos(v)) + 3/4*cos(u))/{DENOMINATOR}",
-            f"sqrt(3)/2*sin(u)*(1 - 7/10*cos(v))/{DENOMINATOR}",
-            f"sqrt(3)/2*sin(v)*(cos(u)/2 - 7/10)/{DENOMINATOR}",
-        ),
-        ((0, TAU), (0, TAU)), (AROUND, AROUND),
-    ),
-    "moebius": (
-        ("(1 + v*cos(u/2))*cos(u)", "(1 + v*cos(u/2))*sin(u)", "v*sin(u/2)"),
-        ((0, TAU), ("-2/5", "2/5")), (MIRRORED, OPEN),
-    ),
-    "ellipsoid": (
-        ("cos(v)*cos(u)", "7/10*cos(v)*sin(u)", "13/10*sin(v)"),
-        ((0, TAU), ("-pi/2", "pi/2")), (AROUND, POLE),
-    ),
-}  # fmt: skip
-ORDERS = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
-
-
-@cache
-def surface_of(name: str) -> gm.Surface:
-    position, domain, boundary = SURFACES[name]
-    exact = [sp.nsimplify(x) for x in position]
-    return gm.Surface.from_sympy(exact, ("u", "v"), domain, periodic=boundary)
-
-
-@cache
-def index_of(name: str) -> ProvedIndex:
-    surface = surface_of(name)
-    assert surface.tape is not None
-    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary)
-    assert index is not None
-    return index
 
 
 @cache
 def derivatives_of(name: str) -> Any:
     """Return a function that gives x_u, x_v, x_uu, x_uv, x_vv (15) of numbers or intervals."""
     u, v = sp.symbols("u v", real=True)
-    names = {"u": u, "v": v}
-    position: Any = sp.Matrix(SURFACES[name][0]).subs(names)
-    values = [sp.diff(x, u, i, v, j) for i, j in ORDERS for x in position]
+    orders = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+    values = [sp.diff(x, u, i, v, j) for i, j in orders for x in position_of(name)]
     return sp.lambdify((u, v), values, modules=MODULES, cse=True)
 
 
@@ -241,16 +271,12 @@ def by_intervals(name: str, normals: Array) -> tuple[Array, Array]:
     odd = 2 * np.arange(count) + 1
     u, v = (x.ravel() for x in np.meshgrid(u0 + half[0] * odd, v0 + half[1] * odd))
     size = np.ones(count**2)
-    first = over_boxes(name, u, v, (1.1 * half[0] * size, 1.1 * half[1] * size))
     possible = np.ones((count**2, len(normals)), dtype=bool)
-    for x in first[:2]:
-        middle, radius = (
-            np.stack(y, axis=-1)
-            for y in zip(*((z.middle, z.high - z.middle) for z in x), strict=True)
-        )
-        possible &= (
-            np.abs(middle @ normals.T) <= (radius @ np.abs(normals).T) * (1.0 + 1e-9) + 1e-12
-        )
+    for x in over_boxes(name, u, v, (1.1 * half[0] * size, 1.1 * half[1] * size))[:2]:
+        middle = np.stack([z.middle for z in x], axis=-1)
+        radius = np.stack([z.high - z.middle for z in x], axis=-1)
+        reach = (radius @ np.abs(normals).T) * (1.0 + 1e-9) + 1e-12
+        possible &= np.abs(middle @ normals.T) <= reach
     box, number = np.nonzero(possible)
     u, v, size = u[box], v[box], size[box]
     numbers, places = [], []
@@ -258,8 +284,7 @@ def by_intervals(name: str, normals: Array) -> tuple[Array, Array]:
         if len(number) == 0:
             break
         h = 1.1 * half[0] * size, 1.1 * half[1] * size
-        n = normals[number].T
-        state, point = decide(name, u, v, h, n)
+        state, point = decide(name, u, v, h, normals[number].T)
         numbers.append(number[state == 1])
         places.append(point[:, state == 1].T)
         rest = state == 2
@@ -288,19 +313,18 @@ def decide(name: str, u: Array, v: Array, h: tuple[Array, Array], n: Array) -> t
         centre = np.einsum("kxs,xs->ks", at_points(name, u, v)[:2], n)
         step = -np.einsum("ijs,js->is", inverse, centre)
         # Krawczyk's operator maps the box into a box around the centre and this step.
+        rows = zip([[Interval(x, x) for x in row] for row in inverse], np.eye(2), strict=True)
         reach = np.stack(
             [
                 (one - (y * a + z * b)).size * h[0] + (two - (y * b + z * c)).size * h[1]
-                for (y, z), (one, two) in zip(
-                    [[Interval(x, x) for x in row] for row in inverse], np.eye(2), strict=True
-                )
+                for (y, z), (one, two) in rows
             ]
         )
         reach = reach * (1.0 + 1e-12) + 1e-14
         inside = (np.abs(step) + reach < np.stack(h)).all(axis=0)
         outside = (np.abs(step) - reach > np.stack(h)).any(axis=0)
         point = np.stack([u, v]) + step
-        one = inside & ~none & ~outside
+    one = inside & ~none & ~outside
     state = np.where(none | outside, 0, np.where(one, 1, 2))
     for _ in range(4):
         point[:, one] = newton(name, point[:, one], n[:, one])
@@ -330,24 +354,9 @@ def once(surface: gm.Surface, numbers: Array, places: Array) -> tuple[Array, Arr
     keep = np.ones(len(numbers), dtype=bool)
     for step in range(1, 12):
         same = numbers[step:] == numbers[:-step]
-        near = apart(surface, places[step:], places[:-step]).max(axis=1) < 1e-7
-        keep[step:] &= ~(same & near)
+        close = apart(surface, places[step:], places[:-step]).max(axis=1) < 1e-7
+        keep[step:] &= ~(same & close)
     return numbers[keep], places[keep]
-
-
-def apart(surface: gm.Surface, one: Array, other: Array) -> Array:
-    """Return distances (k, 2) of parameters, modulo periods."""
-    distance = np.abs(one - other)
-    for axis in (0, 1):
-        low, high = surface.domain[axis]
-        if surface.boundary[axis][0] == "periodic":
-            distance[:, axis] = np.minimum(distance[:, axis], high - low - distance[:, axis])
-    return distance
-
-
-def random_normals(count: int, seed: int) -> Array:
-    normals = np.random.default_rng(seed).normal(size=(count, 3))
-    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
 def check(name: str, normals: Array) -> None:
@@ -355,10 +364,8 @@ def check(name: str, normals: Array) -> None:
     surface, found = surface_of(name), index_of(name).query(normals)
     numbers, places = by_intervals(name, normals)
     assert len(found.undecided.numbers) == 0
-    np.testing.assert_array_equal(
-        np.bincount(found.numbers, minlength=len(normals)),
-        np.bincount(numbers, minlength=len(normals)),
-    )
+    by_normal = np.bincount(numbers, minlength=len(normals))
+    np.testing.assert_array_equal(counts(found, normals), by_normal)
     # The nearest of the points with the same normal, and each of them once.
     starts = np.searchsorted(numbers, np.arange(len(normals) + 1))
     taken = np.zeros(len(numbers), dtype=bool)
@@ -369,15 +376,3 @@ def check(name: str, normals: Array) -> None:
         assert (away[nearest] <= found.radius[k] + 1e-12).all()
         assert not taken[starts[number] + nearest]
         taken[starts[number] + nearest] = True
-
-
-@pytest.mark.parametrize("name", SURFACES)
-def test_random_normals(name: str) -> None:
-    check(name, random_normals(60, seed=1))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SURFACES)
-def test_many_random_normals(name: str) -> None:
-    for seed in range(2, 12):
-        check(name, random_normals(1000, seed))
