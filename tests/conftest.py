@@ -40,6 +40,8 @@ SOME = (
     "tools/support/test_offset.py",
     "symbolic/test_emit.py",
 )
+# What `make verify` runs, and `make test` does not: pages, pictures and measurements.
+SLOW = ("docs", "benchmarks")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -77,6 +79,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         place = item.path.relative_to(HERE).as_posix()
         if place.startswith(OF_KERNELS) and not place.startswith(SOME):
             item.add_marker("kernels")
+        if place.startswith(SLOW):
+            item.add_marker("slow")
         quick = item.get_closest_marker("quick_for")
         if quick and not set(quick.args).intersection(item.name[:-1].split("[", 1)[1].split("-")):
             item.add_marker("slow")

@@ -288,24 +288,6 @@ def body(formula) -> str:
     return "\n".join(emit.assignments(formula))
 
 
-@pytest.mark.parametrize("formula", formulas.values(), ids=formulas)
-def test_assignments_are_exact(formula):
-    for seed in range(2):
-        inputs = exact_inputs(formula, seed)
-        names = executed(body(formula), EXACT | inputs)
-        outputs = [names[symbol.name] for symbol in formula.in_components().outputs]
-        assert outputs == expected(formula, inputs)
-
-
-@pytest.mark.parametrize("formula", POSITIONS.values(), ids=POSITIONS)
-def test_assignments_of_surfaces_are_exact(formula):
-    """Run on symbols, with the functions of SymPy in the place of those of `math`."""
-    inputs = {symbol.name: symbol for symbol in formula.inputs}
-    names = executed(body(formula), {"Number": sp.Rational, "math": sp} | inputs)
-    for name, value in formula.expanded().items():
-        assert sp.expand(names[name] - value) == 0 or sp.simplify(names[name] - value) == 0
-
-
 # --- the source -----------------------------------------------------------------------------------
 
 

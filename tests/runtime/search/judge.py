@@ -70,7 +70,7 @@ def position_of(name: str) -> sp.Matrix:
     """Return the exact coordinates of a surface as functions of u and v."""
     u, v = sp.symbols("u v", real=True)
     if name in FORMULAS:
-        return sp.Matrix([sp.sympify(x, locals={"u": u, "v": v}) for x in FORMULAS[name][0]])
+        return sp.Matrix(FORMULAS[name][0]).subs({"u": u, "v": v})
     known = CATALOGUE[name]
     return sp.Matrix(known.position).subs({**known.defaults, known.u: u, known.v: v})
 
