@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
+from ..refusals import refused
+
 AXIS, ANGLE = (1.0, 2.0, 0.5), 35.0
 ROUNDING = 1e-9
 
@@ -120,8 +122,7 @@ def test_pieces_of_a_nurbs_keep_to_the_reach() -> None:
     ],
 )
 def test_unusable_reaches(reach: Any, message: str) -> None:
-    with pytest.raises(gm.errors.InputError, match=message):
-        gm.sample("torus", 100, reach=reach)
+    refused(message, gm.sample, "torus", 100, reach=reach)
 
 
 def test_nothing_in_reach() -> None:
@@ -130,5 +131,4 @@ def test_nothing_in_reach() -> None:
 
 
 def test_grids_have_no_reach() -> None:
-    with pytest.raises(gm.errors.InputError, match='use "balanced"'):
-        gm.sample("torus", 100, density="aligned", reach=((0, 0, 1), 30.0))
+    refused('use "balanced"', gm.sample, "torus", 100, density="aligned", reach=((0, 0, 1), 30.0))

@@ -8,6 +8,8 @@ import pytest
 import sympy as sp
 from gaussmap.symbolic.surfaces import CATALOGUE
 
+from ..refusals import refused
+
 DEVELOPABLE = ("plane", "cylinder", "cone")
 CURVED = [name for name in gm.surfaces.names() if name not in DEVELOPABLE]
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
@@ -107,10 +109,7 @@ def test_counts_that_are_none(count):
         lambda: next(gm.sample_many([TORUS], count=count)),
     ]
     for call in calls:
-        with pytest.raises(
-            gm.errors.InputError, match="count must be a whole number of at least 1, not"
-        ):
-            call()
+        refused("count must be a whole number of at least 1, not", call)
 
 
 def test_normals_or_a_count_or_an_angle_or_a_coverage():
@@ -128,8 +127,7 @@ def test_normals_or_a_count_or_an_angle_or_a_coverage():
 
 def test_cells_are_for_surfaces():
     spline = gm.fit(TORUS, (4, 4))
-    with pytest.raises(gm.errors.InputError, match="this spline already has its cells"):
-        gm.sample(spline, count=5, cells=(4, 4))
+    refused("this spline already has its cells", gm.sample, spline, count=5, cells=(4, 4))
     assert gm.sample(spline, count=50).report.patches == 64
     assert gm.sample(TORUS, count=50, cells=(5, 4)).report.patches == 80
 

@@ -9,6 +9,8 @@ import sympy as sp
 from gaussmap.symbolic import curve, spline
 from gaussmap.symbolic.notation import scalar
 
+from ..refusals import refused
+
 t = sp.Symbol("t", real=True)
 n: Any = sp.Matrix(sp.symbols("n_x n_y", real=True))
 PLACES = [sp.Rational(-2, 3), sp.Integer(0), sp.Rational(2, 5), sp.Integer(1)]
@@ -136,8 +138,7 @@ def test_curvature_of_a_parabola_like_a_circle_is_positive():
 
 
 def test_a_wrong_writing_is_refused():
-    with pytest.raises(ArithmeticError, match="is not"):
-        curve._written(t, sp.diff(curve.SUPPORT, curve.A))
+    refused("is not", curve._written, t, sp.diff(curve.SUPPORT, curve.A), error=ArithmeticError)
 
 
 # --- the spline -----------------------------------------------------------------------------------
@@ -203,5 +204,4 @@ def test_the_coefficient_beyond_an_end_interpolates_it():
 
 def test_conditions_that_leave_a_choice_are_refused(monkeypatch):
     monkeypatch.setattr(curve, "pairwise", lambda pieces: [])
-    with pytest.raises(ArithmeticError, match="do not determine"):
-        curve.b_spline_net()
+    refused("do not determine", curve.b_spline_net, error=ArithmeticError)

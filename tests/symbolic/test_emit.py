@@ -73,14 +73,6 @@ TYPES |= {x.__name__: x for x in (vectors.Arc, vectors.Hessian, vectors.Patch)}
 EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root, pi=PI), **TYPES}
 
 
-def executed(source: str, names: dict[str, Any]) -> dict[str, Any]:
-    """Run source with exact literals and return all names it defines."""
-    tree = ExactLiterals().visit(ast.parse(source))
-    namespace = dict(names)
-    exec(compile(tree, "generated", "exec"), namespace)
-    return namespace
-
-
 def function_of(file: str, name: str, names: dict[str, Any]) -> Any:
     """Return a function of generated/ with exact literals; `make coverage` sees its lines run."""
     path = files.GENERATED / file

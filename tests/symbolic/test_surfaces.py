@@ -8,6 +8,8 @@ import pytest
 import sympy as sp
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface, u, v
 
+from ..refusals import refused
+
 NAMES = list(CATALOGUE)
 
 a, b, c, d = sp.symbols("a b c d", positive=True)
@@ -188,8 +190,7 @@ def test_one_sentence_each(surface):
 def test_what_is_no_surface_is_refused(change, complaint):
     if "domain" in change:
         change = {"domain": tuple(tuple(map(sp.sympify, ends)) for ends in change["domain"])}
-    with pytest.raises(ValueError, match=complaint):
-        replace(CATALOGUE["torus"], **change)
+    refused(complaint, replace, CATALOGUE["torus"], **change, error=ValueError)
 
 
 # --- position -------------------------------------------------------------------------------------

@@ -7,6 +7,8 @@ from typing import Any
 import gaussmap as gm
 import pytest
 
+from ..refusals import refused
+
 TORUS = gm.surfaces.torus()
 
 
@@ -34,15 +36,13 @@ def test_what_was_made_of_the_wrong_thing_is_refused_at_once() -> None:
         (lambda: replace(TORUS, trim=[]), "trim must be a Trim or None"),
         (lambda: replace(spline, coefficients=net[0]), r"shape \(m \+ 2, n \+ 2, 3\)"),
     ):
-        with pytest.raises(gm.errors.InputError, match=message):
-            make()
+        refused(message, make)
 
 
 def test_samples_in_the_place_of_normals(samples: gm.Samples) -> None:
     """As an array they are points."""
     for call in (lambda x: gm.sample(TORUS, normals=x), gm.directions.covering_radius):
-        with pytest.raises(gm.errors.InputError, match=r"not Samples; give its \.normals"):
-            call(samples)
+        refused(r"not Samples; give its \.normals", call, samples)
 
 
 def test_long_messages_keep_their_beginning_and_their_end() -> None:
@@ -55,10 +55,7 @@ def test_long_messages_keep_their_beginning_and_their_end() -> None:
 
 def test_angles_that_leave_no_triangle(samples: gm.Samples) -> None:
     for call in (samples.mesh, samples.weights):
-        with pytest.raises(
-            gm.errors.InputError, match="every triangle deviates by more than 1e-06"
-        ):
-            call(angle=1e-6)
+        refused("every triangle deviates by more than 1e-06", call, angle=1e-6)
 
 
 @pytest.mark.parametrize("name", ["\ud800.ply", "\udfff/x.npz"])

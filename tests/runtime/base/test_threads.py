@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from gaussmap.runtime.base.threads import over_ranges, thread_count
 
+from ...refusals import refused
+
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 16])
 @pytest.mark.parametrize(("total", "size"), [(0, 5), (1, 5), (5, 5), (6, 5), (23, 5), (23, 1)])
@@ -44,8 +46,7 @@ def test_an_error_ends_the_work(threads, error):
         time.sleep(0.002)
         done.append(first)
 
-    with pytest.raises(error, match="three"):
-        list(over_ranges(work, 1000, 1, threads))
+    refused("three", list, over_ranges(work, 1000, 1, threads), error=error)
     assert len(done) < 500
 
 
@@ -98,7 +99,4 @@ def test_how_many_threads(monkeypatch):
 
 @pytest.mark.parametrize("threads", [0, -1, 1.5, True, "2", np.nan, [2]])
 def test_threads_that_are_none(threads):
-    with pytest.raises(
-        gm.errors.InputError, match=r"^threads must be a whole number of at least 1"
-    ):
-        thread_count(threads)
+    refused(r"^threads must be a whole number of at least 1", thread_count, threads)

@@ -6,6 +6,8 @@ import pytest
 from gaussmap.runtime.density.progressive import progressive_order
 from scipy.spatial import KDTree
 
+from ...refusals import refused
+
 
 @pytest.fixture(scope="module")
 def waves() -> gm.Spline:
@@ -82,5 +84,4 @@ def test_samples_at_one_place() -> None:
 @pytest.mark.compiled
 def test_normals_are_needed(waves: gm.Spline) -> None:
     samples = gm.sample(waves, count=50, fields=("points",))
-    with pytest.raises(gm.errors.MissingFieldError, match="'normals'"):
-        samples.progressive()
+    refused("'normals'", samples.progressive, error=gm.errors.MissingFieldError)

@@ -10,6 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from ...refusals import refused
+
 Array = NDArray[np.float64]
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
@@ -193,5 +195,4 @@ def test_every_surface_point_has_a_sample_with_nearly_its_normal() -> None:
     [([], "shape"), ([[0, 0, 0]], "zero vector"), ([[0, np.nan, 0]], "NaN"), ([1, 0, 0], "shape")],
 )
 def test_normals_that_are_none(normals: Any, message: str) -> None:
-    with pytest.raises(gm.errors.InputError, match=message):
-        gm.directions.covering_radius(normals)
+    refused(message, gm.directions.covering_radius, normals)

@@ -12,6 +12,8 @@ from gaussmap.runtime.domain.trim import Trim
 from scipy.ndimage import binary_dilation
 from scipy.spatial import KDTree
 
+from ...refusals import refused
+
 UNIT = ((0.0, 1.0), (0.0, 1.0))
 OPEN: Boundary = (("open", "open"), ("open", "open"))
 SQUARE = np.array([(1.0, 1.0), (4.0, 1.0), (4.0, 4.0), (1.0, 4.0)])
@@ -226,8 +228,7 @@ class TestInput:
         ],
     )
     def test_unusable_arguments(self, arguments, words):
-        with pytest.raises(gm.errors.InputError, match=words):
-            torus().trimmed(**arguments)
+        refused(words, torus().trimmed, **arguments)
 
     @pytest.mark.parametrize(
         ("within", "words"),

@@ -10,6 +10,8 @@ import pytest
 from gaussmap.runtime.machine_code import building, entries, jit, kept, listing, shipped, signatures
 from numba import typeof, types
 
+from ...refusals import refused
+
 Pair = namedtuple("Pair", "first second")
 
 
@@ -52,8 +54,7 @@ def _is_importable() -> bool:
 
 
 def test_types_that_no_kernel_takes() -> None:
-    with pytest.raises(TypeError, match="in a signature of a kernel"):
-        signatures.as_json(types.unicode_type)
+    refused("in a signature of a kernel", signatures.as_json, types.unicode_type, error=TypeError)
 
 
 def test_the_list_is_as_it_would_be_written(

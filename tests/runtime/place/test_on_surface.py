@@ -9,6 +9,8 @@ import pytest
 from gaussmap.runtime.place.on_surface import geometry_of
 from scipy.spatial import KDTree
 
+from ...refusals import refused
+
 CELLS = (12, 12)
 NORMAL_ERROR = 1e-12  # radians
 FIELDS_ON_SPLINE = (
@@ -248,10 +250,8 @@ class TestArguments:
         spline = gm.fit("torus", CELLS)
         heights = np.hypot(*np.mgrid[-1:1:8j, -1:1:9j]) ** 3
         grid = gm.Surface.from_grid(heights, spacing=(1, 1), name="hill")
-        with pytest.raises(gm.errors.InputError, match="needs the surface, not its spline"):
-            gm.sample(spline, 10, on="surface")
-        with pytest.raises(gm.errors.InputError, match="'hill' was given by points"):
-            gm.sample(grid, 10, on="surface")
+        refused("needs the surface, not its spline", gm.sample, spline, 10, on="surface")
+        refused("'hill' was given by points", gm.sample, grid, 10, on="surface")
         assert gm.sample(grid, 50).report.on == gm.sample(spline, 50).report.on == "spline"
 
     @pytest.mark.parametrize("on", ["surfaces", "", 1])

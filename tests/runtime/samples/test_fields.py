@@ -12,6 +12,8 @@ from gaussmap.runtime.samples import fields as names
 from gaussmap.runtime.samples.fields import ARRAY_NAMES, FLOAT_NAMES
 from gaussmap.runtime.samples.samples import Samples
 
+from ...refusals import refused
+
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
 NORMALS = gm.icosphere(6)
 SPLINE = gm.fit(gm.surfaces.torus(), (12, 8))
@@ -115,8 +117,7 @@ def test_fields_that_are_none(fields, message):
         lambda: next(gm.sample_many([SPLINE], normals=NORMALS, fields=fields)),
         lambda: gm.sample_stream(SPLINE, normals=NORMALS, fields=fields),
     ):
-        with pytest.raises(error, match=message):
-            call()
+        refused(message, call, error=error)
 
 
 @pytest.mark.parametrize(
@@ -128,8 +129,7 @@ def test_types_that_are_none(dtype):
         lambda: next(gm.sample_many([SPLINE], normals=NORMALS, dtype=dtype)),
         lambda: gm.sample_stream(SPLINE, normals=NORMALS, dtype=dtype),
     ):
-        with pytest.raises(gm.errors.InputError, match="dtype must be float32 or float64, not"):
-            call()
+        refused("dtype must be float32 or float64, not", call)
 
 
 # --- samples of few fields ------------------------------------------------------------------------
@@ -172,8 +172,7 @@ def test_concatenation():
 
 
 def test_samples_need_one_array_and_one_type():
-    with pytest.raises(gm.errors.InputError, match="need at least one array"):
-        Samples(report=FULL.report)
+    refused("need at least one array", Samples, report=FULL.report)
     single = narrow(dtype=np.float32)
     with pytest.raises(gm.errors.InputError, match="points must be a float64 array"):
         Samples(points=single.points, normals=FULL.normals, report=FULL.report)
@@ -227,8 +226,7 @@ def test_vtp_of_few_fields(tmp_path):
     ],
 )
 def test_formats_say_what_they_need(tmp_path, suffix, fields, lacking):
-    with pytest.raises(gm.errors.InputError, match=f"a {suffix} file needs {lacking}; add"):
-        narrow(fields).write(tmp_path / f"a{suffix}")
+    refused(f"a {suffix} file needs {lacking}; add", narrow(fields).write, tmp_path / f"a{suffix}")
     assert not any(tmp_path.iterdir())
 
 
@@ -241,8 +239,7 @@ def test_a_file_that_lacks_what_it_promises(tmp_path):
         (b"comment gaussmap fields points uv\n", b"", "lacks the columns nx"),
     ):
         (tmp_path / "b.ply").write_bytes(whole.replace(old, new))
-        with pytest.raises(gm.errors.FileError, match=message):
-            gm.read_samples(tmp_path / "b.ply")
+        refused(message, gm.read_samples, tmp_path / "b.ply", error=gm.errors.FileError)
 
 
 # --- the command line -----------------------------------------------------------------------------

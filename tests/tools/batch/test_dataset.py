@@ -10,6 +10,7 @@ import pytest
 from gaussmap.tools.batch.folder import MANIFEST, POINTS, shard_path
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST_COLUMNS
 
+from ...refusals import refused
 from . import made
 
 pytest.importorskip("pyarrow")
@@ -71,8 +72,7 @@ def test_samples_of_a_part(dataset, part):
     ],
 )
 def test_parts_that_are_not_there(dataset, part, error, text):
-    with pytest.raises(error, match=text):
-        dataset.samples(part)
+    refused(text, dataset.samples, part, error=error)
 
 
 @pytest.mark.parametrize(
@@ -111,18 +111,13 @@ def test_files_that_are_damaged_or_missing(tmp_path):
     ):
         dataset.samples(0)
     points.write_bytes(points.read_bytes()[:-100])
-    with pytest.raises(gm.errors.FileError, match=r"cannot be read.*again"):
-        dataset.samples(0)
+    refused(r"cannot be read.*again", dataset.samples, 0, error=gm.errors.FileError)
     points.unlink()
-    with pytest.raises(gm.errors.FileError, match=r"cannot be read.*again"):
-        list(dataset.batches(8))
+    refused(r"cannot be read.*again", list, dataset.batches(8), error=gm.errors.FileError)
     manifest.write_bytes(b"")
-    with pytest.raises(gm.errors.FileError, match="cannot be read"):
-        dataset.summary()
-    with pytest.raises(gm.errors.FileError, match="no data set"):
-        gm.open_dataset(tmp_path / "points")
-    with pytest.raises(gm.errors.InputError, match="a path"):
-        gm.open_dataset(3)  # pyright: ignore[reportArgumentType]
+    refused("cannot be read", dataset.summary, error=gm.errors.FileError)
+    refused("no data set", gm.open_dataset, tmp_path / "points", error=gm.errors.FileError)
+    refused("a path", gm.open_dataset, 3)
 
 
 def test_reading_needs_no_numba(dataset):

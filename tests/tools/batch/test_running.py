@@ -15,6 +15,8 @@ import pytest
 from gaussmap.tools.batch.inputs import inputs_of
 from gaussmap.tools.batch.plan import file_name
 
+from ...refusals import refused
+
 pytest.importorskip("pyarrow")
 pytest.importorskip("cloudpickle")
 ASKED: dict[str, Any] = {"density": "uniform", "cells": (8, 8), "dtype": "float32"}
@@ -89,8 +91,7 @@ def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
     expected = gm.sample(parts[0], 100, fields=("points", "normals"), **ASKED)
     np.testing.assert_array_equal(data.samples(0).points, expected.points)
     np.testing.assert_array_equal(data.samples(0).normals, expected.normals)
-    with pytest.raises(gm.errors.InputError, match="count=100, not 101"):
-        gm.sample_many(parts, 101, out=out, progress=False, **ASKED)
+    refused("count=100, not 101", gm.sample_many, parts, 101, out=out, progress=False, **ASKED)
 
 
 def test_units_of_length_are_those_of_the_parts(tmp_path):
@@ -105,20 +106,13 @@ def test_arguments(tmp_path):
     def sampled(parts: Any = ("torus",), **known: Any) -> object:
         return gm.sample_many(parts, 10, **known)  # pyright: ignore[reportCallIssue]
 
-    with pytest.raises(gm.errors.InputError, match="for data sets"):
-        sampled(workers=2)
-    with pytest.raises(gm.errors.InputError, match="on_error"):
-        sampled(out=tmp_path / "a", on_error="skip")
-    with pytest.raises(gm.errors.InputError, match="part 1 must be a Surface"):
-        sampled(["torus", 5], out=tmp_path / "b", progress=False)
-    with pytest.raises(LookupError, match="compression"):
-        sampled(out=tmp_path / "c", compression="zip")
-    with pytest.raises(LookupError, match="suffix"):
-        sampled(out=tmp_path / "c", files="ply")
-    with pytest.raises(gm.errors.InputError, match="workers must be a whole number"):
-        sampled(out=tmp_path / "c", workers=0)
-    with pytest.raises(gm.errors.FileError, match="new or empty"):
-        sampled(out=tmp_path)
+    refused("for data sets", sampled, workers=2)
+    refused("on_error", sampled, out=tmp_path / "a", on_error="skip")
+    refused("part 1 must be a Surface", sampled, ["torus", 5], out=tmp_path / "b", progress=False)
+    refused("compression", sampled, out=tmp_path / "c", compression="zip", error=LookupError)
+    refused("suffix", sampled, out=tmp_path / "c", files="ply", error=LookupError)
+    refused("workers must be a whole number", sampled, out=tmp_path / "c", workers=0)
+    refused("new or empty", sampled, out=tmp_path, error=gm.errors.FileError)
     assert not (tmp_path / "c").exists()
 
 

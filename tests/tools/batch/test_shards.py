@@ -28,6 +28,8 @@ from gaussmap.tools.batch.folder import (
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow, manifest_table, rows_of
 from gaussmap.tools.batch.shards import Shard, part_path, read_part
 
+from ...refusals import refused
+
 pytest.importorskip("pyarrow")
 FIELDS = ("points", "normals", "on_surface", "face_index")
 COUNTS = {0: 3, 1: 0, 2: 70_000, 3: 70_000, 4: 5}
@@ -274,8 +276,7 @@ class TestFullDisk:
             for part in COUNTS:
                 add(shard, part)
             patched.setattr("pyarrow.parquet.write_table", full)
-            with pytest.raises(gm.errors.FileError, match="what is done is kept"):
-                shard.commit(list(COUNTS))
+            refused("what is done is kept", shard.commit, list(COUNTS), error=gm.errors.FileError)
         shard = Shard(path, 0, known)
         assert list(shard.rows) == list(COUNTS)  # nothing has to be done again
         shard.commit(list(COUNTS))
@@ -374,19 +375,15 @@ class TestFolder:
         for overwrite in (False, True):
             with pytest.raises(gm.errors.FileError, match="new or empty folder"):
                 create(tmp_path, settings(), overwrite)
-        with pytest.raises(gm.errors.FileError, match="is a file"):
-            create(tmp_path / "a", settings())
-        with pytest.raises(gm.errors.FileError, match="no data set"):
-            read_settings(tmp_path)
+        refused("is a file", create, tmp_path / "a", settings(), error=gm.errors.FileError)
+        refused("no data set", read_settings, tmp_path, error=gm.errors.FileError)
 
     @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"format": 99}', "\0"])
     def test_damaged_settings(self, tmp_path, text):
         path, known = folder(tmp_path)
         (path / "dataset.json").write_text(text)
-        with pytest.raises(gm.errors.FileError, match="cannot be used"):
-            create(path, known)
-        with pytest.raises(gm.errors.FileError, match="not of gaussmap"):
-            create(path, known, overwrite=True)
+        refused("cannot be used", create, path, known, error=gm.errors.FileError)
+        refused("not of gaussmap", create, path, known, overwrite=True, error=gm.errors.FileError)
         assert (path / POINTS).exists()
 
     @pytest.mark.parametrize("overwrite", [False, True])

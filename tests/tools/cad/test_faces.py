@@ -9,6 +9,8 @@ import pytest
 from gaussmap.tools.cad.faces import face_surface, own_parameters
 from gaussmap.tools.cad.records import Geometry, Net
 
+from ...refusals import refused
+
 TURN = 2.0 * math.pi
 OPEN, PERIODIC = ("open", "open"), ("periodic", "periodic")
 Z = np.array([0.36, 0.48, 0.8])
@@ -293,12 +295,9 @@ def test_surfaces_of_faces_are_pickled(name):
 
 
 def test_what_is_no_surface_is_refused():
-    with pytest.raises(gm.errors.InputError, match="'unknown' has no surface"):
-        face_surface(Geometry("unknown"), ((0, 1), (0, 1)))
-    with pytest.raises(gm.errors.InputError, match="outside its surface"):
-        face_surface(waves(), ((0, 1), (7, 8)))
-    with pytest.raises(gm.errors.InputError, match="empty or infinite"):
-        face_surface(GEOMETRIES["plane"][0], ((0, 0), (0, 1)))
+    refused("'unknown' has no surface", face_surface, Geometry("unknown"), ((0, 1), (0, 1)))
+    refused("outside its surface", face_surface, waves(), ((0, 1), (7, 8)))
+    refused("empty or infinite", face_surface, GEOMETRIES["plane"][0], ((0, 0), (0, 1)))
 
 
 def test_a_whole_domain_ends_at_the_last_knot():

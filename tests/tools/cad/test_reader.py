@@ -12,6 +12,8 @@ import gaussmap as gm
 import pytest
 from gaussmap.tools.cad import reader
 
+from ...refusals import refused
+
 
 @pytest.fixture
 def installed(monkeypatch):
@@ -32,13 +34,10 @@ def test_bad_files_are_refused_in_a_sentence(content, reason, tmp_path, installe
 
 
 def test_paths_that_are_no_files_are_refused(tmp_path):
-    with pytest.raises(gm.errors.FileError, match="is a folder"):
-        gm.read_cad(tmp_path)
-    with pytest.raises(gm.errors.FileError, match="does not exist"):
-        gm.read_cad(tmp_path / "part.step")
+    refused("is a folder", gm.read_cad, tmp_path, error=gm.errors.FileError)
+    refused("does not exist", gm.read_cad, tmp_path / "part.step", error=gm.errors.FileError)
     os.mkfifo(tmp_path / "pipe.step")
-    with pytest.raises(gm.errors.FileError, match="is no file"):
-        gm.read_cad(tmp_path / "pipe.step")
+    refused("is no file", gm.read_cad, tmp_path / "pipe.step", error=gm.errors.FileError)
 
 
 @pytest.mark.parametrize(
@@ -54,16 +53,14 @@ def test_paths_that_are_no_files_are_refused(tmp_path):
     ],
 )
 def test_arguments_are_checked(arguments, tmp_path):
-    with pytest.raises(gm.errors.InputError, match=next(iter(arguments))):
-        gm.read_cad(tmp_path / "part.step", **arguments)
+    refused(next(iter(arguments)), gm.read_cad, tmp_path / "part.step", **arguments)
 
 
 def test_without_open_cascade_the_extra_is_named(tmp_path, monkeypatch):
     path = tmp_path / "part.step"
     path.write_bytes(b"ISO-10303-21;")
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(gm.errors.MissingExtraError, match=r"gaussmap\[cad\]"):
-        gm.read_cad(path)
+    refused(r"gaussmap\[cad\]", gm.read_cad, path, error=gm.errors.MissingExtraError)
 
 
 def sleeping(code: str) -> list[str]:
@@ -90,8 +87,7 @@ def test_a_process_that_crashes_is_an_error(tmp_path, installed, monkeypatch):
     path.write_bytes(b"ISO-10303-21;")
     code = "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
     monkeypatch.setattr(reader, "command_of_reader", lambda request: sleeping(code))
-    with pytest.raises(gm.errors.FileError, match=r"crash \(SIGSEGV\)"):
-        gm.read_cad(path)
+    refused(r"crash \(SIGSEGV\)", gm.read_cad, path, error=gm.errors.FileError)
 
 
 def test_an_interruption_leaves_nothing_behind(tmp_path, installed, monkeypatch):

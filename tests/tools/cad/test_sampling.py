@@ -16,6 +16,8 @@ from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import PartSpace, space_of
 from scipy.spatial import ConvexHull, cKDTree
 
+from ...refusals import refused
+
 
 @pytest.fixture(scope="module")
 def cylinder(made) -> Part:
@@ -219,8 +221,7 @@ def test_an_angle_that_takes_millions_of_samples_is_refused(made):
 )
 def test_narrow_faces_are_blamed_where_they_are(made, spheres, said):
     """An angle of 0.02° takes too many samples of every part."""
-    with pytest.raises(gm.errors.InputError, match=said):
-        gm.sample(needle(made, 0.5 / spheres), angle=0.02)
+    refused(said, gm.sample, needle(made, 0.5 / spheres), angle=0.02)
 
 
 def test_prescribed_normals(plates):
@@ -246,8 +247,7 @@ def test_a_part_has_a_map(plates):
     assert (known.count(normals) == 3).all()
     assert (known.degree(normals) == 1).all()  # of the sphere; the torus has 0
     assert found.points.tobytes() == known.points(normals, threads=3).points.tobytes()
-    with pytest.raises(gm.GaussmapError, match=r"face\.surface"):
-        known.folds()
+    refused(r"face\.surface", known.folds, error=gm.GaussmapError)
 
 
 def test_weights_add_up_to_the_areas(plates):
@@ -332,23 +332,19 @@ def test_failed_faces_are_left_out(made):
     ],
 )
 def test_unusable_arguments(cylinder, arguments, match):
-    with pytest.raises(gm.errors.InputError, match=match):
-        gm.sample(cylinder, **arguments)
+    refused(match, gm.sample, cylinder, **arguments)
 
 
 def test_samples_that_lack_what_is_needed(cylinder):
     few = gm.sample(cylinder, 20, fields=("points", "normals"))
-    with pytest.raises(gm.errors.MissingFieldError, match="weights of a part need"):
-        few.weights()
+    refused("weights of a part need", few.weights, error=gm.errors.MissingFieldError)
     arrays = {"points": few.points, "normals": few.normals}
     for name in arrays:
         unknown = {**arrays, name: np.where(np.arange(20)[:, None] == 7, np.nan, arrays[name])}
         bad = gm.Samples(**unknown, report=few.report, surface=cylinder)
-        with pytest.raises(gm.errors.InputError, match=f"{name} holds NaN"):
-            bad.normal_deviation()
+        refused(f"{name} holds NaN", bad.normal_deviation)
         if name == "points":
-            with pytest.raises(gm.errors.InputError, match="points holds NaN"):
-                bad.coverage()
+            refused("points holds NaN", bad.coverage)
 
 
 def test_parts_without_faces(made):
@@ -368,10 +364,8 @@ def test_samples_in_files_and_other_methods(cylinder, tmp_path):
     assert few.surface is cylinder
     assert len(gm.Samples.concatenate([few, few]).solid_index) == 10
     assert pickle.loads(pickle.dumps(samples)).surface.name == "cylinder"
-    with pytest.raises(gm.errors.InputError, match="does not say how its edges go around"):
-        samples.mesh()
-    with pytest.raises(gm.errors.InputError, match="of CAD parts only"):
-        gm.sample("torus", 10, cells=(8, 8), fields=("face_index",))
+    refused("does not say how its edges go around", samples.mesh)
+    refused("of CAD parts only", gm.sample, "torus", 10, cells=(8, 8), fields=("face_index",))
     assert gm.sample("torus", 10, cells=(8, 8)).face_index is None
     chosen = gm.sample(cylinder, 10, fields=("points", "solid_index"))
     assert chosen.fields == ("points", "solid_index")
@@ -482,8 +476,7 @@ def test_flat_faces_get_their_share(parts):
 
 def test_a_coverage_that_no_number_of_samples_has(parts) -> None:
     """Its inverse overflows."""
-    with pytest.raises(gm.errors.InputError, match="would have to be searched in more than"):
-        gm.sample(parts.box(), coverage=1e-320)
+    refused("would have to be searched in more than", gm.sample, parts.box(), coverage=1e-320)
 
 
 def test_samples_beside_borders_are_inside(plates):

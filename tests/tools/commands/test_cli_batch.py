@@ -11,6 +11,8 @@ import pytest
 from gaussmap.tools.commands.cli import main
 from gaussmap.tools.commands.part_lists import listed
 
+from ...refusals import refused
+
 pytest.importorskip("pyarrow")
 SMALL = ["--cells", "8", "8", "--count", "50", "--density", "uniform", "--float32"]
 
@@ -144,8 +146,7 @@ def test_lists() -> None:
     Path("list").write_text("torus\n # no\n../../etc/passwd\n", "utf-8")
     assert listed([], "list") == ["torus", "../../etc/passwd"]
     Path("list").write_bytes(b"\xff\xfe")
-    with pytest.raises(gm.errors.FileError, match="UTF-8"):
-        listed([], "list")
+    refused("UTF-8", listed, [], "list", error=gm.errors.FileError)
     assert listed([], None) == []
 
 

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ...refusals import refused
+
 pytestmark = pytest.mark.compiled
 
 Array = NDArray[np.float64]
@@ -142,7 +144,5 @@ def test_splines_have_folds_on_edges_of_patches():
 
 def test_what_has_no_border_known_is_refused():
     hidden = gm.surfaces.wavy_graph().trimmed(within=lambda u, v: u > v)
-    with pytest.raises(gm.GaussmapError, match="trim it by loops"):
-        gm.GaussMap(hidden).border_image()
-    with pytest.raises(gm.GaussmapError, match="tolerance"):
-        gm.GaussMap("torus").folds(tolerance=1.0)
+    refused("trim it by loops", gm.GaussMap(hidden).border_image, error=gm.GaussmapError)
+    refused("tolerance", gm.GaussMap("torus").folds, tolerance=1.0, error=gm.GaussmapError)

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from gaussmap.tools.meshes.rays import unobstructed
 
+from ...refusals import refused
+
 trimesh = pytest.importorskip("trimesh")
 pytest.importorskip("rtree")
 pytestmark = pytest.mark.compiled
@@ -72,12 +74,9 @@ def test_what_is_refused(parts, monkeypatch):
     samples = gm.sample(parts.box(), 60)
     open_box = trimesh.creation.box()
     open_box.update_faces(np.arange(12) > 0)
-    with pytest.raises(gm.errors.InputError, match="this one is open"):
-        samples.unobstructed(1.0, by=open_box)
-    with pytest.raises(gm.errors.InputError, match="distance must be"):
-        samples.unobstructed(-1.0)
-    with pytest.raises(gm.errors.InputError, match=r"trimesh\.Trimesh, not str"):
-        samples.unobstructed(1.0, by="table")  # pyright: ignore[reportArgumentType]
+    refused("this one is open", samples.unobstructed, 1.0, by=open_box)
+    refused("distance must be", samples.unobstructed, -1.0)
+    refused(r"trimesh\.Trimesh, not str", samples.unobstructed, 1.0, by="table")
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(gm.errors.MissingExtraError, match=r"needs trimesh.*gaussmap\[rays\]"):
         samples.unobstructed(1.0)

@@ -4,6 +4,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+from ...refusals import refused
+
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 
 
@@ -71,8 +73,7 @@ def test_areas_that_numbers_do_not_hold_are_refused() -> None:
     for scale, said in ((2.0**540, "too large"), (2.0**-540, "too small"), (2.0**-450, "")):
         samples = gm.sample(gm.surfaces.torus(major=scale, minor=0.35 * scale), 300, cells=(16, 16))
         if said:
-            with pytest.raises(gm.errors.SurfaceError, match=f"are {said} for float64"):
-                samples.weights()
+            refused(f"are {said} for float64", samples.weights, error=gm.errors.SurfaceError)
         else:
             np.testing.assert_allclose(samples.weights() / scale / scale, usual, rtol=1e-9)
 

@@ -20,6 +20,8 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from mpl_toolkits.mplot3d.art3d import Path3DCollection
 
+from ...refusals import refused
+
 pytestmark = pytest.mark.compiled  # every picture evaluates a fine mesh
 
 
@@ -75,8 +77,7 @@ def test_colours_by_a_column(color: str, label: str, samples: gm.Samples) -> Non
 def test_colours_by_an_array(samples: gm.Samples) -> None:
     values = np.arange(len(samples))
     assert np.isin(drawn(samples.plot(color=values)), values).all()
-    with pytest.raises(gm.errors.InputError, match="a number for each of the 300 samples"):
-        samples.plot(color=values[:5])
+    refused("a number for each of the 300 samples", samples.plot, color=values[:5])
 
 
 def test_the_view_decides_what_is_visible(samples: gm.Samples) -> None:
@@ -96,8 +97,7 @@ def test_axes_of_ones_own(samples: gm.Samples) -> None:
     assert len(flat.collections) > 2
     assert len(figure.axes) == 2
     for bad in (flat, (solid, solid), (), (solid, flat, flat), (1,)):
-        with pytest.raises(gm.errors.InputError, match="axes must be three-dimensional"):
-            samples.plot(axes=bad)  # pyright: ignore[reportArgumentType]
+        refused("axes must be three-dimensional", samples.plot, axes=bad)
 
 
 @pytest.mark.slow
@@ -105,8 +105,7 @@ def test_normals_without_samples(samples: gm.Samples) -> None:
     found = gm.sample("elliptic_paraboloid", normals=gm.icosphere(4), cells=(16, 16))
     assert not any("no sample" in x for x in texts(found.plot()))
     assert any("no sample" in x for x in texts(found.plot(normals=gm.icosphere(4))))
-    with pytest.raises(gm.errors.InputError, match="too few normals"):
-        samples.plot(normals=[[0, 0, 1]])
+    refused("too few normals", samples.plot, normals=[[0, 0, 1]])
 
 
 def test_an_offset_is_drawn_where_it_is(samples: gm.Samples) -> None:
@@ -172,18 +171,14 @@ def test_errors(samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyP
         gm.errors.UnknownNameError, match="no column 'suport'; did you mean support"
     ):
         samples.plot(color="suport")
-    with pytest.raises(gm.errors.InputError, match="view"):
-        samples.plot(view=(1, 2, 3))
-    with pytest.raises(gm.errors.InputError, match="samples must be Samples"):
-        gm.plot("sphere", 5)  # pyright: ignore[reportArgumentType]
+    refused("view", samples.plot, view=(1, 2, 3))
+    refused("samples must be Samples", gm.plot, "sphere", 5)
     samples.write(tmp_path / "a.npz")
     read = gm.read_samples(tmp_path / "a.npz")
-    with pytest.raises(gm.errors.InputError, match="do not hold their surface"):
-        read.plot()
+    refused("do not hold their surface", read.plot)
     assert len(drawn(read.plot(samples.spline))) > 100
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
-        samples.plot()
+    refused(r'pip install "gaussmap\[plot\]"', samples.plot, error=gm.errors.MissingExtraError)
 
 
 @pytest.mark.slow

@@ -18,6 +18,8 @@ pytest.importorskip("matplotlib")
 from matplotlib import colors, image
 from matplotlib.figure import Figure
 
+from ...refusals import refused
+
 pytestmark = pytest.mark.compiled  # every picture evaluates a fine mesh
 
 SIZE = (920, 1800, 4)
@@ -236,14 +238,10 @@ def test_bad_targets(torus: gm.Spline, tmp_path: Path) -> None:
 
 def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
     path = tmp_path / "a.png"
-    with pytest.raises(gm.errors.InputError, match="already has its cells"):
-        plotted(torus, path, count=50, cells=(8, 8))
-    with pytest.raises(gm.errors.InputError, match="say how many samples"):
-        plotted(torus, path)
-    with pytest.raises(gm.errors.InputError, match="no samples to draw"):
-        gm.sample(torus, normals=[[0, 0, 1]])[:0].plot()
-    with pytest.raises(gm.errors.InputError, match="too few normals"):
-        gm.sample(torus, count=50).plot(normals=[(0, 0, 1)])
+    refused("already has its cells", plotted, torus, path, count=50, cells=(8, 8))
+    refused("say how many samples", plotted, torus, path)
+    refused("no samples to draw", gm.sample(torus, normals=[[0, 0, 1]])[:0].plot)
+    refused("too few normals", gm.sample(torus, count=50).plot, normals=[(0, 0, 1)])
     assert not path.exists()
 
 

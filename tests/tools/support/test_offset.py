@@ -11,6 +11,8 @@ import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 from numpy.typing import NDArray
 
+from ...refusals import refused
+
 Array = NDArray[np.float64]
 EPS = 2.0**-52
 MAJOR, MINOR = 2.0, 0.5
@@ -242,14 +244,12 @@ def test_fields_that_are_there_are_moved(names: tuple[str, ...]) -> None:
     ],
 )
 def test_fields_that_are_needed(names: tuple[str, ...], missing: str) -> None:
-    with pytest.raises(gm.errors.MissingFieldError, match=missing):
-        only(*names).offset(0.1)
+    refused(missing, only(*names).offset, 0.1, error=gm.errors.MissingFieldError)
 
 
 @pytest.mark.parametrize("distance", [np.nan, np.inf, "1", None, [1.0, 2.0], 1j])
 def test_distances_that_are_none(distance: Any) -> None:
-    with pytest.raises(gm.errors.InputError, match=r"^distance must be a finite number, not "):
-        exact_torus().offset(distance)
+    refused(r"^distance must be a finite number, not ", exact_torus().offset, distance)
 
 
 def test_no_samples_and_other_ways_to_get_them() -> None:

@@ -12,6 +12,8 @@ from gaussmap.symbolic import BezierTriangle
 from gaussmap.symbolic.expression import NORMAL
 from numpy.typing import NDArray
 
+from ...refusals import refused
+
 Array = NDArray[np.float64]
 EPS = 2.0**-52
 # Control points of formula (12) of the paper, and a patch with both kinds of curvature.
@@ -300,11 +302,9 @@ FLAT = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0.5, 0.5, 0], [0.5, 0, 0], [0, 0.5, 0]
     ],
 )  # fmt: skip
 def test_what_is_no_patch(net: Any, message: str) -> None:
-    with pytest.raises(gm.errors.InputError, match=message):
-        gm.SupportFunction.of_patch(net)
+    refused(message, gm.SupportFunction.of_patch, net)
 
 
 def test_a_patch_folded_into_a_plane_has_no_support_function() -> None:
     folded = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]]
-    with pytest.raises(gm.errors.InputError, match="no regular point"):
-        gm.SupportFunction.of_patch(folded)
+    refused("no regular point", gm.SupportFunction.of_patch, folded)

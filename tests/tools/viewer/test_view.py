@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 from gaussmap.tools.viewer import view as module
 
+from ...refusals import refused
+
 pytest.importorskip("plotly")
 pytestmark = pytest.mark.compiled
 
@@ -149,10 +151,8 @@ def test_the_command(
 def test_what_is_refused(
     samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(gm.errors.UnknownNameError, match=r"\.html"):
-        samples.view(tmp_path / "torus.png")
-    with pytest.raises(gm.errors.InputError, match="no samples to view"):
-        samples[:0].view(tmp_path / "none.html")
+    refused(r"\.html", samples.view, tmp_path / "torus.png", error=gm.errors.UnknownNameError)
+    refused("no samples to view", samples[:0].view, tmp_path / "none.html")
     with pytest.raises(gm.errors.InputError, match=r"at most 50,000 samples, not 64,000"):
         samples[np.arange(len(samples)).repeat(200)].view(tmp_path / "many.html")
     monkeypatch.setitem(sys.modules, "plotly", None)
