@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 from gaussmap.runtime.base.threads import over_ranges, thread_count
 
+from ...products import covering
 from ...refusals import refused
 
 
-@pytest.mark.parametrize("threads", [1, 2, 3, 16])
-@pytest.mark.parametrize(("total", "size"), [(0, 5), (1, 5), (5, 5), (6, 5), (23, 5), (23, 1)])
-@pytest.mark.parametrize("progress", [False, True])
+@covering(
+    threads=[1, 2, 3, 16],
+    progress=[False, True],
+    **{"total, size": [(0, 5), (1, 5), (5, 5), (6, 5), (23, 5), (23, 1)]},
+)
 def test_ranges_come_in_order(threads, total, size, progress):
     def work(first, last):
         time.sleep(0.001 * (first % 3))  # so that later ranges end earlier
@@ -35,8 +38,7 @@ def test_one_thread_is_the_calling_one():
     assert names == [threading.current_thread()] * 4
 
 
-@pytest.mark.parametrize("threads", [1, 2])
-@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, gm.errors.InputError])
+@covering(threads=[1, 2], error=[ValueError, KeyboardInterrupt, gm.errors.InputError])
 def test_an_error_ends_the_work(threads, error):
     done = []
 

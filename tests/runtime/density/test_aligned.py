@@ -10,6 +10,8 @@ import pytest
 from gaussmap.runtime.density.lines import Axis
 from gaussmap.runtime.density.steps import Forms, equal_steps, steps_for_count
 
+from ...products import covering
+
 CELLS = (16, 16)
 
 
@@ -67,8 +69,7 @@ def test_lines_are_half_a_step_from_breaks():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("count", [1, 2, 7, 500])
-@pytest.mark.parametrize("on", ["surface", "spline"])
+@covering(count=[1, 2, 7, 500], on=["surface", "spline"])
 def test_a_count_is_met_and_lines_are_lines(count: int, on: str):
     samples = gm.sample("torus", count, density="aligned", cells=CELLS, on=on)
     assert len(samples) == count

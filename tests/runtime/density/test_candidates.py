@@ -5,6 +5,8 @@ import pytest
 from gaussmap.runtime.density.candidates import Candidates
 from numpy.typing import NDArray
 
+from ...products import covering
+
 Array = NDArray[np.float64]
 
 
@@ -25,9 +27,7 @@ def squares(rows: Array, samples: Array) -> Array:
     return np.where(same, (difference**2).sum(axis=2) * rows[:, 6:7], np.inf)
 
 
-@pytest.mark.parametrize("spread", [0.0, 3.0, 12.0])
-@pytest.mark.parametrize("radius", [0.05, 0.3])
-@pytest.mark.parametrize("made", [0.5, 1.0, 2.0])
+@covering(spread=[0.0, 3.0, 12.0], radius=[0.05, 0.3], made=[0.5, 1.0, 2.0])
 def test_places_know_the_nearest_sample_within_a_radius(spread, radius, made):
     rows, samples = rows_of(600, 1, spread), rows_of(80, 2, 0.0)[:, :6]
     samples[::2, :3] += 0.3 * (samples[::2, :3] - rows[:, :3].mean(axis=0))  # some outside the box

@@ -4,10 +4,13 @@ import gaussmap as gm
 import pytest
 from gaussmap.runtime.density import chosen_normals
 
+from ...products import covering
+
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"])
-@pytest.mark.parametrize("count", [1000, 1700, 3000])
+@covering(
+    name=["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"], count=[1000, 1700, 3000]
+)
 def test_a_count_is_met_within_a_hundredth(name, count):
     samples = gm.sample(name, count, density="gauss", cells=(24, 24), on="spline")
     assert abs(len(samples) - count) <= count / 100

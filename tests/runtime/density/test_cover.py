@@ -7,6 +7,8 @@ from gaussmap.runtime.density.cover import Cover
 from gaussmap.runtime.density.methods import space_on
 from gaussmap.runtime.density.space import Space
 
+from ...products import covering
+
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "plane"])
@@ -25,8 +27,7 @@ def test_what_is_filled_up_is_far_from_all_samples(name):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("density", ["uniform", "balanced"])
-@pytest.mark.parametrize("name", ["torus", "catenoid", "wavy_graph"])
+@covering(density=["uniform", "balanced"], name=["torus", "catenoid", "wavy_graph"])
 def test_candidates_for_a_count_are_evaluated_once(name, density, monkeypatch):
     """The radius that a count leaves is known well enough before."""
     taken, cut = [], Space.cut
@@ -41,8 +42,7 @@ def test_candidates_for_a_count_are_evaluated_once(name, density, monkeypatch):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("width", [1e-9, 1e-4])
-@pytest.mark.parametrize("count", [10, 50, 200])
+@covering(width=[1e-9, 1e-4], count=[10, 50, 200])
 def test_samples_of_a_narrow_strip_stand_in_a_row(width, count, monkeypatch):
     """As many places as for other surfaces are looked at: the area says nothing of the gaps."""
     looked_at = []

@@ -11,6 +11,8 @@ from gaussmap.runtime.density import candidates, space
 from gaussmap.runtime.density.methods import space_on
 from numpy.typing import NDArray
 
+from ...products import covering
+
 DENSITIES = ["balanced", "uniform", 0.5, 1.0, 3.0]
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 # Dents of a plane, so that all kinds of points are there, and flat parts between them.
@@ -210,8 +212,10 @@ def test_arrays_and_splines_are_left_alone():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("fields", [("points",), ("normal_index", "uv"), ("normals", "support")])
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@covering(
+    fields=[("points",), ("normal_index", "uv"), ("normals", "support")],
+    dtype=[np.float32, np.float64],
+)
 def test_fields_and_types(fields, dtype):
     spline = gm.fit(TORUS, (8, 8))
     whole = gm.sample(spline, count=200)

@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density.fibonacci_lattice import Lattice
 
+from ...products import covering
+
 ULP = 2.0**-52
 OPEN_NAMES = ["elliptic_paraboloid", "wavy_graph", "monkey_saddle", "hyperbolic_paraboloid"]
 FULL_NAMES = ["torus", "sphere", "moebius_band", "catenoid", "ellipsoid_patch"]
@@ -58,8 +60,7 @@ def test_a_surface_without_normals_gets_the_whole_sphere():
     assert Lattice.around(gm.fit(point, (4, 4))).cosine == -1.0
 
 
-@pytest.mark.parametrize("cosine", [0.999999, 0.99, 0.7, 0.3, -1.0])
-@pytest.mark.parametrize("count", [1, 2, 10, 1000])
+@covering(cosine=[0.999999, 0.99, 0.7, 0.3, -1.0], count=[1, 2, 10, 1000])
 def test_normals_fill_the_cap_evenly(cosine, count):
     axis = np.array([2.0, -3.0, 6.0]) / 7.0 if cosine > 0 else np.array([0.0, 0.0, 1.0])
     lattice = Lattice(axis, cosine)

@@ -12,6 +12,7 @@ from gaussmap.runtime.density.space import Space
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from ...products import covering
 from ...refusals import refused
 
 pytestmark = pytest.mark.compiled
@@ -55,8 +56,7 @@ def even(name: str, cells: tuple[int, int]) -> tuple[int, int]:
 # --- coverage -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("cells", [(3, 3), (24, 20)])
-@pytest.mark.parametrize("name", gm.surfaces.names())
+@covering(cells=[(3, 3), (24, 20)], name=gm.surfaces.names())
 def test_coverage_is_kept_and_reported(name, cells):
     spline = gm.fit(gm.surfaces.surface(name), even(name, cells))
     points, _ = places(spline)
@@ -385,9 +385,7 @@ CURVES = {
 }
 
 
-@pytest.mark.parametrize("shift", [0.0, 1e6])
-@pytest.mark.parametrize("name", CURVES)
-@pytest.mark.parametrize("asked", [{"angle": 10.0}, {"coverage": 0.1}, {"count": 100}])
+@covering(shift=[0.0, 1e6], name=CURVES, asked=[{"angle": 10.0}, {"coverage": 0.1}, {"count": 100}])
 def test_surfaces_whose_area_is_rounding(name, shift, asked):
     def f(u, v):
         return np.stack(np.broadcast_arrays(*CURVES[name](u, v), u, v)[:3], axis=-1) + shift

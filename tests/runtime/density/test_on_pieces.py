@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density.on_pieces import cells_of_piece
 
+from ...products import covering
 from ...refusals import refused
 
 CELLS = (24, 24)
@@ -88,8 +89,7 @@ def test_patches_are_numbered_through_all_pieces():
     assert samples.report.surface == "barrel"
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 100, 257])
-@pytest.mark.parametrize("density", ["balanced", "uniform", 0.5])
+@covering(count=[1, 2, 3, 100, 257], density=["balanced", "uniform", 0.5])
 def test_the_count_is_exact(count, density):
     samples = gm.sample(barrel(), count, density=density, cells=CELLS)
     assert len(samples) == samples.report.samples == count
@@ -105,8 +105,7 @@ def test_flat_pieces_share_a_count_by_their_areas(factor):
         assert piece_of(samples, 1.0).sum() == pytest.approx(200, rel=0.05)
 
 
-@pytest.mark.parametrize("factor", [1e-3, 1.0, 1e3])
-@pytest.mark.parametrize("density", ["uniform", "balanced", 1.5])
+@covering(factor=[1e-3, 1.0, 1e3], density=["uniform", "balanced", 1.5])
 def test_pieces_of_other_sizes_share_a_count_by_the_target_density(density, factor):
     """Cylinders of radius r: the areas go as r, and the integrals of κ² as 1/r.
 

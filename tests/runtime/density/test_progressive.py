@@ -6,6 +6,7 @@ import pytest
 from gaussmap.runtime.density.progressive import progressive_order
 from scipy.spatial import KDTree
 
+from ...products import covering
 from ...refusals import refused
 
 
@@ -55,8 +56,7 @@ def test_the_samples_are_the_same_in_another_order() -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
-@pytest.mark.parametrize("move", [0.0, 1e6])
+@covering(scale=[1e-12, 1.0, 1e12], move=[0.0, 1e6])
 def test_size_and_place_do_not_matter(waves: gm.Spline, scale: float, move: float) -> None:
     samples = gm.sample(waves, count=300)
     order = progressive_order(scale * (samples.points + move), samples.normals)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from gaussmap.runtime.directions.regions import angles_between
 
+from ...products import covering
 from ...refusals import refused
 
 NORMALS = gm.fibonacci(20_000)
@@ -32,8 +33,7 @@ def test_angles_are_accurate_near_0_and_180(degrees: float) -> None:
 # --- caps -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("angle", [1.0, 30.0, 90.0, 150.0])
-@pytest.mark.parametrize("axis", [[0, 0, 1], [-3, 0, 0], [1, 2, -3]])
+@covering(angle=[1.0, 30.0, 90.0, 150.0], axis=[[0, 0, 1], [-3, 0, 0], [1, 2, -3]])
 def test_a_cap_has_its_share(angle: float, axis: Any) -> None:
     part = gm.directions.cap(NORMALS, axis, angle)
     cosines = part @ axis / np.linalg.norm(axis)

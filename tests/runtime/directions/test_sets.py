@@ -9,6 +9,7 @@ from gaussmap.runtime.directions.unit import as_normals, normalized
 from hypothesis import given
 from hypothesis import strategies as st
 
+from ...products import covering
 from ...refusals import refused
 
 ULP = 2.0**-52
@@ -87,8 +88,7 @@ def test_icosphere_begins_with_vertices_then_edges():
 MAKERS = [gm.icosphere, gm.fibonacci, gm.directions.healpix, gm.directions.random]
 
 
-@pytest.mark.parametrize("make", MAKERS)
-@pytest.mark.parametrize("number", [0, -1, 1.0, True, "4", None, np.nan, [4], 4j])
+@covering(make=MAKERS, number=[0, -1, 1.0, True, "4", None, np.nan, [4], 4j])
 def test_numbers_that_are_none(make, number):
     refused(r"must be a whole number of at least 1, not ", make, number)
 

@@ -12,6 +12,7 @@ from gaussmap.runtime.domain.trim import Trim
 from scipy.ndimage import binary_dilation
 from scipy.spatial import KDTree
 
+from ...products import covering
 from ...refusals import refused
 
 UNIT = ((0.0, 1.0), (0.0, 1.0))
@@ -291,8 +292,7 @@ class TestSampling:
         assert promised is not None
         assert np.degrees(2 * np.arcsin(chords / 2)) <= promised <= 8.0
 
-    @pytest.mark.parametrize("density", ["balanced", "uniform", 0.5, "gauss"])
-    @pytest.mark.parametrize("name", PARTS)
+    @covering(density=["balanced", "uniform", 0.5, "gauss"], name=PARTS)
     def test_count_is_met(self, name, density):
         spline = gm.fit(PARTS[name], (12, 12))
         samples = gm.sample(spline, 300, density=density, fields=("points", "patch_index"))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ...products import covering
 from ...refusals import refused
 
 Array = NDArray[Any]
@@ -49,8 +50,7 @@ def largest_distance(surface: gm.Surface, spline: gm.Spline) -> float:
 # --- tolerances -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-6])
-@pytest.mark.parametrize("z", [fillet, bump, lambda u, v: fillet(v, u)])
+@covering(tolerance=[1e-2, 1e-4, 1e-6], z=[fillet, bump, lambda u, v: fillet(v, u)])
 def test_tolerance_holds_everywhere(tolerance: float, z) -> None:
     surface = graph(z)
     spline = gm.fit(surface, tolerance=tolerance)

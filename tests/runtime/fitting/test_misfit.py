@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ...products import covering
+
 Array = NDArray[np.float64]
 GENERATOR = np.random.default_rng(3)
 
@@ -74,8 +76,7 @@ def test_misfit_is_what_many_random_places_show(cells) -> None:
     assert misfit.angle == pytest.approx(largest, rel=0.12)
 
 
-@pytest.mark.parametrize("along", [0, 1])
-@pytest.mark.parametrize("cells", [(8, 8), (64, 64), (50, 43)])
+@covering(along=[0, 1], cells=[(8, 8), (64, 64), (50, 43)])
 def test_fillet_of_one_percent_is_seen(along: int, cells) -> None:
     spline = gm.fit(fillet(along), cells)
     places = np.linspace(0.0, 1.0, 20_001), np.full(20_001, 0.37)

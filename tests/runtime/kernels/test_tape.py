@@ -19,6 +19,8 @@ from gaussmap.symbolic.surfaces import CATALOGUE
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from ...products import covering
+
 ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
 DIGITS = 32
 # Half widths of boxes relative to the domain: cells of a search, smaller ones, points.
@@ -112,8 +114,7 @@ def tape_of(name: str) -> Tape:
     return tape
 
 
-@EACH
-@pytest.mark.parametrize("width", WIDTHS)
+@covering(name=gm.surfaces.names(), width=WIDTHS)
 def test_bounds_contain_exact_values(name, width):
     surface = gm.surfaces.surface(name)
     check(tape_of(name), of_catalogue(name), boxes(surface, 150, width, 1))

@@ -9,6 +9,7 @@ import pytest
 from gaussmap.runtime.place.on_surface import geometry_of
 from scipy.spatial import KDTree
 
+from ...products import covering
 from ...refusals import refused
 
 CELLS = (12, 12)
@@ -110,8 +111,10 @@ def test_the_same_normals_have_the_same_samples_as_on_the_spline():
     assert 0.0 < moved.max() < 0.1
 
 
-@pytest.mark.parametrize("fields", [("points",), ("uv", "on_surface"), ("gaussian_curvature",)])
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@covering(
+    fields=[("points",), ("uv", "on_surface"), ("gaussian_curvature",)],
+    dtype=[np.float32, np.float64],
+)
 def test_chosen_fields_are_those_of_all(fields, dtype):
     for request_ in MIXED:
         every = gm.sample("torus", **request_, cells=CELLS, on="surface")

@@ -12,6 +12,7 @@ from gaussmap.runtime.samples import fields as names
 from gaussmap.runtime.samples.fields import ARRAY_NAMES, FLOAT_NAMES
 from gaussmap.runtime.samples.samples import Samples
 
+from ...products import covering
 from ...refusals import refused
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
@@ -181,9 +182,11 @@ def test_samples_need_one_array_and_one_type():
 # --- files ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("suffix", [".npz", ".ply"])
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
-@pytest.mark.parametrize("fields", [("points",), ("points", "uv", "patch_index"), ARRAY_NAMES])
+@covering(
+    suffix=[".npz", ".ply"],
+    dtype=[np.float32, np.float64],
+    fields=[("points",), ("points", "uv", "patch_index"), ARRAY_NAMES],
+)
 def test_files_keep_fields_and_types(tmp_path, suffix, dtype, fields):
     samples = narrow(fields, dtype=dtype)
     samples.write(tmp_path / f"a{suffix}")

@@ -7,14 +7,18 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+from ...products import covering
+
 ROTATION = np.linalg.qr(np.array([[0.7, 0.3, -0.5], [0.2, 0.8, 0.6], [-0.4, 0.5, 0.9]]))[0]
 ROTATION *= np.linalg.det(ROTATION)
 
 
-@pytest.mark.parametrize("name", ["plane", "cylinder"])
-@pytest.mark.parametrize("shift", [0.0, 1e6])
-@pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9])
-@pytest.mark.parametrize("cells", [(16, 16), (48, 100)])
+@covering(
+    name=["plane", "cylinder"],
+    shift=[0.0, 1e6],
+    factor=[1.0, 1e-9, 1e9],
+    cells=[(16, 16), (48, 100)],
+)
 def test_planes_and_cylinders_are_parabolic(name, shift, factor, cells):
     surface = gm.surfaces.surface(name)
     moved = gm.Surface.from_callable(

@@ -22,6 +22,7 @@ from gaussmap.runtime.samples.samples import Samples
 from hypothesis import given
 from hypothesis import strategies as st
 
+from ...products import covering
 from ...refusals import refused
 
 REPORT = SamplingReport("torus", 8, 12, 4, 0.125, 1)
@@ -202,8 +203,7 @@ class TestReport:
         place = report.undecided[0]
         assert [type(x) for x in place[:4]] == [int, tuple, str, bool]
 
-    @pytest.mark.parametrize("name", ["normals", "samples", "patches", "developable_patches"])
-    @pytest.mark.parametrize("bad", [-1, 1.5, "3"])
+    @covering(name=["normals", "samples", "patches", "developable_patches"], bad=[-1, 1.5, "3"])
     def test_bad_counts_are_named(self, name, bad):
         refused(f"^{name} must", replace, REPORT, **{name: bad})
 
@@ -211,8 +211,10 @@ class TestReport:
     def test_bad_shares(self, bad):
         refused(r"^developable_share must", replace, REPORT, developable_share=bad)
 
-    @pytest.mark.parametrize("name", ["coverage", "angle", "fit_distance", "fit_rms", "fit_angle"])
-    @pytest.mark.parametrize("bad", [-0.1, np.nan, "much", [1.0]])
+    @covering(
+        name=["coverage", "angle", "fit_distance", "fit_rms", "fit_angle"],
+        bad=[-0.1, np.nan, "much", [1.0]],
+    )
     def test_bad_distances(self, name, bad):
         refused(f"^{name} must", replace, REPORT, **{name: bad})
 

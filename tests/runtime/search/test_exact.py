@@ -12,6 +12,8 @@ from gaussmap.runtime.search import exact, long_integers
 from hypothesis import given
 from hypothesis import strategies as st
 
+from ...products import covering
+
 ALIGNED = np.array([n for n in product((-1.0, 0.0, 1.0), repeat=3) if any(n)])
 PERIODIC: Any = (("periodic", "periodic"), ("periodic", "periodic"))
 OPEN: Any = (("open", "open"), ("open", "open"))
@@ -34,8 +36,7 @@ def sign_sums(spline: gm.Spline, normals: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("size", [4, 8, 64])
-@pytest.mark.parametrize("cells", [(8, 8), (12, 8), (16, 12), (10, 6)])
+@covering(size=[4, 8, 64], cells=[(8, 8), (12, 8), (16, 12), (10, 6)])
 def test_integer_torus(size: int, cells: tuple[int, int]) -> None:
     spline = torus_of_integers(*cells, size, np.zeros((*cells, 3)))
     normals = np.concatenate([ALIGNED, gm.icosphere(4)])

@@ -11,6 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from ...products import covering
+
 pytestmark = pytest.mark.compiled
 
 Array = NDArray[np.float64]
@@ -59,18 +61,14 @@ def rotation_of(quaternion: tuple[float, float, float, float]) -> Array:
 quaternions = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(lambda q: np.linalg.norm(q) > 0.1)
 
 
-@pytest.mark.parametrize("cells", [16, 32, 64, 96])
-@pytest.mark.parametrize("frequency", [10, 32, 100])
+@covering(cells=[16, 32, 64, 96], frequency=[10, 32, 100])
 def test_torus_icosphere(cells: int, frequency: int) -> None:
     normals = gm.icosphere(frequency)
     samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")
     check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
-@pytest.mark.parametrize("cells", [(3, 3), (4, 7), (8, 5), (9, 9)])
-@pytest.mark.parametrize(
-    "normals", [gm.icosphere(9), gm.fibonacci(20_000)], ids=["aligned", "generic"]
-)
+@covering(cells=[(3, 3), (4, 7), (8, 5), (9, 9)], normals=[gm.icosphere(9), gm.fibonacci(20_000)])
 def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
     elliptic, hyperbolic = count_preimages(
         gm.sample(TORUS, normals=normals, cells=cells, on="spline"), len(normals)
@@ -99,9 +97,9 @@ def test_torus_healpix(cells: int) -> None:
         check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
 
 
-@pytest.mark.parametrize("shift", [0.0, 1e6, 1e9])
-@pytest.mark.parametrize("factor", [1.0, 1e9, 1e-9, 1e12, 1e-12, 1e150, 1e-150])
-@pytest.mark.parametrize("turned", [False, True])
+@covering(
+    shift=[0.0, 1e6, 1e9], factor=[1.0, 1e9, 1e-9, 1e12, 1e-12, 1e150, 1e-150], turned=[False, True]
+)
 def test_torus_moved_and_scaled(shift: float, factor: float, turned: bool) -> None:
     rotation = rotation_of((0.5, 0.1, -0.7, 0.3)) if turned else np.eye(3)
     normals = gm.icosphere(10) @ rotation.T
@@ -126,8 +124,7 @@ def test_torus_turned_at_random(
     )
 
 
-@pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
-@pytest.mark.parametrize("cells", [(16, 16), (32, 20), (64, 64), (96, 96)])
+@covering(name=["sphere", "ellipsoid"], cells=[(16, 16), (32, 20), (64, 64), (96, 96)])
 def test_sphere_like_surfaces_have_every_normal_once(name: str, cells: tuple[int, int]) -> None:
     for normals in (gm.icosphere(10), gm.icosphere(32), gm.fibonacci(10**5)):
         samples = gm.sample(gm.surfaces.surface(name), normals=normals, cells=cells, on="spline")
@@ -186,8 +183,7 @@ def test_seam_of_a_moebius_band() -> None:
         assert len(samples) == 1
 
 
-@pytest.mark.parametrize("cells", [(16, 16), (40, 24)])
-@pytest.mark.parametrize("frequency", [4, 10, 32])
+@covering(cells=[(16, 16), (40, 24)], frequency=[4, 10, 32])
 def test_klein_bottle(cells: tuple[int, int], frequency: int) -> None:
     """It has no oriented normals, but for every line the signs of K sum to χ = 0."""
 
@@ -221,8 +217,7 @@ def test_cyclide(cells: int) -> None:
         assert (elliptic == hyperbolic).all()
 
 
-@pytest.mark.parametrize("cells", [(16, 16), (33, 17), (64, 64)])
-@pytest.mark.parametrize("frequency", [2, 10, 31, 32, 100])
+@covering(cells=[(16, 16), (33, 17), (64, 64)], frequency=[2, 10, 31, 32, 100])
 def test_symmetric_ellipsoid_patch(cells: tuple[int, int], frequency: int) -> None:
     """Icosahedral normals in the symmetry planes: those inside the Gaussian image come once."""
     normals = gm.icosphere(frequency)
@@ -238,10 +233,12 @@ def test_symmetric_ellipsoid_patch(cells: tuple[int, int], frequency: int) -> No
     assert (elliptic[latitude > 61.0] == 0).all()
 
 
-@pytest.mark.parametrize("name", ["plane", "cylinder", "cone"])
-@pytest.mark.parametrize("shift", [0.0, 1.0, 10.0])
-@pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9])
-@pytest.mark.parametrize("quaternion", [(1.0, 0.0, 0.0, 0.0), (0.5, 0.1, -0.7, 0.3)])
+@covering(
+    name=["plane", "cylinder", "cone"],
+    shift=[0.0, 1.0, 10.0],
+    factor=[1.0, 1e-9, 1e9],
+    quaternion=[(1.0, 0.0, 0.0, 0.0), (0.5, 0.1, -0.7, 0.3)],
+)
 def test_developable_surfaces(
     name: str, shift: float, factor: float, quaternion: tuple[float, float, float, float]
 ) -> None:
@@ -299,9 +296,11 @@ def spiral(axis: Array, angle: float, count: int) -> Array:
     return np.outer(height, axis) + np.sqrt(1.0 - height**2)[:, None] * ring
 
 
-@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"])
-@pytest.mark.parametrize("cells", [(3, 3), (6, 5)])
-@pytest.mark.parametrize("cap", [180.0, 40.0, 3.0])
+@covering(
+    name=["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"],
+    cells=[(3, 3), (6, 5)],
+    cap=[180.0, 40.0, 3.0],
+)
 def test_search_by_bins_finds_what_brute_force_finds(
     name: str, cells: tuple[int, int], cap: float
 ) -> None:
@@ -320,9 +319,7 @@ def test_search_by_bins_finds_what_brute_force_finds(
     assert len(pairs) > 500
 
 
-@pytest.mark.parametrize("shift", [0.0, 1.0, 10.0])
-@pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize("domain", [(0.0, 1.0), (-1.0, 0.0)])
+@covering(shift=[0.0, 1.0, 10.0], axis=[0, 1], domain=[(0.0, 1.0), (-1.0, 0.0)])
 def test_open_border_belongs_to_the_surface(
     shift: float, axis: int, domain: tuple[float, float]
 ) -> None:

@@ -6,6 +6,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+from ...products import covering
+
 DENSE = 1e5 / (4 * math.pi)
 
 
@@ -48,9 +50,7 @@ def test_curved_surfaces_are_curved(name, solid_angle):
         assert curved_solid_angle(spline, DENSE) == pytest.approx(solid_angle, rel=0.02)
 
 
-@pytest.mark.parametrize("name", ["plane", "cylinder", "cone"])
-@pytest.mark.parametrize("factor", [1.0, 1e-12, 1e12])
-@pytest.mark.parametrize("shift", [0.0, 1e6])
+@covering(name=["plane", "cylinder", "cone"], factor=[1.0, 1e-12, 1e12], shift=[0.0, 1e6])
 def test_developable_surfaces_are_so_entirely(name, factor, shift):
     spline = gm.fit(moved(gm.surfaces.surface(name), factor, shift * factor), (32, 32))
     assert developable_share(spline, DENSE) == pytest.approx(1.0)
@@ -89,8 +89,7 @@ def test_surfaces_may_bend_along_any_axis():
     assert developable_patches([1, 2, 0]) == developable_patches([0, 1, 2])
 
 
-@pytest.mark.parametrize("share", [0.25, 0.5, 0.75])
-@pytest.mark.parametrize("flat", ["flat", "rolled"])
+@covering(share=[0.25, 0.5, 0.75], flat=["flat", "rolled"])
 def test_surfaces_that_are_developable_in_part(share, flat):
     """Flat or a cylinder for u < share, then a saddle; a graph: its area is nearly that of uv."""
 
@@ -126,8 +125,7 @@ def test_slight_curvature_needs_many_normals():
     assert curved_solid_angle(bowl, DENSE * 1e6) == pytest.approx((4e-4) ** 2, rel=1e-3)
 
 
-@pytest.mark.parametrize("name", ["torus", "cylinder", "wavy_graph"])
-@pytest.mark.parametrize("exponent", [-900, -30, 30, 900])
+@covering(name=["torus", "cylinder", "wavy_graph"], exponent=[-900, -30, 30, 900])
 def test_the_unit_of_length_does_not_matter(name, exponent):
     surface = gm.surfaces.surface(name)
     plain, scaled = gm.fit(surface, (16, 16)), gm.fit(moved(surface, 2.0**exponent), (16, 16))

@@ -4,6 +4,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+from ...products import covering
+
 POINTS = np.random.default_rng(7).random((5, 6, 3))
 HEIGHTS = np.random.default_rng(8).random((5, 6))
 
@@ -265,9 +267,8 @@ def test_quadratics_are_reproduced_up_to_the_border(shape, rng):
 # --- what may be brought --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "bring",
-    [
+@covering(
+    bring=[
         lambda x: x.tolist(),
         lambda x: x.astype(np.float64).astype(">f8"),
         lambda x: x.astype(np.float32),
@@ -279,8 +280,8 @@ def test_quadratics_are_reproduced_up_to_the_border(shape, rng):
         lambda x: x[::-1, ::-1][::-1, ::-1],
         lambda x: np.ma.masked_array(x, mask=False),
     ],
+    shape=[(5, 6), (5, 6, 3)],
 )
-@pytest.mark.parametrize("shape", [(5, 6), (5, 6, 3)])
 def test_any_array_of_numbers(bring, shape, rng):
     numbers = rng.integers(0, 256, shape).astype(float)
     spacing = (1.0, 1.0) if len(shape) == 2 else None

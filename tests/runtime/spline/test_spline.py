@@ -7,6 +7,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+from ...products import covering
 from ...refusals import refused
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
@@ -97,8 +98,9 @@ def check_smooth(spline, patch, place, other_patch, other_place, turned=(1.0, 1.
 # --- exactness ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("cells", [(3, 3), (3, 8), (8, 3), (5, 7), (16, 16)])
-@pytest.mark.parametrize("domain", [SQUARE, ((-2.0, 5.0), (10.0, 10.5))])
+@covering(
+    cells=[(3, 3), (3, 8), (8, 3), (5, 7), (16, 16)], domain=[SQUARE, ((-2.0, 5.0), (10.0, 10.5))]
+)
 def test_quadratics_are_reproduced_up_to_the_border(cells, domain, rng):
     weights = rng.standard_normal((6, 3))
 
@@ -276,9 +278,7 @@ def test_seams_of_coefficients_are_bitwise_equal():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
-@pytest.mark.parametrize("cells", [(4, 3), (6, 5), (64, 64)])
-@pytest.mark.parametrize("shift", [0.0, 1e6])
+@covering(name=["sphere", "ellipsoid"], cells=[(4, 3), (6, 5), (64, 64)], shift=[0.0, 1e6])
 def test_poles_are_one_point(name, cells, shift):
     surface = gm.surfaces.surface(name)
     moved = gm.Surface.from_callable(
@@ -315,8 +315,7 @@ def test_half_a_sphere_has_one_pole():
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("cells", [None, (8, 6), (10, 7), (400, 300)])
-@pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
+@covering(cells=[None, (8, 6), (10, 7), (400, 300)], name=["sphere", "ellipsoid"])
 def test_poles_have_no_normal(name, cells):
     spline = gm.fit(gm.surfaces.surface(name), cells)
     u, (south, north) = np.linspace(*spline.domain[0], 50), spline.domain[1]
@@ -424,8 +423,9 @@ def moved(surface, matrix, shift):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("exponent", [-1000, -40, -1, 1, 40, 990])
-@pytest.mark.parametrize("name", ["torus", "moebius_band", "sphere", "catenoid"])
+@covering(
+    exponent=[-1000, -40, -1, 1, 40, 990], name=["torus", "moebius_band", "sphere", "catenoid"]
+)
 def test_powers_of_two_change_no_bit(name, exponent):
     surface, factor = gm.surfaces.surface(name), 2.0**exponent
     plain = gm.fit(surface, (6, 5))

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ...products import covering
 from .test_poles import ROTATION, SHAPES, SPHERE, signed_counts
 
 Array = NDArray[np.float64]
@@ -45,21 +46,22 @@ def swapped(f):
     return lambda u, v: f(v, u)
 
 
-@pytest.mark.parametrize("shift", [0.0, 1e6, 1e9])
-@pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9])
-@pytest.mark.parametrize(
-    ("f", "domain", "radial", "around", "apexes"),
-    [
-        (lens, DISK, ("pole", "open"), PERIODIC, 0),
-        (lambda r, phi: lens(1.0 - r, phi), DISK, ("open", "pole"), PERIODIC, 0),
-        (lambda v, u: SHAPES["egg"](u, v), SPHERE[::-1], ("pole", "pole"), PERIODIC, 0),
-        (lens, ((0.05, 1.0), TURN), OPEN, OPEN, 0),
-        (lens, ((0.0, 1.0), (0.0, np.pi)), OPEN, OPEN, 1),
-        (cone, DISK, OPEN, OPEN, 1),
-        (cusp, DISK, OPEN, OPEN, 1),
-        (creased, DISK, OPEN, OPEN, 1),
-        (spiral, DISK, OPEN, OPEN, 1),
-    ],
+@covering(
+    shift=[0.0, 1e6, 1e9],
+    factor=[1.0, 1e-9, 1e9],
+    **{
+        "f, domain, radial, around, apexes": [
+            (lens, DISK, ("pole", "open"), PERIODIC, 0),
+            (lambda r, phi: lens(1.0 - r, phi), DISK, ("open", "pole"), PERIODIC, 0),
+            (lambda v, u: SHAPES["egg"](u, v), SPHERE[::-1], ("pole", "pole"), PERIODIC, 0),
+            (lens, ((0.05, 1.0), TURN), OPEN, OPEN, 0),
+            (lens, ((0.0, 1.0), (0.0, np.pi)), OPEN, OPEN, 1),
+            (cone, DISK, OPEN, OPEN, 1),
+            (cusp, DISK, OPEN, OPEN, 1),
+            (creased, DISK, OPEN, OPEN, 1),
+            (spiral, DISK, OPEN, OPEN, 1),
+        ]
+    },
 )
 def test_sides_that_are_found(f, domain, radial, around, apexes, shift, factor):
     def evaluate(u, v):
@@ -102,18 +104,19 @@ def test_surfaces_of_the_catalogue_say_how_they_end():
     assert gm.surfaces.cone().assumed_open == (False, False)
 
 
-@pytest.mark.parametrize("turned", [False, True])
-@pytest.mark.parametrize(
-    ("points", "periodic", "radial", "around", "apexes"),
-    [
-        (lens, False, ("pole", "open"), PERIODIC, 0),
-        (lens, True, ("pole", "open"), PERIODIC, 0),
-        (lens, "open", OPEN, OPEN, 1),
-        (cone, False, OPEN, OPEN, 1),
-        (cone, True, OPEN, PERIODIC, 1),
-    ],
+@covering(
+    turned=[False, True],
+    count=[24, 25],
+    **{
+        "points, periodic, radial, around, apexes": [
+            (lens, False, ("pole", "open"), PERIODIC, 0),
+            (lens, True, ("pole", "open"), PERIODIC, 0),
+            (lens, "open", OPEN, OPEN, 1),
+            (cone, False, OPEN, OPEN, 1),
+            (cone, True, OPEN, PERIODIC, 1),
+        ]
+    },
 )
-@pytest.mark.parametrize("count", [24, 25])
 def test_grids_of_points(points, periodic, radial, around, apexes, turned, count):
     r = np.linspace(0.0, 1.0, 9)[:, None]
     phi = np.arange(count + (periodic is not True)) * (2 * np.pi / count)  # repeats its first point

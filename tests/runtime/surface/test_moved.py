@@ -4,6 +4,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+from ...products import covering
 from ...refusals import refused
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
@@ -40,15 +41,13 @@ def moved_jets(jets, matrix, shift):
 TURNED = np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])[:, None]  # signs of derivatives
 
 
-@pytest.mark.parametrize("matrix", MAPS.values(), ids=MAPS)
-@pytest.mark.parametrize(
-    "surface",
-    [
+@covering(
+    matrix=MAPS.values(),
+    surface=[
         gm.surfaces.torus(),
         gm.Surface.from_sympy(("u*cos(v)", "u*sin(v)", "v**2"), "uv", SQUARE),
         gm.Surface.from_callable(saddle, SQUARE),
     ],
-    ids=["catalogue", "sympy", "callable"],
 )
 def test_transformed(surface, matrix):
     linear, shift = matrix[:3, :3], matrix[:3, 3] if len(matrix) == 4 else np.zeros(3)

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
+from ...products import covering
+
 TURN = ((0.0, 2 * np.pi), (0.0, 2 * np.pi))
 
 
@@ -47,8 +49,7 @@ def all_kinds():
     return made | {f"flipped {name}": surface.flipped() for name, surface in made.items()}
 
 
-@pytest.mark.parametrize("name", all_kinds())
-@pytest.mark.parametrize("used", [False, True])
+@covering(name=all_kinds(), used=[False, True])
 def test_pickling(name, used):
     surface = all_kinds()[name]
     u, v = np.random.default_rng(0).uniform(0.5, 3.0, (2, 20))

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
+from ...products import covering
+
 Array = NDArray[np.float64]
 SPHERE = (0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2)
 # A rotation without zeros: no plane of symmetry of a surface is one of the coordinates.
@@ -96,9 +98,7 @@ def signed_counts(spline: gm.Spline, normals: Array) -> NDArray[np.int64]:
     return np.bincount(samples.normal_index, signs, len(normals)).astype(np.int64)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("shift", [0.0, 1e6, 1e12])
-@pytest.mark.parametrize("cells", [(4, 3), (24, 8), (25, 8)])
+@covering(shape=SHAPES, shift=[0.0, 1e6, 1e12], cells=[(4, 3), (24, 8), (25, 8)])
 def test_the_ring_at_a_pole_is_in_one_plane(shape: str, shift: float, cells: tuple[int, int]):
     spline = gm.fit(moved(shape, ROTATION, shift), cells)
     for end in (0, 1):
@@ -133,10 +133,10 @@ def test_the_ring_at_a_pole_is_moved_by_the_error_of_the_spline_only(shape: str)
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("rotation", [np.eye(3), ROTATION], ids=["aligned", "rotated"])
-@pytest.mark.parametrize(
-    ("shift", "factor"), [(0.0, 1.0), (1e6, 1.0), (0.0, 1e9), (1e6, 1e-9), (0.0, 1e-12)]
+@covering(
+    shape=SHAPES,
+    rotation=[np.eye(3), ROTATION],
+    **{"shift, factor": [(0.0, 1.0), (1e6, 1.0), (0.0, 1e9), (1e6, 1e-9), (0.0, 1e-12)]},
 )
 def test_every_normal_counts_once(shape: str, rotation: Array, shift: float, factor: float):
     spline = gm.fit(moved(shape, rotation, shift, factor), (24, 24))

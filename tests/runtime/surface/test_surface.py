@@ -8,6 +8,7 @@ import pytest
 import sympy as sp
 from gaussmap.symbolic.reading import FUNCTIONS
 
+from ...products import covering
 from ...refusals import refused
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
@@ -126,8 +127,10 @@ def test_what_is_not_callable(f):
 # --- callables ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("shape", [(), (1,), (5,), (2, 3), (0,), (2, 0, 3)])
-@pytest.mark.parametrize("name", ["callable", "sympy", "catalogue", "grid", "spline"])
+@covering(
+    shape=[(), (1,), (5,), (2, 3), (0,), (2, 0, 3)],
+    name=["callable", "sympy", "catalogue", "grid", "spline"],
+)
 def test_evaluate_keeps_the_shape(name, shape):
     made = {
         "callable": gm.Surface.from_callable(saddle, SQUARE),
@@ -274,8 +277,7 @@ def test_ends_close_up_to_a_millionth_of_the_size(gap, closes):
         refused("does not close along u", gm.fit, surface, (8, 9), error=gm.errors.SurfaceError)
 
 
-@pytest.mark.parametrize("factor", [1.0, 1e-200, 1e200])
-@pytest.mark.parametrize("shift", [0.0, 1e6, 1e12])
+@covering(factor=[1.0, 1e-200, 1e200], shift=[0.0, 1e6, 1e12])
 def test_ends_close_up_to_rounding(factor, shift):
     surface = gm.Surface.from_callable(
         lambda u, v: factor * (tube(u, v) + shift), TURN, (True, True)

@@ -11,6 +11,7 @@ import pytest
 import sympy as sp
 from gaussmap.symbolic.surfaces import CATALOGUE
 
+from ...products import covering
 from ...refusals import refused
 
 NAMES = list(CATALOGUE)
@@ -26,8 +27,7 @@ def test_names():
     assert set(NAMES) <= set(dir(gm.surfaces))
 
 
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("with_defaults", [True, False])
+@covering(name=NAMES, with_defaults=[True, False])
 def test_positions_are_those_of_the_derivation(name, with_defaults):
     exact = CATALOGUE[name]
     chosen = {} if with_defaults else changed(name)

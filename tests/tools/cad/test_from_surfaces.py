@@ -10,6 +10,7 @@ import pytest
 from gaussmap.tools.cad.part_mesh import PartMesh
 from gaussmap.tools.cad.surface_geometry import geometry_of_surface
 
+from ...products import covering
 from ...refusals import refused
 
 TURN = 2.0 * np.pi
@@ -333,19 +334,19 @@ SHEAR = np.array([(1.0, 0.5, 0.0), (0.0, 2.0, 0.3), (0.2, 0.0, 1.0)])
 SURFACES = gm.surfaces
 
 
-@pytest.mark.parametrize("is_flipped", [False, True], ids=["", "flipped"])
-@pytest.mark.parametrize("matrix", [np.eye(3), TILTED, MIRROR], ids=["", "tilted", "mirrored"])
-@pytest.mark.parametrize(
-    ("surface", "kind", "sizes"),
-    [
-        (SURFACES.plane(0.5, -2.0), "plane", {}),
-        (SURFACES.cylinder(0.5, 3.0), "cylinder", {"radius": 0.5}),
-        (SURFACES.cone(1.0, 0.25, 1.0), "cone", {"half_angle": np.degrees(np.arctan(0.75))}),
-        (SURFACES.cone(0.25, 0.25, 3.0), "cylinder", {"radius": 0.25}),
-        (SURFACES.sphere(1.5), "sphere", {"radius": 1.5}),
-        (SURFACES.torus(2.0, 0.5), "torus", {"major_radius": 2.0, "minor_radius": 0.5}),
-    ],
-    ids=["plane", "cylinder", "cone", "even cone", "sphere", "torus"],
+@covering(
+    is_flipped=[False, True],
+    matrix=[np.eye(3), TILTED, MIRROR],
+    **{
+        "surface, kind, sizes": [
+            (SURFACES.plane(0.5, -2.0), "plane", {}),
+            (SURFACES.cylinder(0.5, 3.0), "cylinder", {"radius": 0.5}),
+            (SURFACES.cone(1.0, 0.25, 1.0), "cone", {"half_angle": np.degrees(np.arctan(0.75))}),
+            (SURFACES.cone(0.25, 0.25, 3.0), "cylinder", {"radius": 0.25}),
+            (SURFACES.sphere(1.5), "sphere", {"radius": 1.5}),
+            (SURFACES.torus(2.0, 0.5), "torus", {"major_radius": 2.0, "minor_radius": 0.5}),
+        ]
+    },
 )
 def test_kinds_and_dimensions(surface, kind, sizes, matrix, is_flipped):
     factor = np.linalg.norm(matrix[0])

@@ -15,6 +15,8 @@ import pytest
 from gaussmap.tools.cad.examples import all_kinds
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 
+from ...products import covering
+
 TURN = 2.0 * math.pi
 
 
@@ -61,10 +63,12 @@ def in_window(points: np.ndarray, window: np.ndarray, angles: np.ndarray) -> np.
     return count
 
 
-@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize("is_reversed", [False, True])
-@pytest.mark.parametrize("frame", FRAMES)
-@pytest.mark.parametrize("kind", ["sphere", "torus", "inner torus"])
+@covering(
+    scale=[1e-6, 1.0, 1e6],
+    is_reversed=[False, True],
+    frame=FRAMES,
+    kind=["sphere", "torus", "inner torus"],
+)
 def test_points_of_spheres_and_tori(made, kind, frame, is_reversed, scale):
     """A normal of a torus is that of the points R e + r n, and of −R e + r n."""
     major, minor = {"sphere": (0.0, 2.0), "torus": (3.0, 1.0), "inner torus": (3.0, -1.0)}[kind]

@@ -10,6 +10,7 @@ from gaussmap.tools.cad.edges import between_two
 from gaussmap.tools.cad.examples import all_kinds, box
 from gaussmap.tools.cad.records import FaceRecord, Geometry
 
+from ...products import covering
 from ...refusals import refused
 
 TURN = 2.0 * np.pi
@@ -147,19 +148,20 @@ def test_errors(condition, message):
 # --- dimensions -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("handed", [1.0, -1.0])
-@pytest.mark.parametrize("is_reversed", [False, True])
-@pytest.mark.parametrize(
-    ("kind", "more", "u", "v"),
-    [
-        ("plane", [], (0.0, 1.0), (0.0, 1.0)),
-        ("cylinder", [2.0], (0.5, 3.0), (-1.0, 1.0)),
-        ("cone", [2.0, 0.3], (0.5, 3.0), (0.0, 1.0)),
-        ("cone", [2.0, -0.3], (0.5, 3.0), (0.0, 1.0)),
-        ("cone", [2.0, 0.3], (0.5, 3.0), (-9.0, -8.0)),  # beyond the apex
-        ("sphere", [3.0], (0.5, 3.0), (-0.5, 1.0)),
-        ("torus", [3.0, 0.5], (0.5, 3.0), (0.5, 6.0)),
-    ],
+@covering(
+    handed=[1.0, -1.0],
+    is_reversed=[False, True],
+    **{
+        "kind, more, u, v": [
+            ("plane", [], (0.0, 1.0), (0.0, 1.0)),
+            ("cylinder", [2.0], (0.5, 3.0), (-1.0, 1.0)),
+            ("cone", [2.0, 0.3], (0.5, 3.0), (0.0, 1.0)),
+            ("cone", [2.0, -0.3], (0.5, 3.0), (0.0, 1.0)),
+            ("cone", [2.0, 0.3], (0.5, 3.0), (-9.0, -8.0)),  # beyond the apex
+            ("sphere", [3.0], (0.5, 3.0), (-0.5, 1.0)),
+            ("torus", [3.0, 0.5], (0.5, 3.0), (0.5, 6.0)),
+        ]
+    },
 )
 def test_dimensions_are_those_of_points_and_normals(made, kind, more, u, v, is_reversed, handed):
     axes = np.array([[2, 1, -2], [1, 2, 2], [2, -2, 1]]) / 3

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from gaussmap.tools.commands.cli import main
 
+from ...products import covering
+
 FEW = ["--count", "100", "--cells", "8", "8"]
 
 
@@ -31,8 +33,10 @@ def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> N
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("density", ["balanced", "aligned"])
-@pytest.mark.parametrize("name", ["torus", "ellipsoid_patch", "wavy_graph", "sphere", "catenoid"])
+@covering(
+    density=["balanced", "aligned"],
+    name=["torus", "ellipsoid_patch", "wavy_graph", "sphere", "catenoid"],
+)
 def test_the_command_and_python_make_the_same_mesh(name: str, density: str) -> None:
     mesh = gm.sample(name, 300, density=density, cells=(16, 16)).mesh()
     mesh.write("python.ply")

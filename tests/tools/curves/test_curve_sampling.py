@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from ...products import covering
 from ...refusals import refused
 
 Array = NDArray[np.float64]
@@ -86,9 +87,7 @@ SETS = {
 }
 
 
-@pytest.mark.parametrize("name", CLOSED)
-@pytest.mark.parametrize("normals", SETS.values(), ids=SETS)
-@pytest.mark.parametrize("pieces", [16, 63, 64, 720])
+@covering(name=CLOSED, normals=SETS.values(), pieces=[16, 63, 64, 720])
 def test_sum_of_signs_is_the_turning_number(name: str, normals: Array, pieces: int) -> None:
     _, turning, preimages = CLOSED[name]
     samples = sampled(closed(name), normals, pieces)
@@ -102,9 +101,9 @@ def test_sum_of_signs_is_the_turning_number(name: str, normals: Array, pieces: i
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", ["ellipse", "eight", "star"])
-@pytest.mark.parametrize("factor", [1.0, 1e12, 1e-12, 1e150, 1e-150])
-@pytest.mark.parametrize("shift", [0.0, 1e6])
+@covering(
+    name=["ellipse", "eight", "star"], factor=[1.0, 1e12, 1e-12, 1e150, 1e-150], shift=[0.0, 1e6]
+)
 def test_moved_and_scaled(name: str, factor: float, shift: float) -> None:
     for angle in (0.0, 0.7):
         turn = rotation(angle)
@@ -250,9 +249,7 @@ def test_normals_of_any_length() -> None:
 # --- ends -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("angle", [0.0, 0.3, 2.0, 3.1])
-@pytest.mark.parametrize("pieces", [1, 2, 3, 7, 50])
-@pytest.mark.parametrize("sign", [1.0, -1.0])
+@covering(angle=[0.0, 0.3, 2.0, 3.1], pieces=[1, 2, 3, 7, 50], sign=[1.0, -1.0])
 def test_ends_belong_to_an_open_curve(angle: float, pieces: int, sign: float) -> None:
     """The normals of both ends of a parabola; those against them and beyond them are not there."""
     turn = rotation(angle)
@@ -298,10 +295,12 @@ def stadium(
     return gm.curves.Curve.from_callable(f, (start, start + 4.0), True, name="stadium")
 
 
-@pytest.mark.parametrize("angle", [0.0, 0.3, 1.234])
-@pytest.mark.parametrize("shift", [0.0, 1e6])
-@pytest.mark.parametrize("start", [0.0, 0.5, 1.5])
-@pytest.mark.parametrize("normals", [AXES, gm.directions.circle(100)], ids=["axes", "circle"])
+@covering(
+    angle=[0.0, 0.3, 1.234],
+    shift=[0.0, 1e6],
+    start=[0.0, 0.5, 1.5],
+    normals=[AXES, gm.directions.circle(100)],
+)
 def test_stadium(angle: float, shift: float, start: float, normals: Array) -> None:
     """Every normal once, also the one that a whole side has; the warning says how much is straight.
 
@@ -329,8 +328,7 @@ def test_a_straight_part_is_said_if_it_is_more_than_a_hundredth(share: float, is
     assert len(caught) == is_said
 
 
-@pytest.mark.parametrize("angle", [0.0, 0.7, 2.0])
-@pytest.mark.parametrize("shift", [0.0, 0.1, 1e6])
+@covering(angle=[0.0, 0.7, 2.0], shift=[0.0, 0.1, 1e6])
 def test_a_straight_line_has_no_samples(angle: float, shift: float) -> None:
     turn = rotation(angle)
     line = gm.curves.Curve.from_callable(
@@ -380,8 +378,7 @@ def test_count_is_exact_without_inflections(count: int) -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("name", ["eight", "star"])
-@pytest.mark.parametrize("count", [20, 100, 1000])
+@covering(name=["eight", "star"], count=[20, 100, 1000])
 def test_count_is_nearly_met_with_inflections(name: str, count: int) -> None:
     assert abs(len(gm.curves.sample(closed(name), count=count)) - count) <= 0.05 * count + 1
 

@@ -14,6 +14,8 @@ from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.files import ply, tables
 from gaussmap.tools.files.formats import check_samples_target
 
+from ...products import covering
+
 BINARY = [".parquet", ".arrow", ".feather"]
 
 
@@ -55,8 +57,7 @@ def assert_equal(column: Any, wanted: np.ndarray) -> None:
     assert np.ascontiguousarray(found).tobytes() == np.ascontiguousarray(wanted).tobytes()
 
 
-@pytest.mark.parametrize("dtype", [np.float64, np.float32])
-@pytest.mark.parametrize("suffix", BINARY)
+@covering(dtype=[np.float64, np.float32], suffix=BINARY)
 def test_arrow_keeps_every_bit_types_units_and_the_report(tmp_path, suffix, dtype):
     arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     samples, path = noise(5000, dtype), tmp_path / f"a{suffix}"

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ...products import covering
 from .nets import normals_at, vectors_of
 
 Array = NDArray[np.float64]
@@ -149,8 +150,7 @@ def test_integer_normals_of_a_cut_edge_are_members() -> None:
     assert not image.contains(-normals).any()
 
 
-@pytest.mark.parametrize("factor", [1e-12, 1e12])
-@pytest.mark.parametrize("name", CASES)
+@covering(factor=[1e-12, 1e12], name=CASES)
 def test_scale_and_rotation_do_not_matter_for_the_cuts(name: str, factor: float) -> None:
     """Rotated, the zeros hold up to rounding only, and so does what decides the second order."""
     points, edge, zeros, kind, sides = CASES[name]

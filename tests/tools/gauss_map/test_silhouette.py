@@ -9,6 +9,7 @@ import pytest
 from gaussmap.tools.gauss_map.silhouette import great_circle
 from numpy.typing import NDArray
 
+from ...products import covering
 from ...refusals import refused
 
 Array = NDArray[np.float64]
@@ -121,8 +122,7 @@ def test_samples_are_ordered_by_normal_and_then_by_patch() -> None:
 
 
 @compiled
-@pytest.mark.parametrize("direction", [[0, 0, 1], [1, 2, 3], [0.5, 0, 2]])
-@pytest.mark.parametrize("outside", [True, False])
+@covering(direction=[[0, 0, 1], [1, 2, 3], [0.5, 0, 2]], outside=[True, False])
 def test_the_order_is_that_along_the_outline(direction: Any, outside: bool) -> None:
     """A step of the normal by 2π/s moves the point by that times the largest radius at most."""
     samples = gm.silhouette(TORUS, direction, count=2000)
@@ -173,8 +173,7 @@ def test_the_polyline_of_a_sphere_goes_round_once(direction: Any) -> None:
 
 
 @compiled
-@pytest.mark.parametrize("direction", [[1, 2, 3], [0.3, -1, 0.5], [0, 0, 1], [0, 1, 4]])
-@pytest.mark.parametrize("cells", [(16, 16), (40, 27)])
+@covering(direction=[[1, 2, 3], [0.3, -1, 0.5], [0, 0, 1], [0, 1, 4]], cells=[(16, 16), (40, 27)])
 def test_polylines_of_a_torus(direction: Any, cells: Any) -> None:
     """Its contour generator tan v = −(d_x cos u + d_y sin u) / d_z is two closed curves."""
     samples = gm.silhouette(TORUS, direction, count=600, cells=cells)
@@ -224,8 +223,7 @@ def test_polylines_of_other_surfaces(name: str, closed: list[bool]) -> None:
 
 
 @compiled
-@pytest.mark.parametrize("first", [-np.pi, 0.0, -2.0])
-@pytest.mark.parametrize("sign", [1.0, -1.0])
+@covering(first=[-np.pi, 0.0, -2.0], sign=[1.0, -1.0])
 def test_polylines_follow_open_borders(first: float, sign: float) -> None:
     """Normals of a helicoid are perpendicular to x on the rulings v = kπ, two of them borders."""
 
@@ -316,8 +314,7 @@ def test_fields_and_float32() -> None:
 
 
 @compiled
-@pytest.mark.parametrize("name", ["plane", "cylinder", "cone"])
-@pytest.mark.parametrize("direction", [[0, 0, 1], [1, 2, 3]])
+@covering(name=["plane", "cylinder", "cone"], direction=[[0, 0, 1], [1, 2, 3]])
 def test_developable_surfaces_warn(name: str, direction: Any) -> None:
     with pytest.warns(gm.GaussmapWarning, match="flat or developable") as said:
         samples = gm.silhouette(gm.surfaces.surface(name), direction, count=50, cells=(16, 16))

@@ -11,6 +11,7 @@ import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.meshes.meshing import triangulated
 
+from ...products import covering
 from .test_meshing import NO_AREA, PREFER, TURN, components, is_one_fan_at_each_vertex, latitude
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
@@ -210,8 +211,7 @@ def check_nodes(samples):
 
 @compiled
 class TestAligned:
-    @pytest.mark.parametrize("prefer", PREFER)
-    @pytest.mark.parametrize("name", ["torus", "ellipsoid", "graph"])
+    @covering(prefer=PREFER, name=["torus", "ellipsoid", "graph"])
     def test_samples_of_that_density(self, name, prefer):
         samples = gm.sample(surfaces[name][0](), count=700, density="aligned", cells=(16, 16))
         assert samples.spline is not None

@@ -15,6 +15,7 @@ from gaussmap.tools.meshes.links import neighbours
 from gaussmap.tools.meshes.meshing import triangulated
 from gaussmap.tools.meshes.triangulated import Triangulated, flip_edges
 
+from ...products import covering
 from ...refusals import refused
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
@@ -387,8 +388,7 @@ class TestShape:
         # between them, squared.
         assert max(sums.values()) < np.pi + 0.1
 
-    @pytest.mark.parametrize("prefer", PREFER)
-    @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-9, 1e-12])
+    @covering(prefer=PREFER, gap=[1e-3, 1e-6, 1e-9, 1e-12])
     def test_samples_that_nearly_coincide(self, prefer, gap):
         first = samples_at("torus", 200)
         spline = first.spline
@@ -581,8 +581,7 @@ class TestInput:
         else:
             refused("too few, or leave too large gaps", samples.mesh)
 
-    @pytest.mark.parametrize("name", ["graph", "belt", "moebius"])
-    @pytest.mark.parametrize("count", [1, 2, 3])
+    @covering(name=["graph", "belt", "moebius"], count=[1, 2, 3])
     def test_a_border_needs_few_samples(self, name, count):
         mesh = gm.sample(surfaces[name][0](), count=100)[:count].mesh(prefer="normals")
         assert mesh.euler_characteristic == surfaces[name][1]
@@ -646,8 +645,7 @@ def samples_on(surface: gm.Surface, **options: Any) -> gm.Samples:
 
 @compiled
 class TestOffsets:
-    @pytest.mark.parametrize("prefer", PREFER)
-    @pytest.mark.parametrize("name", ["torus", "sphere", "graph", "moebius", "dome"])
+    @covering(prefer=PREFER, name=["torus", "sphere", "graph", "moebius", "dome"])
     def test_an_offset_has_the_topology_of_the_surface(self, name, prefer):
         _, characteristic, borders = surfaces[name]
         fields = ("points", "normals", "uv")
