@@ -40,7 +40,7 @@ SOME = (
     "tools/support/test_offset.py",
     "symbolic/test_emit.py",
 )
-# What `make verify` runs, and `make test` does not: pages, pictures and measurements.
+# What `make verify` runs, and `make test` does not even read: pages, pictures and measurements.
 SLOW = ("docs", "benchmarks")
 
 
@@ -68,9 +68,11 @@ def pytest_collection() -> Iterator[None]:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    if not config.option.markexpr.startswith("kernels") or collection_path.is_dir():
+    asked, place = config.option.markexpr, collection_path.relative_to(HERE).as_posix()
+    if asked == "not slow" and place.startswith(SLOW):
+        return True
+    if not asked.startswith("kernels") or collection_path.is_dir():
         return None
-    place = collection_path.relative_to(HERE).as_posix()
     return not place.startswith((*OF_KERNELS, *SOME)) or None
 
 
