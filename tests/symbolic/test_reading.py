@@ -246,6 +246,7 @@ def _larger(texts: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
 TEXTS = st.recursive(ATOMS, _larger, max_leaves=25)
 
 
+@pytest.mark.slow
 @given(text=TEXTS)
 def test_any_text_is_read_or_refused(text: str) -> None:
     """No other error and no warning; and what is read is real, typed and bounded."""

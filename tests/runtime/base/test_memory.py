@@ -65,7 +65,7 @@ LATER: dict[str, Callable[[], Any]] = {
     "mesh": lambda: samples_of("balanced").mesh(),
     "mesh of a grid": lambda: samples_of("aligned").mesh(),
 }
-QUICK = pytest.mark.quick_for("fibonacci", "random", "circle", "uniform", "aligned", "curve", "cap")
+QUICK = pytest.mark.quick_for("fibonacci", "circle", "uniform", "cap")
 
 
 @cache

@@ -262,6 +262,7 @@ def cells_of(samples: gm.Samples, inside: NDArray[np.bool_]) -> tuple[int, int]:
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("alpha", [0.25, 0.5, 1.0, 1.5])
+@pytest.mark.quick_for("0.25", "1.5")
 def test_density_is_a_power_of_the_curvature(alpha):
     """On a torus, K dA = cos v du dv and dA = r (R + r cos v) du dv: counts of two bands of v.
 

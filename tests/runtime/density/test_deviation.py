@@ -26,6 +26,7 @@ def independent(samples, count=200):
 
 
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
+@pytest.mark.quick_for("wavy_graph")
 def test_no_place_of_a_grid_has_a_larger_angle(name):
     samples = gm.sample(gm.fit(name, CELLS), 150)
     found, least = samples.normal_deviation(), independent(samples)

@@ -289,6 +289,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
+@pytest.mark.quick_for("tiny", "large", "beyond", "next to quarters", "most digits lost")
 def test_sines_of_tapes_are_as_exact_as_those_of_the_c_library(name: str) -> None:
     """Also where angles are reduced with many digits lost; large ones are left to that."""
     angles = CASES[name]

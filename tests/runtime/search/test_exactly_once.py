@@ -77,8 +77,8 @@ def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
     assert elliptic.sum() >= len(normals)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cells", [16, 32, 64, 96])
-@pytest.mark.quick_for("16")
 def test_torus_fibonacci(cells: int) -> None:
     normals = gm.fibonacci(10**6)
     samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")

@@ -18,18 +18,20 @@ def angles(normals: np.ndarray, axis: tuple[float, float, float]) -> np.ndarray:
     )
 
 
-def test_parts_have_samples_on_faces_that_can_be_reached() -> None:
-    part = all_kinds()
-    requests: list[dict[str, Any]] = [
-        {"count": 200}, {"coverage": 0.3}, {"count": 60, "density": "uniform"}
-    ]  # fmt: skip
-    for how in requests:
-        samples = gm.sample(part, reach=((0, 0, 1), 60.0), **how)
-        assert angles(samples.normals, (0, 0, 1)).max() <= 60.0 + ROUNDING
-        if "count" in how:
-            assert len(samples) == how["count"]
-        else:
-            assert (samples.report.coverage or np.inf) <= how["coverage"]
+@pytest.mark.parametrize(
+    "how", [{"count": 200}, {"coverage": 0.3}, {"count": 60, "density": "uniform"}]
+)
+@pytest.mark.quick_for("how2")
+def test_parts_have_samples_on_faces_that_can_be_reached(how: dict[str, Any]) -> None:
+    samples = gm.sample(all_kinds(), reach=((0, 0, 1), 60.0), **how)
+    assert angles(samples.normals, (0, 0, 1)).max() <= 60.0 + ROUNDING
+    if "count" in how:
+        assert len(samples) == how["count"]
+    else:
+        assert (samples.report.coverage or np.inf) <= how["coverage"]
+
+
+def test_a_box_has_samples_on_its_top() -> None:
     top = gm.sample(box(), 100, reach=((0, 0, 1), 30.0))
     assert {*(top.face_index if top.face_index is not None else ())} == {5}
 

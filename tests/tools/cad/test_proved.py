@@ -337,7 +337,7 @@ def faces_of_splines() -> dict:
 
 @pytest.mark.parametrize("is_reversed", [False, True])
 @pytest.mark.parametrize("name", faces_of_splines())
-@pytest.mark.quick_for("nurbs", "revolution", "offset 0.1")
+@pytest.mark.quick_for("nurbs", "revolution")
 def test_points_of_faces_of_splines(made, name, is_reversed):
     """Normals are those of random places, and their opposites, so that most have points."""
     geometry, f = faces_of_splines()[name]

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Sequence
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -472,8 +473,10 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         # numbers
         *[
             (["sample", "torus", f"--{option}", number, *TO], f"--{option}: it must be a whole")
-            for option in ("count", "frequency", "healpix", "random", "threads")
-            for number in ("0", "-5", "abc", "1e4", "2.0", "nan", "", "9" * 5000)
+            for option, number in zip(
+                cycle(("count", "frequency", "healpix", "random", "threads")),
+                ("0", "-5", "abc", "1e4", "2.0", "nan", "", "9" * 5000, "0", "abc"), strict=False,
+            )
         ],
         (["sample", "torus", "--angle", "91", *TO], "a positive number of at most 90"),
         (["sample", "torus", "--angle", "x", *TO], "--angle: it must be a number, not 'x'"),

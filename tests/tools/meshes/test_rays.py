@@ -18,6 +18,7 @@ def bracket() -> gm.Samples:
     return gm.sample(gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz"), 300)
 
 
+@pytest.mark.slow
 def test_walls_of_holes_block_beyond_their_diameter(bracket):
     faces = [bracket.surface.faces[k] for k in bracket.face_index]
     holes = np.array([x.kind == "cylinder" and x.dimensions["radius"] == 3.5 for x in faces])

@@ -57,6 +57,7 @@ def area(spline, count=600):
 
 
 @pytest.mark.parametrize("name", PARTS)
+@pytest.mark.quick_for("grid", "cap", "band")
 def test_a_mesh_ends_at_the_border(name):
     surface, characteristic = PARTS[name]
     spline = gm.fit(surface, None if name == "grid" else (16, 16))

@@ -32,6 +32,7 @@ def errors(surface: gm.Surface, count: int, density: str, volume: float) -> np.n
 
 
 @pytest.mark.compiled
+@pytest.mark.quick_for("uniform")
 @pytest.mark.parametrize("density", ["balanced", "uniform"])
 @pytest.mark.parametrize(
     ("surface", "volume"),

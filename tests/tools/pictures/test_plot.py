@@ -150,6 +150,7 @@ def test_other_suffixes_and_equal_bytes(suffix: str, torus: gm.Spline, tmp_path:
         assert ElementTree.fromstring(content).tag.endswith("svg")
 
 
+@pytest.mark.slow
 def test_no_global_state(torus: gm.Spline, tmp_path: Path) -> None:
     import matplotlib
 

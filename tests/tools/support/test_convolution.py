@@ -85,6 +85,7 @@ def pairwise(first: Array, second: Array) -> Array:
 
 
 @pytest.mark.compiled
+@pytest.mark.quick_for("boxes", "box and ellipsoid")
 @pytest.mark.parametrize(
     "pair",
     [(ELLIPSOID, TURNED), (BOX, BEAM), (BOX, ELLIPSOID)],
