@@ -230,19 +230,6 @@ def test_fields_and_types(fields, dtype):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("suffix", [".npz", ".ply"])
-@pytest.mark.parametrize("asked", [{"count": 150}, {"angle": 20.0}])
-def test_files_hold_kinds_and_the_report(tmp_path, suffix, asked):
-    samples = gm.sample(gm.fit(TORUS, (8, 8)), **asked)
-    samples.write(tmp_path / f"a{suffix}")
-    again = gm.read_samples(tmp_path / f"a{suffix}")
-    same(again, samples)
-    assert (again.kind == samples.kind).all()
-    assert set(again.kind) == {"normal", "filling"}
-    assert again.report == samples.report
-
-
-@pytest.mark.compiled
 def test_several_surfaces():
     surfaces = [gm.fit(TORUS, (8, 8)), gm.fit(gm.surfaces.plane(), (4, 4))]
     found = list(gm.sample_many(surfaces, count=60, progress=False))
