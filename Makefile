@@ -5,7 +5,8 @@ BIN := $(VENV)/bin
 # What `make demo` needs, and what developers need beside it.
 DEMO := $(VENV)/.demo
 READY := $(VENV)/.ready
-PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+# Of ten thousand modules few are imported: these are compiled when they are.
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 GAUSSMAP := $(BIN)/gaussmap
 # Matplotlib's elevation model of the Jacksboro fault: 344 x 403 heights in metres, 3 arc seconds
 # apart, rows from north to south. A spline with a cell for every fourth height leaves out what is
@@ -25,7 +26,6 @@ $(DEMO): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 		|| { echo "gaussmap needs Python 3.11 or newer: make PYTHON=python3.12 …" >&2; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(PIP) --upgrade pip
 	$(PIP) --editable '.[plot]'
 	touch $@
 
@@ -38,7 +38,7 @@ $(READY): $(DEMO)
 
 install: $(READY) ## make .venv with all that developers need
 
-demo: $(DEMO) compiled ## sample a torus and real terrain by normals: a PLY and a PNG of each in out/
+demo: $(DEMO) ## sample a torus and real terrain by normals: a PLY and a PNG of each in out/
 	@mkdir -p out
 	$(GAUSSMAP) sample torus --density gauss --count 4000 -o out/torus.ply
 	$(GAUSSMAP) plot torus --density gauss --count 4000 -o out/torus.png
@@ -56,10 +56,13 @@ compiled: $(DEMO) ## compile all kernels into compiled/, as for a wheel, unless 
 
 # What the quick tests compile, from an empty folder.
 LISTED := $(CURDIR)/out/kernels
-kernels: $(READY) ## list the kernels again that a wheel has (runtime/machine_code/signatures.json)
+kernels: $(READY) ## list the kernels again that a wheel has (signatures.json, usual.json in runtime/machine_code)
 	rm -rf $(LISTED)
 	GAUSSMAP_KERNELS=0 NUMBA_CACHE_DIR=$(LISTED) $(MAKE) test
 	$(BIN)/python -m gaussmap.runtime.machine_code.listing --write $(LISTED)/kernels-*
+	rm -rf $(LISTED)
+	$(BIN)/python benchmarks/cold_start.py --usual $(LISTED)
+	$(BIN)/python -m gaussmap.runtime.machine_code.listing --usual $(LISTED)/kernels-*
 
 check-kernels: $(READY) ## fail if the tests compiled kernels here that a wheel lacks
 	$(BIN)/python -m gaussmap.runtime.machine_code.listing
@@ -94,6 +97,9 @@ verify: $(READY) $(VENV)/cad/8.0.0/.ready ## run what is slow: all tests with ma
 	$(VENV)/docs/bin/python -m pytest -q tests/docs/test_mathml.py
 	.ci/check-site
 	.ci/check-newcomers
+	$(MAKE) coverage bench formulas
+	$(MAKE) generate operations errata orders curves figures
+	git diff --exit-code # these write what is committed
 
 bench: $(READY) ## run the benchmarks (ratios against the machine's own limit)
 	$(BIN)/python -m pytest benchmarks -o python_files='bench_*.py' --benchmark-only --benchmark-quiet

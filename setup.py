@@ -2,7 +2,8 @@
 
 The root of the repository is `gaussmap`, folder X is `gaussmap.X`: `packages.find` of
 pyproject.toml, which says everything else, cannot put a name in front. Kernels are compiled as C
-extensions are; GAUSSMAP_KERNELS=0 leaves them to the first calls, in a wheel for all platforms.
+extensions are: those that usual calls need, or with GAUSSMAP_KERNELS=all all of them; 0 leaves them
+to the first calls, in a wheel for all platforms.
 """
 
 import os
@@ -17,7 +18,8 @@ from setuptools.command.build_py import build_py
 from setuptools.dist import Distribution
 
 FOLDERS = ("generated", "runtime", "runtime.*", "symbolic", "symbolic.*", "tools", "tools.*")
-WANTED = os.environ.get("GAUSSMAP_KERNELS") != "0"
+KERNELS = os.environ.get("GAUSSMAP_KERNELS")
+WANTED = KERNELS != "0"
 
 
 class BuildKernels(build_py):
@@ -36,6 +38,8 @@ class BuildKernels(build_py):
             with suppress(FileNotFoundError):
                 shutil.copytree("compiled", folder / "gaussmap" / "compiled")
             command = [sys.executable, "-m", "gaussmap.runtime.machine_code.building"]
+            if KERNELS != "all":
+                command.append("--usual")
             environment = os.environ | {"PYTHONPATH": str(folder)}
             subprocess.run(command, env=environment, cwd=folder, check=True)
 

@@ -1,8 +1,10 @@
 """What the first call of a process costs: with the kernels of the package, and without.
 
-`python cold_start.py --check` is run by CI in an environment that has a wheel: no call may compile
-a kernel, or cost many seconds more than its repetition. Each call runs in a process of its own,
-whose NUMBA_CACHE_DIR is empty. This file needs nothing but Python, so that it can be run there.
+`python cold_start.py --check` is run by CI in an environment that has a wheel: no usual call, with
+--all no call at all, may compile a kernel, or cost many seconds more than its repetition. `make
+kernels` lists what `--usual` compiles. Each call runs in a process of its own, whose
+NUMBA_CACHE_DIR is empty (but for `--usual`: the folder). This file needs nothing but Python, so
+that it can be run there.
 """
 
 from __future__ import annotations
@@ -14,7 +16,8 @@ import resource
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -31,6 +34,7 @@ CALLS = {
     "the same, and `.mesh()`": TORUS.format("") + ".mesh()",
     "the same, and `.coverage()`": TORUS.format("") + ".coverage()",
     "… `normals=…`": "gm.sample('torus', normals=gm.fibonacci(10_000))",
+    "`gm.GaussMap(torus).points(…)`": "gm.GaussMap('torus').points(gm.fibonacci(10_000))",
     "… `angle=3`": "gm.sample('torus', angle=3)",
     "… `coverage=0.05`": "gm.sample('torus', coverage=0.05)",
     '… `density="gauss"`': TORUS.format(", density='gauss'"),
@@ -57,6 +61,7 @@ CALLS = {
         "gm.SupportFunction.from_sympy('sqrt(4*n_x**2 + n_y**2 + n_z**2)')"
         ".branches(gm.fibonacci(1000))"
     ),
+    "all surfaces of the catalogue": "[gm.sample(x, 100) for x in gm.surfaces.names()]",
     "a part from an .npz file": "gm.sample(gm.read_part('part.npz'), 2000)",
 }
 # Their processes start others, or are the command line: nothing is repeated.
@@ -72,6 +77,18 @@ COMMANDS = {
     "`gaussmap sample`": [*GAUSSMAP, "sample", "torus", "--count", "10000", "-o", "torus.ply"],
     "`gaussmap mesh`": [*GAUSSMAP, "mesh", "torus", "--count", "2000", "-o", "torus.stl"],
 }
+PLOT = "`gaussmap plot`"
+if find_spec("matplotlib") is not None:
+    COMMANDS[PLOT] = [*GAUSSMAP, "plot", "torus", "-o", "torus.png"]
+# An installation compiles what these need, beforehand (`usual.json`).
+USUAL = (
+    *list(CALLS)[:5],
+    '… `density="gauss"`',
+    "`Surface.from_callable`",
+    "`Surface.from_grid`",
+    "all surfaces of the catalogue",
+    *(x for x in COMMANDS if x.startswith("`gaussmap")),
+)
 CHILD = """
 import json, sys, time, warnings
 import numpy as np
@@ -128,12 +145,13 @@ def programs() -> dict[str, list[str]]:
     return calls | COMMANDS
 
 
-def check() -> int:
-    """Return how many calls compile, or cost too much; print each."""
+def check(names: Iterable[str]) -> int:
+    """Return how many calls of these compile, or cost too much; print each."""
     failed = 0
     with tempfile.TemporaryDirectory() as folder:
         cost(["-c", PART], Path(folder, "cache"))
-        for number, (name, arguments) in enumerate(programs().items()):
+        for number, name in enumerate(names):
+            arguments = programs()[name]
             most = MOST_OF_SYMPY if "sympy" in name else MOST
             each = cost(arguments, Path(folder, f"cache{number}"))
             if each.beyond > most:  # perhaps it has compiled modules of Python, once
@@ -150,9 +168,15 @@ def check() -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print what first calls cost; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true", help="fail if a call compiles")
+    parser.add_argument("--check", action="store_true", help="fail if a usual call compiles")
+    parser.add_argument("--all", action="store_true", help="not only usual calls")
+    parser.add_argument("--usual", metavar="FOLDER", type=Path, help="keep there what is compiled")
     options = parser.parse_args(arguments)
-    return 1 if check() and options.check else 0
+    if options.usual is not None:
+        for name in USUAL:
+            cost(programs()[name], options.usual, HERE_ONLY)
+        return 0
+    return 1 if check(programs() if options.all else USUAL) and options.check else 0
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
-"""Compile all kernels of the list of signatures into the file that comes with the package.
+"""Compile kernels of the list of signatures into the file that comes with the package.
 
-    python -m gaussmap.runtime.machine_code.building [FOLDER]
+    python -m gaussmap.runtime.machine_code.building [--usual] [FOLDER]
 
-compiles them for the level of this architecture, without running them, in as many processes as
-there are cores, into FOLDER/compiled (of the package, if no folder is named). A file of the same
-sources and versions stays as it is. With GAUSSMAP_KERNELS=0 nothing is compiled, and no file used.
+compiles them, or those that usual calls need, for the level of this architecture, without running
+them, in as many processes as there are cores, into FOLDER/compiled (of the package, if no folder is
+named). What a file of the same sources and versions has is taken from there. With
+GAUSSMAP_KERNELS=0 nothing is compiled, and no file used.
 """
 
 from __future__ import annotations
@@ -52,18 +53,25 @@ class _Taken(NullCache):
         self._entries[key_of(self._function, sig)] = entry_of(cres)
 
 
-def build(folder: Path = PACKAGE) -> Path | None:
+def build(folder: Path = PACKAGE, usual: bool = False) -> Path | None:
     """Make the file of the package, unless it is there; None if this architecture has none."""
-    path, level = pack_path(folder), level_here()
-    if path is None or level is None or _is_built(path):
+    path, level, listing = pack_path(folder), level_here(), signatures.read()
+    if usual:
+        listing = {name: listing[name] for name in signatures.usual()}
+    if path is None or level is None:
+        return None
+    keys, known = dict(_keys(listing)), _known(path)
+    if known.keys() == keys.keys():
         return path
-    print(f"compiling the kernels of gaussmap into {path}", file=sys.stderr)
-    entries: dict[str, bytes] = {}
-    processes = ProcessPoolExecutor(mp_context=get_context("spawn"), max_tasks_per_child=1)
-    with _options(level), processes:
-        for compiled in processes.map(_compiled, _shares()):
-            entries.update(compiled)
-    write_pack(path, dict(sorted(entries.items())), signatures=signatures.digest())
+    entries = {key: entry for key, entry in known.items() if key in keys}
+    lacking = {name: listing[name] for key, name in keys.items() if key not in known}
+    if lacking:
+        print(f"compiling the kernels of gaussmap into {path}", file=sys.stderr)
+        processes = ProcessPoolExecutor(mp_context=get_context("spawn"), max_tasks_per_child=1)
+        with _options(level), processes:
+            for compiled in processes.map(_compiled, _shares(lacking)):
+                entries.update(compiled)
+    write_pack(path, dict(sorted(entries.items())))
     return path
 
 
@@ -87,21 +95,30 @@ def _options(level: Level) -> Iterator[None]:
         os.environ.update(before)
 
 
-def _is_built(path: Path) -> bool:
+def _keys(listing: signatures.Listing) -> Iterator[tuple[str, str]]:
+    """Yield the key of each entry and the name of its kernel."""
+    for name, kinds in listing.items():
+        function = kernel_named(name).py_func
+        for kind in kinds:
+            yield key_of(function, tuple(map(signatures.as_types, kind))), name
+
+
+def _known(path: Path) -> dict[str, bytes]:
+    """Return the entries of a file that was made of these sources, with these versions."""
     try:
         pack = Pack(path)
     except (OSError, ValueError):
-        return False
-    made = (pack.identity, pack.digest, pack.header.get("signatures"))
-    return made == (identity(), sources.digest(), signatures.digest())
+        return {}
+    if (pack.identity, pack.digest) != (identity(), sources.digest()):
+        return {}
+    return {key: entry for key in pack.places if (entry := pack.get(key)) is not None}
 
 
-def _shares() -> list[dict[str, Any]]:
+def _shares(listing: signatures.Listing) -> list[dict[str, Any]]:
     """Deal out the signatures: modules that call one another have names that begin alike.
 
     What they call is compiled in each share again, so they stay together.
     """
-    listing = signatures.read()
     names = sorted(listing)
     lengths = {x: len(getsource(import_module(x))) for x in map(_module_of, names)}
     ends = dict(zip(lengths, accumulate(lengths.values()), strict=True))
@@ -131,4 +148,5 @@ def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:
 
 if __name__ == "__main__":
     if os.environ.get(SWITCH) != "0":
-        build(*map(Path, sys.argv[1:]))
+        names = [x for x in sys.argv[1:] if x != "--usual"]
+        build(*map(Path, names), usual="--usual" in sys.argv)

@@ -1,10 +1,11 @@
 """Compare the list of signatures with what was compiled here, or write it anew.
 
-    python -m gaussmap.runtime.machine_code.listing [--write] [FOLDER]
+    python -m gaussmap.runtime.machine_code.listing [--write | --usual] [FOLDER]
 
 Kernels are compiled, and kept in the folder (that of this machine, if none is named), when the file
 of the package does not have them: after a run of tests these are what the list lacks. Exit code 1
-says that it lacks some.
+says that it lacks some. With --usual, what is kept there is written to the list of those that usual
+calls need.
 """
 
 from __future__ import annotations
@@ -54,12 +55,15 @@ def missing(folder: Path) -> list[str]:
 
 def main(arguments: Sequence[str]) -> int:
     """Run the command; return its exit code."""
-    names = [x for x in arguments if x != "--write"]
+    names = [x for x in arguments if not x.startswith("--")]
     folder = Path(names[0]) if names else kept_folder()
     if folder is None:
         return 0  # nothing can be kept
     if "--write" in arguments:
         signatures.write(compiled_in(folder))
+        return 0
+    if "--usual" in arguments:
+        signatures.write_usual(compiled_in(folder))
         return 0
     lacking = missing(folder)
     for each in lacking:

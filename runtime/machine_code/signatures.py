@@ -1,23 +1,35 @@
 """The list of signatures of kernels, `signatures.json`: what the file of the package is made of.
 
+`usual.json` names those that usual calls need: `pip install .` compiles these.
+
 A type is a text, as "float64", "int64 2 C" (an array: item, dimensions, layout) or "int64 2 C
 readonly", a list of types (a tuple), or {"module.Class": a list of types} (a named tuple).
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from numba import types
 
-__all__ = ["SIGNATURES", "as_json", "as_types", "digest", "named", "read", "write"]
+__all__ = [
+    "SIGNATURES",
+    "USUAL",
+    "as_json",
+    "as_types",
+    "named",
+    "read",
+    "usual",
+    "write",
+    "write_usual",
+]
 
 SIGNATURES = Path(__file__).with_suffix(".json")
+USUAL = SIGNATURES.with_name("usual.json")
 # The types of arguments of each kernel, by its module and name.
 Listing = Mapping[str, Sequence[Any]]
 
@@ -27,9 +39,9 @@ def read() -> Listing:
     return json.loads(SIGNATURES.read_text(encoding="utf-8"))
 
 
-def digest() -> str:
-    """Return a digest of the list."""
-    return hashlib.sha256(SIGNATURES.read_bytes()).hexdigest()[:16]
+def usual() -> list[str]:
+    """Return the names of the kernels that usual calls need."""
+    return json.loads(USUAL.read_text(encoding="utf-8"))
 
 
 def write(listing: Listing) -> None:
@@ -39,6 +51,11 @@ def write(listing: Listing) -> None:
         lines = ",\n  ".join(sorted(map(json.dumps, listing[name])))
         blocks.append(f" {json.dumps(name)}: [\n  {lines}\n ]")
     SIGNATURES.write_text("{\n" + ",\n".join(blocks) + "\n}\n", encoding="utf-8")
+
+
+def write_usual(names: Iterable[str]) -> None:
+    """Replace the list of the kernels that usual calls need."""
+    USUAL.write_text(json.dumps(sorted(names), indent=1) + "\n", encoding="utf-8")
 
 
 def as_json(kind: Any) -> Any:

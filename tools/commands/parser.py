@@ -308,8 +308,8 @@ def _warm() -> Command:
     return _command(
         "warm",
         "Compile the kernels that the installation lacks: they are kept on disk, so that neither "
-        "other commands nor Python programs wait for the compiler on this computer. Wheels have "
-        "all kernels compiled; where these are for another version of Numba, it takes minutes.",
+        "other commands nor Python programs wait for the compiler on this computer. It takes a "
+        "minute or two; an installation has the kernels of usual calls.",
         _quiet(),
     )
 

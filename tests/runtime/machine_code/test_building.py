@@ -92,10 +92,39 @@ def test_a_file_is_built_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert entries.signature_in(entry) is not None
     assert building.build(tmp_path) == path
     assert path.stat().st_mtime_ns == built
-    monkeypatch.setattr(signatures, "digest", lambda: "another list")
-    assert building.build(tmp_path) == path
-    assert path.stat().st_mtime_ns > built
     assert [*path.parent.iterdir()] == [path]
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_what_a_file_has_is_not_compiled_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A longer list, and then those of usual calls."""
+    first, second = (f"gaussmap.runtime.kernels.{x}" for x in ("sort.merge_hits", "unit.are_unit"))
+    listing = signatures.read()
+    for names, entries_of in (((second,), 1), ((first, second), 2)):
+        monkeypatch.setattr(signatures, "read", {x: listing[x] for x in names}.copy)
+        path = building.build(tmp_path)
+        assert path is not None
+        assert len(shipped.Pack(path).places) == entries_of
+    whole = shipped.Pack(path)
+    monkeypatch.setattr(signatures, "usual", lambda: [second])
+    capsys.readouterr()
+    assert building.build(tmp_path, usual=True) == path
+    assert capsys.readouterr().err == ""
+    (key,) = shipped.Pack(path).places
+    assert key.startswith(second)
+    assert shipped.Pack(path).get(key) == whole.get(key)
+
+
+def test_usual_kernels_are_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names, content = signatures.usual(), signatures.USUAL.read_bytes()
+    assert 0 < len(names) < len(signatures.read())
+    assert set(names) <= signatures.read().keys()
+    monkeypatch.setattr(signatures, "USUAL", tmp_path / "usual.json")
+    signatures.write_usual(reversed(names))
+    assert signatures.USUAL.read_bytes() == content
 
 
 @pytest.mark.compiled
