@@ -22,5 +22,5 @@ def test_start(compare, run, warm_cache, tmp_path, command):
             "import_numba_and_numpy": run("-c", "import numba, numpy"),
             "one_cached_kernel": run(str(one_kernel), cache=warm_cache),
         },
-        rounds=7,
+        rounds=3,
     )
