@@ -98,7 +98,7 @@ verify: $(READY) $(VENV)/cad/8.0.0/.ready ## run what is slow: all tests with ma
 	.ci/check-site
 	.ci/check-newcomers
 	$(MAKE) coverage bench formulas
-	$(MAKE) generate operations errata orders curves figures
+	$(MAKE) generate operations errata orders figures
 	git diff --exit-code # these write what is committed
 
 bench: $(READY) ## run the benchmarks (ratios against the machine's own limit)

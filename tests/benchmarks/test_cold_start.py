@@ -14,6 +14,7 @@ pytestmark = [pytest.mark.compiled, pytest.mark.slow]
 def one_call(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cold_start, "CALLS", {"`fit`": CALL})
     monkeypatch.setattr(cold_start, "COMMANDS", {})
+    monkeypatch.setattr(cold_start, "USUAL", ["`fit`"])
 
 
 def test_only_an_empty_cache_compiles(tmp_path: Path) -> None:
