@@ -386,29 +386,15 @@ def test_symbols_that_the_formulas_use_themselves_do_not_get_mixed_up():
 
 @pytest.mark.parametrize(
     "points",
-    [
-        5,
-        [],
-        POINTS_12[:5],
-        [*POINTS_12, [0, 0, 0]],
-        [[0, 0]] * 6,
-        [[0, 0, 0, 0]] * 6,
-        ["abc"] * 6,
-        [0, 1, 2, 3, 4, 5],
-        [[0, 0, float("nan")], *POINTS_12[1:]],
-        [[0, 0, float("inf")], *POINTS_12[1:]],
-        [[0, 0, 1j], *POINTS_12[1:]],
-        [[0, 0, sp.I], *POINTS_12[1:]],
-        [[0, 0, "1/0"], *POINTS_12[1:]],
-        [[0, 0, "2 +"], *POINTS_12[1:]],
-        [[0, 0, None], *POINTS_12[1:]],
-        [[0, 0, True], *POINTS_12[1:]],
-        [[0, 0, [1]], *POINTS_12[1:]],
-        [[0, 0, sp.Matrix([1])], *POINTS_12[1:]],
-        [[0, 0, scalar("n_x")], *POINTS_12[1:]],
-        [[0, 0, scalar("u")], *POINTS_12[1:]],
-    ],
-)
+    [5, [], POINTS_12[:5], [*POINTS_12, [0, 0, 0]], [[0, 0]] * 6, [[0, 0, 0, 0]] * 6, ["abc"] * 6,
+     [0, 1, 2, 3, 4, 5], [[0, 0, float("nan")], *POINTS_12[1:]],
+     [[0, 0, float("inf")], *POINTS_12[1:]], [[0, 0, 1j], *POINTS_12[1:]],
+     [[0, 0, sp.I], *POINTS_12[1:]], [[0, 0, "1/0"], *POINTS_12[1:]],
+     [[0, 0, "2 +"], *POINTS_12[1:]], [[0, 0, None], *POINTS_12[1:]],
+     [[0, 0, True], *POINTS_12[1:]], [[0, 0, [1]], *POINTS_12[1:]],
+     [[0, 0, sp.Matrix([1])], *POINTS_12[1:]], [[0, 0, scalar("n_x")], *POINTS_12[1:]],
+     [[0, 0, scalar("u")], *POINTS_12[1:]]],
+)  # fmt: skip
 def test_bad_input_is_refused(points):
     refused(r"control_points|coordinate|[Ss]ympify", triangle_of, points, error=ValueError)
 

@@ -88,23 +88,11 @@ def test_high_powers_are_compiled() -> None:
 
 @pytest.mark.parametrize(
     "text",
-    [
-        "sech(Pow(pi*2, 2 >= 1))",
-        "acsch(2 < 3)",
-        "atan2(E, 10**50) + (3 < 3)",
-        "atan(Eq(atan2(10**50, tan(tan(1))), 99))",
-        "u + True",
-        "-(u > 0)",
-        "2*(u > 0)",
-        "u**(u > 0)",
-        "(u > 0) % 2",
-        "(u > 0) < 1",
-        "Max(u, True)",
-        "Piecewise((u > 0, u > 0), (1, True))",
-        "Sum(u > k, (k, 0, 2))",
-        "Sum(u, (k, 0, True))",
-    ],
-)
+    ["sech(Pow(pi*2, 2 >= 1))", "acsch(2 < 3)", "atan2(E, 10**50) + (3 < 3)",
+     "atan(Eq(atan2(10**50, tan(tan(1))), 99))", "u + True", "-(u > 0)", "2*(u > 0)", "u**(u > 0)",
+     "(u > 0) % 2", "(u > 0) < 1", "Max(u, True)", "Piecewise((u > 0, u > 0), (1, True))",
+     "Sum(u > k, (k, 0, 2))", "Sum(u, (k, 0, True))"],
+)  # fmt: skip
 def test_a_truth_value_is_no_number(text: str) -> None:
     refused(text, "truth value where a number belongs")
 

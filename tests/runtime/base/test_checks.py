@@ -24,26 +24,9 @@ def test_whole_numbers_beyond_all_memory(value):
 
 @pytest.mark.parametrize(
     "value",
-    [
-        0,
-        -1,
-        True,
-        False,
-        np.True_,
-        1.0,
-        1.5,
-        np.float32(3),
-        float("nan"),
-        float("inf"),
-        "5",
-        None,
-        [5],
-        np.array(5),
-        1j,
-        Fraction(4, 2),
-    ],
-    ids=repr,
-)
+    [0, -1, True, False, np.True_, 1.0, 1.5, np.float32(3), float("nan"), float("inf"), "5", None,
+     [5], np.array(5), 1j, Fraction(4, 2)], ids=repr,
+)  # fmt: skip
 def test_what_is_not_a_whole_number(value):
     refused(r"^count must be a whole number of at least 1, not .*\.$", whole_number, value, "count")
 
@@ -60,17 +43,11 @@ def test_real_arrays_come_as_copies_in_c_order():
 
 @pytest.mark.parametrize(
     "values",
-    [
-        [[1, 2], [3, 4]],
-        ((1.0, 2.0), (3.0, 4.0)),
-        np.array([[1, 2], [3, 4]], np.int16),
-        np.array([[1, 2], [3, 4]], np.float16),
-        np.array([[1, 2], [3, 4]], ">f8"),
-        np.array([[1, 2], [3, 4]], np.longdouble),
-        np.array([[1, 0, 2], [3, 0, 4]])[:, ::2],
-        np.ma.masked_array([[1, 2], [3, 4]], mask=False),
-    ],
-)
+    [[[1, 2], [3, 4]], ((1.0, 2.0), (3.0, 4.0)), np.array([[1, 2], [3, 4]], np.int16),
+     np.array([[1, 2], [3, 4]], np.float16), np.array([[1, 2], [3, 4]], ">f8"),
+     np.array([[1, 2], [3, 4]], np.longdouble), np.array([[1, 0, 2], [3, 0, 4]])[:, ::2],
+     np.ma.masked_array([[1, 2], [3, 4]], mask=False)],
+)  # fmt: skip
 def test_what_counts_as_an_array_of_real_numbers(values):
     result = real_array(values, "a grid")
     assert result.dtype == np.float64

@@ -203,12 +203,8 @@ def test_calls(call: Callable[[], Any], one_gib: None) -> None:
 
 @pytest.mark.parametrize(
     "asked",
-    [
-        {"count": 10**7},
-        {"coverage": 5e-3, "density": "uniform"},
-    ],
-    ids=str,
-)
+    [{"count": 10**7}, {"coverage": 5e-3, "density": "uniform"}], ids=str,
+)  # fmt: skip
 def test_parts(asked: dict[str, Any], parts: ModuleType, one_gib: None) -> None:
     refused(REFUSED, gm.sample, parts.box(), **asked)
 

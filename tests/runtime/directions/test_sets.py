@@ -283,17 +283,10 @@ def test_any_direction(vectors):
 
 @pytest.mark.parametrize(
     "bring",
-    [
-        lambda x: x.tolist(),
-        lambda x: x.astype(np.float32),
-        lambda x: x.astype(">f8"),
-        lambda x: x.astype(np.longdouble),
-        np.asfortranarray,
-        lambda x: np.repeat(x, 2, axis=0)[::2],
-        lambda x: np.ma.masked_array(x, mask=False),
-        tuple,
-    ],
-)
+    [lambda x: x.tolist(), lambda x: x.astype(np.float32), lambda x: x.astype(">f8"),
+     lambda x: x.astype(np.longdouble), np.asfortranarray, lambda x: np.repeat(x, 2, axis=0)[::2],
+     lambda x: np.ma.masked_array(x, mask=False), tuple],
+)  # fmt: skip
 def test_any_array_of_directions(bring):
     directions = 7 * gm.fibonacci(50)
     normals = as_normals(bring(directions))

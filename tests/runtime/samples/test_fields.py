@@ -221,13 +221,9 @@ def test_vtp_of_few_fields(tmp_path):
 
 @pytest.mark.parametrize(
     ("suffix", "fields", "lacking"),
-    [
-        (".ply", ("uv",), "'points'"),
-        (".vtp", ("normals",), "'points'"),
-        (".xyz", ("uv",), "'points' and 'normals'"),
-        (".xyz", ("points",), "'normals'"),
-    ],
-)
+    [(".ply", ("uv",), "'points'"), (".vtp", ("normals",), "'points'"),
+     (".xyz", ("uv",), "'points' and 'normals'"), (".xyz", ("points",), "'normals'")],
+)  # fmt: skip
 def test_formats_say_what_they_need(tmp_path, suffix, fields, lacking):
     refused(f"a {suffix} file needs {lacking}; add", narrow(fields).write, tmp_path / f"a{suffix}")
     assert not any(tmp_path.iterdir())

@@ -297,20 +297,10 @@ class TestCurvatures:
 class TestIndexing:
     @pytest.mark.parametrize(
         "key",
-        [
-            slice(None),
-            slice(2, 7),
-            slice(None, None, -3),
-            slice(5, 5),
-            np.arange(12) % 3 == 0,
-            np.zeros(12, bool),
-            np.array([7, 0, 7, -1]),
-            np.array([3, 1], np.uint8),
-            [4, 2],
-            [],
-        ],
-        ids=str,
-    )
+        [slice(None), slice(2, 7), slice(None, None, -3), slice(5, 5), np.arange(12) % 3 == 0,
+         np.zeros(12, bool), np.array([7, 0, 7, -1]), np.array([3, 1], np.uint8), [4, 2],
+         []], ids=str,
+    )  # fmt: skip
     def test_all_arrays_are_cut_alike(self, key):
         samples = torus(12)
         part = samples[key]
@@ -387,19 +377,8 @@ class TestText:
 
     @pytest.mark.parametrize(
         ("share", "end"),
-        [
-            (0.0, ""),
-            (4.9e-5, ""),
-            (
-                5.1e-5,
-                f"; 0.01 % {FLAT}",
-            ),
-            (
-                1.0,
-                f"; 100.00 % {FLAT}",
-            ),
-        ],
-    )
+        [(0.0, ""), (4.9e-5, ""), (5.1e-5, f"; 0.01 % {FLAT}"), (1.0, f"; 100.00 % {FLAT}")],
+    )  # fmt: skip
     def test_summary_of_the_developable_share(self, share, end):
         samples = self.samples()
         samples = replace(samples, report=replace(samples.report, developable_share=share))
@@ -459,14 +438,9 @@ class TestText:
 
     @pytest.mark.parametrize(
         ("samples", "count", "is_missed"),
-        [
-            (13, 8, False),
-            (15, 8, True),
-            (1024, 1000, False),
-            (1026, 1000, True),
-            (976, 1000, False),
-        ],
-    )
+        [(13, 8, False), (15, 8, True), (1024, 1000, False), (1026, 1000, True),
+         (976, 1000, False)],
+    )  # fmt: skip
     def test_a_count_is_missed_by_more_than_two_per_cent_and_a_few(self, samples, count, is_missed):
         """On a symmetric surface several samples appear at once."""
         report = SamplingReport("torus", 500, samples, 64, 0.0, 0)

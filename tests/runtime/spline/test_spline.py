@@ -521,15 +521,10 @@ def test_solid_angle_of_a_torus():
 @pytest.mark.compiled
 @pytest.mark.parametrize(
     ("name", "area"),
-    [
-        ("torus", 4 * math.pi**2 * 0.35),
-        ("sphere", 4 * math.pi),
-        ("cylinder", 4 * math.pi),
-        ("cone", math.pi * 1.5 * math.hypot(0.5, 1.0)),
-        ("plane", 4.0),
-        ("catenoid", math.pi * (2 + math.sinh(2))),
-    ],
-)
+    [("torus", 4 * math.pi**2 * 0.35), ("sphere", 4 * math.pi), ("cylinder", 4 * math.pi),
+     ("cone", math.pi * 1.5 * math.hypot(0.5, 1.0)), ("plane", 4.0),
+     ("catenoid", math.pi * (2 + math.sinh(2)))],
+)  # fmt: skip
 def test_areas(name, area):
     spline = gm.fit(gm.surfaces.surface(name), (48, 48))
     inner = spline.coefficients[1:-1, 1:-1].reshape(-1, 3)

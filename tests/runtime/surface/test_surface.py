@@ -406,18 +406,9 @@ def test_texts_are_not_run_as_python(text, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     "parameters",
-    [
-        ("u",),
-        ("u", "u"),
-        ("u", "v", "w"),
-        (1, 2),
-        None,
-        ("u v", "v"),
-        ("", "v"),
-        (u + v, v),
-        (u, sp.Symbol("u", real=True)),
-    ],
-)
+    [("u",), ("u", "u"), ("u", "v", "w"), (1, 2), None, ("u v", "v"), ("", "v"), (u + v, v),
+     (u, sp.Symbol("u", real=True))],
+)  # fmt: skip
 def test_parameters_of_expressions_that_are_none(parameters):
     complaint = "parameters must be two SymPy symbols"
     refused(complaint, gm.Surface.from_sympy, ("u", "v", "u"), parameters, SQUARE)
@@ -453,13 +444,9 @@ def test_domains_of_expressions_that_are_none(domain, complaint):
 
 @pytest.mark.parametrize(
     ("height", "complaint"),
-    [
-        ("sqrt(u - 2)", "not finite at u = "),
-        ("log(u - 1)", "not finite at u = "),
-        (sp.I * u, "not of type complex128"),
-        ("1/(u - 1/2)", "not finite at u = 0.5"),
-    ],
-)
+    [("sqrt(u - 2)", "not finite at u = "), ("log(u - 1)", "not finite at u = "),
+     (sp.I * u, "not of type complex128"), ("1/(u - 1/2)", "not finite at u = 0.5")],
+)  # fmt: skip
 def test_expressions_that_cannot_be_evaluated(height, complaint):
     surface = gm.Surface.from_sympy(("u", "v", height), "uv", SQUARE)
     refused(complaint, gm.fit, surface, (4, 4), error=gm.errors.SurfaceError)

@@ -77,14 +77,10 @@ def test_parts_that_are_not_there(dataset, part, error, text):
 
 @pytest.mark.parametrize(
     ("columns", "error"),
-    [
-        ("part", gm.errors.InputError),
-        ([], gm.errors.InputError),
-        (["part", "part"], gm.errors.InputError),
-        (["parts"], gm.errors.UnknownNameError),
-        (3, gm.errors.InputError),
-    ],
-)
+    [("part", gm.errors.InputError), ([], gm.errors.InputError),
+     (["part", "part"], gm.errors.InputError), (["parts"], gm.errors.UnknownNameError),
+     (3, gm.errors.InputError)],
+)  # fmt: skip
 def test_columns_that_are_not_there(dataset, columns, error):
     with pytest.raises(error):
         dataset.manifest(columns)

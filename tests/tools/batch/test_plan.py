@@ -8,13 +8,9 @@ from gaussmap.tools.batch.plan import file_name, limits_of
 
 @pytest.mark.parametrize(
     ("name", "expected"),
-    [
-        ("bracket", "000042-bracket.ply"),
-        ("../etc/Größe 3,5", "000042-etc-Groe-3-5.ply"),
-        ("螺丝", "000042.ply"),
-        ("x" * 200, f"000042-{'x' * 60}.ply"),
-    ],
-)
+    [("bracket", "000042-bracket.ply"), ("../etc/Größe 3,5", "000042-etc-Groe-3-5.ply"),
+     ("螺丝", "000042.ply"), ("x" * 200, f"000042-{'x' * 60}.ply")],
+)  # fmt: skip
 def test_names_of_files_are_harmless(name: str, expected: str) -> None:
     assert file_name(42, name, ".ply") == expected
 

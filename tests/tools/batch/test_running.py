@@ -124,15 +124,10 @@ def test_names_that_are_no_text(tmp_path):
 
 @pytest.mark.parametrize(
     ("part", "name", "expected"),
-    [
-        (3, "../../etc/passwd", "000003-etc-passwd.ply"),
-        (0, "/a/b", "000000-a-b.ply"),
-        (1_234_567, "", "1234567.ply"),
-        (1, "Größe 5\n", "000001-Groe-5.ply"),
-        (1, "." * 5, "000001.ply"),
-        (1, "x" * 1000, f"000001-{'x' * 60}.ply"),
-    ],
-)
+    [(3, "../../etc/passwd", "000003-etc-passwd.ply"), (0, "/a/b", "000000-a-b.ply"),
+     (1_234_567, "", "1234567.ply"), (1, "Größe 5\n", "000001-Groe-5.ply"),
+     (1, "." * 5, "000001.ply"), (1, "x" * 1000, f"000001-{'x' * 60}.ply")],
+)  # fmt: skip
 def test_names_of_files_stay_in_their_folder(part, name, expected):
     assert file_name(part, name, ".ply") == expected
 

@@ -42,16 +42,9 @@ def test_paths_that_are_no_files_are_refused(tmp_path):
 
 @pytest.mark.parametrize(
     "arguments",
-    [
-        {"unit": "ell"},
-        {"unit": 3},
-        {"time_limit": 0},
-        {"time_limit": float("nan")},
-        {"memory_limit": -1},
-        {"memory_limit": 0.5},
-        {"memory_limit": "much"},
-    ],
-)
+    [{"unit": "ell"}, {"unit": 3}, {"time_limit": 0}, {"time_limit": float("nan")},
+     {"memory_limit": -1}, {"memory_limit": 0.5}, {"memory_limit": "much"}],
+)  # fmt: skip
 def test_arguments_are_checked(arguments, tmp_path):
     refused(next(iter(arguments)), gm.read_cad, tmp_path / "part.step", **arguments)
 

@@ -103,14 +103,10 @@ def test_the_first_version_is_read(first_version, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "change"),
-    [
-        ("edge_point_starts", lambda x: x[::-1].copy()),
-        ("edge_point_starts", lambda x: x[1:]),
-        ("edge_points", lambda x: x[:, :3]),
-        ("edge_faces", lambda x: x + 10**6),
-        ("edge_faces", lambda x: x.astype(np.float64)),
-    ],
-)
+    [("edge_point_starts", lambda x: x[::-1].copy()), ("edge_point_starts", lambda x: x[1:]),
+     ("edge_points", lambda x: x[:, :3]), ("edge_faces", lambda x: x + 10**6),
+     ("edge_faces", lambda x: x.astype(np.float64))],
+)  # fmt: skip
 def test_damaged_arrays_of_the_first_version(first_version, tmp_path, name, change):
     np.savez(tmp_path / "part.npz", **{**first_version, name: change(first_version[name])})
     with pytest.raises(gm.errors.FileError, match=r"part\.npz' is damaged"):

@@ -8,15 +8,9 @@ from gaussmap.tools.files.lengths import METRES, unit_named
 
 @pytest.mark.parametrize(
     ("name", "unit"),
-    [
-        ("MM", "mm"),
-        (" millimetre", "mm"),
-        ("INCH", "in"),
-        ("Foot", "ft"),
-        ("US survey foot", "us-ft"),
-        ("ell", None),
-    ],
-)
+    [("MM", "mm"), (" millimetre", "mm"), ("INCH", "in"), ("Foot", "ft"),
+     ("US survey foot", "us-ft"), ("ell", None)],
+)  # fmt: skip
 def test_units_have_several_names(name, unit):
     assert unit_named(name) == unit
 

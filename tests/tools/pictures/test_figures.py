@@ -59,12 +59,9 @@ def test_notebooks_show_it(samples: gm.Samples) -> None:
 
 @pytest.mark.parametrize(
     ("color", "label"),
-    [
-        ("support", "support (length)"),
-        ("mean_curvature", "mean curvature (1/length²)"),
-        ("nz", "nz"),
-    ],
-)
+    [("support", "support (length)"), ("mean_curvature", "mean curvature (1/length²)"),
+     ("nz", "nz")],
+)  # fmt: skip
 @pytest.mark.quick_for("nz")
 def test_colours_by_a_column(color: str, label: str, samples: gm.Samples) -> None:
     figure = samples.plot(color=color)

@@ -220,14 +220,9 @@ def only(*names: str) -> gm.Samples:
 
 @pytest.mark.parametrize(
     "names",
-    [
-        ("points", "normals"),
-        ("normals",),
-        ("support",),
-        ("gaussian_curvature", "mean_curvature"),
-        ("uv", "normal_index"),
-    ],
-)
+    [("points", "normals"), ("normals",), ("support",), ("gaussian_curvature", "mean_curvature"),
+     ("uv", "normal_index")],
+)  # fmt: skip
 def test_fields_that_are_there_are_moved(names: tuple[str, ...]) -> None:
     moved, everything = only(*names).offset(-0.25), exact_torus().offset(-0.25)
     assert set(moved.fields) == set(names)

@@ -125,17 +125,11 @@ def test_shifts(shift: Any, message: str) -> None:
 
 @pytest.mark.parametrize(
     ("rotation", "message"),
-    [
-        (np.eye(2), r"shape \(3, 3\)"),
-        (np.eye(3) * np.nan, "NaN or infinity"),
-        (np.zeros((3, 3)), "orthogonal"),
-        (2 * np.eye(3), "orthogonal"),
-        (1e200 * np.eye(3), "orthogonal"),
-        (np.eye(3) + 1e-9, "orthogonal"),
-        (-np.eye(3), "reflection"),
-        (np.diag([1.0, 1.0, -1.0]), "reflection"),
-    ],
-)
+    [(np.eye(2), r"shape \(3, 3\)"), (np.eye(3) * np.nan, "NaN or infinity"),
+     (np.zeros((3, 3)), "orthogonal"), (2 * np.eye(3), "orthogonal"),
+     (1e200 * np.eye(3), "orthogonal"), (np.eye(3) + 1e-9, "orthogonal"),
+     (-np.eye(3), "reflection"), (np.diag([1.0, 1.0, -1.0]), "reflection")],
+)  # fmt: skip
 def test_rotations(rotation: Any, message: str) -> None:
     refused(message, SPHERE.rotated, rotation)
 
