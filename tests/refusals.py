@@ -16,7 +16,7 @@ def refused(
     **named: Any,
 ) -> str:
     """Check that a call raises an error that says `match`, and return what it says."""
-    with pytest.raises(error, match=match) as caught:
+    with pytest.raises(error, match=match or None) as caught:
         call(*arguments, **named)
     message = str(caught.value)
     if isinstance(caught.value, gm.GaussmapError):

@@ -196,9 +196,7 @@ def test_commands(
     ],
 )
 def test_calls(call: Callable[[], Any], one_gib: None) -> None:
-    with pytest.raises(gm.errors.InputError, match=REFUSED) as caught:
-        call()
-    assert len(str(caught.value)) <= 300
+    refused(REFUSED, call)
 
 
 @pytest.mark.parametrize(

@@ -223,9 +223,7 @@ def test_given_derivatives_that_are_wrong(derivatives, complaint):
     surface = gm.Surface.from_callable(saddle, SQUARE, derivatives=derivatives, name="mine")
     assert surface.evaluate(0.5, 0.5).shape == (3,)
     for call in (lambda: surface.derivatives(0.5, 0.5), lambda: surface.jets(*places(SQUARE))):
-        with pytest.raises(gm.errors.SurfaceError, match=complaint) as caught:
-            call()
-        assert "\n" not in str(caught.value)
+        refused(complaint, call, error=gm.errors.SurfaceError)
 
 
 def test_derivatives_that_do_not_exist():

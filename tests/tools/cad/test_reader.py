@@ -28,9 +28,8 @@ def installed(monkeypatch):
 def test_bad_files_are_refused_in_a_sentence(content, reason, tmp_path, installed):
     path = tmp_path / "part.step"
     path.write_bytes(content)
-    with pytest.raises(gm.errors.FileError) as error:
-        gm.read_cad(path)
-    assert str(error.value) == f"'{path}' {reason}"
+    said = refused("", gm.read_cad, path, error=gm.errors.FileError)
+    assert said == f"'{path}' {reason}"
 
 
 def test_paths_that_are_no_files_are_refused(tmp_path):

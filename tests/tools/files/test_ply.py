@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 
+from ...refusals import refused
+
 POINTS = ["property float x", "property float y", "property float z"]
 FIELDS = "comment gaussmap fields points"
 
@@ -77,10 +79,8 @@ def test_elements_behind_the_vertices_are_left_out(tmp_path):
 )
 def test_hostile_headers(tmp_path, lines, message):
     write(tmp_path / "a.ply", FIELDS, *lines)
-    with pytest.raises(gm.errors.FileError, match=message) as caught:
-        gm.read_samples(tmp_path / "a.ply")
-    assert "\n" not in str(caught.value)
-    assert len(str(caught.value)) < 1000
+    said = refused(message, gm.read_samples, tmp_path / "a.ply", error=gm.errors.FileError)
+    assert len(said) < 1000
 
 
 def test_the_format_comes_first(tmp_path):
