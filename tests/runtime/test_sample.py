@@ -9,6 +9,7 @@ import sympy as sp
 from gaussmap.symbolic.surfaces import CATALOGUE
 
 from ..refusals import refused
+from ..shapes import moved
 
 DEVELOPABLE = ("plane", "cylinder", "cone")
 CURVED = [name for name in gm.surfaces.names() if name not in DEVELOPABLE]
@@ -16,15 +17,6 @@ SQUARE = ((0.0, 1.0), (0.0, 1.0))
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 # The corners of the triangles south, east, north, west of a cell, from its centre.
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
-
-
-def moved(surface, factor=1.0, shift=0.0):
-    return gm.Surface(
-        surface.name,
-        lambda u, v: factor * surface.evaluate(u, v) + shift,
-        surface.domain,
-        surface.boundary,
-    )
 
 
 def broken(u, v):

@@ -12,6 +12,7 @@ from gaussmap.runtime.density.methods import space_on
 from numpy.typing import NDArray
 
 from ...products import covering
+from ...shapes import klein_bottle
 
 DENSITIES = ["balanced", "uniform", 0.5, 1.0, 3.0]
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
@@ -23,19 +24,6 @@ DENTS = gm.Surface.from_callable(
 
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
-
-
-def klein_bottle():
-    def eight(u, v):
-        c, s = np.cos(u / 2), np.sin(u / 2)
-        radius = 2.0 + c * np.sin(v) - s * np.sin(2 * v)
-        return np.stack(
-            [radius * np.cos(u), radius * np.sin(u), s * np.sin(v) + c * np.sin(2 * v)], axis=-1
-        )
-
-    return gm.Surface.from_callable(
-        eight, ((0.0, 2 * np.pi), (-np.pi, np.pi)), periodic=("mirrored", True)
-    )
 
 
 def same(one: gm.Samples, other: gm.Samples) -> None:

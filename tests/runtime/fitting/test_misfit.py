@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from ...products import covering
+from ...shapes import egg_surface
 
 Array = NDArray[np.float64]
 GENERATOR = np.random.default_rng(3)
@@ -40,15 +41,6 @@ def torus_normals(u: Array, v: Array) -> Array:
 def angles(first: Array, second: Array) -> Array:
     """Return angles in degrees between unit vectors."""
     return np.degrees(2.0 * np.arcsin(np.linalg.norm(first - second, axis=-1) / 2.0))
-
-
-def egg() -> gm.Surface:
-    def f(u: Array, v: Array) -> Array:
-        x, y, z = np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)
-        return np.stack([x * (1.2 + 0.3 * z), y * (0.8 + 0.1 * z), 1.4 * z + 0.3 * x**2], axis=-1)
-
-    domain = ((0.0, 2.0 * np.pi), (-np.pi / 2, np.pi / 2))
-    return gm.Surface.from_callable(f, domain, ("periodic", "pole"), name="egg")
 
 
 def fillet(along: int, width: float = 0.01, place: float = 0.437) -> gm.Surface:
@@ -89,11 +81,11 @@ def test_fillet_of_one_percent_is_seen(along: int, cells) -> None:
 
 def test_normals_next_to_poles_count_and_those_at_poles_do_not() -> None:
     assert misfit_of(gm.fit("sphere", (64, 64))).angle < 0.04
-    spline = gm.fit(egg(), (32, 32))
+    spline = gm.fit(egg_surface(), (32, 32))
     u, v = np.meshgrid(np.linspace(0.0, 6.0, 100), np.pi / 2 - np.linspace(1e-3, 0.2, 50))
     h = 1e-6
     x_u, x_v = [
-        egg().evaluate(u + du, v + dv) - egg().evaluate(u - du, v - dv)
+        egg_surface().evaluate(u + du, v + dv) - egg_surface().evaluate(u - du, v - dv)
         for du, dv in ((h, 0.0), (0.0, h))
     ]
     normals = np.cross(x_u, x_v)

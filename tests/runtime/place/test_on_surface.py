@@ -11,6 +11,7 @@ from scipy.spatial import KDTree
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import egg_surface
 
 CELLS = (12, 12)
 NORMAL_ERROR = 1e-12  # radians
@@ -19,17 +20,6 @@ FIELDS_ON_SPLINE = (
     "patch_index",
 )  # fmt: skip
 FIELDS_ON_SURFACE = (*FIELDS_ON_SPLINE, "on_surface")
-
-
-def egg_at(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """A smooth convex surface, which is no quadric, in geographic coordinates."""
-    x, y, z = np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)
-    return np.stack([x * (1.2 + 0.3 * z), y * (0.8 + 0.1 * z), 1.4 * z + 0.3 * x**2], axis=-1)
-
-
-def egg() -> gm.Surface:
-    domain = ((0, 2 * np.pi), (-np.pi / 2, np.pi / 2))
-    return gm.Surface.from_callable(egg_at, domain, periodic=(True, "pole"), name="egg")
 
 
 def normals_at(surface: gm.Surface, uv: np.ndarray) -> np.ndarray:
@@ -183,7 +173,7 @@ def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
 
 class TestPoles:
     def test_every_normal_once(self):
-        surface, normals = egg(), gm.directions.fibonacci(3000)
+        surface, normals = egg_surface(), gm.directions.fibonacci(3000)
         samples = gm.sample(surface, normals=normals, cells=(32, 16), on="surface")
         np.testing.assert_array_equal(np.sort(samples.normal_index), np.arange(3000))
         assert samples.report.unrefined == 0
@@ -194,7 +184,7 @@ class TestPoles:
 
     def test_densities_take_the_curvature_of_the_surface(self):
         """The share of ∫ K² in the outermost cells; from the spline it is more than ten times."""
-        surface = egg()
+        surface = egg_surface()
         samples = gm.sample(surface, 3000, density=2, cells=(32, 32), on="surface")
         v = np.pi * ((np.arange(640) + 0.5) / 640 - 0.5)
         u = 2 * np.pi * (np.arange(64) + 0.5) / 64
@@ -213,7 +203,7 @@ class TestPoles:
     @pytest.mark.slow
     def test_gauss_bonnet(self):
         for request_ in UNIFORM_TOO:
-            samples = gm.sample(egg(), 8000, **request_, on="surface")
+            samples = gm.sample(egg_surface(), 8000, **request_, on="surface")
             total = samples.weights() @ samples.gaussian_curvature
             assert total == pytest.approx(4 * np.pi, rel=0.01)
 
@@ -230,7 +220,7 @@ class TestStream:
             np.testing.assert_array_equal(getattr(joined, name), getattr(whole, name))
 
     def test_samples_next_to_poles_come_once(self):
-        surface, normals = egg(), gm.directions.fibonacci(500)
+        surface, normals = egg_surface(), gm.directions.fibonacci(500)
         whole = gm.sample(surface, normals=normals, cells=(16, 16), on="surface")
         chunks = [
             *gm.sample_stream(surface, normals=normals, chunk=40, cells=(16, 16), on="surface")

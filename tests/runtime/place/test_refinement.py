@@ -12,6 +12,8 @@ from gaussmap.runtime.place.newton import FOUND, Target, evaluate_on_surface, re
 from gaussmap.runtime.place.repeats import kept_once
 from numpy.typing import NDArray
 
+from ...shapes import egg, klein
+
 Array = NDArray[np.float64]
 NORMAL_ERROR = 1e-12  # radians
 FULL = (0.0, 2.0 * np.pi)
@@ -42,12 +44,6 @@ def normals_of(surface: gm.Surface, uv: Array) -> Array:
 def turned(seed: int) -> Array:
     q = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
     return q * np.linalg.det(q)
-
-
-def egg(u: Array, v: Array) -> Array:
-    """Return points of a smooth convex surface whose parameter lines are no circles."""
-    x, y, z = np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)
-    return np.stack([x * (1.2 + 0.3 * z), y * (0.8 + 0.1 * z), 1.4 * z + 0.3 * x * x], axis=-1)
 
 
 def blob(u: Array, v: Array) -> Array:
@@ -360,13 +356,6 @@ def repeated(samples: gm.Samples, periodic: tuple[bool, bool]) -> int:
     return count
 
 
-def figure_8(u: Array, v: Array) -> Array:
-    """Return points of the figure-8 Klein bottle."""
-    radius = 2.0 + np.cos(u / 2.0) * np.sin(v) - np.sin(u / 2.0) * np.sin(2.0 * v)
-    z = np.sin(u / 2.0) * np.sin(v) + np.cos(u / 2.0) * np.sin(2.0 * v)
-    return np.stack([radius * np.cos(u), radius * np.sin(u), z], axis=-1)
-
-
 def knobby_torus(u: Array, v: Array) -> Array:
     minor = 0.35 + 0.06 * np.sin(4.0 * u + 3.0 * v)
     major = 1.0 + minor * np.cos(v)
@@ -374,7 +363,7 @@ def knobby_torus(u: Array, v: Array) -> Array:
 
 
 CURVED: dict[str, tuple[gm.Surface, tuple[bool, bool]]] = {
-    "figure 8": (gm.Surface.from_callable(figure_8, (FULL, FULL), (False, True)), (False, True)),
+    "figure 8": (gm.Surface.from_callable(klein, (FULL, FULL), (False, True)), (False, True)),
     "knobby": (gm.Surface.from_callable(knobby_torus, (FULL, FULL), (True, True)), (True, True)),
     "wavy": (gm.surfaces.wavy_graph(amplitude=0.1, frequency=8.0), (False, False)),
 }

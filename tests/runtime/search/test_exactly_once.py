@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from ...products import covering
+from ...shapes import klein_bottle, moved
 
 pytestmark = pytest.mark.compiled
 
@@ -38,13 +39,6 @@ def check_torus(samples: gm.Samples, normals: Array, axis: Array) -> None:
     assert samples.report.developable_patches == 0
     assert np.isfinite(samples.points).all()
     assert np.isfinite(samples.gaussian_curvature).all()
-
-
-def moved(surface: gm.Surface, rotation: Array, shift: float, factor: float) -> gm.Surface:
-    def evaluate(u: Array, v: Array) -> Array:
-        return factor * (surface.evaluate(u, v) @ rotation.T) + shift
-
-    return gm.Surface(surface.name, evaluate, surface.domain, surface.boundary)
 
 
 def rotation_of(quaternion: tuple[float, float, float, float]) -> Array:
@@ -104,7 +98,7 @@ def test_torus_moved_and_scaled(shift: float, factor: float, turned: bool) -> No
     rotation = rotation_of((0.5, 0.1, -0.7, 0.3)) if turned else np.eye(3)
     normals = gm.icosphere(10) @ rotation.T
     for cells in ((16, 16), (40, 24), (96, 96)):
-        surface = moved(TORUS, rotation, shift * factor, factor)
+        surface = moved(TORUS, factor, shift * factor, rotation)
         check_torus(
             gm.sample(surface, normals=normals, cells=cells, on="spline"), normals, rotation[:, 2]
         )
@@ -118,7 +112,7 @@ def test_torus_turned_at_random(
 ) -> None:
     turn = rotation_of(of_surface)
     normals = gm.icosphere(8) @ rotation_of(of_normals).T
-    surface = moved(TORUS, turn, 0.0, 10.0**exponent)
+    surface = moved(TORUS, 10.0**exponent, 0.0, turn)
     check_torus(
         gm.sample(surface, normals=normals, cells=(32, 20), on="spline"), normals, turn[:, 2]
     )
@@ -138,7 +132,7 @@ def test_sphere_like_surfaces_have_every_normal_once(name: str, cells: tuple[int
 )
 def test_sphere_so_far_away_that_patches_are_mostly_rounding(cells: int, shift: float) -> None:
     normals = gm.fibonacci(20_000)
-    surface = moved(gm.surfaces.sphere(), np.eye(3), shift, 1.0)
+    surface = moved(gm.surfaces.sphere(), 1.0, shift)
     samples = gm.sample(surface, normals=normals, cells=(cells, cells), on="spline")
     assert samples.report.developable_patches
     elliptic, hyperbolic = count_preimages(samples, len(normals))
@@ -149,7 +143,7 @@ def test_sphere_so_far_away_that_patches_are_mostly_rounding(cells: int, shift: 
     ("minor", "shift", "cells"), [(1e-6, 0.0, 128), (0.35, 1e9, 256), (0.35, 1e12, 32)]
 )
 def test_torus_that_is_mostly_rounding(minor: float, shift: float, cells: int) -> None:
-    surface = moved(gm.surfaces.torus(minor=minor), np.eye(3), shift, 1.0)
+    surface = moved(gm.surfaces.torus(minor=minor), 1.0, shift)
     normals = gm.fibonacci(20_000)
     samples = gm.sample(surface, normals=normals, cells=(cells, cells), on="spline")
     assert samples.report.developable_patches
@@ -187,19 +181,9 @@ def test_seam_of_a_moebius_band() -> None:
 def test_klein_bottle(cells: tuple[int, int], frequency: int) -> None:
     """It has no oriented normals, but for every line the signs of K sum to χ = 0."""
 
-    def eight(u: Array, v: Array) -> Array:
-        c, s = np.cos(u / 2), np.sin(u / 2)
-        radius = 2.0 + c * np.sin(v) - s * np.sin(2 * v)
-        return np.stack(
-            [radius * np.cos(u), radius * np.sin(u), s * np.sin(v) + c * np.sin(2 * v)], axis=-1
-        )
-
-    bottle = gm.Surface.from_callable(
-        eight, domain=((0.0, 2 * np.pi), (-np.pi, np.pi)), periodic=("mirrored", True)
-    )
     normals = gm.icosphere(frequency)
     elliptic, hyperbolic = count_preimages(
-        gm.sample(bottle, normals=normals, cells=cells, on="spline"), len(normals)
+        gm.sample(klein_bottle(), normals=normals, cells=cells, on="spline"), len(normals)
     )
     order = np.lexsort(normals.T)
     signed = elliptic - hyperbolic
@@ -242,7 +226,7 @@ def test_symmetric_ellipsoid_patch(cells: tuple[int, int], frequency: int) -> No
 def test_developable_surfaces(
     name: str, shift: float, factor: float, quaternion: tuple[float, float, float, float]
 ) -> None:
-    surface = moved(gm.surfaces.surface(name), rotation_of(quaternion), shift * factor, factor)
+    surface = moved(gm.surfaces.surface(name), factor, shift * factor, rotation_of(quaternion))
     with pytest.warns(gm.GaussmapWarning, match="flat or developable"):
         samples = gm.sample(surface, normals=gm.icosphere(32), cells=(32, 32), on="spline")
     assert np.isfinite(samples.points).all()

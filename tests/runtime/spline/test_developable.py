@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ...products import covering
+from ...shapes import moved
 
 DENSE = 1e5 / (4 * math.pi)
 
@@ -17,15 +18,6 @@ def developable_share(spline: gm.Spline, density: float) -> float:
 
 def curved_solid_angle(spline: gm.Spline, density: float) -> float:
     return spline._cell_measure.curved_solid_angle(density)
-
-
-def moved(surface, factor=1.0, shift=0.0):
-    return gm.Surface(
-        surface.name,
-        lambda u, v: factor * surface.evaluate(u, v) + shift,
-        surface.domain,
-        surface.boundary,
-    )
 
 
 @pytest.mark.parametrize(

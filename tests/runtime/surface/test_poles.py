@@ -8,22 +8,13 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 
 from ...products import covering
+from ...shapes import egg, on_sphere
 
 Array = NDArray[np.float64]
 SPHERE = (0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2)
 # A rotation without zeros: no plane of symmetry of a surface is one of the coordinates.
 ROTATION = np.linalg.qr(np.array([[0.7, 0.3, -0.5], [0.2, 0.8, 0.6], [-0.4, 0.5, 0.9]]))[0]
 ROTATION *= np.linalg.det(ROTATION)
-
-
-def on_sphere(u: ArrayLike, v: ArrayLike) -> tuple[Array, Array, Array]:
-    u, v = np.broadcast_arrays(u, v)
-    return np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)
-
-
-def egg(u: ArrayLike, v: ArrayLike) -> Array:
-    x, y, z = on_sphere(u, v)
-    return np.stack([x * (1.2 + 0.3 * z), y * (0.8 + 0.1 * z), 1.4 * z + 0.3 * x**2], axis=-1)
 
 
 def ellipsoid(u: ArrayLike, v: ArrayLike) -> Array:

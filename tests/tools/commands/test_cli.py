@@ -36,11 +36,6 @@ def gaussmap(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedPr
     )  # fmt: skip
 
 
-@pytest.fixture(autouse=True)
-def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-
-
 @pytest.fixture
 def files() -> None:
     """Good and bad input in the current folder."""

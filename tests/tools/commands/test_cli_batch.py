@@ -17,11 +17,6 @@ pytest.importorskip("pyarrow")
 SMALL = ["--cells", "8", "8", "--count", "50", "--density", "uniform", "--float32"]
 
 
-@pytest.fixture(autouse=True)
-def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-
-
 def test_a_run_and_the_same_again(capfd: pytest.CaptureFixture[str]) -> None:
     Path("list.txt").write_text("# two parts\n\nsphere\nmissing.step\n")
     command = ["batch", "torus", "--list", "list.txt", *SMALL, "-o", "set", "--workers", "1"]

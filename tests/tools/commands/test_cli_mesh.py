@@ -15,11 +15,6 @@ from ...products import covering
 FEW = ["--count", "100", "--cells", "8", "8"]
 
 
-@pytest.fixture(autouse=True)
-def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-
-
 @pytest.mark.parametrize("suffix", ["ply", "obj", "stl", "vtk", "vtu"])
 def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["mesh", "torus", *FEW, "-o", f"torus.{suffix}"]) == 0

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -13,23 +12,10 @@ import pytest
 from gaussmap.tools.files.formats import MESH_SUFFIXES
 
 from ...refusals import refused
+from ...shapes import CORNERS, square
 
 EACH = pytest.mark.parametrize("suffix", MESH_SUFFIXES)
 OWN = [x for x in MESH_SUFFIXES if x != ".glb"]  # without further libraries
-CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-
-
-def square(**changes: Any) -> gm.Mesh:
-    """Two triangles of the unit square, the normals 0, 30, 45 and 60 degrees from its own."""
-    angles = np.radians([0, 30, 45, 60])
-    arrays: dict[str, Any] = {
-        "vertices": CORNERS,
-        "normals": np.stack([np.sin(angles), np.zeros(4), np.cos(angles)], axis=1),
-        "uv": CORNERS[:, :2] / 3,
-        "triangles": np.array([[0, 1, 2], [0, 2, 3]]),
-        "sample_index": np.array([5, 6, 7, -1]),
-    }
-    return gm.Mesh(**(arrays | changes))
 
 
 def numbers(mesh: gm.Mesh) -> dict[str, np.ndarray]:

@@ -3,29 +3,13 @@
 from __future__ import annotations
 
 import pickle
-from typing import Any
 
 import gaussmap as gm
 import numpy as np
 import pytest
 
 from ...refusals import refused
-
-CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
-
-
-def square(**changes: Any) -> gm.Mesh:
-    """Two triangles of the unit square, the normals 0, 30, 45 and 60 degrees from its own."""
-    angles = np.radians([0, 30, 45, 60])
-    arrays: dict[str, Any] = {
-        "vertices": CORNERS,
-        "normals": np.stack([np.sin(angles), np.zeros(4), np.cos(angles)], axis=1),
-        "uv": CORNERS[:, :2] / 3,
-        "triangles": np.array([[0, 1, 2], [0, 2, 3]]),
-        "sample_index": np.array([5, 6, 7, -1]),
-    }
-    return gm.Mesh(**(arrays | changes))
-
+from ...shapes import CORNERS, square
 
 NAMES = ("vertices", "normals", "uv", "triangles", "sample_index")
 

@@ -17,19 +17,13 @@ from gaussmap.tools.meshes.triangulated import Triangulated, flip_edges
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import klein
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 compiled = pytest.mark.compiled
 
 NO_AREA = np.degrees(1e-6)  # of the smallest angle
 CAP = gm.icosphere(60)[gm.icosphere(60)[:, 2] > 0.9]
-
-
-def klein(u: Any, v: Any) -> Any:
-    """The figure-8 immersion: v is mirrored after a turn of u."""
-    ring = 2 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
-    height = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
-    return np.stack([ring * np.cos(u), ring * np.sin(u), height], axis=-1)
 
 
 def latitude(u: Any, v: Any) -> Any:

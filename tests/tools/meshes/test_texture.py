@@ -7,22 +7,14 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
+from ...shapes import TURN, klein
+
 # The largest extent of the texture coordinates of a triangle, of about 1,500 of them.
 WIDEST = 0.35
 
 
-def klein_bottle() -> gm.Surface:
-    def function(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        r = 2.0 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
-        z = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
-        return np.stack([r * np.cos(u), r * np.sin(u), z], axis=-1)
-
-    turn = (0.0, 2.0 * np.pi)
-    ends = ("mirrored", True)
-    return gm.Surface.from_callable(function, (turn, turn), periodic=ends)
-
-
-SURFACES = ["torus", "sphere", "moebius_band", "cylinder", "wavy_graph", "cone", klein_bottle()]
+KLEIN = gm.Surface.from_callable(klein, (TURN, TURN), periodic=("mirrored", True))
+SURFACES = ["torus", "sphere", "moebius_band", "cylinder", "wavy_graph", "cone", KLEIN]
 
 
 @pytest.mark.compiled

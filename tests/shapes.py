@@ -1,0 +1,63 @@
+"""Surfaces that tests of several folders take: closed ones without a name, and moved ones."""
+
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+
+TURN = (0.0, 2.0 * np.pi)
+LATITUDES = (-np.pi / 2, np.pi / 2)
+
+
+def on_sphere(u: Any, v: Any) -> tuple[Any, Any, Any]:
+    u, v = np.broadcast_arrays(u, v)
+    return np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)
+
+
+def egg(u: Any, v: Any) -> Any:
+    """Return points of a smooth convex surface whose parameter lines are no circles."""
+    x, y, z = on_sphere(u, v)
+    return np.stack([x * (1.2 + 0.3 * z), y * (0.8 + 0.1 * z), 1.4 * z + 0.3 * x**2], axis=-1)
+
+
+def egg_surface() -> gm.Surface:
+    return gm.Surface.from_callable(egg, (TURN, LATITUDES), periodic=(True, "pole"), name="egg")
+
+
+def klein(u: Any, v: Any) -> Any:
+    """Return points of the figure-8 Klein bottle: v is mirrored after a turn of u."""
+    ring = 2.0 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
+    height = np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
+    return np.stack([ring * np.cos(u), ring * np.sin(u), height], axis=-1)
+
+
+def klein_bottle() -> gm.Surface:
+    return gm.Surface.from_callable(klein, (TURN, (-np.pi, np.pi)), periodic=("mirrored", True))
+
+
+def moved(
+    surface: gm.Surface, factor: float = 1.0, shift: float = 0.0, rotation: Any = None
+) -> gm.Surface:
+    """Return a surface that is turned, scaled, and then translated by `shift` along each axis."""
+
+    def evaluate(u: Any, v: Any) -> Any:
+        points = surface.evaluate(u, v)
+        return factor * (points if rotation is None else points @ rotation.T) + shift
+
+    return gm.Surface(surface.name, evaluate, surface.domain, surface.boundary)
+
+
+CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+
+
+def square(**changes: Any) -> gm.Mesh:
+    """Two triangles of the unit square, the normals 0, 30, 45 and 60 degrees from its own."""
+    angles = np.radians([0, 30, 45, 60])
+    arrays: dict[str, Any] = {
+        "vertices": CORNERS,
+        "normals": np.stack([np.sin(angles), np.zeros(4), np.cos(angles)], axis=1),
+        "uv": CORNERS[:, :2] / 3,
+        "triangles": np.array([[0, 1, 2], [0, 2, 3]]),
+        "sample_index": np.array([5, 6, 7, -1]),
+    }
+    return gm.Mesh(**(arrays | changes))
