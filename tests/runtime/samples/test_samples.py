@@ -27,6 +27,9 @@ from ...refusals import refused
 
 REPORT = SamplingReport("torus", 8, 12, 4, 0.125, 1)
 FLAT = "of the surface is flat or developable (K = 0), which no set of normals can sample"
+AT = "10,012 samples at 1,234,567 prescribed normals"
+START = f"{AT} (5,012 with K > 0, 5,000 with K < 0)"
+MISFIT: dict[str, Any] = {"developable_share": 0.0, "fit_distance": 1.0696e-5, "fit_rms": 6.0347e-6}
 
 
 def torus(count: Any = 12, **changes: Any) -> Samples:
@@ -108,31 +111,18 @@ class TestConstruction:
         assert len(torus(0)) == 0
 
     @pytest.mark.parametrize("name", ARRAY_NAMES)
-    def test_wrong_shapes_are_named(self, name):
+    def test_arrays(self, name):
+        """Shapes and types that are wrong are named; arrays become contiguous."""
         good = getattr(torus(), name)
         for bad in (good[:-1], good[..., None], good.ravel()[0]):
-            said = refused("shape", torus, **{name: np.array(bad)})
+            wrong: Any = np.array(bad)
+            said = refused("shape", torus, **{name: wrong})
             # When the points are wrong, all the others seem to be.
             assert name == "points" or said.startswith(f"{name} must be")
-
-    @pytest.mark.parametrize("name", ARRAY_NAMES)
-    def test_wrong_dtypes_are_named(self, name):
-        good = getattr(torus(), name)
-        for bad in (
-            good.astype(np.float32),
-            good.astype(object),
-            good.astype(good.dtype.newbyteorder()),
-        ):
+        swapped = good.astype(good.dtype.newbyteorder())
+        for bad in (good.astype(np.float32), good.astype(object), swapped):
             refused(f"^{name} must be a {good.dtype} array", torus, **{name: bad})
-
-    @pytest.mark.parametrize("name", ARRAY_NAMES)
-    def test_lists_are_refused(self, name):
-        with pytest.raises(gm.errors.InputError, match=f"^{name} must be a NumPy array, not list"):
-            torus(**{name: getattr(torus(), name).tolist()})
-
-    @pytest.mark.parametrize("name", ARRAY_NAMES)
-    def test_arrays_become_contiguous(self, name):
-        good = getattr(torus(), name)
+        refused(f"^{name} must be a NumPy array, not list", torus, **{name: good.tolist()})
         strided = np.repeat(good, 2, axis=0)[::2]
         assert not strided.flags.c_contiguous
         result = getattr(torus(**{name: strided}), name)
@@ -366,24 +356,42 @@ class TestText:
         assert "…:" in repr(samples)
         assert "\n" not in repr(samples)
 
-    def test_summary(self):
-        assert self.samples().summary() == (
-            "10,012 samples at 1,234,567 prescribed normals (5,012 with K > 0, "
-            "5,000 with K < 0); 3.12 % of the surface is flat or developable "
-            "(K = 0), which no set of normals can sample"
-        )
-
     @pytest.mark.parametrize(
-        ("share", "end"),
-        [(0.0, ""), (4.9e-5, ""), (5.1e-5, f"; 0.01 % {FLAT}"), (1.0, f"; 100.00 % {FLAT}")],
+        ("changes", "rows", "summary"),
+        [
+            ({}, slice(None), f"{START}; 3.12 % {FLAT}"),
+            ({}, slice(10), f"10 of {AT} (10 with K < 0); 3.12 % {FLAT}"),
+            ({"developable_share": 0.0}, slice(None), START),
+            ({"developable_share": 4.9e-5}, slice(None), START),
+            ({"developable_share": 5.1e-5}, slice(None), f"{START}; 0.01 % {FLAT}"),
+            ({"developable_share": 1.0}, slice(None), f"{START}; 100.00 % {FLAT}"),
+            (
+                {"developable_share": 0.0, "unrefined": 1234}, slice(None),
+                f"{START}; 1,234 samples could not be moved to the surface: there normals and "
+                "curvatures are those of its spline",
+            ),
+            (MISFIT | {"on": "surface", "fit_angle": 0.03161}, slice(None), START),
+            (
+                MISFIT | {"on": "spline", "fit_angle": 0.03161}, slice(None),
+                f"{START}; they lie on a spline within 1.07e-05 of the surface, its normals within "
+                "0.0316°",
+            ),
+            (
+                MISFIT | {"on": "spline"}, slice(None),
+                f"{START}; they lie on a spline within 1.07e-05 of the data (root mean square "
+                "6.03e-06)",
+            ),
+            (
+                {"surface": "an unknown surface", "normals": None, "patches": None,
+                 "developable_share": None, "developable_patches": None}, slice(None),
+                "10,012 samples (5,012 with K > 0, 5,000 with K < 0)",
+            ),
+        ],
     )  # fmt: skip
-    def test_summary_of_the_developable_share(self, share, end):
+    def test_summary(self, changes, rows, summary):
         samples = self.samples()
-        samples = replace(samples, report=replace(samples.report, developable_share=share))
-        start = (
-            "10,012 samples at 1,234,567 prescribed normals (5,012 with K > 0, 5,000 with K < 0)"
-        )
-        assert samples.summary() == start + end
+        report = replace(samples.report, **changes)
+        assert replace(samples, report=report)[rows].summary() == summary
 
     @pytest.mark.parametrize(
         ("index", "words"),
@@ -448,51 +456,6 @@ class TestText:
         assert [
             f"{samples} samples instead of the requested" in str(x.message) for x in caught
         ] == [True] * is_missed
-
-    def test_summary_of_samples_that_are_not_on_the_surface(self):
-        report = replace(self.samples().report, developable_share=0.0, unrefined=1234)
-        assert (
-            replace(self.samples(), report=report)
-            .summary()
-            .endswith(
-                "with K < 0); 1,234 samples could not be moved to the surface: there normals "
-                "and curvatures are those of its spline"
-            )
-        )
-
-    @pytest.mark.parametrize(
-        ("on", "angle", "end"),
-        [
-            ("surface", 0.03161, ""),
-            (
-                "spline",
-                0.03161,
-                "; they lie on a spline within 1.07e-05 of the surface, its normals within 0.0316°",
-            ),
-            (
-                "spline",
-                None,
-                "; they lie on a spline within 1.07e-05 of the data (root mean square 6.03e-06)",
-            ),
-        ],
-    )
-    def test_summary_of_the_misfit(self, on, angle, end):
-        known = {"fit_distance": 1.0696e-5, "fit_rms": 6.0347e-6, "fit_angle": angle}
-        report = replace(self.samples().report, developable_share=0.0, on=on, **known)
-        summary = replace(self.samples(), report=report).summary()
-        assert summary.endswith("5,000 with K < 0)" + end)
-
-    def test_summary_of_a_part(self):
-        assert self.samples()[:10].summary() == (
-            "10 of 10,012 samples at 1,234,567 prescribed normals (10 with K < 0); "
-            "3.12 % of the surface is flat or developable (K = 0), which no set of normals can "
-            "sample"
-        )
-
-    def test_summary_of_what_is_unknown(self):
-        report = SamplingReport("an unknown surface", None, 10012, None, None, None)
-        samples = replace(self.samples(), report=report)
-        assert samples.summary() == "10,012 samples (5,012 with K > 0, 5,000 with K < 0)"
 
 
 def test_write(tmp_path):
