@@ -231,10 +231,6 @@ def test_several_surfaces():
 # --- how dense ------------------------------------------------------------------------------------
 
 
-def cells_of(samples: gm.Samples, inside: NDArray[np.bool_]) -> tuple[int, int]:
-    return int(inside.sum()), int((~inside).sum())
-
-
 @pytest.mark.compiled
 @pytest.mark.parametrize("alpha", [0.25, 0.5, 1.0, 1.5])
 @pytest.mark.quick_for("0.25", "1.5")

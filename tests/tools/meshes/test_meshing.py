@@ -269,6 +269,7 @@ class TestBorders:
 @compiled
 class TestFlips:
     @pytest.mark.parametrize("name", ["torus", "graph", "moebius"])
+    @pytest.mark.quick_for("graph", "moebius")
     def test_no_flip_is_left_that_helps(self, name):
         """Each pair of triangles is compared with the other one, in NumPy."""
         samples = gm.sample(surfaces[name][0](), count=300)
@@ -283,6 +284,7 @@ class TestFlips:
                 assert tuple(sorted(edge)) in joined or after <= before + 1e-12
 
     @pytest.mark.parametrize("name", ["torus", "graph", "klein"])
+    @pytest.mark.quick_for("torus", "graph")
     def test_neighbours_stay_those_of_the_triangles(self, name):
         samples = gm.sample(surfaces[name][0](), count=300)
         assert samples.spline is not None
