@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from gaussmap.runtime.density import candidates, space
 from gaussmap.runtime.density.methods import space_on
-from numpy.typing import NDArray
 
 from ...products import covering
 from ...shapes import klein_bottle
