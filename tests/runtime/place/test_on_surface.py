@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import egg_surface
+from ...shapes import egg, egg_surface
 
 CELLS = (12, 12)
 NORMAL_ERROR = 1e-12  # radians
@@ -126,7 +126,7 @@ def test_the_measure_of_an_opaque_function_is_that_of_its_spline():
 
     def opaque(u: np.ndarray, v: np.ndarray) -> np.ndarray:
         places.append(np.size(u))
-        return egg_at(np.asarray(u, dtype=float), np.asarray(v, dtype=float))
+        return egg(np.asarray(u, dtype=float), np.asarray(v, dtype=float))
 
     domain = ((0, 2 * np.pi), (-np.pi / 2, np.pi / 2))
     surface = gm.Surface.from_callable(opaque, domain, periodic=(True, "pole"))
