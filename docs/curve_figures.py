@@ -8,7 +8,7 @@ import gaussmap as gm
 import numpy as np
 import sympy as sp
 from gaussmap.docs.drawing import HALO, Floats, panels
-from gaussmap.docs.orders import listed
+from gaussmap.docs.markdown import listed
 from gaussmap.symbolic.display import latex_of
 from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC, INK, NO_SAMPLE
 from matplotlib.axes import Axes

@@ -6,19 +6,22 @@ Every claim on the page is checked, exactly, before it is printed: ArithmeticErr
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations, permutations, product
+from pathlib import Path
 from random import Random
 from typing import cast
 
 import sympy as sp
+from gaussmap.docs.markdown import markdown
 from gaussmap.symbolic import BezierTriangle, formulas
 from gaussmap.symbolic.notation import dot, substitute
 from gaussmap.symbolic.spline import box_spline_net, middle, triangles
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface
 from sympy.polys.matrices import DomainMatrix
 
+PAGE = Path(__file__).parent / "_pages" / "errata.md"  # with a place for what is computed
 n1, n2, n3 = n = sp.symbols("n_1 n_2 n_3", real=True)
 u, v, tau = sp.symbols("u v tau", real=True)
 x, z, w = sp.symbols("x z w", real=True)
@@ -81,61 +84,18 @@ def second_form(p: sp.Matrix) -> tuple[sp.Matrix, sp.Expr]:
 
 # --- the page -------------------------------------------------------------------------------------
 
-HEAD = """\
-# Errata of the paper
-
-Written by `make errata`: do not edit.
-
-What is wrong or unclear in *Support Function Representation for Curvature Dependent Surface
-Sampling*, found while its formulas were derived for gaussmap. Everything below is computed by
-`docs/errata.py`, in exact arithmetic, and every equality that is claimed is checked there: if one
-failed, there would be no page. Equation and section numbers are the paper's.
-"""
-
 
 def page() -> str:
     """Return the page."""
-    parts = [HEAD, control_points(), composition(), bijectivity(), box_splines(), parabolic_lines()]
-    return "\n".join([*parts, biangles()])
+    sections = (control_points, composition, bijectivity, box_splines, parabolic_lines, biangles)
+    values = {name: text for section in sections for name, text in section().items()}
+    return PAGE.read_text(encoding="utf-8").format(**values)
 
 
 # --- Sect. 3, eqs. (11) and (12) ------------------------------------------------------------------
 
-CONTROL_POINTS = """\
-## Eqs. (11) and (12): the control points do not give the formula
 
-The control points that are printed as (11),
-
-{printed}
-
-have the support function
-
-{h_printed}
-
-which is not the printed (12),
-
-{h_12}
-
-At n = (1, 1, 1), for instance, the first is {value_printed} and the second {value_12}. The points
-are not merely in another order, either: six points make {orders} patches, according to which three
-are the corners and which of the others stands between which two of them, and none of these has the
-value {test_value} that (12) has at n = {test_normal}.
-
-Formula (12) itself is right, for other points. It is symmetric in n₁, n₂, n₃. Of the symmetric nets
-with corners on the axes, b₂₀₀ = (x, 0, 0), b₁₁₀ = (z, z, w) and so on, those with (12) as their
-support function are, from a Gröbner basis of the conditions on the coefficients,
-
-{solutions}
-
-which are two triangles of one surface. The first is surely what was meant:
-
-{right}
-
-Their support function equals (12) exactly.
-"""
-
-
-def control_points() -> str:
+def control_points() -> dict[str, object]:
     """Compare the support function of the points (11) with (12), and solve for the right ones."""
     printed, right = BezierTriangle(PRINTED_11), BezierTriangle(RIGHT_11)
     h_12 = NUMERATOR_12 / DENOMINATOR_12
@@ -148,20 +108,20 @@ def control_points() -> str:
     claim(fraction(test_value) not in values)
     solutions = symmetric_solutions()
     claim(solutions[0] == (sp.Rational(3, 2), sp.S.One, sp.S.Half))
-    return CONTROL_POINTS.format(
-        printed=math(net_latex(printed)),
-        h_printed=math(quotient("h", *sp.fraction(support_function(printed)))),
-        h_12=math(quotient("h", NUMERATOR_12, DENOMINATOR_12)),
-        value_printed=substitute(support_function(printed), ones),
-        value_12=substitute(h_12, ones),
-        orders=len(values),
-        test_value=test_value,
-        test_normal=test_normal,
-        solutions=math(
+    return {
+        "printed": math(net_latex(printed)),
+        "h_printed": math(quotient("h", *sp.fraction(support_function(printed)))),
+        "h_12": math(quotient("h", NUMERATOR_12, DENOMINATOR_12)),
+        "value_printed": substitute(support_function(printed), ones),
+        "value_12": substitute(h_12, ones),
+        "orders": len(values),
+        "test_value": test_value,
+        "test_normal": test_normal,
+        "solutions": math(
             r",\quad ".join(f"(x, z, w) = {sp.latex(solution)}" for solution in solutions)
         ),
-        right=math(net_latex(right)),
-    )
+        "right": math(net_latex(right)),
+    }
 
 
 def values_in_all_orders(
@@ -214,31 +174,8 @@ def net_latex(triangle: BezierTriangle) -> str:
 
 # --- Sect. 2 --------------------------------------------------------------------------------------
 
-COMPOSITION = """\
-## Eq. (3): the composition is the other way round
 
-(3) says h = N⁻¹ ∘ H, which in the usual notation, (f ∘ g)(x) = f(g(x)), means N⁻¹(H(u, v)). That is
-not defined: H gives a number, and N⁻¹ takes a normal.
-
-{table}
-It should read **h = H ∘ N⁻¹**, first from the normal to the parameters, then to the distance.
-Computed for the ellipsoid of the catalogue,
-
-{position}
-
-the inverse of N is
-
-{inverse}
-
-for N(N⁻¹(n)) has the direction of n, and
-
-{h}
-
-which is the support function of the ellipsoid: its gradient is the point x(N⁻¹(n)), as (5) asks.
-"""
-
-
-def composition() -> str:
+def composition() -> dict[str, object]:
     """Show on the ellipsoid which order of composition gives its support function."""
     entry = CATALOGUE["ellipsoid"]
     a, b, c = entry.defaults
@@ -254,12 +191,12 @@ def composition() -> str:
     gradient = [sp.simplify(sp.diff(h, by) - q) for by, q in zip(n, point, strict=True)]
     claim(gradient == [0, 0, 0])
     maps = {"N": (2, 3), "H": (2, 1), "N⁻¹": (len(n), len(inverse))}
-    return COMPOSITION.format(
-        table=composition_table(maps),
-        position=math(f"x(u, v) = {sp.latex(entry.position)},"),
-        inverse=math(rf"N^{{-1}}(n) = (u, v) = {sp.latex(inverse)}"),
-        h=math(f"h(n) = (H \\circ N^{{-1}})(n) = {sp.latex(h)}"),
-    )
+    return {
+        "maps": composition_table(maps),
+        "ellipsoid": math(f"x(u, v) = {sp.latex(entry.position)},"),
+        "inverse": math(rf"N^{{-1}}(n) = (u, v) = {sp.latex(inverse)}"),
+        "h_ellipsoid": math(f"h(n) = (H \\circ N^{{-1}})(n) = {sp.latex(h)}"),
+    }
 
 
 def positive(expression: sp.Expr) -> bool:
@@ -278,31 +215,10 @@ def composition_table(maps: Mapping[str, tuple[int, int]]) -> str:
         claim(fits is (outer == "H"))
         clash = f"– ({inner} gives {inner_gives}, {outer} takes {needs})"
         rows.append((f"{outer} ∘ {inner}", str(takes), str(gives) if fits else clash))
-    return markdown(("map", "takes numbers", "gives numbers"), rows)
+    return markdown(("map", "takes numbers", "gives numbers"), rows, ":--")
 
 
-BIJECTIVITY = """\
-## Sect. 2: N is bijective only locally
-
-“The mapping N … is bijective provided that the surface does not have parabolic or singular points”
-holds near each point, not for the whole surface. The helicoid
-
-{position}
-
-has
-
-{curvature}
-
-so neither kind of points, but
-
-{shift}
-
-On k turns every normal of the first turn occurs k times. (Sect. 3.2 does allow for this, where it
-calls h multi-valued.)
-"""
-
-
-def bijectivity() -> str:
+def bijectivity() -> dict[str, object]:
     """Show a surface without parabolic and singular points that has each normal several times."""
     entry: ParametricSurface = CATALOGUE["helicoid"]
     (pitch,) = entry.defaults
@@ -316,35 +232,20 @@ def bijectivity() -> str:
     position, curvature, area, shift = (
         sp.latex(q, symbol_names={pitch: "c"}) for q in (entry.position, curvature, area, shift)
     )
-    return BIJECTIVITY.format(
-        position=math(f"x(u, v) = {position}"),
-        curvature=math(rf"K = {curvature} < 0, \qquad |x_u \times x_v|^2 = {area} > 0,"),
-        shift=math(rf"N(u, v + 2\pi) = N(u, v), \qquad x(u, v + 2\pi) = x(u, v) + {shift}."),
-    )
+    return {
+        "helicoid": math(f"x(u, v) = {position}"),
+        "curvature": math(rf"K = {curvature} < 0, \qquad |x_u \times x_v|^2 = {area} > 0,"),
+        "shift": math(rf"N(u, v + 2\pi) = N(u, v), \qquad x(u, v + 2\pi) = x(u, v) + {shift}."),
+    }
 
 
 # --- Sect. 3.1 ------------------------------------------------------------------------------------
 
-BOX_SPLINES = """\
-## Sect. 3.1: there are (n + 2)(m + 2) box splines, not (n + 1)(m + 1)
-
-The sum Qf = Σ μᵢⱼ Bᵢⱼ is printed over i = 0 … n, j = 0 … m, for n × m cells. Counted are the
-translates of the Zwart–Powell box spline, centred at the centres of cells, that do not vanish on
-the domain: those with a Bézier ordinate there that is not zero. One ring of them has its centre
-outside. The last column gives the dimension of what they span on the domain, which is the rank of
-their Bézier ordinates.
-
-{table}
-There is one linear relation between them (for each row of the table: the sum with the signs of a
-chessboard is zero), so that even the span needs more than (n + 1)(m + 1) of them. The sum should
-run over **i = 0 … n + 1, j = 0 … m + 1**, if B₁₁ is the one centred in the first cell; the
-coefficients of the ring need a rule of their own.
-"""
 
 COUNTED_GRIDS = ((1, 1), (2, 2), (3, 2), (3, 3), (4, 3), (5, 4))
 
 
-def box_splines() -> str:
+def box_splines() -> dict[str, object]:
     """Count the box splines that do not vanish on a domain of several sizes."""
     rows = []
     for columns, lines in COUNTED_GRIDS:
@@ -359,7 +260,7 @@ def box_splines() -> str:
         numbers = (printed, len(found), outside, rank)
         rows.append((f"{columns} × {lines}", *map(str, numbers)))
     header = ("n × m cells", "printed", "counted", "centre outside", "dimension")
-    return BOX_SPLINES.format(table=markdown(header, rows))
+    return {"counts": markdown(header, rows, ":--")}
 
 
 Ordinates = dict[tuple[Fraction, Fraction], Fraction]
@@ -400,32 +301,6 @@ def chessboard_vanishes(found: Mapping[tuple[int, int], Ordinates]) -> bool:
 
 # --- Sect. 3.2 ------------------------------------------------------------------------------------
 
-PARABOLIC_LINES = """\
-## Sect. 3.2: the parabolic points lie on three lines, which are known exactly
-
-The paper quotes that the parabolic points of a quadratic patch are the images of straight lines,
-along which it splits the patch; Remark 3.1 looks for them by subdivision. More can be said. With
-N = p_u × p_v, LN − M² = (N·p_uu)(N·p_vv) − (N·p_uv)² seems to have degree 4 in u, v. Its terms of
-degree 4 cancel: it is a cubic, and it is the product of three lines, one or three of them real. If
-det(a, b, c) ≠ 0, let a*, b*, c* be the dual basis of a, b, c in (8), and
-
-{general}
-
-Then, Res being the resultant of q(τ) and u + τv + ρ(τ) with respect to τ,
-
-{identity}
-
-and a resultant is a product over the roots: up to a constant factor LN − M² is the product of the
-lines u + τv + ρ(τ) = 0 with q(τ) = 0. (If c*·d = 0, one root is at infinity, and there n = c*.) All
-points of such a line have one and the same normal n(τ). So a patch can be cut along them without
-any subdivision, and in the Gaussian image the whole line is one point, not a curve.
-
-An affine map of space keeps parabolic points, and carries a, b, c to (1, 0, 0), (0, 1, 0),
-(0, 0, 1). For these, with six symbols for the coordinates of d and e, the identity was checked, and
-so was, modulo q(τ), that p_u × p_v is parallel to n(τ) on the line: both hold for every patch with
-det(a, b, c) ≠ 0. They were checked, too, for the following patches with random integer vectors.
-
-{examples}"""
 
 EXAMPLE = """\
 ### {title}
@@ -442,7 +317,7 @@ EXAMPLE = """\
 UNIT_VECTORS = {"a": (1, 0, 0), "b": (0, 1, 0), "c": (0, 0, 1)}
 
 
-def parabolic_lines() -> str:
+def parabolic_lines() -> dict[str, object]:
     """Show on random integer patches that LN − M² splits into three lines."""
     check_lines({**UNIT_VECTORS, "d": sp.symbols("d1:4"), "e": sp.symbols("e1:4")})
     general = math(
@@ -469,7 +344,7 @@ def parabolic_lines() -> str:
                 lines=math(r",\qquad ".join(lines)),
             )
         )
-    return PARABOLIC_LINES.format(general=general, identity=identity, examples="\n".join(examples))
+    return {"general": general, "identity": identity, "examples": "\n".join(examples)}
 
 
 def signed(value: sp.Expr) -> str:
@@ -511,27 +386,11 @@ def check_lines(vectors: Mapping[str, Sequence[object]]) -> None:
     claim(all(sp.prem(sp.expand(x), q.as_expr(), tau) == 0 for x in along.flat()))
 
 
-BIANGLES = """\
-## Sect. 3.2: when the spherical triangle becomes a biangle
-
-“If one of these cones is singular the spherical triangle may degenerate into a biangle”: it may,
-but a singular cone is not what decides. The boundary cones are U = 0, V = 0, W = 0, with three
-quadratic forms that follow from the control points; here they are for two patches over the triangle
-u ≥ 0, v ≥ 0, u + v ≤ 1:
-
-{table}
-The first is an elliptic paraboloid. All its cones are singular, pairs of planes, because the
-normals of each edge lie in a plane; its Gaussian image is bounded by three arcs of great circles,
-and is a triangle all the same. The second, with LN − M² = {cubic}, has its edge u = 0 on a
-parabolic line, with the one normal (0, 0, 1): the edge becomes one point, and the image is a
-biangle. What makes a biangle here is **an edge on a parabolic line**.
-"""
-
 PARABOLOID = {"a": (0, 0, 1), "b": (0, 0, 0), "c": (0, 0, 1), "d": (1, 0, 0), "e": (0, 1, 0)}
 FLAT_EDGE = {"a": (0, 0, 1), "b": (1, 0, 0), "c": (0, 0, 0), "d": (1, 0, 0), "e": (0, 1, 0)}
 
 
-def biangles() -> str:
+def biangles() -> dict[str, object]:
     """Show a patch with singular cones and three corners, and one whose image is a biangle."""
     rows = []
     for vectors, corners in ((PARABOLOID, 3), (FLAT_EDGE, 2)):
@@ -552,7 +411,7 @@ def biangles() -> str:
     normal, cubic = second_form(patch(FLAT_EDGE)[0])
     claim(normal.subs(u, 0) == sp.Matrix([0, 0, 1 + v]) and cubic.subs(u, 0) == 0)
     header = ("p(u, v)", "U", "V", "W", "ranks of the cones", "corners of the image")
-    return BIANGLES.format(table=markdown(header, rows), cubic=plain(cubic))
+    return {"cones": markdown(header, rows, ":--"), "cubic": plain(cubic)}
 
 
 def direction(vector: sp.Matrix) -> tuple[sp.Expr, ...]:
@@ -573,12 +432,6 @@ def quotient(name: str, numerator: sp.Expr, denominator: sp.Expr) -> str:
     """Return name(n) = numerator / denominator as LaTeX."""
     bottom = sp.latex(sp.factor_terms(denominator))
     return rf"{name}(n) = \frac{{{sp.latex(sp.expand(numerator))}}}{{{bottom}}}"
-
-
-def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table in Markdown."""
-    lines = [header, [":--"] * len(header), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def plain(expression: sp.Expr) -> str:

@@ -8,17 +8,18 @@ from __future__ import annotations
 
 import math
 import re
-import textwrap
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
+from pathlib import Path
 
 import gaussmap as gm
 import numpy as np
 import sympy as sp
 from gaussmap.docs import poles
+from gaussmap.docs.markdown import above, code, listed, markdown, number, wrapped
 from gaussmap.symbolic.notation import dot
 from gaussmap.symbolic.spline import triangles
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface
@@ -35,6 +36,7 @@ STRIP = 4  # rows of cells at a time, which fit into the cache
 FLAT = 0.01  # of the largest |K|
 NEAR = 2.0  # cells
 STEPS = 8  # of Newton's method
+PAGE = Path(__file__).parent / "_pages" / "orders.md"  # with a place for each number and table
 REASONS = ("flat", "lost", "turned", "outside")  # for which samples are left out
 
 
@@ -349,78 +351,6 @@ def measure(name: str, grids: Sequence[int], normals: Array) -> Measurement:
 
 # --- the page -------------------------------------------------------------------------------------
 
-HEAD = """\
-# Orders of approximation, measured
-
-Written by `make orders`: do not edit.
-
-A surface x of the catalogue (`gaussmap surfaces`), with its default parameters, is approximated by
-the spline p of `gaussmap.fit` on N × N cells, N = {grids}. As in the paper, k = 1/N is the
-size of a cell when the domain is scaled to the unit square. Measured are
-
-{quantities}
-
-The first three are taken over {places} points of each of the 4 N² patches: the barycentric lattice
-of step 1/{parts}, which includes vertices and edges of the cells and the border of the domain.
-
-The tables give the error on each grid, the slope of log(error) against log(k) by least squares,
-over all grids and over the {last} finest, and the constant: the largest error / kʳ of all grids, r
-being the order that is claimed, and its value on the finest grid. A slope above r, with a constant
-that decreases towards the finest grid, means that terms of higher order contribute on coarse grids.
-
-{exact} have quadratic polynomials for coordinates. The spline reproduces them
-exactly; the remaining rounding error is given as a power of ten above it.
-
-Not in these tables are {singular}. At their poles x_u × x_v = 0 (checked
-exactly): these are singular points of the parameterization, without a normal by (1), and an error
-of the derivatives, divided by |x_u × x_v|, does not bound that of the normals there. They are in
-the last section.
-"""
-
-POLES = """\
-## Poles
-
-At a pole, an end of v where the surface is one point, the coefficients of the spline around it lie
-in one plane, exactly: so the spline has one normal there, and a closed surface has Σ sign K = χ/2
-for every normal. The tables give errors in rows of cells, counted from a pole, over {places} places
-of each cell, and in the middle half of the domain. Surfaces are rotated, so that no axis of
-symmetry is one of the coordinates, and `egg` is {egg}
-
-Positions keep their order. Normals lose one next to poles, unless symmetry hides it: v² u, a term
-of third order, is not reproduced, and the error of p_u is divided by the radius of a row, which is
-of the order of k. At the poles themselves the normals of spline and surface differ by less than
-{tip} degrees here. With `on="surface"`, samples do not have these errors: they are moved to the
-surface.
-"""
-
-METHOD = """\
-h_p comes from `gaussmap.sample`, which returns the support value of every point of the spline that
-has one of {normals:,} normals (a Fibonacci lattice on the sphere). h_x is exact: Newton's method on
-n·x_u = n·x_v = 0, with exact derivatives, leads from the parameters of the sample to the point of
-the true surface with the same normal n, and h_x(n) = n·x there. For {closed}
-it agrees with the closed form of the support function: the largest difference is
-below {difference}.
-
-Where K is near zero a normal does not determine its point, or has none on one of the two surfaces.
-Samples are left out, and counted below, in this order, as
-
-- **flat**, if |K| of the true surface at the parameters of the sample is less than
-  {flat:g} % of the largest |K| of the surface;
-- **lost**, if Newton's method does not converge to a point of normal n within {near:g} cells of the
-  sample;
-- **turned**, if K has another sign at that point than at the sample;
-- **outside**, if that point lies beyond the border of the domain.
-
-{developable} have K = 0 everywhere, and no support function as a function of the
-normal.
-
-Why the order is 3: with n the normal of p at s′ and of x at s,
-h_p(n) − h_x(n) = n·(p − x)(s′) + [n·x(s′) − n·x(s)]. The first term is an error of positions. In
-the second n·x is stationary at s, and s′ − s is of the order of the error of the normals, k², so
-it is O(k⁴). In the limit Ĉ is therefore not larger than C̃ (up to the third digit: each is a
-maximum over finitely many points).
-"""
-
 FASTER = """\
 Faster than claimed: {names}. All third derivatives of this surface are tangent to it, so that the
 leading term of the error of p_u and p_v does not turn the normal.
@@ -429,43 +359,43 @@ leading term of the error of p_u and p_v does not turn the normal.
 
 def page(measurements: Sequence[Measurement]) -> str:
     """Return the page."""
-    exact = [x.true.name for x in measurements if x.true.reproduced]
-    head = HEAD.format(
-        grids=listed(map(str, measurements[0].grids)),
+    grids = measurements[0].grids
+    differences = {
+        x.true.name: max(y.closed_form for y in x.support)
+        for x in measurements
+        if x.support and not math.isnan(x.support[0].closed_form)
+    }
+    at_poles = [poles.measured(x.name, cells) for x in poles.surfaces() for cells in grids]
+    text = PAGE.read_text(encoding="utf-8").format(
+        grids=listed(map(str, grids)),
         quantities="\n".join(f"- **{x.title}**: {x.definition};" for x in QUANTITIES)[:-1] + ".",
         places=len(LATTICE),
         parts=PARTS,
         last=LAST,
-        exact=listed(map(code, exact)),
+        exact=listed(code(x.true.name) for x in measurements if x.true.reproduced),
         singular=listed(map(code, singular_surfaces())),
-    )
-    parts = [wrapped(head)]
-    for quantity in QUANTITIES:
-        parts.append(f"## {quantity.title}\n")
-        if quantity is SUPPORT:
-            parts.append(_method(measurements))
-        parts.append(table(quantity, measurements))
-        if quantity is ANGLES:
-            parts.append(_faster(measurements))
-    parts.append("Samples compared and left out, on the coarsest and on the finest grid:\n")
-    parts.append(counts(measurements))
-    parts.append(at_poles(measurements[0].grids))
-    return "\n".join(x for x in parts if x)
-
-
-def at_poles(grids: Sequence[int]) -> str:
-    """Return the section on surfaces with poles."""
-    found = [poles.measured(x.name, cells) for x in poles.surfaces() for cells in grids]
-    text = POLES.format(
-        places=poles.ALONG.size * poles.ACROSS.size,
+        normals=NORMALS,
+        closed=listed(map(code, differences)),
+        difference=above(max(differences.values())).removeprefix("< "),
+        flat=100 * FLAT,
+        near=NEAR,
+        developable=listed(code(x.true.name) for x in measurements if x.true.developable),
+        faster=_faster(measurements),
+        rows=poles.ALONG.size * poles.ACROSS.size,
         egg=poles.EGG.sentence[0].lower() + poles.EGG.sentence[1:],
-        tip=above(max(x.at_pole for x in found)).removeprefix("< "),
+        tip=above(max(x.at_pole for x in at_poles)).removeprefix("< "),
     )
-    parts = [wrapped(text)]
-    for title, quantity in (("Positions", "positions"), ("Normals, in degrees", "normals")):
-        header, *rows = poles.table(grids, quantity)
-        parts += [f"{title}:\n", markdown(header, rows)]
-    return "\n".join(parts)
+    tables = {x.title: table(x, measurements) for x in QUANTITIES} | {
+        "counts": counts(measurements)
+    }
+    tables |= {x: of_poles(grids, x) for x in ("positions", "normals")}
+    return re.sub(r"^\[(.*)\]\n", lambda found: tables[found[1]], wrapped(text), flags=re.MULTILINE)
+
+
+def of_poles(grids: Sequence[int], quantity: str) -> str:
+    """Return the table of "positions" or "normals" next to poles."""
+    header, *rows = poles.table(grids, quantity)
+    return markdown(header, rows)
 
 
 def table(quantity: Quantity, measurements: Sequence[Measurement]) -> str:
@@ -505,25 +435,6 @@ def counts(measurements: Sequence[Measurement]) -> str:
     return markdown(header, rows)
 
 
-def _method(measurements: Sequence[Measurement]) -> str:
-    differences = {
-        x.true.name: max(y.closed_form for y in x.support)
-        for x in measurements
-        if x.support and not math.isnan(x.support[0].closed_form)
-    }
-    developable = [x.true.name for x in measurements if x.true.developable]
-    return wrapped(
-        METHOD.format(
-            normals=NORMALS,
-            closed=listed(map(code, differences)),
-            difference=above(max(differences.values())).removeprefix("< "),
-            flat=100 * FLAT,
-            near=NEAR,
-            developable=listed(map(code, developable)),
-        )
-    )
-
-
 def _faster(measurements: Sequence[Measurement]) -> str:
     """Name the surfaces whose normals are faster than claimed, if they have the stated property."""
     faster = [
@@ -533,7 +444,7 @@ def _faster(measurements: Sequence[Measurement]) -> str:
     ]
     if not all(third_derivatives_are_tangent(x.entry) for x in faster):
         raise ArithmeticError("normals are faster than claimed without the known reason")
-    return wrapped(FASTER.format(names=listed(code(x.name) for x in faster))) if faster else ""
+    return FASTER.format(names=listed(code(x.name) for x in faster)) if faster else ""
 
 
 def third_derivatives_are_tangent(entry: ParametricSurface) -> bool:
@@ -544,47 +455,6 @@ def third_derivatives_are_tangent(entry: ParametricSurface) -> bool:
         sp.simplify(dot(entry.derivative(*by), normal)) == 0
         for by in ((u, u, u), (u, u, v), (u, v, v), (v, v, v))
     )
-
-
-def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table in Markdown, its first column aligned left and the others right."""
-    lines = [header, [":--", *["--:"] * (len(header) - 1)], *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
-
-
-def wrapped(text: str) -> str:
-    """Break paragraphs and items of a list at 100 characters."""
-    blocks = re.split(r"\n(?=- )|\n\n", text.rstrip("\n"))
-    lines = [
-        textwrap.fill(" ".join(x.split()), 100, subsequent_indent="  " * x.startswith("- "))
-        for x in blocks
-    ]
-    gaps = re.findall(r"\n(?=- )|\n\n", text.rstrip("\n"))
-    return "".join(x + gap for x, gap in zip(lines, [*gaps, "\n"], strict=True))
-
-
-def number(x: float) -> str:
-    """Return a number with three digits, small ones with an exponent."""
-    if 0.01 <= x < 1000:
-        return f"{x:.3g}"
-    digits, exponent = f"{x:.2e}".split("e")
-    return f"{digits}e{int(exponent)}"
-
-
-def above(x: float) -> str:
-    """Return zero, or a power of ten above a number: the digits of rounding errors mean nothing."""
-    return "0" if x == 0.0 else f"< 1e{math.floor(math.log10(x)) + 1}"
-
-
-def code(name: str) -> str:
-    """Return a name as code in Markdown."""
-    return f"`{name}`"
-
-
-def listed(words: Iterable[str]) -> str:
-    """Return words as people list them: a, b and c."""
-    *first, last = words
-    return f"{', '.join(first)} and {last}" if first else last
 
 
 def main() -> None:

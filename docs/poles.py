@@ -10,6 +10,7 @@ from typing import cast
 import gaussmap as gm
 import numpy as np
 import sympy as sp
+from gaussmap.docs.markdown import code, number
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface, u, v
 from numpy.typing import ArrayLike, NDArray
 
@@ -106,11 +107,6 @@ def angles(left: Array, right: Array) -> Array:
     return np.degrees(2.0 * np.arcsin(np.linalg.norm(left - right, axis=-1) / 2.0))
 
 
-def orders(errors: Array, grids: Sequence[int]) -> float:
-    """Return the slope of log(error) against log(1/N) by least squares, over all grids."""
-    return -float(np.polyfit(np.log(grids), np.log(errors), 1)[0])
-
-
 def table(grids: Sequence[int], quantity: str) -> list[list[str]]:
     """Return the rows of a table of "positions" or "normals", a header first."""
     header = ["surface", "where", *(f"N = {x}" for x in grids), "slope"]
@@ -118,8 +114,8 @@ def table(grids: Sequence[int], quantity: str) -> list[list[str]]:
     for entry in surfaces():
         errors = np.array([getattr(measured(entry.name, x), quantity) for x in grids])
         for k, region in enumerate(REGIONS):
-            slope = orders(errors[:, k], grids)
-            rows.append([f"`{entry.name}`", region, *map(number, errors[:, k]), f"{slope:.2f}"])
+            slope = -np.polyfit(np.log(grids), np.log(errors[:, k]), 1)[0]
+            rows.append([code(entry.name), region, *map(number, errors[:, k]), f"{slope:.2f}"])
     return rows
 
 
@@ -127,11 +123,3 @@ def table(grids: Sequence[int], quantity: str) -> list[list[str]]:
 def measured(name: str, cells: int) -> PoleErrors:
     """Return the errors for the surface of that name."""
     return measure(next(x for x in surfaces() if x.name == name), cells)
-
-
-def number(x: float) -> str:
-    """Return a number with three digits, small ones with an exponent."""
-    if x >= 0.01:
-        return f"{x:.3g}"
-    digits, exponent = f"{x:.2e}".split("e")
-    return f"{digits}e{int(exponent)}"

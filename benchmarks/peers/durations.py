@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from gaussmap.docs.orders import markdown, wrapped
+from gaussmap.docs.markdown import markdown, wrapped
 
 from .forms import FORMS
 from .recipe import by_grid

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from gaussmap.docs.orders import listed, markdown, wrapped
+from gaussmap.docs.markdown import listed, markdown, wrapped
 
 __all__ = ["TITLE", "opening", "tables"]
 

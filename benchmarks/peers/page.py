@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from gaussmap.docs.orders import markdown, wrapped
+from gaussmap.docs.markdown import markdown, wrapped
 
 from ..scale import LAST, STREAMED, Series
 from .catalogue import K

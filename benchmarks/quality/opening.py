@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gaussmap.docs.orders import listed, markdown, wrapped
+from gaussmap.docs.markdown import listed, markdown, wrapped
 
 from ..peers.opening import TITLE, tables
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from gaussmap.docs.orders import markdown, number, wrapped
+from gaussmap.docs.markdown import markdown, number, wrapped
 
 from ..peers.machine import machine
 from ..peers.mesh_metrics import Quality

@@ -1,9 +1,11 @@
 """The measurements of docs/orders.py, on small grids, against theory and the runtime itself."""
 
+import re
+
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.docs import orders, poles
+from gaussmap.docs import markdown, orders, poles
 from gaussmap.docs.orders import ANGLES, DERIVATIVES, POSITIONS, QUANTITIES, SUPPORT
 
 pytestmark = pytest.mark.compiled
@@ -137,12 +139,19 @@ def test_errors_next_to_poles():
 
 
 def test_tables_of_poles():
-    text = orders.at_poles(GRIDS)
-    assert text.startswith("## Poles")
-    assert text.count("| `egg` |") == 2 * len(poles.REGIONS)
+    for quantity in ("positions", "normals"):
+        assert orders.of_poles(GRIDS, quantity).count("| `egg` |") == len(poles.REGIONS)
+
+
+def test_the_page_has_all_tables(measured):
+    """With all numbers and tables in their places: none is left over."""
+    chosen = [measured[name] for name in ("torus", "plane", "cylinder")]
+    text = orders.page(chosen)
+    assert text.count("\n| :-- |") == len(QUANTITIES) + 3
+    assert not re.search(r"[{}]|^\[", text, re.MULTILINE)
 
 
 def test_numbers():
     values = (8.6473e-5, 0.02704, 4.031, 151.2, 7.999e-16)
-    assert list(map(orders.number, values)) == ["8.65e-5", "0.027", "4.03", "151", "8.00e-16"]
-    assert [orders.above(x) for x in (0.0, 3e-16, 9e-13)] == ["0", "< 1e-15", "< 1e-12"]
+    assert list(map(markdown.number, values)) == ["8.65e-5", "0.027", "4.03", "151", "8.00e-16"]
+    assert [markdown.above(x) for x in (0.0, 3e-16, 9e-13)] == ["0", "< 1e-15", "< 1e-12"]
