@@ -389,7 +389,9 @@ def page(measurements: Sequence[Measurement]) -> str:
         "counts": counts(measurements)
     }
     tables |= {x: of_poles(grids, x) for x in ("positions", "normals")}
-    return re.sub(r"^\[(.*)\]\n", lambda found: tables[found[1]], wrapped(text), flags=re.MULTILINE)
+    return re.sub(
+        r"^\[([\w ]+)\]\n", lambda found: tables[found[1]], wrapped(text), flags=re.MULTILINE
+    )
 
 
 def of_poles(grids: Sequence[int], quantity: str) -> str:
