@@ -10,8 +10,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.benchmarks.writing import Writers, new_arrays
-from gaussmap.runtime.search.bins import NormalBins
-from gaussmap.runtime.search.search import fill, find
+from gaussmap.runtime.search.fill import fill
+from gaussmap.runtime.search.search import find
 from matplotlib.cbook import get_sample_data
 
 TORUS = gm.surfaces.torus()
@@ -88,14 +88,14 @@ def test_stream(compare):
 @pytest.mark.parametrize("cells", [8, 64, 256])
 def test_threads(compare, step, cells):
     """Kernels in two threads, beside the same in one."""
-    spline, bins = gm.fit(TORUS, (cells, cells)), NormalBins(gm.icosphere(200))
-    hits = find(spline, bins)
+    spline, normals = gm.fit(TORUS, (cells, cells)), gm.icosphere(200)
+    hits = find(spline, normals)
 
     def run(threads: int) -> None:
         if step == "find":
-            find(spline, bins, threads)
+            find(spline, normals, threads)
         else:
-            fill(spline, bins, hits, threads)
+            fill(spline, normals, hits, threads)
 
     compare(
         lambda: run(THREADS),

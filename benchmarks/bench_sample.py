@@ -9,14 +9,14 @@ the same loop on new arrays.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 
 import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.benchmarks.writing import Writers, new_arrays
-from gaussmap.runtime.search.bins import NormalBins
-from gaussmap.runtime.search.search import fill, find
+from gaussmap.runtime.search.fill import fill
+from gaussmap.runtime.search.search import find
 
 TORUS = gm.surfaces.torus()
 
@@ -44,13 +44,9 @@ class Case:
     spline: gm.Spline
     rounds: int
 
-    @cached_property
-    def bins(self):
-        return NormalBins(self.normals)
-
     @property
     def hits(self):
-        return find(self.spline, self.bins)
+        return find(self.spline, self.normals)
 
 
 # The torus has every normal twice: 4 n² patches share 2 S samples.
@@ -94,8 +90,8 @@ def test_sample(against_limit, case):
 
 
 def test_find(against_limit, case):
-    against_limit(lambda: find(case.spline, NormalBins(case.normals)))
+    against_limit(lambda: find(case.spline, case.normals))
 
 
 def test_fill(against_limit, case, hits):
-    against_limit(lambda: fill(case.spline, case.bins, hits))
+    against_limit(lambda: fill(case.spline, case.normals, hits))

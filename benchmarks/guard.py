@@ -20,8 +20,8 @@ from time import process_time
 
 import gaussmap as gm
 import numpy as np
-from gaussmap.runtime.search.bins import NormalBins
-from gaussmap.runtime.search.search import Search, fill_packed, find
+from gaussmap.runtime.search.fill import fill_hits
+from gaussmap.runtime.search.search import find
 from llvmlite.binding import get_host_cpu_name
 
 from .writing import Arrays, Writers, new_arrays
@@ -41,15 +41,12 @@ def _sampling(normals: np.ndarray, cells: int) -> tuple[Work, Arrays]:
 
     The arrays are reused, as they are for the writing: the cost of new memory varies.
     """
-    spline, bins = gm.fit(gm.surfaces.torus(), (cells, cells)), NormalBins(normals, 1)
-    search, hits = Search(spline, bins), find(spline, bins, 1)
-    arrays = new_arrays(len(hits))
-    pieces = hits.pieces(0, len(hits))
+    spline = gm.fit(gm.surfaces.torus(), (cells, cells))
+    arrays = new_arrays(len(find(spline, normals, 1)))
 
     def work() -> None:
-        search.results(0, spline.patches)
-        for start, packed in pieces:
-            fill_packed(spline, bins, packed, start, arrays)
+        hits = find(spline, normals, 1)
+        fill_hits(spline, normals, hits.keys, 0, len(hits), arrays)
 
     return work, arrays
 

@@ -104,9 +104,8 @@ def sample(
     -------
     Samples
         The samples at normals, followed by those that fill gaps, of `kind` "filling", whose
-        `normal_index` is −1. Samples at normals are in the order of these if they are proved to be
-        all, else by patch and then by normal. The report has the angle and the coverage that were
-        reached, if they were asked for.
+        `normal_index` is −1. Samples at normals are in the order of these, and then of the patches.
+        The report has the angle and the coverage that were reached, if they were asked for.
 
     Raises
     ------

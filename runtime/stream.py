@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike
 
 from .base.checks import whole_number, yes_or_no
 from .base.errors import InputError
-from .base.threads import over_ranges, shown
+from .base.threads import shown
 from .density.at_normals import samples_at
 from .density.chosen_normals import choose
 from .density.on_pieces import geometries_of, kept_geometries, pieces_to_sample
@@ -21,8 +21,7 @@ from .samples.fields import checked_dtype, checked_fields
 from .samples.report import SamplingReport, count_infinite, warn_of
 from .samples.request import Request, checked_request
 from .samples.samples import Samples
-from .search.bins import NormalBins
-from .search.search import Hits, Search, find, merged
+from .search.search import developable_patches, find_in_turn
 from .spline.spline import Spline
 from .surface.surface import Surface
 from .surface.surfaces import named
@@ -63,9 +62,9 @@ def sample_stream(
     Returns
     -------
     generator of Samples
-        The chunks; there is at least one, and all but the last of each block are full, unless the
-        surface is trimmed, or several samples of the spline are one of the surface. The report of a
-        chunk counts its samples, and no degenerate patches.
+        The chunks; there is at least one, and all but the last of each block of 1,048,576
+        normals are full, unless a spline is trimmed. The report of a chunk counts its samples, and
+        no degenerate patches.
 
     Raises
     ------
@@ -81,9 +80,8 @@ def sample_stream(
     Notes
     -----
     ``Samples.concatenate(sample_stream(…))`` is ``sample(…, density="gauss")``, bit for bit and in
-    the same order, for up to 1,048,576 normals. More of them are searched in blocks of this size:
-    the samples are the same, but ordered by block, then by patch, then by normal. Closing the
-    generator ends the work.
+    the same order. Normals are searched in blocks of 1,048,576. Closing the generator ends the
+    work.
 
     Examples
     --------
@@ -133,28 +131,27 @@ class _Stream:
         report = geometry.report(total, chosen.density, None, {})
         starts = range(0, total, NORMALS_AT_A_TIME)
         alone = len(starts) == 1
-        came, unrefined, flat, nothing = 0, 0, Flat(), None
+        came, unrefined, nothing = 0, 0, None
         for first in shown(iter(starts), len(starts), self.progress and not alone):
             last = min(first + NORMALS_AT_A_TIME, total)
-            bins = NormalBins(chosen.part(first, last, threads), threads)
-            found = find_in_turn(geometry.spline, bins, threads, self.progress and alone)
-            flat.patches = 0  # the same in every block
-            parts = flat.counted(found)
-            for part in geometry.at_hits_in_turn(bins, parts, self.fields, self.dtype, self.size):
+            normals = chosen.part(first, last, threads)
+            hits = find_in_turn(geometry.spline, normals, threads, self.progress and alone)
+            for part in geometry.at_hits_in_turn(normals, hits, self.fields, self.dtype, self.size):
                 samples = self._samples(part, first, report)
                 came, unrefined = came + part.number, unrefined + (part.unrefined or 0)
                 if part.number:
                     yield samples
                 else:
                     nothing = samples
-            del bins, found, parts  # before the next ones are made
+            del normals, hits  # before the next ones are made
         if came == 0 and nothing is not None:
             yield nothing
-        report = replace(report, samples=came, developable_patches=flat.patches)
+        developable = developable_patches(geometry.spline, threads)
+        report = replace(report, samples=came, developable_patches=developable)
         warn_of(replace(report, unrefined=unrefined), self.request.count, stacklevel=3)
 
     def _proved_chunks(self) -> Generator[Samples, None, None]:
-        """Yield the same of a proved search, whose samples are sorted by normal."""
+        """Yield the same of a proved search."""
         chosen = choose(self.geometry, self.request.normals_or_count, self.progress)
         total, came, report = len(chosen), 0, None
         starts = range(0, total, NORMALS_AT_A_TIME)
@@ -195,77 +192,3 @@ def _chunk(found: Samples, start: int, total: int, is_first: bool) -> Samples:
         undecided=tuple(undecided) if is_first else (),
     )
     return Samples(**arrays, report=report, spline=found.spline, surface=found.surface)
-
-
-@dataclass
-class Flat:
-    """Counts developable patches."""
-
-    patches: int = 0
-
-    def counted(self, parts: Iterator[Hits]) -> Iterator[Hits]:
-        """Yield the same hits, and count the developable patches of each."""
-        for hits in parts:
-            self.patches += hits.developable
-            yield hits
-
-
-def find_in_turn(
-    spline: Spline, bins: NormalBins, threads: int | None, progress: bool
-) -> Iterator[Hits]:
-    """Yield the hits of `find` for consecutive ranges of patches."""
-    search = Search(spline, bins)
-    if search.all_developable:
-        yield Hits.none(spline.patches)
-        return
-    if search.in_tree:
-        yield find(spline, bins, threads, progress)
-        return
-    border = _Border.of(search, threads)
-    size = search.range_size(threads)
-    yield from over_ranges(border.hits, spline.patches, size, threads, progress)
-
-
-@dataclass(frozen=True, eq=False)
-class _Border:
-    """The cells (m n,) at the open border of the domain, and the hits in them decided exactly.
-
-    At the border two patches may both have a hit at one position, of which one is dropped. So the
-    undecided hits of these cells are decided together, before all ranges are searched. `decided`
-    (k, 2) are rows as in `PackedHits`, `local` (k, 5) is that of `Decision`.
-    """
-
-    search: Search
-    cells: NDArray[np.bool_]
-    decided: NDArray[np.int64]
-    local: NDArray[np.float64]
-
-    @classmethod
-    def of(cls, search: Search, threads: int | None) -> _Border:
-        """Search the cells at the border."""
-        south, east, north, west = search.border
-        cells = np.zeros(search.spline.cells, dtype=bool)
-        cells[:, 0], cells[:, -1] = south, north
-        cells[0] |= west
-        cells[-1] |= east
-        undecided, bounds = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
-        ends = np.flatnonzero(np.diff(cells.ravel(), prepend=False, append=False))
-        for first, last in ends.reshape(-1, 2).tolist():
-            for found in search.results(4 * first, 4 * last):
-                undecided.append(found.undecided)
-                bounds.append(found.bounds)
-        decided = search.decided(np.concatenate(undecided), np.concatenate(bounds), threads)
-        return cls(search, cells.ravel(), *decided)
-
-    def hits(self, first: int, last: int) -> Hits:
-        """Return the hits of the patches first, …, last − 1."""
-        found = self.search.results(first, last)
-        undecided = np.concatenate([x.undecided for x in found])
-        bounds = np.concatenate([x.bounds for x in found])
-        inside = ~self.cells[undecided[:, 0] // 4]
-        decided, local = self.search.decided(undecided[inside], bounds[inside], 1)
-        low, high = np.searchsorted(self.decided[:, 0], (first, last))
-        decided = np.concatenate([decided, self.decided[low:high]])
-        order = np.lexsort((decided[:, 1], decided[:, 0]))
-        local = np.concatenate([local, self.local[low:high]])
-        return merged(found, decided[order], local[order], self.search.order)

@@ -18,7 +18,6 @@ __all__ = [
     "DOUBLE_ROOT",
     "FLAT_SURFACE",
     "FORM_ERROR",
-    "LATTICE_ERROR",
     "LENGTH_ERROR",
     "MEETING",
     "NEAR_SINGULAR_POINT",
@@ -46,9 +45,6 @@ FORM_ERROR = 2.0**-43
 # U, V, W are compared with the bound of their error; D has to exceed it by this factor, so that
 # u = U/D and v = V/D have as many digits as the factor.
 ACCURATE = 2.0**16
-# Of the quadratic forms at a point of an icosphere, computed from the linear ones at the corners of
-# its face, relative to the square of the largest of these.
-LATTICE_ERROR = 2.0**-44
 # Of the direction of a control normal, as an angle (radians): at most this times one plus the
 # square of the tangents relative to its length.
 ANGLE_ERROR = 2.0**-40

@@ -19,7 +19,6 @@ from ..place.on_spline import OnSpline
 from ..place.proved import proved_samples
 from ..samples.fields import ARRAY_NAMES_ON_SURFACE, dtype_of, row_shape
 from ..samples.samples import Samples
-from ..search.bins import NormalBins
 from ..search.proved import ProvedIndex
 from ..search.search import developable_patches, find
 from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
@@ -197,12 +196,12 @@ def samples_at(
     threads = geometry.threads
     if geometry.index is not None and not isinstance(chosen.source, Lattice):
         return _proved(geometry, geometry.index, chosen, fields, dtype)
-    bins, hits = chosen.found or (NormalBins(chosen.part(0, len(chosen), threads), threads), None)
+    normals, hits = chosen.found or (chosen.part(0, len(chosen), threads), None)
     if hits is None:
-        hits = find(geometry.spline, bins, threads, progress)
-    found = geometry.at_hits(bins, hits, fields, dtype)
-    report = geometry.report(len(bins.normals), chosen.density, hits.developable, found.fields)
-    return geometry.samples(found.fields, report, found.unrefined), bins.normals
+        hits = find(geometry.spline, normals, threads, progress)
+    found = geometry.at_hits(normals, hits, fields, dtype)
+    report = geometry.report(len(normals), chosen.density, hits.developable, found.fields)
+    return geometry.samples(found.fields, report, found.unrefined), normals
 
 
 def _proved(

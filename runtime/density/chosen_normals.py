@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ..base.limits import MOST
 from ..place.on_spline import OnSpline
-from ..search.bins import NormalBins
-from ..search.search import Hits, fill, find
+from ..search.fill import fill
+from ..search.search import Hits, find
 from ..spline.inside import count_of, samples_inside
 from .fibonacci_lattice import Lattice
 
@@ -33,12 +33,12 @@ PILOT = 1_000_000
 class Chosen:
     """The normals to search for: an array, or a lattice with `density` normals per steradian.
 
-    `found` holds the bins and the hits if the search has been made already.
+    `found` holds the normals and the hits if the search has been made already.
     """
 
     source: NDArray[np.float64] | Lattice
     density: float
-    found: tuple[NormalBins, Hits] | None = None
+    found: tuple[NDArray[np.float64], Hits] | None = None
 
     def __len__(self) -> int:
         """Return the number of normals."""
@@ -83,11 +83,11 @@ def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, in
     samples = 0
     for attempt in range(1, ATTEMPTS + 1):
         density = min(density, densest)
-        bins = NormalBins(lattice.normals(density, threads=threads), threads)
-        hits = find(spline, bins, threads, progress)
-        number = _number_inside(geometry, bins, hits)
+        normals = lattice.normals(density, threads=threads)
+        hits = find(spline, normals, threads, progress)
+        number = _number_inside(geometry, normals, hits)
         if best is None or abs(number - count) < abs(samples - count):
-            best, samples = Chosen(lattice, density, (bins, hits)), number
+            best, samples = Chosen(lattice, density, (normals, hits)), number
         if abs(number - count) <= NEAR_ENOUGH * count or resolved == 0.0:
             break
         if attempt < IN_PROPORTION or number == 0:
@@ -99,10 +99,10 @@ def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, in
     return best, samples
 
 
-def _number_inside(geometry: OnSpline, bins: NormalBins, hits: Hits) -> int:
+def _number_inside(geometry: OnSpline, normals: NDArray[np.float64], hits: Hits) -> int:
     """Return the number of hits that are inside the trim of a spline."""
     spline = geometry.spline
     if spline.trim is None:
         return len(hits)
-    uv = fill(spline, bins, hits, geometry.threads, ("uv",))
+    uv = fill(spline, normals, hits, geometry.threads, ("uv",))
     return count_of(samples_inside(spline.trim, uv, ("uv",)))

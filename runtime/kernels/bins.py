@@ -10,11 +10,10 @@ from ..machine_code.jit import inline, jit, loop
 from .vectors import row_vector
 
 __all__ = [
+    "bin_index",
     "count_bins",
     "cube_face",
     "mapped",
-    "nearest_bin",
-    "on_face",
     "place_normals",
     "start_bins",
 ]
@@ -32,14 +31,6 @@ def cube_face(n):
     size = abs(height)
     face = 2 * axis if height > 0.0 else 2 * axis + 1
     return face, n[(axis + 1) % 3] / size, n[(axis + 2) % 3] / size
-
-
-@loop
-def on_face(face, vectors, k):
-    """Return row k of vectors (…, 3) in the axes of a face: two coordinates and the height."""
-    axis = face >> 1
-    sign = 1.0 if face & 1 == 0 else -1.0
-    return vectors[k, (axis + 1) % 3], vectors[k, (axis + 2) % 3], sign * vectors[k, axis]
 
 
 @loop

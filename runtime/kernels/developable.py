@@ -1,7 +1,6 @@
 """Which patches are developable, up to rounding.
 
-A test at the centre of a patch excludes most patches. The full test, which takes much longer to
-compile, is a kernel of its own.
+A test at the centre of a patch excludes most patches.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ from ..machine_code.jit import jit, loop
 from .patch import normal_of_patch, patch_vectors, place_of
 from .vectors import largest_component, length
 
-__all__ = ["count_developable", "first_curved", "may_be_developable"]
+__all__ = ["count_developable"]
 
 THIRD = 1.0 / 3.0
 
@@ -44,28 +43,23 @@ def longest_control_normal(patch):
 
 
 @jit
-def first_curved(mu, scale, noise):
-    """Return the first patch that is curved at its centre, or the number of patches."""
-    columns = mu.shape[1] - 2
-    count = 4 * (mu.shape[0] - 2) * columns
-    for number in range(count):
-        i, j, turn = place_of(number, columns)
-        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
-        if not may_be_developable(patch, longest_control_normal(patch), noise):
-            return number
-    return count
-
-
-@jit
-def count_developable(mu, scale, noise, patches):
-    """Return the number of patches (k,) that are developable."""
+def count_developable(mu, scale, noise, first, last):
+    """Return how many of the patches first, …, last − 1 are developable."""
     columns = mu.shape[1] - 2
     found = 0
-    for k in range(patches.size):
-        i, j, turn = place_of(patches[k], columns)
+    for number in range(first, last):
+        i, j, turn = place_of(number, columns)
         patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
-        largest = 0.0
-        for value in parabolic_cubic(patch):
-            largest = max(largest, abs(value))
-        found += largest <= curvature_error(patch, longest_control_normal(patch), noise)
+        longest = longest_control_normal(patch)
+        if may_be_developable(patch, longest, noise):
+            found += is_developable(patch, curvature_error(patch, longest, noise))
     return found
+
+
+@loop
+def is_developable(patch, error):
+    """Return whether the parabolic cubic of a patch is zero up to an error."""
+    largest = 0.0
+    for value in parabolic_cubic(patch):
+        largest = max(largest, abs(value))
+    return largest <= error

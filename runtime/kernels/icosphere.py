@@ -17,19 +17,13 @@ from .tile import STEP, TILE
 from .vectors import whole_vectors
 
 __all__ = [
-    "ONE",
-    "ZERO",
-    "is_icosphere",
     "new_line",
-    "row_start",
-    "write_line",
-    "write_normals",
     "write_points",
 ]
 
 
 # Typed, since Numba compiles a function anew for each literal number in its arguments.
-ZERO, ONE = np.int64(0), np.int64(1)
+ZERO = np.int64(0)
 
 
 def new_line() -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -136,26 +130,3 @@ def write_points(frequency, first, last, normals, places, tile):
                     normals[at, 0] = tile[row]
                     normals[at, 1] = tile[STEP + row]
                     normals[at, 2] = tile[2 * STEP + row]
-
-
-@jit
-def is_icosphere(normals, frequency, first, last, places, tile):
-    """Return whether the parts first, …, last − 1 of normals (S, 3) equal these points exactly."""
-    for part in range(first, last):
-        for k in range(line_count(part, frequency)):
-            number, count, face, s, t, s_step, t_step = line_of(part, k, frequency)
-            for begin in range(0, count, TILE):
-                size = min(TILE, count - begin)
-                write_line(
-                    face, frequency, s + begin * s_step, t + begin * t_step, s_step, t_step,
-                    size, places, tile,
-                )  # fmt: skip
-                others = False
-                for row in range(size):
-                    at = np.uint64(number + begin + row)
-                    others |= normals[at, 0] != tile[row]
-                    others |= normals[at, 1] != tile[STEP + row]
-                    others |= normals[at, 2] != tile[2 * STEP + row]
-                if others:
-                    return False
-    return True

@@ -1,301 +1,200 @@
-"""The search for normals in bins that are normals of patches.
+"""The search: which pieces have which normals, by the signs of U, V, W and D.
 
-For each patch: the cone of its normals, the bins that the cone may meet, the normals in these bins,
-and the signs of the forms of the patch at these normals.
+Normals come in the order of their bins. A tile is up to LANES normals of one bin; the pieces of the
+bin whose cones meet a cap around the tile are tested at all of its normals.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...generated.patch import forms, parameters
+from ...generated.vectors import Patch, Vector
+from ..base.tolerances import ACCURATE
 from ..machine_code.jit import inline, jit, loop
-from .classify import UNDECIDED, YES, classify, count_undecided, look_again
-from .few import Few, classify_few, copy_few
-from .sort import pack_hits, store_sorted
-from .strips import AXIS, BOUND, FLAT, SINE, Polyhedron, Strip, boxes_of, patch_in, strip_of
-from .tile import vector_in
-from .vectors import VECTOR, whole_vectors
-from .windows import Cone, face_window, load_cone, map_cone, set_empty, spans_of_hull
+from .lists import FINEST, NUMBER, meets
+from .patch import normal_of_patch
+from .pieces import BOUND, CHORD, EVERYTHING, WIDTH
+from .vectors import dot, row_vector
 
-__all__ = ["Bins", "Coefficients", "Found", "search_in"]
+__all__ = ["Found", "Memory", "search"]
 
-# The least height of a unit vector on a face of the cube, 1/√3 rounded down; the height of a vector
-# in a cone is at least that of the axis minus SLOPE times the sine.
-FACE_HEIGHT, SLOPE = 0.577, 1.1
-# Windows with more rows and columns than this are restricted to the hull.
-SMALL_WINDOW = 3
-# Rows of bins are one square high. Typed: Numba compiles a function anew for a literal number.
-ROW_HEIGHT = np.int64(1)
-# The initial capacity for candidates.
-FEW = 1 << 10
+# The normals of a tile, and how many of them are tested at a time.
+LANES, STEP = 64, 8
+# Rows of a tile: x, y, z of the normals, and what is known of them.
+Y, Z, CODE = (np.uint64(k * LANES) for k in range(1, 4))
+# The codes: no, yes, and undecided because of rounding.
+NO, YES, UNDECIDED = 0.0, 1.0, 2.0
 
 
-class Coefficients(NamedTuple):
-    """The coefficients of a spline and their properties.
+class Memory(NamedTuple):
+    """Work arrays: a tile of normals, a cap around it (4,), and the pieces that may have one."""
 
-    Coefficients mu (m, n, 3) with ghost coefficients, the power of two that scales them to about 1,
-    the rounding error of the scaled coordinates, and which sides of the domain are open (4,).
-    """
+    tile: NDArray[np.float64]
+    cap: NDArray[np.float64]
+    near: NDArray[np.int64]
 
-    mu: NDArray[np.float64]
-    scale: float
-    noise: float
-    border: NDArray[np.bool_]
-
-
-class Bins(NamedTuple):
-    """Normals in the order of bins: the `starts` of bins, `normals` (S, 4) with their numbers.
-
-    `frame` (3, 3), of norm `stretch`, maps normals to the cube; an edge has `grid` squares.
-    """
-
-    frame: NDArray[np.float64]
-    stretch: float
-    grid: int
-    starts: NDArray[np.int64]
-    normals: NDArray[np.float64]
+    @classmethod
+    def new(cls, members: int) -> Memory:
+        """Return new work arrays; a bin has at most a number of members."""
+        return cls(np.zeros(4 * LANES), np.zeros(4), np.empty(members + 1, np.int64))
 
 
 class Found(NamedTuple):
-    """The output of a search: rows (…, 2) of patch and packed hit, certain and undecided.
+    """The output: keys, number of a normal << 32 | piece, certain and undecided ones.
 
-    `bounds` (…) are the errors of the forms of undecided hits, `flat` (…) the patches that may be
-    developable. `counts` (3,) are the numbers of certain hits, undecided hits and flat patches.
+    `counts` (2,) are their numbers.
     """
 
     certain: NDArray[np.int64]
     undecided: NDArray[np.int64]
-    bounds: NDArray[np.float64]
-    flat: NDArray[np.int64]
     counts: NDArray[np.int64]
 
     @classmethod
-    def new(cls, room: int, patches: int) -> Found:
-        """Return arrays for `room` hits of each kind, and for a number of patches."""
-        return cls(
-            np.empty((room, 2), np.int64),
-            np.empty((room, 2), np.int64),
-            np.empty(room),
-            np.empty(patches, np.int64),
-            np.zeros(3, np.int64),
-        )
-
-
-class BinMemory(NamedTuple):
-    """Work arrays for the bins that a cone may meet: windows of the faces, and rows of bins."""
-
-    windows: NDArray[np.int64]
-    hulls: NDArray[np.float64]
-    errors: NDArray[np.float64]
-    sizes: NDArray[np.int64]
-    rows: NDArray[np.int64]
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
-
-    @classmethod
-    def new(cls, grid: int) -> BinMemory:
-        """Return work arrays for bins with `grid` squares along an edge."""
-        return cls(
-            np.empty((6, 4), np.int64),
-            np.empty((6, 12, 2)),
-            np.empty(6),
-            np.empty(6, np.int64),
-            np.empty((6 * grid, 2), np.int64),
-            np.empty(grid + VECTOR),
-            np.empty(grid + VECTOR),
-        )
-
-
-class Candidates(NamedTuple):
-    """Work arrays for candidate normals of a patch."""
-
-    places: NDArray[np.int64]
-    numbers: NDArray[np.float64]
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    z: NDArray[np.float64]
-    codes: NDArray[np.int8]
-    hits: NDArray[np.int64]
-    scratch: NDArray[np.int64]
-    digits: NDArray[np.int64]
-
-    @classmethod
-    def new(cls, count: int) -> Candidates:
-        """Return work arrays for `count` normals."""
-        size = count + VECTOR
-        return cls(
-            np.empty(size, np.int64),
-            np.empty(size),
-            np.ones(size),
-            np.ones(size),
-            np.ones(size),
-            np.empty(size, np.int8),
-            np.empty(size, np.int64),
-            np.empty(size, np.int64),
-            np.empty(size + 1, np.int64),
-        )
-
-    @property
-    def room(self) -> int:
-        """The capacity in normals."""
-        return self.x.size - VECTOR
-
-
-def search_in(
-    spline: Coefficients, cube: Polyhedron, bins: Bins
-) -> Callable[[int, int, Found], tuple[int, int]]:
-    """Return a function that calls `search_patches` with work arrays of its own."""
-    strip, few, cone = Strip.new(), Few.new(), Cone.new()
-    memory, candidates = BinMemory.new(bins.grid), Candidates.new(FEW)
-
-    def search(first: int, last: int, found: Found) -> tuple[int, int]:
-        nonlocal candidates
-        while True:
-            first, needed = search_patches(
-                spline, cube, bins, first, last, found, strip, few, cone, memory, candidates
-            )
-            if needed <= candidates.room:
-                return first, needed
-            candidates = Candidates.new(2 * needed)
-
-    return search
+    def new(cls, room: int) -> Found:
+        """Return room for a number of keys of each kind."""
+        return cls(np.empty(room, np.int64), np.empty(room, np.int64), np.zeros(2, np.int64))
 
 
 @jit
-def search_patches(spline, cube, bins, first, last, found, strip, few, cone, memory, candidates):
-    """Find the normals of the patches first, …, last − 1, in ascending order for each patch.
+def search(pieces, lists, normals, order, first, last, memory, found):
+    """Find the pieces of the normals order[first], …, order[last − 1].
 
-    Returns the patch at which the capacity was exceeded, and the number of normals that this patch
-    needs; `last` and 0 at the end.
+    `order` (S,) are keys of `order_normals`. Returns where there was no more room, and how much
+    room is needed there.
     """
-    certain, undecided, bounds, flat, counts = found
-    places, numbers, x, y, z, codes, hits, scratch, digits = candidates
-    begin = end = first
-    for number in range(first, last):
-        if number == end:
-            begin, end = strip_of(spline, number, last, strip)
-            boxes_of(cube, strip)
-            classify_few(cube, bins.starts, bins.normals, strip, end - begin, few)
-        place = number - begin
-        sine, bound = strip.rows[SINE + place], strip.rows[BOUND + place]
-        total = few.starts[place + 1] - few.starts[place]
-        if few.many[place]:
-            load_cone(strip.rows, place, cone)
-            total = count_normals(bins, cone, sine, memory)
-        if (
-            counts[0] + total > certain.shape[0]
-            or counts[1] + total > undecided.shape[0]
-            or total + VECTOR > x.size
-        ):
-            return number, total
-        if strip.rows[FLAT + place] > 0.0:
-            flat[counts[2]] = number
-            counts[2] += 1
-        if total == 0:
-            continue
-        if few.many[place]:
-            size = rows_of_bins(bins.grid, bins.starts, memory)
-            count = gather(memory.rows, size, bins.normals, places, numbers, x, y, z)
-            patch, axis = patch_in(strip.rows, place), vector_in(strip.rows, AXIS, place)
-            classify(patch, axis, sine, bound, x, y, z, codes, whole_vectors(count))
-            if sine == math.inf:
-                look_again(patch, x, y, z, codes, count)
-        else:
-            count = copy_few(few, place, bins.normals, places, numbers, codes)
-        chosen = pack_hits(codes, YES, numbers, places, hits, count)
-        counts[0] = store_sorted(hits, chosen, scratch, digits, number, certain, counts[0])
-        if count_undecided(codes, count) > 0:
-            chosen = pack_hits(codes, UNDECIDED, numbers, places, hits, count)
-            for k in range(chosen):
-                bounds[counts[1] + k] = bound
-            counts[1] = store_sorted(hits, chosen, scratch, digits, number, undecided, counts[1])
+    tile, cap, near = memory
+    cones, starts, members = pieces.cones, lists.starts, lists.members
+    shift = 32 + 2 * (FINEST - lists.level)
+    found.counts[0] = found.counts[1] = 0
+    at = first
+    while at < last:
+        square = order[at] >> shift
+        end = at + 1
+        while end < last and end - at < LANES and order[end] >> shift == square:
+            end += 1
+        count = end - at
+        load_tile(tile, normals, order, at, end, cap)
+        size = near_pieces(cones, members, starts[square], starts[square + 1], cap, near)
+        if max(found.counts[0], found.counts[1]) + size * count > found.certain.size:
+            return at, size * count
+        for m in range(size):
+            j = near[m]
+            test_tile(cones[j], pieces.patches[j], tile, count)
+            if cones[j, WIDTH] >= EVERYTHING:
+                look_again(pieces.patches[j], tile, count)
+            store(tile, count, order, at, j, found)
+        at = end
     return last, 0
 
 
 @loop
-def count_normals(bins, cone, sine, memory):
-    """Write the windows of the faces that a cone may meet; return the number of their normals."""
-    frame, stretch, grid, starts, _ = bins
-    windows, hulls, errors, sizes, _, _, _ = memory
-    axis = cone.axis
-    map_cone(cone, frame, stretch)
-    total = 0
-    for face in range(6):
-        window = windows[face]
-        set_empty(window)
-        if starts[face * grid * grid] == starts[(face + 1) * grid * grid]:
-            continue
-        height = axis[face >> 1] if face & 1 == 0 else -axis[face >> 1]
-        if stretch == 1.0 and height + SLOPE * sine < FACE_HEIGHT:
-            continue
-        errors[face], sizes[face] = face_window(
-            cone.shown, cone.angles, sine < math.inf, face, grid, window, hulls[face]
-        )
-        total += count_window(window, face, grid, starts)
-    return total
+def load_tile(tile, normals, order, first, last, cap):
+    """Write normals to a tile, and a cap that holds them."""
+    x = y = z = square = 0.0
+    count = last - first
+    for k in range(count):
+        i = np.uint64(k)
+        n = row_vector(normals, np.uint64(order[first + k] & NUMBER))
+        tile[i], tile[i + Y], tile[i + Z] = n.x, n.y, n.z
+        x, y, z = x + n.x, y + n.y, z + n.z
+    share = 1.0 / count
+    x, y, z = x * share, y * share, z * share
+    for k in range(count):
+        i = np.uint64(k)
+        square = max(square, (tile[i] - x) ** 2 + (tile[i + Y] - y) ** 2 + (tile[i + Z] - z) ** 2)
+    cap[0], cap[1], cap[2], cap[3] = x, y, z, math.sqrt(square) * (1.0 + 1e-12) + 1e-15
+    for k in range(count, (count + STEP - 1) // STEP * STEP):
+        i = np.uint64(k)
+        tile[i], tile[i + Y], tile[i + Z] = x, y, z
+
+
+@loop
+def near_pieces(cones, members, first, last, cap, near):
+    """Write the pieces of a bin that may have a normal in a cap; return their number."""
+    count = np.int64(0)
+    for m in range(first, last):
+        j = np.int64(members[m])
+        near[count] = j
+        count += meets(cones[j], cap)
+    return count
 
 
 @inline
-def count_window(window, face, grid, starts):
-    """Return the number of normals in a window."""
-    total = 0
-    if window[1] >= window[0]:
-        for row in range(window[2], window[3] + 1):
-            base = (face * grid + row) * grid
-            total += starts[base + window[1] + 1] - starts[base + window[0]]
-    return total
+def patch_in(row):
+    """Return the patch of a piece, but for p."""
+    return Patch(
+        Vector(row[0], row[1], row[2]),
+        Vector(row[3], row[4], row[5]),
+        Vector(row[6], row[7], row[8]),
+        Vector(row[9], row[10], row[11]),
+        Vector(row[12], row[13], row[14]),
+        Vector(0.0, 0.0, 0.0),
+    )
 
 
 @loop
-def rows_of_bins(grid, starts, memory):
-    """Write the ranges of normals in rows of bins that a cone may meet; return their number."""
-    windows, hulls, errors, sizes, rows, low, high = memory
-    count = 0
-    for face in range(6):
-        window, error = windows[face], errors[face]
-        left, right, below, above = window[0], window[1], window[2], window[3]
-        cut = right > left + SMALL_WINDOW and above > below + SMALL_WINDOW and error < math.inf
-        if cut:
-            spans_of_hull(hulls[face], sizes[face], error, ROW_HEIGHT, below, above, low, high)
-        for row in range(below, above + 1):
-            begin, end = left, right
-            if cut:
-                least = max(low[row - below] - error, left)
-                most = min(high[row - below] + error, right + 1.0)
-                if least > most:
-                    continue
-                begin, end = int(least), min(int(most), right)
-            base = (face * grid + row) * grid
-            if begin <= end:
-                rows[count, 0] = starts[base + begin]
-                rows[count, 1] = starts[base + end + 1]
-                count += 1
-    return count
+def test_tile(cone, row, tile, count):
+    """Write the codes of the normals of a tile.
+
+    A patch has a normal if U, V, W have one sign there (Sect. 3.2), which is that of D, and if the
+    normal is in the cone: the forms are even, and its opposite has the same signs.
+    """
+    patch = patch_in(row)
+    axis, square, bound = Vector(cone[0], cone[1], cone[2]), cone[CHORD] * cone[CHORD], row[BOUND]
+    least = ACCURATE * bound
+    for start in range(0, count, STEP):
+        for c in range(STEP):
+            i = np.uint64(start + c)  # unsigned: no check for negative indices
+            n = Vector(tile[i], tile[i + Y], tile[i + Z])
+            D, U, V, W = forms(patch, n)
+            low = U if U < V else V
+            low = low if low < W else W
+            high = U if U > V else V
+            high = high if high > W else W
+            x, y, z = n.x - axis.x, n.y - axis.y, n.z - axis.z
+            out = ((low < -bound) & (high > bound)) | (x * x + y * y + z * z > square)
+            sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
+            tile[i + CODE] = NO if out else YES if sure else UNDECIDED
 
 
 @loop
-def gather(rows, size, normals, places, numbers, x, y, z):
-    """Copy the normals in rows of bins, their positions and numbers; return their number."""
-    prefetched = 0.0
-    for row in range(size):
-        # Prefetch all rows at once, in place of one cache miss after the other.
-        for k in range(rows[row, 0], rows[row, 1], 2):
-            prefetched += normals[np.uint64(k), 0]
-    count = 0
-    for row in range(size):
-        begin = rows[row, 0]
-        for k in range(rows[row, 1] - begin):
-            at, place = np.uint64(count + k), np.uint64(begin + k)
-            places[at] = begin + k
-            x[at] = normals[place, 0]
-            y[at] = normals[place, 1]
-            z[at] = normals[place, 2]
-            numbers[at] = normals[place, 3]
-        count += rows[row, 1] - begin
-    x[count] = prefetched  # keeps the compiler from removing the reads; integer sums are slower
-    return count
+def look_again(row, tile, count):
+    """Compare hits of a piece without a narrow cone with the oriented normal at their parameters.
+
+    The forms are even in n: they do not distinguish a normal from its opposite, as a cone does.
+    """
+    patch = patch_in(row)
+    for k in range(count):
+        i = np.uint64(k)
+        if tile[i + CODE] == YES:
+            n = Vector(tile[i], tile[i + Y], tile[i + Z])
+            D, U, V, _ = forms(patch, n)
+            u, v = parameters(D, U, V)
+            N = normal_of_patch(patch, u, v)
+            towards = dot(n, N)
+            size = abs(N.x) + abs(N.y) + abs(N.z)
+            sure = abs(towards) > 0.25 * size and size > 0.0
+            tile[i + CODE] = UNDECIDED if not sure else NO if towards < 0.0 else YES
+
+
+@loop
+def store(tile, count, order, first, j, found):
+    """Write the keys of piece j and those normals of a tile that it has, or may have."""
+    certain, undecided, counts = found
+    a, b = counts[0], counts[1]
+    for k in range(count):
+        code = tile[np.uint64(k) + CODE]
+        if code != NO:  # a branch: few have the normal, and stores are slower
+            key = (order[np.uint64(first + k)] & NUMBER) << 32 | j
+            if code == YES:
+                certain[np.uint64(a)] = key
+                a += 1
+            else:
+                undecided[np.uint64(b)] = key
+                b += 1
+    counts[0], counts[1] = a, b

@@ -1,6 +1,6 @@
 """A tile: a batch of samples in rows of an array, for vectorized loops.
 
-The rows contain the normal, the vectors of the patch and its position, and the results.
+The rows contain the normal, the coefficients around the patch and its position, and the results.
 """
 
 from __future__ import annotations
@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.patch import sample
-from ...generated.spline import CORNERS, SCALE
-from ...generated.vectors import Patch, Vector
+from ...generated.spline import CORNERS, NEIGHBOURS, SCALE, triangle
+from ...generated.vectors import Vector
 from ..machine_code.jit import jit, long_vectors, loop
+from .lists import NUMBER
 from .patch import (
     curvatures_of_patch,
     normal_of_patch,
@@ -34,10 +35,13 @@ STEP = TILE + VECTOR
 # since Numba compiles a function anew for each literal number in its arguments.
 ROWS = 38
 ONE_ROW, TWO_ROWS = np.uint64(STEP), np.uint64(2 * STEP)
-NORMAL, PATCH, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
+NORMAL, COEFFICIENTS, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
     np.int64(STEP * row) for row in (0, 3, 21, 30, 33, 34, 35, 36, 37)
 )
-NORMAL_INDEX, PATCH_INDEX = np.int64(0), np.int64(STEP)
+NORMAL_INDEX, PATCH_INDEX, THREE_ROWS = np.int64(0), np.int64(STEP), np.int64(3 * STEP)
+# Rows and columns, from that of the coefficient before, of those that `triangle` takes.
+# Contiguous: machine code has other arrays by their address, and cannot be kept.
+AROUND = np.ascontiguousarray(NEIGHBOURS[:, [0, 1, 2, 3, 5, 7]] + 1, np.uint64)
 
 
 class Place(NamedTuple):
@@ -88,27 +92,27 @@ def place_in(mu, i, j, turn):
 
 
 @loop
-def load_patch(mu, number, scale, tile, start, end):
-    """Write a patch for the samples start, …, end − 1 of a tile, and up to VECTOR − 1 more."""
-    long_vectors()
-    i, j, turn = place_of(number, mu.shape[1] - 2)
-    patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
-    place = place_in(mu, i, j, turn)
-    tile = tile[start:]
-    for k in range(whole_vectors(end - start)):  # from 0: no check for negative indices
-        put(tile, PATCH, k, patch.a)
-        put(tile, PATCH + 3 * STEP, k, patch.b)
-        put(tile, PATCH + 6 * STEP, k, patch.c)
-        put(tile, PATCH + 9 * STEP, k, patch.d)
-        put(tile, PATCH + 12 * STEP, k, patch.e)
-        put(tile, PATCH + 15 * STEP, k, patch.p)
-        put(tile, PLACE, k, place.centre)
-        tile[PLACE + 3 * STEP + k] = place.cell_u
-        tile[PLACE + 4 * STEP + k] = place.cell_v
-        tile[PLACE + 5 * STEP + k] = place.u_s
-        tile[PLACE + 6 * STEP + k] = place.u_t
-        tile[PLACE + 7 * STEP + k] = place.v_s
-        tile[PLACE + 8 * STEP + k] = place.v_t
+def load_patch(mu, number, scale, tile, k):
+    """Write the coefficients around the patch of sample k of a tile, and the position."""
+    columns, patch = np.uint64(mu.shape[1] - 2), np.uint64(number)  # unsigned divisions are faster
+    cell, turn = patch >> np.uint64(2), patch & np.uint64(3)
+    i = cell // columns
+    j = cell - i * columns
+    place = place_in(mu, np.int64(i), np.int64(j), turn)
+    c = place.centre
+    for m in range(6):
+        p, q = i + AROUND[turn, m, 0], j + AROUND[turn, m, 1]
+        v = Vector(
+            scale * (mu[p, q, 0] - c.x), scale * (mu[p, q, 1] - c.y), scale * (mu[p, q, 2] - c.z)
+        )
+        put(tile, COEFFICIENTS + m * THREE_ROWS, k, v)
+    put(tile, PLACE, k, c)
+    tile[PLACE + 3 * STEP + k] = place.cell_u
+    tile[PLACE + 4 * STEP + k] = place.cell_v
+    tile[PLACE + 5 * STEP + k] = place.u_s
+    tile[PLACE + 6 * STEP + k] = place.u_t
+    tile[PLACE + 7 * STEP + k] = place.v_s
+    tile[PLACE + 8 * STEP + k] = place.v_t
 
 
 @loop
@@ -133,13 +137,13 @@ def evaluate_tile(tile, count, frame, size, curved):
     frame = (frame[0], frame[1], frame[2], frame[3])
     for k in range(count):
         n = vector_in(tile, NORMAL, k)
-        patch = Patch(
-            vector_in(tile, PATCH, k),
-            vector_in(tile, PATCH + 3 * STEP, k),
-            vector_in(tile, PATCH + 6 * STEP, k),
-            vector_in(tile, PATCH + 9 * STEP, k),
-            vector_in(tile, PATCH + 12 * STEP, k),
-            vector_in(tile, PATCH + 15 * STEP, k),
+        patch = triangle(
+            vector_in(tile, COEFFICIENTS, k),
+            vector_in(tile, COEFFICIENTS + 3 * STEP, k),
+            vector_in(tile, COEFFICIENTS + 6 * STEP, k),
+            vector_in(tile, COEFFICIENTS + 9 * STEP, k),
+            vector_in(tile, COEFFICIENTS + 12 * STEP, k),
+            vector_in(tile, COEFFICIENTS + 15 * STEP, k),
         )
         place = Place(
             vector_in(tile, PLACE, k),
@@ -221,25 +225,25 @@ def write_numbers(tile, row, count, start, field):
 
 @jit
 def fill_known(
-    mu, scale, normals, frame, which, pairs, local,
+    mu, scale, normals, frame, which, keys, local,
     points, directions, uv, support, gaussian, mean,
 ):  # fmt: skip
     """Fill the samples which[0], which[1], … at known parameters; see `fill_samples`.
 
-    pairs (k, 2) are their patches and the numbers of their normals. local (k, 5) holds u, v, the
+    keys (k,) are their numbers of normals << 32 | patch. local (k, 5) holds u, v, the
     sign of K, and the parameters at which curvatures are evaluated: u, v, or a nearby point if that
     is singular.
     """
     columns = mu.shape[1] - 2
     frame = (frame[0], frame[1], frame[2], frame[3])
     for row in range(which.size):
-        i, j, turn = place_of(pairs[row, 0], columns)
+        i, j, turn = place_of(keys[row] & NUMBER, columns)
         patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
         u, v = local[row, 3], local[row, 4]
         _, K, H = curvatures_of_patch(patch, normal_of_patch(patch, u, v), u, v)
         K = math.copysign(K, local[row, 2])
         u, v = local[row, 0], local[row, 1]
-        n = row_vector(normals, pairs[row, 1])
+        n = row_vector(normals, keys[row] >> 32)
         x = point_of_patch(patch, u, v)
         place = place_in(mu, i, j, turn)
         point, s, t, h, K, H = on_surface(place, frame, SCALE * scale, n, u, v, x, K, H)

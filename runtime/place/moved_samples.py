@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.aliases import Array
 from ..base.memory import check_memory
 from ..kernels.refine import FOUND, Target
 from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of
-from ..search.bins import NormalBins
-from ..search.search import Hits, fill
+from ..search.fill import fill
+from ..search.search import Hits
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .newton import refine
@@ -27,14 +28,14 @@ NEEDED = (
 
 
 def moved_samples(
-    surface: Surface, spline: Spline, bins: NormalBins, hits: Hits, threads: int | None
+    surface: Surface, spline: Spline, normals: Array, hits: Hits, threads: int | None
 ) -> Fields:
     """Return the samples at hits, on the surface where they could be moved to it.
 
     They have all fields but the support, in float64.
     """
     check_memory("stored", len(hits), bytes_of(NEEDED, np.float64))
-    arrays = fill(spline, bins, hits, threads, NEEDED, np.float64)
+    arrays = fill(spline, normals, hits, threads, NEEDED, np.float64)
     signs = np.copysign(1.0, arrays["gaussian_curvature"])
     states = np.empty(len(signs), dtype=np.int8)
     target = Target(

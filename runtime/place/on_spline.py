@@ -27,9 +27,9 @@ from ..kernels.tile import fill_known
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
 from ..samples.report import SamplingReport, sampling_report
 from ..samples.samples import Samples
-from ..search.bins import NormalBins
+from ..search.fill import fill
 from ..search.proved import ProvedIndex
-from ..search.search import Hits, fill
+from ..search.search import Hits
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside, with_uv
 from ..spline.spline import Spline
@@ -125,17 +125,17 @@ class OnSpline:
     # --- samples at normals -----------------------------------------------------------------------
 
     def at_hits(
-        self, bins: NormalBins, hits: Hits, fields: Sequence[str], dtype: DTypeLike
+        self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
         """Return the samples at hits, with the fields that are requested."""
         wanted = with_uv(self.spline.trim, fields)
         check_memory("stored", len(hits), bytes_of(set(wanted) - set(self.memory), dtype))
-        arrays = fill(self.spline, bins, hits, self.threads, wanted, dtype, self.memory)
+        arrays = fill(self.spline, normals, hits, self.threads, wanted, dtype, self.memory)
         return FieldsOfSamples(samples_inside(self.spline.trim, arrays, fields))
 
     def at_hits_in_turn(
         self,
-        bins: NormalBins,
+        normals: Array,
         parts: Iterator[Hits],
         fields: Sequence[str],
         dtype: DTypeLike,
@@ -143,7 +143,7 @@ class OnSpline:
     ) -> Iterator[FieldsOfSamples]:
         """Yield at most `size` samples at a time, those at `parts` of all hits of these normals."""
         for hits in grouped(parts, size):
-            yield self.at_hits(bins, hits, fields, dtype)
+            yield self.at_hits(normals, hits, fields, dtype)
 
     def report(
         self, normals: int, density: float, developable: int | None, arrays: Fields
@@ -187,7 +187,7 @@ class OnSpline:
         here = np.arange(count)
         fill_known(
             spline.coefficients, spline.scale, normals, spline.frame,
-            here, np.column_stack([patches, here]), np.column_stack([places, K, places]),
+            here, here << 32 | patches, np.column_stack([places, K, places]),
             *(filled[x] if x in filled else new_field(x, 0, dtype) for x in FLOAT_NAMES),
         )  # fmt: skip
         indices = {"normal_index": np.full(count, -1), "patch_index": patches}

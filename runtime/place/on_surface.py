@@ -16,8 +16,7 @@ from ..fitting.fit import spline_of
 from ..kernels import nodes as kernels
 from ..samples.fields import FLAG_NAMES
 from ..samples.report import PLACES
-from ..search.bins import NormalBins
-from ..search.search import Hits, find
+from ..search.search import Hits
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside
 from ..spline.spline import Spline
@@ -25,14 +24,14 @@ from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
 from .moved_samples import as_fields, moved_samples, part_of
 from .newton import evaluate_on_surface
-from .on_spline import Array, Fields, FieldsOfSamples, OnSpline, grouped
+from .on_spline import Array, Fields, FieldsOfSamples, OnSpline
 from .pole_charts import PoleChart, pole_charts
 from .proved import index_of
-from .repeats import kept_once, left_patch
+from .repeats import kept_once
 
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
 
-# Samples in turn are looked at in groups of at least this number, whether they repeat others.
+# Samples in turn are looked at in groups of about this number, whether they repeat others.
 TOGETHER = 1 << 17
 
 
@@ -136,18 +135,17 @@ class OnSurface(OnSpline):
     # --- samples at normals -----------------------------------------------------------------------
 
     def at_hits(
-        self, bins: NormalBins, hits: Hits, fields: Sequence[str], dtype: DTypeLike
+        self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
         """Return the samples at hits, with the fields that are requested.
 
         Those that meet are one.
         """
-        arrays = self._moved(bins, hits)
-        return as_fields(part_of(arrays, self._kept_once(arrays)), fields, dtype)
+        return as_fields(self._moved_once(normals, hits), fields, dtype)
 
     def at_hits_in_turn(
         self,
-        bins: NormalBins,
+        normals: Array,
         parts: Iterator[Hits],
         fields: Sequence[str],
         dtype: DTypeLike,
@@ -155,34 +153,31 @@ class OnSurface(OnSpline):
     ) -> Iterator[FieldsOfSamples]:
         """Yield at most `size` samples at a time, those at `parts` of all hits of these normals.
 
-        Samples that meet may be far apart in them. So all samples of the normals of those that may
-        be left out are searched again; that is quick for many of them together.
+        Samples that meet have the same normal, so that whole normals are looked at together.
         """
-        for hits in grouped(parts, -(-TOGETHER // size) * size):
-            arrays = self._moved(bins, hits)
-            arrays = part_of(arrays, ~self._left_out(bins, arrays))
-            for first in range(0, max(count_of(arrays), 1), size):
-                part = {name: x[first : first + size] for name, x in arrays.items()}
-                yield as_fields(part, fields, dtype)
+        came, rest = False, list[Fields]()
+        for hits in (x for part in parts for x in part.whole_normals(TOGETHER)):
+            rest.append(self._moved_once(normals, hits))
+            if sum(map(count_of, rest)) < size:
+                continue
+            arrays = _joined(rest)
+            end = count_of(arrays) // size * size
+            for first in range(0, end, size):
+                yield as_fields(_rows(arrays, first, first + size), fields, dtype)
+            came, rest = True, [_rows(arrays, end, None)]
+        arrays = _joined(rest)
+        if count_of(arrays) or not came:
+            yield as_fields(arrays, fields, dtype)
 
-    def _left_out(self, bins: NormalBins, arrays: Fields) -> NDArray[np.bool_]:
-        """Return which samples `_kept_once` leaves out of all samples of these normals."""
-        may_be = self._at_poles(arrays) | left_patch(self.spline, arrays) | ~arrays[FLAG_NAMES[0]]
-        numbers, normal = np.unique(arrays["normal_index"][may_be], return_inverse=True)
-        if len(numbers) == 0:
-            return may_be
-        again = NormalBins(bins.normals[numbers], self.threads)
-        whole = self._moved(again, find(self.spline, again, self.threads))
-        whole = part_of(whole, ~self._kept_once(whole))
-        count = self.spline.patches
-        left_out = whole["normal_index"] * count + whole["patch_index"]
-        may_be[may_be] = np.isin(normal * count + arrays["patch_index"][may_be], left_out)
-        return may_be
+    def _moved_once(self, normals: Array, hits: Hits) -> Fields:
+        """Return all fields but the support of the samples at hits, those that meet as one."""
+        arrays = self._moved(normals, hits)
+        return part_of(arrays, self._kept_once(arrays))
 
-    def _moved(self, bins: NormalBins, hits: Hits) -> Fields:
+    def _moved(self, normals: Array, hits: Hits) -> Fields:
         """Return all fields but the support of the samples at hits, those inside the trim."""
         assert self.surface is not None
-        arrays = moved_samples(self.surface, self.spline, bins, hits, self.threads)
+        arrays = moved_samples(self.surface, self.spline, normals, hits, self.threads)
         return samples_inside(self.spline.trim, arrays, tuple(arrays))
 
     def _at_poles(self, arrays: Fields) -> NDArray[np.bool_]:
@@ -236,3 +231,15 @@ class OnSurface(OnSpline):
         for name in set(arrays) & set(found):
             arrays[name][there] = found[name][there]
         return arrays | {name: there for name in FLAG_NAMES if name in fields}
+
+
+def _joined(parts: Sequence[Fields]) -> Fields:
+    """Return the fields of consecutive samples."""
+    if len(parts) == 1:
+        return parts[0]
+    return {name: np.concatenate([x[name] for x in parts]) for name in parts[0]}
+
+
+def _rows(arrays: Fields, first: int, last: int | None) -> Fields:
+    """Return some of the samples."""
+    return {name: x[first:last] for name, x in arrays.items()}

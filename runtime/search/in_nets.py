@@ -1,4 +1,4 @@
-"""The search for all points of a spline of nets with given normals, each found exactly once.
+"""Exact decisions on undecided hits of a spline of nets, and the fields of its samples.
 
 Of a pair of a patch and a normal, the signs of U, V, W decide (Sect. 3.2). A sign that rounding
 leaves open, or the difference of the two patches of a joint, is that of the boundary cone of the
@@ -10,7 +10,7 @@ patches. So the images of the patches are a decomposition without gaps or overla
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -22,19 +22,14 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.formula_calls import patch, python_function, vector
 from ..base.integers import Integers, integers, integers_by_row, ratio, sign
 from ..base.kept import kept
-from ..base.threads import over_ranges
-from ..base.tolerances import ACCURATE, DATA_ERROR, FORM_ERROR
-from ..samples.fields import FLOAT_NAMES
+from ..base.tolerances import DATA_ERROR, FORM_ERROR
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
+from .exact import Decision
 from .long_integers import displaced_forms, exact_forms, leading_sign
 
-__all__ = ["Cones", "Found", "edge_signs", "fields_in_nets", "find_in_nets"]
+__all__ = ["decide_in_nets", "edge_signs", "errors_of", "fields_in_nets", "flat_nets"]
 
-# The number of pairs of a patch and a normal that are compared at a time.
-PAIRS_AT_A_TIME = 1 << 22
-# Cones are wider than the control normals by this, in cosine: more than their rounding.
-COSINE_ERROR = 1e-12
 # The rows of nets, turned so that the edges u = 0, v = 0, w = 0 become v = 0, from start to end.
 TURNED = tuple(
     (x.end, k, x.start, x.end_beside, x.middle, x.start_beside) for k, x in enumerate(EDGES)
@@ -43,106 +38,45 @@ TURNED = tuple(
 SAME_NORMAL = 0.999
 
 
-class Found(NamedTuple):
-    """The hits (k,): patches, rows of normals, and of those that were decided exactly (j,) which.
-
-    `local` (j, 3) are u, v and the sign of K of these.
-    """
-
-    patches: Indices
-    normals: Indices
-    exact: Indices
-    local: Array
+def errors_of(spline: NetSpline) -> Array:
+    """Return the errors of U, V, W (T,) of the patches."""
+    largest = _largest(spline)
+    return 8.0 * largest * (_rounding(spline) + 2.0 * largest * spline.topology.angles)
 
 
-class Cones(NamedTuple):
-    """Of each patch (T,): a cone of all normals, the errors of U, V, W (T, 3), and if it is flat.
+def flat_nets(spline: NetSpline) -> Flags:
+    """Return which patches (T,) are developable, up to the rounding of their coordinates."""
 
-    `cosines` are those of the half-angles, −2 for cones that hold all directions.
-    """
-
-    axes: Array
-    cosines: Array
-    errors: Array
-    flat: Flags
-
-    @classmethod
-    def of(cls, spline: NetSpline) -> Cones:
-        """Return the cones of a spline."""
-        control = spline.topology.normals
-        lengths = np.linalg.norm(control, axis=2)
-        some = (lengths > 0.0).all(axis=1)
-        unit = control / np.where(lengths > 0.0, lengths, 1.0)[..., None]
-        axes = unit.sum(axis=1)
-        size = np.linalg.norm(axes, axis=1)
-        axes /= np.where(size > 0.0, size, 1.0)[:, None]
-        least = np.einsum("kcx,kx->kc", unit, axes).min(axis=1)
-        angles = spline.topology.angles
-        wide = np.cos(np.minimum(np.arccos(np.clip(least, -1.0, 1.0)) + angles, np.pi))
-        cosines = np.where(some & (least > 0.0), wide - COSINE_ERROR, -2.0)
-        largest = np.abs(spline.vectors).sum(axis=2).max(axis=1)
-        rounding = FORM_ERROR * largest + DATA_ERROR * spline._largest * spline.scale
-        errors = 8.0 * largest * (rounding + 2.0 * largest * angles)
+    def flat() -> Flags:
         cubic = python_function(formulas.parabolic_cubic)(spline.patch())
-        noise = rounding * largest**5
-        flat = np.abs(np.stack(cubic)).max(axis=0) <= 64.0 * noise
-        return cls(axes, cosines, np.repeat(errors[:, None], 3, axis=1), flat)
+        noise = _rounding(spline) * _largest(spline) ** 5
+        return np.abs(np.stack(cubic)).max(axis=0) <= 64.0 * noise
+
+    return kept(spline, "developable", flat)
 
 
-def cones_of(spline: NetSpline) -> Cones:
-    """Return the cones of a spline, which are kept with it."""
-    return kept(spline, Cones, lambda: Cones.of(spline))
+def _largest(spline: NetSpline) -> Array:
+    """Return the largest sum of the moduli of components of a vector of each patch (T,)."""
+    return np.abs(spline.vectors).sum(axis=2).max(axis=1)
 
 
-def find_in_nets(spline: NetSpline, normals: Array, threads: int | None = None) -> Found:
-    """Return all hits at unit normals (S, 3), sorted by patch and then by normal."""
-    step = max(PAIRS_AT_A_TIME // spline.patches, 1)
-
-    def work(first: int, last: int) -> Found:
-        return _found(spline, normals, first, last)
-
-    parts = list(over_ranges(work, len(normals), step, threads))
-    starts = np.cumsum([0, *(len(x.patches) for x in parts[:-1])])
-    patches = np.concatenate([x.patches for x in parts])
-    numbers = np.concatenate([x.normals for x in parts])
-    exact = np.concatenate([x.exact + start for x, start in zip(parts, starts, strict=True)])
-    local = np.full((len(patches), 3), np.nan)
-    local[exact] = np.concatenate([x.local for x in parts])
-    order = np.lexsort((numbers, patches))
-    local = local[order]
-    exact = np.flatnonzero(~np.isnan(local[:, 0]))
-    return Found(patches[order], numbers[order], exact, local[exact])
+def _rounding(spline: NetSpline) -> Array:
+    """Return the error of the linear forms of each patch (T,)."""
+    return FORM_ERROR * _largest(spline) + DATA_ERROR * spline._largest * spline.scale
 
 
-def _found(spline: NetSpline, normals: Array, first: int, last: int) -> Found:
-    """Return the hits of the normals first, …, last − 1."""
-    cones, some = cones_of(spline), normals[first:last]
-    patches, rows = np.nonzero(cones.axes @ some.T >= cones.cosines[:, None])
-    D, *forms = python_function(formulas.forms)(spline.patch(patches), vector(some[rows]))
-    values, errors = np.stack(forms, axis=1), cones.errors[patches]
+def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decision:
+    """Decide which of the pairs (patches[k], normals[k]) are hits, by the cones of edges.
+
+    At an edge on the border, a normal within the error is inside.
+    """
+    _, *forms = python_function(formulas.forms)(spline.patch(patches), vector(normals))
+    values, errors = np.stack(forms, axis=1), errors_of(spline)[patches, None]
     signs = np.where(np.abs(values) > errors, np.sign(values), 0.0).astype(np.int8)
-    possible = (signs.min(axis=1) >= 0) | (signs.max(axis=1) <= 0)
-    patches, rows, signs, D = patches[possible], rows[possible], signs[possible], D[possible]
-    errors = errors[possible, 0]
-    open_ = (signs == 0).any(axis=1) | (np.abs(D) <= ACCURATE * errors)
-    exact = np.flatnonzero(open_)
-    local = np.zeros((len(patches), 3))
-    inside = ~open_
-    inside[exact], local[exact] = _decided(spline, patches[exact], some[rows[exact]], signs[exact])
-    sure = np.flatnonzero(~open_)
-    inside[sure] = _towards(spline, patches[sure], some[rows[sure]])
-    kept_ = np.flatnonzero(inside)
-    which = np.flatnonzero(open_[kept_])
-    return Found(patches[kept_], rows[kept_] + first, which, local[kept_[which]])
-
-
-def _towards(spline: NetSpline, patches: Indices, normals: Array) -> Flags:
-    """Return whether normals, and not their opposites, are those of patches at their points."""
-    patch, n = spline.patch(patches), vector(normals)
-    D, U, V, _ = python_function(formulas.forms)(patch, n)
-    u, v = python_function(formulas.parameters)(D, U, V)
-    N = python_function(formulas.tangents)(patch, u, v)[2]
-    return N.x * n.x + N.y * n.y + N.z * n.z > 0.0
+    inside, local = _decided(spline, patches, normals, signs)
+    which = np.flatnonzero(inside)
+    local = local[which]
+    return Decision(which, np.concatenate([local, local[:, :2]], axis=1))
 
 
 def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
@@ -158,12 +92,7 @@ def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -
 def _decided(
     spline: NetSpline, patches: Indices, normals: Array, signs: NDArray[np.int8]
 ) -> tuple[Flags, Array]:
-    """Decide pairs by the cones of edges; return which are hits, and u, v, sign of K (k, 3).
-
-    At an edge on the border, a normal within the error is inside.
-    """
-    if len(patches) == 0:
-        return np.empty(0, bool), np.empty((0, 3))
+    """Return which pairs are hits, and u, v, sign of K (k, 3); `signs` (k, 3) are known ones."""
     topology = spline.topology
     signs = signs.copy()
     pairs, edges = np.nonzero(signs == 0)
@@ -240,27 +169,34 @@ def _tangential(x: Vector, normals: Integers) -> Vector:
 
 
 def fields_in_nets(
-    spline: NetSpline, normals: Array, found: Found, fields: Sequence[str], dtype: DTypeLike
+    spline: NetSpline,
+    patches: Indices,
+    normals: Array,
+    exact: Indices,
+    local: Array,
+    fields: Sequence[str],
+    dtype: DTypeLike,
 ) -> dict[str, NDArray[Any]]:
-    """Return fields of samples at hits, see `Samples`; floats are stored as `dtype`."""
-    patch, n = spline.patch(found.patches), normals[found.normals]
+    """Return fields of samples of patches (k,) at normals (k, 3), see `Samples`.
+
+    Those with the numbers `exact` were decided exactly: `local` is that of `Decision`. Floats are
+    stored as `dtype`.
+    """
+    patch, n = spline.patch(patches), normals
     D, U, V, _ = python_function(formulas.forms)(patch, vector(n))
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         u, v = (np.array(x) for x in python_function(formulas.parameters)(D, U, V))
-        u[found.exact], v[found.exact] = found.local[:, 0], found.local[:, 1]
+        u[exact], v[exact] = local[:, 0], local[:, 1]
         uv = np.stack([u, v], axis=1)
-        points = spline.points_in_patches(found.patches, uv)
+        points = spline.points_in_patches(patches, uv)
         K, H = python_function(formulas.curvature_at)(patch, vector(n), u, v)
         K, H = K * spline.scale**2, H * spline.scale
-    K[found.exact] = np.copysign(K[found.exact], found.local[:, 2])
+    K[exact] = np.copysign(K[exact], local[:, 2])
     arrays = {
         "points": points, "normals": n, "uv": uv,
         "support": np.einsum("kx,kx->k", n, points),
         "gaussian_curvature": K, "mean_curvature": H,
-        "normal_index": found.normals, "patch_index": found.patches,
     }  # fmt: skip
     return {
-        name: np.ascontiguousarray(x, dtype=dtype if name in FLOAT_NAMES else np.int64)
-        for name, x in arrays.items()
-        if name in fields
+        name: np.ascontiguousarray(x, dtype=dtype) for name, x in arrays.items() if name in fields
     }

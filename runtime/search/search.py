@@ -1,439 +1,228 @@
-"""The search for all points of a spline with given normals, each found exactly once."""
+"""The search for all points of a spline with given normals, each found exactly once.
+
+An index lists the patches by bins of the sphere. For normals sorted by bins, the signs of U, V, W
+and D decide which patches of their bin have them; pairs that rounding leaves undecided are decided
+by exact arithmetic.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
-from types import MappingProxyType
-from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
+from ..base.aliases import Array, Flags, Indices
 from ..base.kept import kept
-from ..base.threads import over_ranges, thread_count
-from ..kernels.developable import count_developable, first_curved
-from ..kernels.fill import fill_samples
-from ..kernels.runs import LONGEST, SIZE, fill_runs
-from ..kernels.scan import scan_in
-from ..kernels.search import Bins, Coefficients, Found, search_in
-from ..kernels.sort import merge_hits
-from ..kernels.tile import STEP, fill_known, new_tile
-from ..samples.fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
+from ..base.memory import check_memory
+from ..base.threads import over_ranges
+from ..kernels.developable import count_developable
+from ..kernels.lists import NUMBER
+from ..kernels.pieces import BOUND
+from ..kernels.search import Found, Memory, search
+from ..kernels.sort import order_few
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
-from .bins import NormalBins, icosahedron
-from .cone_tree import ConeTree
 from .exact import decide
-from .in_nets import Found as FoundInNets
-from .in_nets import cones_of, fields_in_nets, find_in_nets
+from .in_nets import decide_in_nets, flat_nets
+from .index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
-__all__ = [
-    "Hits",
-    "PackedHits",
-    "Search",
-    "SearchResult",
-    "developable_patches",
-    "fill",
-    "fill_packed",
-    "find",
-    "merged",
-]
+__all__ = ["Hits", "developable_patches", "find", "find_in_turn"]
 
-# The number of patches of a range, which one thread searches. Each thread gets several ranges,
-# except on small surfaces.
-FEWEST_PATCHES, MOST_PATCHES = 128, 4096
-RANGES_PER_THREAD = 4
-SAMPLES_AT_A_TIME = 1 << 16
-# The initial and the largest capacity for packed hits; a patch that needs more gets it.
-ROOM, MOST_ROOM = 1 << 15, 1 << 20
-# With more patches than this number for each normal, patches are looked up in the tree of cones.
-PATCHES_PER_NORMAL = 4
-# A key is number of a patch << 32 | number of a normal; a packed hit has the latter in both places.
-NUMBER, REPEATED = (1 << 32) - 1, (1 << 32) + 1
-
-
-@dataclass(frozen=True, eq=False)
-class PackedHits:
-    """Packed hits, sorted by patch and then by normal: rows (k, 2) of a patch and a packed hit.
-
-    A packed hit is number of the normal << 32 | its row in `normals` (S, 3 or more). If these are
-    None, it is a packed run: one or more consecutive points of an icosphere (see kernels/runs.py).
-    """
-
-    rows: NDArray[np.int64]
-    normals: NDArray[np.float64] | None
-
-    @cached_property
-    def ends(self) -> NDArray[np.int64]:
-        """The cumulative number of samples (k,) at the end of each row."""
-        if self.normals is not None:
-            return np.arange(1, len(self.rows) + 1)
-        return np.cumsum(self.rows[:, 1] >> SIZE & LONGEST)
-
-    def __len__(self) -> int:
-        """Return the number of samples."""
-        return int(self.ends[-1]) if self.normals is None and len(self.rows) else len(self.rows)
-
-    @property
-    def indices(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The patches and the normals of the samples."""
-        if self.normals is not None:
-            return self.rows[:, 0], self.rows[:, 1] >> 32
-        sizes = np.diff(self.ends, prepend=0)
-        firsts = np.repeat((self.rows[:, 1] >> 32) - (self.ends - sizes), sizes)
-        return np.repeat(self.rows[:, 0], sizes), firsts + np.arange(len(self))
-
-    def part(self, first: int, last: int) -> PackedHits:
-        """Return the samples first, …, last − 1; there must be at least one."""
-        if (first, last) == (0, len(self)):
-            return self
-        if self.normals is not None:
-            return PackedHits(self.rows[first:last], self.normals)
-        low, high = np.searchsorted(self.ends, (first, last - 1), side="right")
-        rows = self.rows[low : high + 1].copy()
-        rows[-1, 1] -= (int(self.ends[high]) - last) << SIZE
-        skipped = first - (int(self.ends[low - 1]) if low else 0)
-        rows[0, 1] += (skipped << 32) - (skipped << SIZE)
-        return PackedHits(rows, None)
+# Normals whose hits are found, sorted and decided together, at most; fewer if they have more hits
+# than this.
+NORMALS_AT_A_TIME, MOST_HITS = 1 << 20, 1 << 23
+# Normals of a range, which one thread searches, and the initial room for keys.
+RANGE, ROOM = 1 << 13, 1 << 15
+PATCHES_AT_A_TIME = 1 << 14
 
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """The hits, a patch and one of its normals each, sorted by patch and then by normal.
+    """The hits, a normal and one of its patches each, sorted by normal and then by patch.
 
-    `packed` holds them in consecutive parts. `exact` (k,) are the numbers of the hits that were
-    decided exactly, `exact_indices` (k, 2) their patches and normals, `local` (k, 5) that of
-    `Decision`. `developable` is the number of patches that are developable up to the rounding of
-    their coordinates.
+    `keys` (N,) are number of the normal << 32 | patch. `exact` (k,) are the numbers of the hits
+    that were decided exactly, `local` (k, 5) that of `Decision`. `developable` is the number of
+    patches that are developable up to the rounding of their coordinates.
     """
 
-    packed: tuple[PackedHits, ...]
-    exact: NDArray[np.int64]
-    exact_indices: NDArray[np.int64]
-    local: NDArray[np.float64]
+    keys: Indices
+    exact: Indices
+    local: Array
     developable: int
 
     @classmethod
     def none(cls, developable: int) -> Hits:
         """Return no hits."""
-        empty = np.empty(0, dtype=np.int64)
-        return cls((), empty, empty.reshape(0, 2), np.empty((0, 5)), developable)
+        return cls(np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, 5)), developable)
 
     @classmethod
     def joined(cls, parts: Sequence[Hits]) -> Hits:
-        """Return the hits of consecutive ranges of patches."""
+        """Return the hits of consecutive ranges of normals."""
+        if len(parts) == 1:
+            return parts[0]
         starts = np.cumsum([0, *(len(part) for part in parts[:-1])])
-        exact = [part.exact + start for part, start in zip(parts, starts, strict=True)]
         return cls(
-            tuple(x for part in parts for x in part.packed),
-            np.concatenate(exact),
-            np.concatenate([part.exact_indices for part in parts]),
+            np.concatenate([part.keys for part in parts]),
+            np.concatenate([x.exact + start for x, start in zip(parts, starts, strict=True)]),
             np.concatenate([part.local for part in parts]),
-            sum(part.developable for part in parts),
+            parts[0].developable,
         )
 
     def __len__(self) -> int:
         """Return the number of samples."""
-        return sum(map(len, self.packed))
+        return len(self.keys)
 
     @cached_property
-    def patch_index(self) -> NDArray[np.int64]:
+    def patch_index(self) -> Indices:
         """The patch number of each hit."""
-        return np.concatenate([np.empty(0, np.int64), *(x.indices[0] for x in self.packed)])
+        return self.keys & NUMBER
 
     @cached_property
-    def normal_index(self) -> NDArray[np.int64]:
+    def normal_index(self) -> Indices:
         """The number of the normal of each hit."""
-        return np.concatenate([np.empty(0, np.int64), *(x.indices[1] for x in self.packed)])
+        return self.keys >> 32
 
     def __getitem__(self, key: slice) -> Hits:
-        """Return consecutive hits; developable patches count only for a slice from 0 on."""
+        """Return consecutive hits."""
         first, last, _ = key.indices(len(self))
         low, high = np.searchsorted(self.exact, (first, last))
-        return Hits(
-            tuple(x for _, x in self.pieces(first, last)),
-            self.exact[low:high] - first,
-            self.exact_indices[low:high],
-            self.local[low:high],
-            self.developable if first == 0 else 0,
-        )
+        exact = self.exact[low:high] - first
+        return Hits(self.keys[first:last], exact, self.local[low:high], self.developable)
 
-    def pieces(
-        self, first: int, last: int, size: int | None = None
-    ) -> list[tuple[int, PackedHits]]:
-        """Return the hits first, …, last − 1 in pieces, with the number of the first hit of each.
-
-        A piece has at most `size` hits.
-        """
-        found, start = [], 0
-        for packed in self.packed:
-            low, high = max(first - start, 0), min(last - start, len(packed))
-            for begin in range(low, high, size or max(high, 1)):
-                end = min(begin + size, high) if size else high
-                found.append((start + begin, packed.part(begin, end)))
-            start += len(packed)
-        return found
+    def whole_normals(self, size: int) -> Iterator[Hits]:
+        """Yield the hits in groups, at least one, of at most `size` hits or of one normal."""
+        first = 0
+        while True:
+            last = len(self)
+            if last - first > size:
+                number = max(self.keys[first + size] >> 32, (self.keys[first] >> 32) + 1)
+                last = int(np.searchsorted(self.keys, number << 32))
+            yield self[first:last]
+            if last == len(self):
+                return
+            first = last
 
 
-@dataclass(frozen=True, eq=False)
-class SearchResult:
-    """The hits of consecutive patches up to `last` − 1: rows (…, 2) as in `PackedHits`.
+def find(
+    spline: Spline, normals: Array, threads: int | None = None, progress: bool = False
+) -> Hits:
+    """Return all hits: which patch of a spline has which of the unit normals (S, 3)."""
+    check_memory("search", len(normals))
+    return Hits.joined(list(find_in_turn(spline, normals, threads, progress)))
 
-    Hits are certain, or undecided because of rounding; `bounds` (…) are the error bounds of the
-    forms of the undecided ones. `developable` is the number of developable patches.
+
+def find_in_turn(
+    spline: Spline, normals: Array, threads: int | None = None, progress: bool = False
+) -> Iterator[Hits]:
+    """Yield the hits of consecutive ranges of normals, at least one; their memory is bounded."""
+    developable = developable_patches(spline, threads)
+    if developable == spline.patches or len(normals) == 0:
+        yield Hits.none(developable)
+        return
+    first, size = 0, NORMALS_AT_A_TIME
+    while first < len(normals):
+        part = normals[first : first + size]
+        found = _keys(spline, part, threads, progress)
+        if found is None:
+            size = -(-size // 2)
+            continue
+        yield _decided(spline, part, *found, first, developable, threads)
+        first += size
+
+
+def _keys(
+    spline: Spline, normals: Array, threads: int | None, progress: bool
+) -> tuple[list[Indices], Indices, Array] | None:
+    """Return keys of hits, certain and undecided ones, and the errors of the forms of the latter.
+
+    Nothing is returned if there are several normals and more hits than MOST_HITS.
     """
+    certain, undecided, bounds, total = [], [], [], 0
+    for first in range(0, spline.patches, MOST_PATCHES):
+        index = index_of(spline, threads, first)
+        with closing(_ranges(index, normals, threads, progress)) as ranges:
+            for sure, open_ in (x for parts in ranges for x in parts):
+                bounds.append(index.pieces.patches[open_ & NUMBER, BOUND])
+                certain.append(sure + first if first else sure)
+                undecided.append(open_ + first)
+                total += len(sure) + len(open_)
+                if total > MOST_HITS and len(normals) > 1:
+                    return None
+    none = np.empty(0, np.int64), np.empty(0)
+    return certain, np.concatenate([none[0], *undecided]), np.concatenate([none[1], *bounds])
 
-    last: int
-    certain: NDArray[np.int64]
-    undecided: NDArray[np.int64]
-    bounds: NDArray[np.float64]
-    developable: int
 
+def _ranges(
+    index: Index, normals: Array, threads: int | None, progress: bool
+) -> Generator[list[tuple[Indices, Indices]], None, None]:
+    """Yield the keys of hits of ranges of sorted normals, certain and undecided ones, in parts."""
+    order = ordered(normals, index.lists, threads)
 
-@dataclass(frozen=True, eq=False)
-class Search:
-    """The search for the patches of a spline that have given normals, by ranges of patches."""
-
-    spline: Spline
-    bins: NormalBins
-
-    @cached_property
-    def border(self) -> NDArray[np.bool_]:
-        """Whether the sides of the domain are open (4,), in the order south, east, north, west."""
-        (west, east), (south, north) = self.spline.boundary
-        return np.array([end == "open" for end in (south, east, north, west)])
-
-    @cached_property
-    def in_tree(self) -> bool:
-        """Whether the normals are few, and patches are looked up in the tree of their cones."""
-        return PATCHES_PER_NORMAL * len(self.bins.normals) < self.spline.patches
-
-    @property
-    def order(self) -> NDArray[np.float64] | None:
-        """The normals in the order to which packed hits refer."""
-        if self.in_tree:
-            return self.bins.normals
-        return None if self.bins.frequency > 0 else self.bins.sorted[1]
-
-    def tree(self, threads: int | None) -> ConeTree:
-        """Return the tree of cones; it is kept with the spline."""
-        return kept(self.spline, ConeTree, lambda: ConeTree.of(self.coefficients, threads))
-
-    def result_in_tree(self, threads: int | None) -> SearchResult:
-        """Return the hits of all patches, by the tree of cones."""
-        tree = self.tree(threads)
-        certain, undecided = tree.search(self.bins.normals, threads)
-        developable = developable_patches(self.spline, threads)
-        bounds = tree.bounds[undecided >> 32]
-
-        def rows(keys: NDArray[np.int64]) -> NDArray[np.int64]:
-            return np.stack([keys >> 32, (keys & NUMBER) * REPEATED], axis=1)
-
-        return SearchResult(
-            self.spline.patches, rows(certain), rows(undecided), bounds, developable
-        )
-
-    @property
-    def all_developable(self) -> bool:
-        """Whether all patches are developable, up to the rounding of their coordinates."""
-        return kept(self.spline, "all developable", self._all_developable)
-
-    def _all_developable(self) -> bool:
-        spline = self.spline
-        if first_curved(spline.coefficients, spline.scale, spline.noise) < spline.patches:
-            return False
-        return self.developable(np.arange(spline.patches)) == spline.patches
-
-    def developable(self, patches: NDArray[np.int64]) -> int:
-        """Return how many of some patches are developable, up to the rounding of coordinates."""
-        if len(patches) == 0:
-            return 0
-        spline = self.spline
-        return count_developable(spline.coefficients, spline.scale, spline.noise, patches)
-
-    @cached_property
-    def coefficients(self) -> Coefficients:
-        """The coefficients of the spline in the form that kernels take."""
-        spline = self.spline
-        return Coefficients(spline.coefficients, spline.scale, spline.noise, self.border)
-
-    def kernel(self) -> Callable[[int, int, Found], tuple[int, int]]:
-        """Return a function that searches a range of patches, with its own work arrays."""
-        bins = self.bins
-        if bins.frequency > 0:
-            return scan_in(self.coefficients, icosahedron(bins.frequency), bins.normals)
-        ordered = Bins(bins.frame, bins.stretch, bins.grid, *bins.sorted)
-        return search_in(self.coefficients, bins.cube, ordered)
-
-    def results(self, first: int, last: int) -> list[SearchResult]:
-        """Search the patches first, …, last − 1; return the result in one or more parts."""
-        search = self.kernel()
-        parts, room, begin = [], ROOM, first
-        while begin < last:
-            found = Found.new(room, last - begin)
-            end, needed = search(begin, last, found)
-            certain, undecided, flat = found.counts.tolist()
-            developable = self.developable(found.flat[:flat])
-            rows = found.certain[:certain]
-            if 2 * certain <= room:
-                rows = rows.copy()  # a view would keep the whole array in memory
-            open_ = found.undecided[:undecided].copy(), found.bounds[:undecided].copy()
-            parts.append(SearchResult(end, rows, *open_, developable))
-            # The remaining patches are expected to have about as many hits each, and 20 % more.
-            rate = 1.2 * (certain / (end - begin)) if end > begin else 0.0
-            room = max(ROOM, needed, min(int(rate * (last - end)), MOST_ROOM) + needed)
-            begin = end
+    def work(first: int, last: int) -> list[tuple[Indices, Indices]]:
+        memory, found, parts = Memory.new(index.most), Found.new(ROOM), []
+        while first < last:
+            first, needed = search(
+                index.pieces, index.lists, normals, order, first, last, memory, found
+            )
+            certain, undecided = found.counts
+            parts.append((found.certain[:certain].copy(), found.undecided[:undecided].copy()))
+            if needed > len(found.certain):
+                found = Found.new(needed)
         return parts
 
-    def range_size(self, threads: int | None) -> int:
-        """Return how many patches one range has."""
-        count = self.spline.patches // (RANGES_PER_THREAD * thread_count(threads))
-        return min(max(count, FEWEST_PATCHES), MOST_PATCHES)
+    yield from over_ranges(work, len(order), RANGE, threads, progress)
 
-    def decided(
-        self, undecided: NDArray[np.int64], bounds: NDArray[np.float64], threads: int | None
-    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Decide undecided hits exactly; return the rows that are hits, and `Decision.local`."""
-        if len(undecided) == 0:
-            return undecided, np.empty((0, 5))
-        patches, numbers = undecided[:, 0].copy(), undecided[:, 1] >> 32
-        forgiven = np.where(_on_border(self.spline, self.border, patches), bounds, 0.0)
-        normals = self.bins.normals[numbers]
-        decision = decide(self.spline, patches, normals, numbers, forgiven, threads)
-        return undecided[decision.which], decision.local
+
+def _decided(
+    spline: Spline, normals: Array, certain: list[Indices], undecided: Indices, bounds: Array,
+    first: int, developable: int, threads: int | None,
+) -> Hits:  # fmt: skip
+    """Return the hits, those among the undecided ones included; normals count from `first` on."""
+    exact, local = np.empty(0, np.int64), np.empty((0, 5))
+    if len(undecided) > 0:
+        # Patches with several normals are decided faster one after the other.
+        patches, numbers = undecided & NUMBER, undecided >> 32
+        order = np.lexsort((numbers, patches))
+        patches, numbers = patches[order], numbers[order]
+        if isinstance(spline, NetSpline):
+            decision = decide_in_nets(spline, patches, normals[numbers])
+        else:
+            forgiven = np.where(_on_border(spline, patches), bounds[order], 0.0)
+            decision = decide(spline, patches, normals[numbers], numbers, forgiven, threads)
+        decided = undecided[order][decision.which]
+        order = np.argsort(decided)
+        exact, local = decided[order], decision.local[order]
+    # Those of a normal come in the order of patches, but for what is decided exactly.
+    keys = sorted_keys([*certain, exact], 32, len(normals))
+    if len(exact) > 0:
+        order_few(keys)
+    exact = np.searchsorted(keys, exact)
+    if first:
+        keys += first << 32
+    return Hits(keys, exact, local, developable)
 
 
 def developable_patches(spline: Spline, threads: int | None) -> int:
     """Return how many patches are developable, up to the rounding of their coordinates."""
     if isinstance(spline, NetSpline):
-        return int(np.count_nonzero(cones_of(spline).flat))
-    search = Search(spline, NormalBins(np.eye(3)))
-    return kept(spline, "developable", lambda: search.developable(search.tree(threads).flat))
+        return int(np.count_nonzero(flat_nets(spline)))
+
+    def work(first: int, last: int) -> int:
+        return count_developable(spline.coefficients, spline.scale, spline.noise, first, last)
+
+    def count() -> int:
+        return sum(over_ranges(work, spline.patches, PATCHES_AT_A_TIME, threads))
+
+    return kept(spline, "developable", count)
 
 
-def find(
-    spline: Spline, bins: NormalBins, threads: int | None = None, progress: bool = False
-) -> Hits:
-    """Return all hits: which patch of a spline has which of the normals."""
-    if isinstance(spline, NetSpline):
-        return _hits_in_nets(spline, find_in_nets(spline, bins.normals, threads))
-    search = Search(spline, bins)
-    if search.all_developable:
-        return Hits.none(spline.patches)
-    if search.in_tree:
-        parts = [search.result_in_tree(threads)]
-    else:
-        size = search.range_size(threads)
-        ranges = over_ranges(search.results, spline.patches, size, threads, progress)
-        parts = [part for found in ranges for part in found]
-    undecided = np.concatenate([part.undecided for part in parts])
-    bounds = np.concatenate([part.bounds for part in parts])
-    return merged(parts, *search.decided(undecided, bounds, threads), search.order)
-
-
-def fill(
-    spline: Spline,
-    bins: NormalBins,
-    hits: Hits,
-    threads: int | None = None,
-    fields: Sequence[str] = ARRAY_NAMES,
-    dtype: DTypeLike = np.float64,
-    memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
-) -> dict[str, NDArray[Any]]:
-    """Return fields of samples at the hits, see `Samples`; floats are stored as `dtype`.
-
-    They are written to the fields in `memory` that are large enough.
-    """
-    if isinstance(spline, NetSpline):
-        found = FoundInNets(hits.patch_index, hits.normal_index, hits.exact, hits.local[:, :3])
-        return fields_in_nets(spline, bins.normals, found, fields, dtype)
-    count = len(hits)
-    types = dict.fromkeys(FLOAT_NAMES, dtype) | dict.fromkeys(INDEX_NAMES, np.int64)
-    filled = {x: new_field(x, count, types[x], memory) for x in ARRAY_NAMES if x in fields}
-    arrays = [filled[x] if x in filled else new_field(x, 0, types[x]) for x in types]
-    pieces = hits.pieces(0, count, SAMPLES_AT_A_TIME)
-
-    def work(first: int, last: int) -> None:
-        for start, packed in pieces[first:last]:
-            fill_packed(spline, bins, packed, start, arrays)
-
-    list(over_ranges(work, len(pieces), 1, threads))
-    if len(hits.exact) and any(name in filled for name in FLOAT_NAMES):
-        fill_known(
-            spline.coefficients, spline.scale, bins.normals, spline.frame,
-            hits.exact, hits.exact_indices, hits.local, *arrays[: len(FLOAT_NAMES)],
-        )  # fmt: skip
-    return filled
-
-
-def fill_packed(
-    spline: Spline,
-    bins: NormalBins,
-    packed: PackedHits,
-    start: int,
-    arrays: Sequence[NDArray[Any]],
-) -> None:
-    """Fill arrays from row `start` on with the samples at packed hits.
-
-    The arrays are in the order of FLOAT_NAMES and INDEX_NAMES; absent fields are empty.
-    """
-    patches = spline.coefficients, spline.scale
-    tile, indices = new_tile()
-    if packed.normals is None:
-        fill_runs(
-            *patches, bins.normals, spline.frame, bins.frequency, packed.rows, start,
-            tile, indices, np.zeros(2 * STEP, np.int64), *arrays,
-        )  # fmt: skip
-    else:
-        fill_samples(
-            *patches, packed.normals, spline.frame, packed.rows, start, tile, indices, *arrays
-        )
-
-
-def merged(
-    parts: Sequence[SearchResult],
-    decided: NDArray[np.int64],
-    local: NDArray[np.float64],
-    normals: NDArray[np.float64] | None,
-) -> Hits:
-    """Return the certain hits of consecutive ranges, merged with those that were decided exactly.
-
-    `decided` (k, 2) and `normals` are those of `PackedHits`, `local` (k, 5) that of `Decision`.
-    """
-    ends = np.searchsorted(decided[:, 0], [0, *(part.last for part in parts)])
-    found, exact, start = [], [], 0
-    for part, first, last in zip(parts, ends[:-1], ends[1:], strict=True):
-        packed = PackedHits(part.certain, normals)
-        if last > first:
-            rows = np.empty((len(part.certain) + last - first, 2), dtype=np.int64)
-            places = np.empty(last - first, dtype=np.int64)
-            merge_hits(part.certain, decided[first:last], rows, places)
-            packed = PackedHits(rows, normals)
-            exact.append(start + packed.ends[places] - 1)
-        found.append(packed)
-        start += len(packed)
-    numbers = np.concatenate(exact) if exact else np.empty(0, dtype=np.int64)
-    indices = decided >> np.array([0, 32])
-    return Hits(tuple(found), numbers, indices, local, sum(part.developable for part in parts))
-
-
-def _hits_in_nets(spline: NetSpline, found: FoundInNets) -> Hits:
-    """Return hits of a spline of nets as those of others."""
-    rows = np.stack([found.patches, found.normals * REPEATED], axis=1)
-    packed = (PackedHits(rows, np.empty((0, 3))),) if len(rows) else ()
-    local = np.concatenate([found.local, found.local[:, :2]], axis=1)
-    indices = np.stack([found.patches, found.normals], axis=1)[found.exact]
-    developable = developable_patches(spline, None)
-    return Hits(packed, found.exact, indices, local, developable)
-
-
-def _on_border(
-    spline: Spline, border: NDArray[np.bool_], patches: NDArray[np.int64]
-) -> NDArray[np.bool_]:
+def _on_border(spline: Spline, patches: NDArray[np.int64]) -> Flags:
     """Return which patches have their outer edge on the open border of the domain."""
     cell, turn = np.divmod(patches, 4)
     i, j = np.divmod(cell, spline.cells[1])
     outermost = np.stack([j == 0, i == spline.cells[0] - 1, j == spline.cells[1] - 1, i == 0])
-    return border[turn] & np.take_along_axis(outermost, turn[None], axis=0)[0]
+    return open_sides(spline)[turn] & np.take_along_axis(outermost, turn[None], axis=0)[0]

@@ -15,8 +15,8 @@ from ...runtime.base.checks import real_array
 from ...runtime.base.errors import InputError, shown
 from ...runtime.directions.unit import as_normals
 from ...runtime.fitting.fit import spline_of
-from ...runtime.search.bins import NormalBins
-from ...runtime.search.search import fill, find
+from ...runtime.search.fill import fill
+from ...runtime.search.search import find
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from .area import measures_of
@@ -358,11 +358,10 @@ class GaussianImages:
         if not is_whole or sign not in (-1, 0, 1):
             raise InputError(f"sign must be 1, -1 or 0 (both), not {shown(sign)}.")
         directions = as_normals(normals)
-        bins = NormalBins(directions)
-        hits = find(self.spline, bins, threads)
+        hits = find(self.spline, directions, threads)
         which = hits.normal_index
         if sign:
-            curvature = fill(self.spline, bins, hits, threads)["gaussian_curvature"]
+            curvature = fill(self.spline, directions, hits, threads)["gaussian_curvature"]
             which = which[np.signbit(curvature) == (sign < 0)]
         return np.bincount(which, minlength=len(directions)).astype(np.int64)
 

@@ -23,8 +23,8 @@ from ...runtime.place.on_surface import geometry_of, place_of_samples
 from ...runtime.samples.fields import FLAG_NAMES, checked_dtype, checked_fields
 from ...runtime.samples.report import warn_of
 from ...runtime.samples.samples import Samples
-from ...runtime.search.bins import NormalBins
-from ...runtime.search.search import Hits, fill, find
+from ...runtime.search.fill import fill
+from ...runtime.search.search import Hits, find
 from ...runtime.spline.inside import count_of, samples_inside
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
@@ -159,15 +159,14 @@ def silhouette(
     thread_count(threads)
     geometry = geometry_of(surface, cells, on).used(number, threads)
     spline = geometry.spline
-    bins, hits = _by_count(spline, axis, asked, threads, progress)
-    found = geometry.at_hits(bins, hits, list(dict.fromkeys([*names, *KEYS, *flags])), number)
-    order = np.argsort(found.fields["normal_index"], kind="stable")
-    arrays = {name: x[order] for name, x in found.fields.items()}
-    places = _places_on_spline(spline, bins, hits, arrays)
+    normals, hits = _by_count(spline, axis, asked, threads, progress)
+    found = geometry.at_hits(normals, hits, list(dict.fromkeys([*names, *KEYS, *flags])), number)
+    arrays = found.fields
+    places = _places_on_spline(spline, normals, hits, arrays)
     unrefined = _move_others(geometry, axis, places, arrays)
     lines = polylines_of(spline, axis, places)
     chosen: dict[str, Any] = {name: arrays[name] for name in names}
-    asked_normals = len(bins.normals)
+    asked_normals = len(normals)
     density = asked_normals / (4 * math.pi)
     report = geometry.report(asked_normals, density, hits.developable, chosen)
     report = replace(report, on=geometry.on, unrefined=unrefined)
@@ -178,13 +177,11 @@ def silhouette(
 
 
 def _places_on_spline(
-    spline: Spline, bins: NormalBins, hits: Hits, arrays: dict[str, NDArray[Any]]
+    spline: Spline, normals: NDArray[np.float64], hits: Hits, arrays: dict[str, NDArray[Any]]
 ) -> NDArray[np.float64]:
     """Return the parameters (N, 2) at which samples were found on the spline."""
-    known = fill(spline, bins, hits, fields=(*KEYS, "uv"))
-    keys, mine = (x["normal_index"] * spline.patches + x["patch_index"] for x in (known, arrays))
-    order = np.argsort(keys)
-    return known["uv"][order[np.searchsorted(keys[order], mine)]]
+    uv = fill(spline, normals, hits, fields=("uv",))["uv"]
+    return uv[np.searchsorted(hits.keys, arrays["normal_index"] << 32 | arrays["patch_index"])]
 
 
 def _move_others(
@@ -246,18 +243,18 @@ def _by_count(
     count: int,
     threads: int | None,
     progress: bool,
-) -> tuple[NormalBins, Hits]:
+) -> tuple[NDArray[np.float64], Hits]:
     """Return normals with about `count` samples, and these."""
     size, best, nearest = count, None, math.inf
     for _ in range(TRIES):
-        bins = NormalBins(great_circle(axis, size), threads)
-        hits = find(spline, bins, threads, progress)
+        normals = great_circle(axis, size)
+        hits = find(spline, normals, threads, progress)
         number = len(hits)
         if spline.trim is not None and number:
-            uv = fill(spline, bins, hits, threads, ("uv",))
+            uv = fill(spline, normals, hits, threads, ("uv",))
             number = count_of(samples_inside(spline.trim, uv, ("uv",)))
         if best is None or abs(number - count) < nearest:
-            best, nearest = (bins, hits), abs(number - count)
+            best, nearest = (normals, hits), abs(number - count)
         if nearest <= NEAR_ENOUGH * count or hits.developable == spline.patches:
             break
         next_size = round(size * count / number) if number else 2 * size

@@ -13,8 +13,8 @@ from ...generated import patch as formulas
 from ...runtime.base.bridge import bezier_triangle
 from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import python_function, vector
-from ...runtime.search.bins import NormalBins
-from ...runtime.search.search import fill, find
+from ...runtime.search.fill import fill
+from ...runtime.search.search import find
 from ...runtime.spline.nets import NetSpline
 from ...runtime.spline.spline import Spline
 from ..gauss_map.membership import PatchNormals
@@ -56,15 +56,13 @@ class SplineSource:
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
         """Return all branches, by normal and then by patch."""
-        bins = NormalBins(normals)
-        hits = find(self.spline, bins)
-        fields = fill(self.spline, bins, hits)
+        hits = find(self.spline, normals)
+        fields = fill(self.spline, normals, hits)
         known = np.full((len(hits), 2), np.nan)
         known[hits.exact] = hits.local[:, 3:5]
-        order = np.argsort(hits.normal_index, kind="stable")
-        patches, rows = hits.patch_index[order], hits.normal_index[order]
+        patches, rows = hits.patch_index, hits.normal_index
         if isinstance(self.spline, NetSpline):
-            hessian = _hessians_in_nets(self.spline, patches, normals[rows], fields["uv"][order])
+            hessian = _hessians_in_nets(self.spline, patches, normals[rows], fields["uv"])
         else:
             hessian = np.empty((len(hits), 3, 3))
             kernels.hessians_of_patches(
@@ -72,12 +70,12 @@ class SplineSource:
                 self.spline.scale,
                 patches,
                 normals[rows],
-                known[order],
+                known,
                 hessian,
             )
         return Sheets(
-            rows, fields["points"][order], hessian, fields["gaussian_curvature"][order],
-            fields["mean_curvature"][order], patches, fields["uv"][order],
+            rows, fields["points"], hessian, fields["gaussian_curvature"],
+            fields["mean_curvature"], patches, fields["uv"],
         )  # fmt: skip
 
     def expression(self) -> None:

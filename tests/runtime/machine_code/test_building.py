@@ -133,7 +133,7 @@ def test_the_bytes_of_a_file_are_those_of_its_sources(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """However many processes there are, and whichever of them compiles what."""
-    names = ("gaussmap.runtime.kernels.sort.merge_hits", "gaussmap.runtime.kernels.unit.are_unit")
+    names = ("gaussmap.runtime.kernels.sort.order_few", "gaussmap.runtime.kernels.unit.are_unit")
     listed = {name: signatures.read()[name] for name in names}
     monkeypatch.setattr(signatures, "read", listed.copy)
     built = []

@@ -7,7 +7,6 @@ from functools import partial
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.search.bins import NormalBins
 from gaussmap.runtime.search.search import find
 from hypothesis import given
 from hypothesis import strategies as st
@@ -156,7 +155,7 @@ def test_gentle_waves_are_decided_in_floating_point(height: float) -> None:
     )
     spline = gm.fit(surface, (32, 32))
     normals = spline.normals(*np.random.default_rng(0).uniform(1.0, 5.0, (2, 5000)))
-    hits = find(spline, NormalBins(normals))
+    hits = find(spline, normals)
     assert len(hits.exact) < 0.05 * len(hits)  # at the border, where rounding is forgiven
     assert np.bincount(hits.normal_index, minlength=len(normals)).min() >= 1
 

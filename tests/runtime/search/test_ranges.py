@@ -1,4 +1,4 @@
-"""Ranges of patches, on several threads, whole or in chunks: they do not show in the samples."""
+"""Ranges of normals, on several threads, whole or in chunks: they do not show in the samples."""
 
 import gc
 import threading
@@ -7,9 +7,9 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.search import bins, exact, search
-from gaussmap.runtime.search.bins import NormalBins
-from gaussmap.runtime.search.search import Search, fill, find
+from gaussmap.runtime.place import on_surface
+from gaussmap.runtime.search import exact, fill, index, search
+from gaussmap.runtime.search.search import find
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
 SPLINE, NORMALS = gm.fit(gm.surfaces.torus(), (12, 8)), gm.icosphere(6)
@@ -26,28 +26,27 @@ def same(one, other):
 
 
 def test_some_samples_are_decided_exactly():
-    assert (
-        0 < len(find(SPLINE, NormalBins(NORMALS)).exact) < len(gm.sample(SPLINE, normals=NORMALS))
-    )
+    assert 0 < len(find(SPLINE, NORMALS).exact) < len(gm.sample(SPLINE, normals=NORMALS))
 
 
 @pytest.mark.parametrize("normals", [NORMALS, NORMALS[::-1].copy()])
-def test_samples_are_in_the_order_of_patches_and_normals(normals):
-    """Also those that are decided exactly, among others of their patch."""
-    samples = gm.sample(gm.fit("torus", (4, 4)), normals=normals)
-    pairs = list(zip(samples.patch_index.tolist(), samples.normal_index.tolist(), strict=True))
+@pytest.mark.parametrize("on", ["spline", "surface"])
+def test_samples_are_in_the_order_of_normals_and_patches(normals, on):
+    """Also those that are decided exactly, among others of their normal."""
+    samples = gm.sample("torus", normals=normals, cells=(4, 4), on=on)
+    pairs = list(zip(samples.normal_index.tolist(), samples.patch_index.tolist(), strict=True))
     assert pairs == sorted(pairs)
 
 
 def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
-    sorted_ = NormalBins(NORMALS)
-    hits = find(SPLINE, sorted_)
-    assert set(fill(SPLINE, sorted_, hits, fields=("uv", "patch_index"))) == {"uv", "patch_index"}
+    hits = find(SPLINE, NORMALS)
+    wanted = ("uv", "patch_index")
+    assert set(fill.fill(SPLINE, NORMALS, hits, fields=wanted)) == set(wanted)
 
     def filled(*arguments):
         raise AssertionError("what was decided exactly has its indices already")
 
-    monkeypatch.setattr(search, "fill_known", filled)
+    monkeypatch.setattr(fill, "fill_known", filled)
     samples = gm.sample(SPLINE, normals=NORMALS, fields=("patch_index",))
     assert samples.fields == ("patch_index",)
 
@@ -57,12 +56,12 @@ def test_how_many_normals_share_a_bin_does_not_matter(size, monkeypatch):
     for normals in (gm.fibonacci(20_000), gm.directions.cap(gm.icosphere(60), (1, 0, 1), 20)):
         usual = gm.sample(SPLINE, normals=normals)
         with monkeypatch.context() as patch:
-            patch.setattr(bins, "NORMALS_PER_BIN", size)
+            patch.setattr(index, "NORMALS_PER_BIN", size)
             same(gm.sample(SPLINE, normals=normals), usual)
 
 
 def test_samples_of_one_patch_and_of_the_next_have_their_normals():
-    """More than a hundred of each patch; the last are filled with the first of the next one."""
+    """Samples of hundreds of patches are filled at a time, and there is a rest."""
     spline, normals = gm.fit("torus", (4, 3)), gm.fibonacci(4000)
     samples = gm.sample(spline, normals=normals)
     assert np.bincount(samples.patch_index).max() > 200
@@ -91,9 +90,9 @@ def test_one_point_of_the_border_is_one_sample(apart, monkeypatch):
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "sphere", "moebius_band", "wavy_graph"])
 def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
-    """More patches and samples than go into one range; normals on symmetry planes among them."""
-    monkeypatch.setattr(search, "MOST_PATCHES", 500)
-    monkeypatch.setattr(search, "SAMPLES_AT_A_TIME", 333)
+    """More normals and samples than go into one range; normals on symmetry planes among them."""
+    monkeypatch.setattr(search, "RANGE", 500)
+    monkeypatch.setattr(fill, "SAMPLES_AT_A_TIME", 333)
     surface = gm.surfaces.surface(name)
     asked: dict[str, Any]
     for asked in ({"normals": gm.icosphere(24)}, {"count": 2000}):
@@ -110,9 +109,10 @@ def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
 @pytest.mark.compiled
 def test_ranges_do_not_show_in_the_result(monkeypatch):
     whole = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=1)
-    monkeypatch.setattr(search, "MOST_PATCHES", 7)
+    monkeypatch.setattr(search, "RANGE", 7)
     monkeypatch.setattr(search, "ROOM", 1)
-    monkeypatch.setattr(search, "SAMPLES_AT_A_TIME", 11)
+    monkeypatch.setattr(search, "NORMALS_AT_A_TIME", 100)
+    monkeypatch.setattr(fill, "SAMPLES_AT_A_TIME", 11)
     pieces = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=2)
     for array in whole.fields:
         assert getattr(whole, array).tobytes() == getattr(pieces, array).tobytes()
@@ -123,7 +123,8 @@ def test_ranges_do_not_show_in_the_result(monkeypatch):
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "sphere"])
 @pytest.mark.quick_for("torus", "sphere")
 def test_chunks_make_the_whole(name, threads, monkeypatch):
-    monkeypatch.setattr(search, "MOST_PATCHES", 64)
+    monkeypatch.setattr(search, "RANGE", 64)
+    monkeypatch.setattr(search, "NORMALS_AT_A_TIME", 500)
     spline = gm.fit(name, (20, 16))
     questions: list[dict[str, Any]] = [{"normals": gm.icosphere(12)}, {"count": 900}]
     for asked in questions:
@@ -139,27 +140,21 @@ def test_chunks_make_the_whole(name, threads, monkeypatch):
             assert joined.report.samples == whole.report.samples
 
 
-@pytest.mark.parametrize("name", ["wavy_graph", "monkey_saddle"])
-def test_a_sample_of_two_ranges_comes_once(name, monkeypatch):
-    """At an open border two patches may claim one normal, and one is chosen: across ranges too."""
-    spline = gm.fit(gm.surfaces.surface(name), (12, 8))
-    (u0, u1), (v0, v1) = spline.domain
-    u, v = np.linspace(u0, u1, 13), np.linspace(v0, v1, 9)
-    ends = [spline.normals(u, x) for x in (v0, v1)] + [spline.normals(x, v) for x in (u0, u1)]
-    normals = np.concatenate(ends)  # those at the corners of border cells
-    whole = gm.sample(spline, normals=normals)
-    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
-    monkeypatch.setattr(search, "MOST_PATCHES", 1)
-    for threads in (1, 2):
-        same(
-            gm.Samples.concatenate(gm.sample_stream(spline, normals=normals, threads=threads)),
-            whole,
-        )
-    alone, apart = Search(spline, NormalBins(normals)), 0
-    for patch in range(spline.patches):
-        for found in alone.results(patch, patch + 1):
-            apart += len(found.certain) + len(alone.decided(found.undecided, found.bounds, 1)[0])
-    assert apart > len(whole)  # patch by patch, some would come twice
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["wavy_graph", "sphere"])
+def test_chunks_of_samples_on_the_surface_make_the_whole(name, monkeypatch):
+    """Without a proof: samples that repeat others are left out, and yet chunks are full."""
+    monkeypatch.setattr(on_surface, "index_of", lambda surface: None)
+    monkeypatch.setattr(on_surface, "TOGETHER", 50)
+    surface = gm.surfaces.surface(name)
+    for asked in ({"count": 900}, {"count": 300}):
+        whole = gm.sample(surface, density="gauss", cells=(8, 6), threads=1, **asked)
+        for size in (7, 100, 10**9):
+            chunks = list(gm.sample_stream(surface, chunk=size, cells=(8, 6), **asked))
+            assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
+            joined = gm.Samples.concatenate(chunks)
+            same(joined, whole)
+            assert joined.report.unrefined == whole.report.unrefined
 
 
 # --- the end --------------------------------------------------------------------------------------
@@ -167,21 +162,20 @@ def test_a_sample_of_two_ranges_comes_once(name, monkeypatch):
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_closing_ends_the_work(threads, monkeypatch):
-    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
-    monkeypatch.setattr(search, "MOST_PATCHES", 1)
+    monkeypatch.setattr(search, "NORMALS_AT_A_TIME", 8)
     searched = []
-    results = Search.results
+    kernel = search.search
 
-    def recorded(self, first, last):
-        searched.append(first)
-        return results(self, first, last)
+    def recorded(*arguments):
+        searched.append(1)
+        return kernel(*arguments)
 
-    monkeypatch.setattr(Search, "results", recorded)
+    monkeypatch.setattr(search, "search", recorded)
     before = threading.active_count()
     chunks = gm.sample_stream(SPLINE, normals=gm.icosphere(8), chunk=5, threads=threads)
     next(chunks)
     chunks.close()
-    assert len(searched) < SPLINE.patches / 4
+    assert len(searched) < len(gm.icosphere(8)) / 8 / 4
     assert threading.active_count() == before
     # and without a word of farewell
     chunks = gm.sample_stream(SPLINE, normals=gm.icosphere(8), chunk=5, threads=threads)
@@ -194,16 +188,15 @@ def test_closing_ends_the_work(threads, monkeypatch):
 @pytest.mark.parametrize("threads", [1, 2])
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, MemoryError])
 def test_an_error_ends_the_work(threads, error, monkeypatch):
-    monkeypatch.setattr(search, "FEWEST_PATCHES", 1)
-    monkeypatch.setattr(search, "MOST_PATCHES", 4)
-    results = Search.results
+    monkeypatch.setattr(search, "RANGE", 4)
+    kernel = search.search
 
-    def failing(self, first, last):
-        if first == 100:
+    def failing(*arguments):
+        if 100 in arguments:
             raise error("one hundred")
-        return results(self, first, last)
+        return kernel(*arguments)
 
-    monkeypatch.setattr(Search, "results", failing)
+    monkeypatch.setattr(search, "search", failing)
     before = threading.active_count()
     with pytest.raises(error, match="one hundred"):
         list(gm.sample_stream(SPLINE, normals=gm.icosphere(8), chunk=5, threads=threads))

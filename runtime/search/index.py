@@ -1,0 +1,189 @@
+"""The index of a spline: pieces with cones of normals, listed by bins of the sphere."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.aliases import Array, Indices
+from ..base.kept import kept
+from ..base.threads import over_ranges
+from ..directions.unit import perpendicular
+from ..kernels.lists import FINEST, Lists, list_pieces, order_normals, write_caps
+from ..kernels.pieces import CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
+from ..kernels.sort import count_keys, place_keys
+from ..spline.nets import NetSpline
+from ..spline.spline import Spline
+from .in_nets import errors_of
+
+__all__ = ["MOST_PATCHES", "Index", "index_of", "listed", "open_sides", "ordered", "sorted_keys"]
+
+# The largest number of patches of one index, which is kept with the spline: it takes 230 bytes for
+# each. Larger splines have an index for each range of patches, made for each search.
+MOST_PATCHES = 1 << 20
+PIECES_AT_A_TIME, NORMALS_AT_A_TIME = 1 << 12, 1 << 16
+# Bins are so small that a piece is in about this many.
+BINS_PER_PIECE = 7.0
+# Normals are sorted by bins that have as many of them on average.
+NORMALS_PER_BIN = 4
+# The pieces that are looked at for that.
+LOOKED_AT = 1 << 12
+# Directions that fill a cap are spread over a face of the cube if its tangent is below this; it
+# counts as this at least.
+WIDEST_CAP, NARROWEST_CAP = 0.5, 2.0**-20
+
+
+@dataclass(frozen=True, eq=False)
+class Index:
+    """Pieces and the lists of those that may have the normals of bins; shared by threads.
+
+    `first` is the number of the first piece, `most` the largest number of pieces in a bin.
+    """
+
+    pieces: Pieces
+    lists: Lists
+    first: int
+    most: int
+
+
+def index_of(spline: Spline, threads: int | None, first: int = 0) -> Index:
+    """Return the index of the patches first, …, first + MOST_PATCHES − 1 of a spline.
+
+    It is kept with the spline if these are all patches.
+    """
+
+    def make() -> Index:
+        last = min(first + MOST_PATCHES, spline.patches)
+        pieces = _of_nets(spline, first, last) if isinstance(spline, NetSpline) else None
+        pieces = pieces or _of_grid(spline, first, last, threads)
+        lists = listed(pieces.cones)
+        return Index(pieces, lists, first, int(np.diff(lists.starts).max()))
+
+    return kept(spline, Index, make) if spline.patches <= MOST_PATCHES else make()
+
+
+def open_sides(spline: Spline) -> NDArray[np.bool_]:
+    """Return which sides of the domain are open (4,), in the order south, east, north, west."""
+    (west, east), (south, north) = spline.boundary
+    return np.array([end == "open" for end in (south, east, north, west)])
+
+
+def coefficients_of(spline: Spline) -> Coefficients:
+    """Return the coefficients of a spline in the form that kernels take."""
+    return Coefficients(spline.coefficients, spline.scale, spline.noise, open_sides(spline))
+
+
+def _of_grid(spline: Spline, first: int, last: int, threads: int | None) -> Pieces:
+    """Return the pieces of whole cells."""
+    pieces, coefficients, start = Pieces.new(last - first), coefficients_of(spline), first // 4
+
+    def work(low: int, high: int) -> None:
+        net = np.empty((6, 4))
+        write_pieces(coefficients, start, start + low, start + high, net, pieces)
+
+    list(over_ranges(work, (last - first) // 4, PIECES_AT_A_TIME, threads))
+    return pieces
+
+
+def _of_nets(spline: NetSpline, first: int, last: int) -> Pieces:
+    """Return the pieces of nets."""
+    topology, pieces = spline.topology, Pieces.new(last - first)
+    vectors, control, angles, bounds = (
+        np.ascontiguousarray(x[first:last])
+        for x in (spline.vectors, topology.normals, topology.angles, errors_of(spline))
+    )
+    write_net_pieces(vectors, control, angles, bounds, np.empty((6, 4)), pieces)
+    return pieces
+
+
+def listed(cones: Array) -> Lists:
+    """Return the lists of pieces with cones (K, 8)."""
+    frame, tangent = _frame_of(cones)
+    faces, inverse = 6 if tangent == 1.0 else 1, np.linalg.inv(frame).astype(np.float64)
+    level = _level_of(cones, faces, tangent)
+    caps = np.empty((faces << 2 * level, 4))
+    write_caps(inverse, faces, level, caps)
+    starts = np.zeros(len(caps) + 1, np.int64)
+    lists = Lists(frame, inverse, faces, level, starts, np.empty(0, np.int32))
+    # Heights of directions on their face are at least this.
+    least = (1.0 - 1e-12) / math.sqrt(1.0 + 2.0 * tangent**2)
+    list_pieces(cones, caps, lists, 1.0 / tangent, least, starts)
+    starts[1:] = np.cumsum(starts[:-1])
+    starts[0] = 0
+    lists = lists._replace(members=np.empty(max(int(starts[-1]), 1), np.int32))
+    list_pieces(cones, caps, lists, 1.0 / tangent, least, starts.copy())
+    return lists
+
+
+def _frame_of(cones: Array) -> tuple[Array, float]:
+    """Return the linear map (3, 3) of a cap with all cones to a face, and its tangent; else 1, 1.
+
+    The cap is spread over the face: its tangent is that of half its opening angle.
+    """
+    axes, chords = cones[:, :3], cones[:, CHORD]
+    mean = axes.mean(axis=0)
+    size = float(np.linalg.norm(mean))
+    everything = np.eye(3), 1.0
+    if size < 0.8:
+        return everything
+    across, along = perpendicular(mean / size)
+    directions = np.stack([across, along, mean / size])
+    x, y, height = directions @ axes.T
+    if not (height - chords > 0.5).all():
+        return everything
+    # As far as directions are from the axes of their cones, relative to their least height.
+    far = (np.hypot(x, y) / height + chords / (height * (height - chords))).max()
+    tangent = max(float(far) * (1.0 + 1e-9), NARROWEST_CAP)
+    if tangent > WIDEST_CAP:
+        return everything
+    return directions / [[tangent], [tangent], [1.0]], tangent
+
+
+def _level_of(cones: Array, faces: int, tangent: float) -> int:
+    """Return how often faces are halved: a piece is in BINS_PER_PIECE bins on average.
+
+    There are not more bins than pieces.
+    """
+    chords = cones[:: max(len(cones) // LOOKED_AT, 1), CHORD] / tangent
+    level = 0
+    while level < FINEST and faces << 2 * (level + 1) <= max(len(cones), faces << 2):
+        bins = np.minimum((1.0 + chords * (2 << level)) ** 2, float(faces << 2 * (level + 1)))
+        if bins.mean() > BINS_PER_PIECE:
+            break
+        level += 1
+    return level
+
+
+def ordered(normals: Array, lists: Lists, threads: int | None) -> Indices:
+    """Return keys bin << 32 | number of the normals (S, 3) that may be in bins, about in order.
+
+    They are in that of bins with at least NORMALS_PER_BIN normals on average.
+    """
+    keys = np.empty(len(normals), np.int64)
+
+    def work(first: int, last: int) -> None:
+        order_normals(normals, lists.frame, lists.faces, first, last, keys)
+
+    list(over_ranges(work, len(keys), NORMALS_AT_A_TIME, threads))
+    if lists.faces == 1:
+        keys = keys[keys >= 0]
+    level = 0
+    while level < FINEST and (lists.faces << 2 * level + 2) * NORMALS_PER_BIN <= len(keys):
+        level += 1
+    return sorted_keys([keys], 32 + 2 * (int(FINEST) - level), lists.faces << 2 * level)
+
+
+def sorted_keys(parts: Sequence[Indices], shift: int, count: int) -> Indices:
+    """Return keys in the order of their leading bits, below `count`; equal ones as they come."""
+    starts = np.zeros(count + 1, np.int32)
+    for keys in parts:
+        count_keys(keys, shift, starts)
+    np.cumsum(starts, out=starts)
+    found = np.empty(int(starts[-1]), np.int64)
+    for keys in parts:
+        place_keys(keys, shift, starts, found)
+    return found
