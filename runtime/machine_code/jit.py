@@ -13,6 +13,7 @@ from numba.extending import intrinsic
 from ...generated.vectors import inline
 from ..base import compiling  # noqa: F401 - installs the notice of compilation
 from .cache import KernelCache
+from .linking import KernelCompiler, PartCompiler
 
 __all__ = ["inline", "jit", "long_vectors", "loop"]
 
@@ -29,7 +30,7 @@ def loop(function: Function) -> Function:
     This is for functions that are long or called in several places. They allocate no memory: arrays
     come from the caller. Short functions are `inline`, that is, copied into their callers.
     """
-    return numba.njit(_nrt=False, no_cpython_wrapper=True, **OPTIONS)(function)  # pyright: ignore
+    return numba.njit(_nrt=False, no_cpython_wrapper=True, pipeline_class=PartCompiler, **OPTIONS)(function)  # pyright: ignore
 
 
 def jit(function: Function) -> Function:
@@ -38,7 +39,7 @@ def jit(function: Function) -> Function:
     Kernels allocate no memory either: all arrays are arguments. They are called from Python only:
     machine code of the package cannot be linked into other kernels.
     """
-    kernel = numba.njit(_nrt=False, **OPTIONS)(function)  # pyright: ignore
+    kernel = numba.njit(_nrt=False, pipeline_class=KernelCompiler, **OPTIONS)(function)  # pyright: ignore
     if not config.DISABLE_JIT:
         kernel._cache = KernelCache(function)
     return kernel
