@@ -381,7 +381,7 @@ def write_cone(cells, j):
 @jit
 def write_one_cone(cells):
     """Write the cone of the normals of the first cell."""
-    write_cone(cells, np.int64(0))
+    write_cone(cells, 0)
 
 
 @loop

@@ -33,7 +33,7 @@ from .tape_spline_bounds import write_spline_errors
 
 __all__ = ["rounding_of_boxes", "rounding_of_points"]
 
-TERMS = np.int64(6)
+TERMS = 6
 
 
 @loop

@@ -40,7 +40,7 @@ OPTIONS = {"NUMBA_CPU_FEATURES": "", "NUMBA_DISABLE_INTEL_SVML": "1"}
 # Numba numbers functions in the order in which a process compiles them, and machine code has these
 # numbers in it. So each process compiles one share, and shares are the same for any number of
 # cores: the same sources, in the same folder, give the same bytes.
-SHARES = 4
+SHARES = 3
 
 
 class _Taken(NullCache):

@@ -13,15 +13,18 @@ from numba.extending import intrinsic
 from ...generated.vectors import inline
 from ..base import compiling  # noqa: F401 - installs the notice of compilation
 from .cache import KernelCache
-from .linking import KernelCompiler, PartCompiler
+from .linking import KernelCompiler, PartCompiler, without_literals
 
 __all__ = ["inline", "jit", "long_vectors", "loop"]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 config: Any = numba_config  # Numba makes its attributes at run time
-# Kernels are called from Python and from one another, and never from C.
-OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True}
+# Kernels are called from Python and from one another, and never from C; they count no references.
+OPTIONS: dict[str, Any] = {
+    "nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True,
+    "_nrt": False,
+}  # fmt: skip
 
 
 def loop(function: Function) -> Function:
@@ -30,7 +33,8 @@ def loop(function: Function) -> Function:
     This is for functions that are long or called in several places. They allocate no memory: arrays
     come from the caller. Short functions are `inline`, that is, copied into their callers.
     """
-    return numba.njit(_nrt=False, no_cpython_wrapper=True, pipeline_class=PartCompiler, **OPTIONS)(function)  # pyright: ignore
+    options = {"pipeline_class": PartCompiler, "no_cpython_wrapper": True, **OPTIONS}
+    return without_literals(numba.njit(**options)(function))  # pyright: ignore
 
 
 def jit(function: Function) -> Function:
@@ -39,7 +43,7 @@ def jit(function: Function) -> Function:
     Kernels allocate no memory either: all arrays are arguments. They are called from Python only:
     machine code of the package cannot be linked into other kernels.
     """
-    kernel = numba.njit(_nrt=False, pipeline_class=KernelCompiler, **OPTIONS)(function)  # pyright: ignore
+    kernel: Any = numba.njit(pipeline_class=KernelCompiler, **OPTIONS)(function)
     if not config.DISABLE_JIT:
         kernel._cache = KernelCache(function)
     return kernel

@@ -11,15 +11,17 @@ way, which takes twice as long.
 
 from __future__ import annotations
 
+from collections import Counter
 from itertools import islice
 from typing import Any
 
 from llvmlite.binding import Linkage
+from numba import types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.environment import lookup_environment
 
-__all__ = ["KernelCompiler", "PartCompiler"]
+__all__ = ["Kernel", "KernelCompiler", "PartCompiler", "copies_in", "without_literals"]
 
 # What is used of a library of Numba, beside what is public.
 PRIVATE = (
@@ -27,7 +29,8 @@ PRIVATE = (
     "_finalize_final_module", "_get_module_for_linking", "_optimize_final_module",
     "_raise_if_finalized",
 )  # fmt: skip
-# Functions of at most so many instructions may be inlined; LLVM decides.
+# Functions of at most so many instructions may be inlined. LLVM decides, and takes fewer: its limit
+# is about 50, and more for functions of many arguments.
 SMALL = 200
 
 
@@ -83,10 +86,11 @@ class Kernel(Part):
             self._final_module.link_in(part._get_module_for_linking(), preserve=True)
         self._final_module.verify()
         self._finalize_final_module()
+        owner: Any = self._codegen
         for variable in self._final_module.global_variables:
             environment = lookup_environment(variable.name)
             if environment is not None:
-                self._codegen.set_env(variable.name, environment)
+                owner.set_env(variable.name, environment)
 
 
 class PartCompiler(Compiler):
@@ -96,7 +100,8 @@ class PartCompiler(Compiler):
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a function into a library of this kind, if Numba has what that needs."""
-        library = self.library(self.state.targetctx.codegen(), func.__qualname__)
+        name = f"{func.__module__}.{func.__qualname__}"
+        library = self.library(self.state.targetctx.codegen(), name)
         if all(hasattr(library, name) for name in PRIVATE):
             library.enable_object_caching()
             self.state.library = library
@@ -107,6 +112,25 @@ class KernelCompiler(PartCompiler):
     """The compiler of kernels."""
 
     library = Kernel
+
+
+def copies_in(library: Any) -> list[str]:
+    """Return the parts that were compiled more than once for a kernel, for different types."""
+    names = Counter(part.name for part in getattr(library, "called", ()))
+    return sorted(name for name, count in names.items() if count > 1)
+
+
+def without_literals(part: Any) -> Any:
+    """Have one copy of a part for all integers, where Numba makes one for each literal."""
+    if hasattr(part, "_compiler"):  # not if compilation is switched off
+        fold = part._compiler.fold_argument_types
+
+        def folded(*arguments: Any) -> Any:
+            signature, kinds = fold(*arguments)
+            return signature, tuple(map(types.unliteral, kinds))
+
+        part._compiler.fold_argument_types = folded
+    return part
 
 
 def _is_small(function: Any) -> bool:

@@ -15,6 +15,7 @@ SOURCES = (
     "tools/kernels/*.py",
     "runtime/base/tolerances.py",
     "runtime/machine_code/jit.py",
+    "runtime/machine_code/linking.py",
 )
 
 
