@@ -70,7 +70,8 @@ def write(
           writes the file, ten times as fast.
         - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and
           `normals`.
-        - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`.
+        - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`, and
+          the extra `vtk`.
         - `.parquet`, `.arrow`, `.feather`: the columns of `.csv` in binary, and the report and
           the units in the metadata of the schema; need the extra "tables" (PyArrow). Feather is
           the format of `.arrow`.

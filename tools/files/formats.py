@@ -52,7 +52,7 @@ OF_SAMPLES = {
     ".npz": Format(write_npz),
     ".ply": Format(write_ply, ("points",)),
     ".csv": Format(write_csv),
-    ".vtp": Format(write_vtp, ("points",)),
+    ".vtp": Format(write_vtp, ("points",), "pyvista", "vtk"),
     ".xyz": Format(write_xyz, ("points", "normals")),
     ".parquet": Format(write_parquet, (), "pyarrow", "tables"),
     ".arrow": Format(write_arrow, (), "pyarrow", "tables"),
@@ -65,9 +65,9 @@ OF_MESHES = {
     ".obj": Format(write_obj),
     ".stl": Format(write_stl),
     ".3mf": Format(write_3mf),
-    ".vtk": Format(write_vtk),
-    ".vtu": Format(write_vtu),
-    ".vtp": Format(write_mesh_vtp),
+    ".vtk": Format(write_vtk, (), "pyvista", "vtk"),
+    ".vtu": Format(write_vtu, (), "pyvista", "vtk"),
+    ".vtp": Format(write_mesh_vtp, (), "pyvista", "vtk"),
     ".glb": Format(write_glb, (), "trimesh", "trimesh"),
 }
 SUFFIXES, READABLE_SUFFIXES, MESH_SUFFIXES = tuple(OF_SAMPLES), tuple(READERS), tuple(OF_MESHES)
@@ -78,6 +78,7 @@ def write_samples(samples: Samples, path: PathLike) -> None:
     """Write samples to a file; see `Samples.write`."""
     suffix = _suffix_of_samples(path)
     check_fields(path, samples.fields)
+    _check_library(suffix, OF_SAMPLES)
     with atomic_path(path) as temporary:
         OF_SAMPLES[suffix].write(samples, temporary)
 
@@ -85,6 +86,7 @@ def write_samples(samples: Samples, path: PathLike) -> None:
 def write_mesh(mesh: Mesh, path: PathLike) -> None:
     """Write a mesh to a file; see `Mesh.write`."""
     suffix = known_suffix(path, MESH_SUFFIXES)
+    _check_library(suffix, OF_MESHES)
     if not len(mesh.triangles):
         raise InputError("this mesh has no triangles, and so there is nothing to write.")
     if suffix in SINGLE:
@@ -106,6 +108,11 @@ def check_mesh_target(path: PathLike) -> None:
 
 def _check_target(path: PathLike, suffix: str, formats: Mapping[str, Format]) -> None:
     check_target(path, tuple(formats))
+    _check_library(suffix, formats)
+
+
+def _check_library(suffix: str, formats: Mapping[str, Format]) -> None:
+    """Raise MissingExtraError without the library that a format needs."""
     if library := formats[suffix].library:
         check_extra(library, formats[suffix].extra, purpose=f"a {suffix} file")
 

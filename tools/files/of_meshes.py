@@ -38,11 +38,13 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
         - `.stl`: binary, float32; triangles alone.
         - `.3mf`: vertices and triangles, for 3-D printers, with the unit of length; one that is not
           known counts as a millimetre.
-        - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`.
+        - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`; these and
+          `.vtp` need the extra `vtk`.
         - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
-        - `.glb`: binary glTF with normals and texture coordinates, float32; needs the extra
-          `trimesh`. Vertices at seams and poles are several there, behind those of the mesh.
-          Coordinates stay as they are, while viewers show y upwards.
+        - `.glb`: binary glTF with normals, and u and v as the attribute `_UV`, float32; needs the
+          extra `trimesh`. It is closed where the mesh is; but a vertex on a sharp edge of a CAD
+          part is there once for each normal. Coordinates stay as they are, while viewers show y
+          upwards.
 
     Raises
     ------
@@ -51,7 +53,7 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
     FileError
         If the file cannot be written.
     MissingExtraError
-        For a `.glb` file without the extra `trimesh`.
+        For a `.glb` file without the extra `trimesh`, a file of VTK without `vtk`.
     InputError
         If the mesh has no triangles, more vertices than a `.ply` file can number, or larger
         coordinates than a `.glb` file can hold.

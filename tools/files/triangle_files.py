@@ -53,11 +53,9 @@ def write_stl(mesh: Mesh, path: Path) -> None:
 
 
 def write_glb(mesh: Mesh, path: Path) -> None:
-    """Write triangles, vertices, normals and texture coordinates, in single precision.
+    """Write triangles, vertices, normals, u, v and sample indices, in single precision.
 
-    The first vertices are those of the mesh, on a CAD part one for each normal there. Others have
-    the same points and normals as one of them, and texture coordinates for triangles across a seam
-    or at a pole.
+    A vertex on a sharp edge of a CAD part is there once for each normal; no other one is repeated.
     """
     trimesh = from_extra("trimesh", "trimesh", "a .glb file")
     if np.abs(mesh.vertices).max() > np.finfo(np.float32).max:
@@ -66,12 +64,11 @@ def write_glb(mesh: Mesh, path: Path) -> None:
             "another unit of length, or write a .ply file."
         )
     split = mesh.split
-    texture = split_at_seams(split.uv, split.triangles, split.domain, split.boundary)
     made = trimesh.Trimesh(
-        split.vertices[texture.vertex],
-        texture.corners,
-        vertex_normals=split.normals[texture.vertex],
-        visual=trimesh.visual.TextureVisuals(uv=texture.places),
+        split.vertices,
+        split.triangles,
+        vertex_normals=split.normals,
+        vertex_attributes={"_UV": split.uv.astype(np.float32)},
         process=False,
     )
     path.write_bytes(made.export(file_type="glb", include_normals=True))

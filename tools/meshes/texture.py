@@ -17,14 +17,13 @@ Indices = NDArray[np.int64]
 
 
 class Texture(NamedTuple):
-    """Texture coordinates (K, 2), the vertex that each belongs to (K,), and corners (T, 3).
+    """Texture coordinates (K, 2), and those of corners, by number (T, 3).
 
     The first ones are those of all vertices. Further ones are for triangles that cross a seam, or
     have a corner at a pole.
     """
 
     places: Array
-    vertex: Indices
     corners: Indices
 
 
@@ -67,8 +66,7 @@ def split_at_seams(
     new, number = np.unique(rows, axis=0, return_inverse=True)
     corners = triangles.copy()
     corners[moved] = len(uv) + number.ravel()
-    vertex = np.concatenate([np.arange(len(uv)), new[:, 0].astype(np.int64)])
-    return Texture(np.concatenate([places, new[:, 1:].astype(np.float64)]), vertex, corners)
+    return Texture(np.concatenate([places, new[:, 1:].astype(np.float64)]), corners)
 
 
 def _scaled(uv: Array, domain: Domain) -> Array:
