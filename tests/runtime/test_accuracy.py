@@ -5,6 +5,7 @@ log(largest error) against log(cell size) over four grids.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -149,30 +150,23 @@ def test_support_function_has_order_three(name: str) -> None:
     assert errors[0] < 5e-6
 
 
-def test_support_function_of_an_ellipsoid_in_closed_form() -> None:
-    axes = np.array([1.0, 0.6, 0.3])
-    normals, cells, errors = gm.fibonacci(2000), [64, 112, 192, 320], []
+def test_support_functions_in_closed_form() -> None:
+    """Of an ellipsoid and a torus, off its parabolic circles, whose normals are ±z."""
+    axes, cells = np.array([1.0, 0.6, 0.3]), [64, 112, 192, 320]
+    of_ellipsoid, of_torus = [], []
+    torus, normals = gm.surfaces.torus(major=1.0, minor=0.35), gm.fibonacci(2000)[5:-5]
     for m in cells:
-        samples = gm.sample(
-            gm.surfaces.ellipsoid_patch(), normals=normals, cells=(m, m), on="spline"
-        )
-        expected = np.linalg.norm(axes * samples.normals, axis=1)
-        errors.append(float(np.abs(samples.support - expected).max()))
-    assert order(cells, errors) == pytest.approx(3.0, abs=0.3)
-
-
-def test_support_function_of_a_torus_in_closed_form() -> None:
-    normals, cells, errors = gm.fibonacci(2000)[5:-5], [64, 112, 192, 320], []
-    for m in cells:
-        samples = gm.sample(
-            gm.surfaces.torus(major=1.0, minor=0.35), normals=normals, cells=(m, m), on="spline"
-        )
+        options: dict[str, Any] = {"cells": (m, m), "on": "spline"}
+        patch = gm.sample(gm.surfaces.ellipsoid_patch(), normals=gm.fibonacci(2000), **options)
+        expected = np.linalg.norm(axes * patch.normals, axis=1)
+        of_ellipsoid.append(float(np.abs(patch.support - expected).max()))
+        samples = gm.sample(torus, normals=normals, **options)
         along = np.hypot(samples.normals[:, 0], samples.normals[:, 1])
         expected = np.where(samples.elliptic, along, -along) + 0.35
-        steep = along > 0.1  # off the parabolic circles, whose normals are ±z
-        errors.append(float(np.abs(samples.support - expected)[steep].max()))
+        of_torus.append(float(np.abs(samples.support - expected)[along > 0.1].max()))
         assert np.bincount(samples.normal_index).tolist() == [2] * len(normals)
-    assert order(cells, errors) == pytest.approx(3.0, abs=0.3)
+    assert order(cells, of_ellipsoid) == pytest.approx(3.0, abs=0.3)
+    assert order(cells, of_torus) == pytest.approx(3.0, abs=0.3)
 
 
 # --- the samples ----------------------------------------------------------------------------------
@@ -198,18 +192,24 @@ def test_curvatures_have_order_one(name: str) -> None:
     assert mean[-1] < 0.1
 
 
-@pytest.mark.parametrize("name", THREE)
-def test_samples_have_their_normal_on_the_surface_too(name: str) -> None:
-    """Points are order three from the surface; the surface's normal there is order two off."""
-    exact, cells, distances, angles = Exact(name), [32, 64, 128, 256], [], []
+def errors_of_samples(name: str, cells: list[int]) -> tuple[list[float], list[float]]:
+    """Return how far samples are from the surface, and their normals from those of the surface."""
+    exact, distances, angles = Exact(name), [], []
     for m in cells:
-        samples = gm.sample(
-            gm.surfaces.surface(name), normals=gm.fibonacci(20_000), cells=(m, m), on="spline"
-        )
+        surface = gm.surfaces.surface(name)
+        samples = gm.sample(surface, normals=gm.fibonacci(20_000), cells=(m, m), on="spline")
         gap = np.linalg.norm(samples.points - exact.points(samples.uv), axis=1)
         turn = np.linalg.norm(samples.normals - exact.normals(samples.uv), axis=1)
         distances.append(float(gap.max()))
         angles.append(float(turn.max()))
+    return distances, angles
+
+
+@pytest.mark.parametrize("name", THREE)
+def test_samples_have_their_normal_on_the_surface_too(name: str) -> None:
+    """Points are order three from the surface; the surface's normal there is order two off."""
+    cells = [32, 64, 128, 256]
+    distances, angles = errors_of_samples(name, cells)
     assert order(cells, distances) == pytest.approx(3.0, abs=0.3)
     assert order(cells, angles) == pytest.approx(2.0, abs=0.2)
 
@@ -217,13 +217,8 @@ def test_samples_have_their_normal_on_the_surface_too(name: str) -> None:
 @pytest.mark.parametrize("name", ["sphere", "ellipsoid"])
 def test_samples_near_poles_are_on_the_surface(name: str) -> None:
     """Within a cell of a pole curvatures mean nothing, but points and normals keep their orders."""
-    exact, cells, distances = Exact(name), [16, 32, 64, 128], []
-    for m in cells:
-        samples = gm.sample(
-            gm.surfaces.surface(name), normals=gm.fibonacci(20_000), cells=(m, m), on="spline"
-        )
-        gap = np.linalg.norm(samples.points - exact.points(samples.uv), axis=1)
-        distances.append(float(gap.max()))
+    cells = [16, 32, 64, 128]
+    distances, _ = errors_of_samples(name, cells)
     assert order(cells, distances) > 1.9
     assert distances[-1] < 1e-3
 

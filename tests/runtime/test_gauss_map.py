@@ -100,14 +100,14 @@ def test_normals_without_a_point_have_none_without_a_warning(recwarn):
     assert not recwarn
 
 
-def test_a_surface_is_fitted_once(monkeypatch):
+def test_a_surface_is_fitted_once_and_a_map_when_it_is_made():
     calls = []
 
     def f(u: Array, v: Array) -> Array:
         calls.append(u.size)
         return np.stack([u, v, u * u - v * v], axis=-1)
 
-    surface = gm.Surface.from_callable(f, ((-1, 1), (-1, 1)))
+    surface, other = (gm.Surface.from_callable(f, ((-1, 1), (-1, 1))) for _ in range(2))
     first = gm.sample(surface, normals=NORMALS, on="spline")
     fitted = len(calls)
     second = gm.sample(surface, normals=NORMALS, on="spline")
@@ -115,17 +115,7 @@ def test_a_surface_is_fitted_once(monkeypatch):
     assert bits(first) == bits(second)
     gm.sample(surface, normals=NORMALS, on="spline", cells=(9, 9))
     assert len(calls) > fitted
-
-
-def test_a_map_fits_its_surface_when_it_is_made_and_never_again():
-    calls = []
-
-    def f(u: Array, v: Array) -> Array:
-        calls.append(u.size)
-        return np.stack([u, v, u * u - v * v], axis=-1)
-
-    surface = gm.Surface.from_callable(f, ((-1, 1), (-1, 1)))
-    known = gm.GaussMap(surface, on="spline")
+    known = gm.GaussMap(other, on="spline")
     fitted = len(calls)
     assert len(known.points(NORMALS)) > 0
     assert len(calls) == fitted

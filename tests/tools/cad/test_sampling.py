@@ -267,29 +267,24 @@ def test_threads_and_repeats_give_the_same(plates):
         assert np.array_equal(array, getattr(again, name))
 
 
-def test_a_narrow_face_keeps_its_coverage(made):
-    """A sliver across the domain, thinner than cells: places next to its border cover it."""
+@pytest.mark.parametrize(("is_alone", "is_reversed"), [(False, False), (True, False), (True, True)])
+def test_a_narrow_face_keeps_its_coverage(made, is_alone, is_reversed):
+    """A sliver across the domain, thinner than cells: places next to its border cover it.
+
+    Its first cell has one place only.
+    """
     sliver = np.array([(0.0, 0.0), (1.0, 0.9999), (1.0, 1.0), (0.0, 0.0001)])
-    face = made.face(
-        "plane", made.placement(), (0.0, 1.0), (0.0, 1.0), 1e-4, loops=[sliver], solid_index=0
-    )
-    samples = gm.sample(made.part([face, *made.box_faces(2.0, 2.0, 2.0)]), coverage=0.1)
+    ends, more = ((0.0, 1.0), (0.0, 1.0)), {} if is_alone else {"solid_index": 0}
+    more |= {"loops": [sliver], "reversed": is_reversed}
+    faces = [made.face("plane", made.placement(), *ends, 1e-4, **more)]
+    faces += [] if is_alone else made.box_faces(2.0, 2.0, 2.0)
+    samples = gm.sample(made.part(faces), coverage=0.1)
     along = np.linspace(0, 1, 2000)
     points = np.stack([along, 0.9999 * along + 5e-5, 0 * along], axis=1)
     assert gap(samples, points) <= 0.1
+    assert samples.report.coverage <= 0.1
+    assert not is_alone or gap(samples, points) <= samples.report.coverage
     assert (samples.face_index == 0).sum() >= 1
-
-
-@pytest.mark.parametrize("is_reversed", [False, True])
-def test_a_narrow_face_alone(made, is_reversed):
-    """Its first cell has one place only; the places next to its border are many."""
-    sliver = np.array([(0.0, 0.0), (1.0, 0.9999), (1.0, 1.0), (0.0, 0.0001)])
-    ends = (0.0, 1.0), (0.0, 1.0)
-    face = made.face("plane", made.placement(), *ends, 1e-4, loops=[sliver], reversed=is_reversed)
-    samples = gm.sample(made.part([face]), coverage=0.1)
-    along = np.linspace(0, 1, 2000)
-    points = np.stack([along, 0.9999 * along + 5e-5, 0 * along], axis=1)
-    assert gap(samples, points) <= samples.report.coverage <= 0.1
 
 
 @pytest.mark.parametrize("inner", [0.499, 0.4999])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from typing import Any
 
 import gaussmap as gm
@@ -72,95 +73,92 @@ class TestPandas:
         assert found.points[0, 0] != 100.0
 
 
-class TestPyvista:
-    @DTYPES
-    @pytest.mark.parametrize("count", [0, 5])
-    def test_samples(self, dtype, count):
-        pytest.importorskip("pyvista")
-        found = samples(count, dtype)
-        cloud = found.to_pyvista()
-        assert cloud.n_points == count
-        np.testing.assert_array_equal(cloud.points, found.points)
-        data = cloud.GetPointData()
-        assert data.GetNumberOfArrays() == len(FIELDS) - 1
-        if count:
-            for name in FIELDS[1:]:
-                np.testing.assert_array_equal(cloud.point_data[name], getattr(found, name))
-            assert data.GetNormals().GetName() == "normals"
-
-    def test_mesh(self):
-        pytest.importorskip("pyvista")
-        ours = mesh()
-        theirs = ours.to_pyvista()
-        np.testing.assert_array_equal(theirs.points, ours.vertices)
-        np.testing.assert_array_equal(theirs.regular_faces, ours.triangles)
-        for name in ("normals", "uv", "sample_index"):
-            np.testing.assert_array_equal(theirs.point_data[name], getattr(ours, name))
-
-    def test_it_copies(self):
-        pytest.importorskip("pyvista")
-        found, surface = samples(), mesh()
-        found.to_pyvista().points.fill(100.0)
-        found.to_pyvista().point_data["uv"].fill(100.0)
-        surface.to_pyvista().points.fill(100.0)
-        assert max(np.abs(x).max() for x in (found.points, found.uv, surface.vertices)) < 100.0
+# How points of samples and their other arrays are read, and vertices, triangles and normals of
+# meshes. Open3D is half a gigabyte, and not installed for development: see `make bench-peers`.
+LIBRARIES: dict[str, tuple[Callable[..., Any], ...]] = {
+    "pyvista": (
+        lambda x: x.points, lambda x, name: x.point_data[name],
+        lambda x: (x.points, x.regular_faces, x.point_data["normals"]),
+        lambda x, name: x.point_data[name],
+    ),
+    "trimesh": (
+        lambda x: x.vertices, lambda x, name: x.metadata[name],
+        lambda x: (x.vertices, x.faces, x.vertex_normals),
+        lambda x, name: x.vertex_attributes[name],
+    ),
+    "open3d": (
+        lambda x: np.asarray(x.points), lambda x, _: np.asarray(x.normals),
+        lambda x: map(np.asarray, (x.vertices, x.triangles, x.vertex_normals)), lambda *_: None,
+    ),
+}  # fmt: skip
 
 
-class TestTrimesh:
-    @DTYPES
-    def test_samples(self, dtype):
-        pytest.importorskip("trimesh")
-        found = samples(dtype=dtype)
-        cloud = found.to_trimesh()
-        np.testing.assert_array_equal(cloud.vertices, found.points)
-        for name in FIELDS[1:]:
-            np.testing.assert_array_equal(cloud.metadata[name], getattr(found, name))
-
-    def test_mesh(self):
-        pytest.importorskip("trimesh")
-        ours = mesh()
-        theirs = ours.to_trimesh()
-        np.testing.assert_array_equal(theirs.vertices, ours.vertices)
-        np.testing.assert_array_equal(theirs.faces, ours.triangles)
-        np.testing.assert_allclose(theirs.vertex_normals, ours.normals, rtol=0, atol=1e-15)
-        np.testing.assert_array_equal(theirs.vertex_attributes["uv"], ours.uv)
-        np.testing.assert_array_equal(theirs.vertex_attributes["sample_index"], ours.sample_index)
-
-    @pytest.mark.compiled
-    def test_a_torus_is_watertight_and_has_its_volume(self):
-        pytest.importorskip("trimesh")
-        errors = []
-        for count in (1000, 4000):
-            torus = gm.sample(gm.surfaces.torus(major=1, minor=0.35), count=count)
-            theirs = torus.mesh().to_trimesh()
-            assert theirs.is_watertight
-            assert theirs.is_winding_consistent
-            assert theirs.euler_number == 0
-            errors.append(1 - theirs.volume / (2 * np.pi**2 * 0.35**2))
-        # The tube is cut by chords that turn by up to 45°, which lose up to 1 − sin x/x = 0.1; then
-        # the error falls with the number of vertices.
-        assert 0.0 < errors[1] < errors[0] / 2 < 0.05
+@DTYPES
+@pytest.mark.parametrize("library", LIBRARIES)
+def test_samples(library, dtype):
+    pytest.importorskip(library)
+    points, data, *_ = LIBRARIES[library]
+    found = samples(dtype=dtype)
+    cloud = getattr(found, f"to_{library}")()
+    np.testing.assert_array_equal(points(cloud), found.points)
+    for name in FIELDS[1:] if library != "open3d" else ("normals",):
+        np.testing.assert_array_equal(data(cloud, name), getattr(found, name))
 
 
-class TestOpen3d:
-    """Open3D is half a gigabyte, and not installed for development: see `make bench-peers`."""
+@pytest.mark.parametrize("library", LIBRARIES)
+def test_mesh(library):
+    pytest.importorskip(library)
+    _, _, parts, data = LIBRARIES[library]
+    ours = mesh()
+    theirs = getattr(ours, f"to_{library}")()
+    vertices, triangles, normals = parts(theirs)
+    np.testing.assert_array_equal(vertices, ours.vertices)
+    np.testing.assert_array_equal(triangles, ours.triangles)
+    atol = 1e-15 if library == "trimesh" else 0.0
+    np.testing.assert_allclose(normals, ours.normals, rtol=0, atol=atol)
+    for name in ("uv", "sample_index") if library != "open3d" else ():
+        np.testing.assert_array_equal(data(theirs, name), getattr(ours, name))
 
-    @DTYPES
-    def test_samples(self, dtype):
-        pytest.importorskip("open3d")
-        found = samples(dtype=dtype)
-        cloud = found.to_open3d()
-        np.testing.assert_array_equal(np.asarray(cloud.points), found.points)
-        np.testing.assert_array_equal(np.asarray(cloud.normals), found.normals)
-        assert not samples(fields=("points",)).to_open3d().has_normals()
 
-    def test_mesh(self):
-        pytest.importorskip("open3d")
-        ours = mesh()
-        theirs = ours.to_open3d()
-        np.testing.assert_array_equal(np.asarray(theirs.vertices), ours.vertices)
-        np.testing.assert_array_equal(np.asarray(theirs.triangles), ours.triangles)
-        np.testing.assert_array_equal(np.asarray(theirs.vertex_normals), ours.normals)
+@DTYPES
+@pytest.mark.parametrize("count", [0, 5])
+def test_arrays_of_pyvista(dtype, count):
+    pytest.importorskip("pyvista")
+    cloud = samples(count, dtype).to_pyvista()
+    assert cloud.n_points == count
+    data = cloud.GetPointData()
+    assert data.GetNumberOfArrays() == len(FIELDS) - 1
+    assert not count or data.GetNormals().GetName() == "normals"
+
+
+def test_pyvista_has_copies():
+    pytest.importorskip("pyvista")
+    found, surface = samples(), mesh()
+    found.to_pyvista().points.fill(100.0)
+    found.to_pyvista().point_data["uv"].fill(100.0)
+    surface.to_pyvista().points.fill(100.0)
+    assert max(np.abs(x).max() for x in (found.points, found.uv, surface.vertices)) < 100.0
+
+
+def test_open3d_without_normals():
+    pytest.importorskip("open3d")
+    assert not samples(fields=("points",)).to_open3d().has_normals()
+
+
+@pytest.mark.compiled
+def test_a_torus_is_watertight_and_has_its_volume():
+    pytest.importorskip("trimesh")
+    errors = []
+    for count in (1000, 4000):
+        torus = gm.sample(gm.surfaces.torus(major=1, minor=0.35), count=count)
+        theirs = torus.mesh().to_trimesh()
+        assert theirs.is_watertight
+        assert theirs.is_winding_consistent
+        assert theirs.euler_number == 0
+        errors.append(1 - theirs.volume / (2 * np.pi**2 * 0.35**2))
+    # The tube is cut by chords that turn by up to 45°, which lose up to 1 − sin x/x = 0.1; then
+    # the error falls with the number of vertices.
+    assert 0.0 < errors[1] < errors[0] / 2 < 0.05
 
 
 @pytest.mark.parametrize(
