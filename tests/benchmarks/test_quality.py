@@ -2,27 +2,22 @@
 
 # pyright: reportAttributeAccessIssue=false, reportArgumentType=false
 
-import re
-from itertools import pairwise
 from pathlib import Path
 
 import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.benchmarks.peers.forms import FORMS, Torus
-from gaussmap.benchmarks.peers.mesh_metrics import Quality
 from gaussmap.benchmarks.peers.metrics import Errors, Places
 from gaussmap.benchmarks.peers.peer import Peer, Turns
 from gaussmap.benchmarks.peers.untuned import UNTUNED
 from gaussmap.benchmarks.quality import (
     measure,
     meshers,
-    page,
     surfaces,
     ways,
 )
-from gaussmap.benchmarks.quality.measure import Found, OnSurface
-from gaussmap.benchmarks.quality.opening import beside_gmsh, opening
+from gaussmap.benchmarks.quality.opening import opening
 
 ROOT = Path(__file__).parents[2]
 FORM = pytest.mark.parametrize("form", [*FORMS, *UNTUNED], ids=lambda x: x.name)
@@ -170,98 +165,6 @@ def test_meshes_have_the_vertices_that_were_asked():
 # --- the page -------------------------------------------------------------------------------------
 
 
-def of(E, G, times=1.0, mean=1.0):
-    return Found(1_000, Errors(E, mean, G, 0.1 * E, 0.01 * E), 1e5, times)
-
-
-def mesh(worst):
-    return Quality(1_000, 0.01 * worst, 0.02 * worst, worst, 0.5 * worst, 30.0)
-
-
-def surface(found, meshes=(), missing=(), form=UNTUNED[1]):
-    """A surface where each way found the same for both counts."""
-    both = {(way, n): x for way, x in found.items() for n in measure.COUNTS}
-    return OnSurface(form, both, dict(meshes), dict.fromkeys(missing, "No module 'x'"))
-
-
-@pytest.fixture
-def text():
-    found = {way: of(3.0, 2.0, 19.96) for way in ways.WAYS}
-    found[ways.GAUSS] = of(3.0, 2.12)
-    meshes = {x: mesh(2.0) for x in meshers.MESHERS}
-    first = surface(found, meshes)
-    del found[ways.GMSH]
-    return page.page([first, surface(found, meshes, missing=(ways.GMSH,))], load=0.9)
-
-
-def test_tables_are_whole(text):
-    assert text.count("\n| :--") == 2 + 2 * 2
-    width = 0
-    for line, after in pairwise(text.splitlines()):
-        if after.startswith("| :--"):
-            width = line.count("|")
-        assert line.count("|") in (0, width)
-
-
-def test_the_page_opens_with_who_wins_and_ends_with_the_machine(text):
-    titles = re.findall(r"^## (.*)$", text, re.MULTILINE)
-    assert titles[:2] == ["Where gaussmap wins, where it does not", "What is measured"]
-    assert titles[-1] == "The machine"
-
-
-def test_the_opening_counts_who_is_best():
-    def table(own: float, other: float, aligned: float) -> str:
-        return (
-            "| a | E | mean E | G | gap | plane | balanced |\n| :-- | --: |\n"
-            f"| **balanced** | {own} | 1 | {own} | 2 | 1 | – |\n"
-            f"| **aligned** | {aligned} | 1 | {aligned} | 2 | 1 | 1 × |\n"
-            f"| **gauss** | 0 | 0 | 0 | 0 | 0 | – |\n"
-            f"| Gmsh, x | {other} | 1 | {other} | 1 | 1 | 1 × |\n"
-            "| Open3D, Poisson disk | 9 | 9 | 9 | 9 | 9 | 0.5 × |\n"
-        )
-
-    meshes = "| mesh | worst angle | mean angle | Hausdorff distance |\n| :-- | --: |\n"
-    meshes += '| **balanced**, prefer="normals" | 1 | 1 | 1 |\n| Gmsh, x | 2 | 2 | 2 |\n'
-    meshes += '| **aligned**, prefer="normals" | 3 | 1 | 1 |\n'
-    text = f"## a\n\n{table(1, 2, 4)}\n{meshes}\n## b\n\n{table(3, 2, 6)}\n{meshes}"
-    found = opening(text.replace("| a |", "|  |"))
-    assert "| E | 1 of 2 | 0.50 to 1.50 | 0 of 2 | 2.00 to 3.00 | Gmsh, x (1) |" in found
-    assert "| gap | 0 of 2 | 2.00 to 2.00 | 0 of 2 | 2.00 to 2.00 | Gmsh, x (2) |" in found
-    assert "| worst angle | 2 of 2 | 0.50 to 0.50 | 0 of 2 | 1.50 to 1.50 | – |" in found
-    assert "others in 4 of 6 comparisons, **aligned** in 0 of 6" in found
-    assert "**balanced** is 0.5 times as fast" in found
-    assert beside_gmsh(text.replace("| a |", "|  |")) == ""  # not by the size of curvature
-
-
-def test_densities_beside_gmsh():
-    def table(gauss: str, balanced: str, aligned: str) -> str:
-        return (
-            "|  | E | mean E | G |\n| :-- | --: |\n"
-            f"| **balanced** | {balanced} |\n| **aligned** | {aligned} |\n"
-            f"| **gauss** | {gauss} |\n| Gmsh, curvature size | 2 | 1 | 2 |\n"
-        )
-
-    text = f"## a\n\n{table('4 | 1 | 1', '3 | 1 | 2', '1 | 1 | 1.5')}\n"
-    text += f"## b\n\n{table('5 | 1 | 4', '2.2 | 1 | 3', '6 | 1 | 3')}\n"
-    found = " ".join(beside_gmsh(text).split())
-    assert "its E is 0.50 to 0.50 times that of Gmsh on 1 of 2 surfaces" in found
-    assert "E of **balanced**, the default, is 10 to 50 % larger" in found
-    assert "over all surfaces it is 1.10 to 1.50 times" in found
-    assert "**gauss** has the smallest G on 1 of 2 surfaces" in found
-    assert "| a | 4.00 / 1.00 | 3.00 / 2.00 | 1.00 / 1.50 | 2.00 / 2.00 |" in found
-
-
 def test_the_page_in_docs_opens_with_its_own_figures():
     text = (ROOT / "docs" / "quality.md").read_text(encoding="utf-8")
     assert opening(text) in text
-
-
-def test_every_way_is_shown_and_the_missing_ones_say_why(text):
-    for way in (*ways.WAYS, *meshers.MESHERS):
-        assert f"\n| {way.title} |" in text
-    assert f"| {ways.GMSH.title} | missing: No module 'x' | –" in text
-
-
-def test_the_page_says_that_others_were_computing(text):
-    assert "a load of 0.9" in text
-    assert page.busy(0.1) == page.busy(None) == []
