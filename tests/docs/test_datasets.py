@@ -6,11 +6,10 @@ from pathlib import Path
 import gaussmap as gm
 import pytest
 from gaussmap.runtime.samples.fields import COLUMNS, EDGE_NAMES, FLOAT_NAMES, PROVED_NAMES, UNITS
-from gaussmap.tools.batch.data_files import points_schema, points_table
-from gaussmap.tools.batch.folder import Settings, create, parts_per_shard
+from gaussmap.tools.batch.folder import Settings, opened
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST
 from gaussmap.tools.batch.manifest import ManifestRow, manifest_schema
-from gaussmap.tools.batch.shards import Shard
+from gaussmap.tools.batch.part_files import points_schema, write_manifest, write_part
 
 pytest.importorskip("pyarrow")
 PAGE = (Path(__file__).parents[2] / "docs" / "datasets.md").read_text(encoding="utf-8")
@@ -44,25 +43,18 @@ def test_the_columns_of_the_manifest():
     assert "\n".join(lines) in PAGE
 
 
-def test_the_numbers():
-    assert parts_per_shard(10**9, 1) == 256
-    assert parts_per_shard(10**9, 1 << 22) == 1
-    assert -(-6500 // parts_per_shard(6500, 1)) >= 64
-
-
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """Write the data set of the page without other processes."""
     samples = list(
         gm.sample_many(["torus", "sphere", "ellipsoid"], 500, cells=(16, 16), fields=FLOAT_NAMES)
     )
-    settings = Settings.of_this_version(asked={}, fields=FLOAT_NAMES, parts_per_shard=1)
-    create(tmp_path / "dataset", settings)
-    for k, part in enumerate(samples):
-        shard = Shard(tmp_path / "dataset", k, settings)
-        row = ManifestRow(k, part.report.surface, "catalogue", "0", samples=len(part))
-        shard.add(row, points_table(part, k, shard.schema))
-        shard.commit([k])
+    settings, out = Settings.of_this_version(asked={}, fields=FLOAT_NAMES), tmp_path / "dataset"
+    with opened(out, settings):
+        for k, part in enumerate(samples):
+            row = ManifestRow(k, part.report.surface, "catalogue", "0", samples=len(part))
+            write_part(out, settings, row, part)
+        write_manifest(out, settings, range(len(samples)))
     return tmp_path
 
 

@@ -1,15 +1,18 @@
 """Running a data set on a cluster, by Dask's distributed scheduler.
 
-A task is a shard: the worker that gets it writes it into the folder of the data set, which all
-machines see by the same path, and answers with a few numbers. What a lost worker has done of a
-shard is in that folder; Dask gives the shard to another one.
+A task is a few parts: the worker that gets it writes them into the folder of the data set, which
+all machines see by the same path, and answers with a few numbers. If a worker is lost, Dask gives
+its task to another one, which does what is missing.
 """
 
 from __future__ import annotations
 
+import multiprocessing
+import threading
 from collections.abc import Generator, Iterable, Iterator, Sequence
-from concurrent.futures import CancelledError
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import contextmanager
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -17,17 +20,23 @@ from ... import __version__
 from ...runtime.base.errors import FileError, InputError, shown
 from ...runtime.base.extras import from_extra
 from ...runtime.machine_code.sources import digest
-from .folder import SETTINGS
+from .folder import SETTINGS, read_settings
 from .inputs import Input
-from .plan import Plan
-from .running import Tally, run
+from .options import Plan
+from .workers import Tally, Worker, sampled
 
 __all__ = ["connected", "run_on_cluster"]
 
-# How often a shard is given to another worker after one was lost.
+# How often a task is given to another worker after one was lost.
 LOST = 10
 # In seconds: how long a scheduler, and its first worker, may take to answer.
 PATIENCE = 30
+# Tasks for each worker that wait: the scheduler knows of no others.
+AHEAD = 2
+# A task has at most so many parts, and a worker does so many of them, if there are enough parts.
+MOST_PARTS, LEAST_TASKS = 64, 8
+
+_HERE = threading.local()
 
 
 @contextmanager
@@ -58,23 +67,52 @@ def connected(scheduler: Any) -> Iterator[Any]:  # noqa: ANN401
 
 def run_on_cluster(
     plan: Plan,
-    shards: Iterable[tuple[int, Sequence[Input]]],
+    parts: Iterable[Input],
+    count: int | None,
     client: Any,  # noqa: ANN401
 ) -> Generator[Tally]:
-    """Yield what became of each shard, when it is finished.
+    """Yield what became of a few of `count` parts; closing it cancels those that wait.
 
     Raises FileError if workers have another version or do not see the folder of the data set, and
-    if the scheduler is lost. Workers finish the shards that they are at even if a run is stopped.
+    if the scheduler is lost. Workers finish the tasks that they are at even if a run is stopped.
     """
     distributed = from_extra("distributed", "cluster", "sampling on a cluster")
     threads = _checked_workers(client, plan)
+    executor = client.get_executor(pure=False, retries=LOST)
+    size = min(MOST_PARTS, max(1, (count or 0) // (LEAST_TASKS * threads)))
+    left, waiting = iter(parts), set[Future[Tally]]()
     try:
-        yield from run(plan, shards, client.get_executor(pure=False, retries=LOST), threads)
+        while True:
+            while len(waiting) < AHEAD * threads and (some := list(islice(left, size))):
+                waiting.add(executor.submit(work, plan, some))
+            if not waiting:
+                return
+            done, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+            for future in done:
+                yield future.result()
     except (CancelledError, distributed.scheduler.KilledWorker) as error:
         raise FileError(
-            f"the cluster has lost shards ({type(error).__name__}): its scheduler has ended, or "
+            f"the cluster has lost parts ({type(error).__name__}): its scheduler has ended, or "
             "workers end again and again; what is done is kept: run the same again."
         ) from error
+    finally:
+        for future in waiting:
+            future.cancel()
+
+
+def work(plan: Plan, parts: Sequence[Input]) -> Tally:
+    """Sample parts by a process of this thread of a worker of Dask."""
+    # Dask's nanny lets a worker have no children: it might leave them behind. These end with it.
+    multiprocessing.current_process().daemon = False
+    worker = getattr(_HERE, "worker", None)
+    if worker is None or worker.plan.run != plan.run:
+        if worker is not None:
+            worker.end()
+        worker = _HERE.worker = Worker(plan)
+    # One that nobody waits for may come after another run.
+    if read_settings(plan.folder).to_json() != plan.settings.to_json():
+        raise FileError(f"'{plan.folder}' holds another data set by now.")
+    return sum(sampled(parts, [worker]), Tally())
 
 
 def _checked_workers(client: Any, plan: Plan) -> int:  # noqa: ANN401
@@ -99,6 +137,6 @@ def _checked_workers(client: Any, plan: Plan) -> int:  # noqa: ANN401
     return sum(client.nthreads().values())
 
 
-def state_of(folder: str) -> tuple[str, str, bool]:
+def state_of(folder: Path) -> tuple[str, str, bool]:
     """Return the version of a worker's package, its formulas, and whether it sees the folder."""
-    return __version__, digest(), (Path(folder) / SETTINGS).is_file()
+    return __version__, digest(), (folder / SETTINGS).is_file()

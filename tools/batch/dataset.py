@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, SupportsIndex
@@ -12,17 +12,17 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ...runtime.base.checks import whole_number, yes_or_no
-from ...runtime.base.errors import FileError, InputError, UnknownNameError, shown
-from ...runtime.base.extras import check_extra, from_extra
+from ...runtime.base.errors import GaussmapWarning, InputError, UnknownNameError, shown
+from ...runtime.base.extras import check_extra
 from ...runtime.base.wording import plural
 from ...runtime.samples.fields import COLUMNS, UNITS, checked_dtype, dtype_of
 from ..files.paths import PathLike, checked_path
-from .data_files import REMEDY, arrays_in, opened, rows_of_parts, stacked
-from .folder import MANIFEST, POINTS, Settings, checked_names, read_settings, shard_path, shards_in
-from .loader import Loader
+from .clouds import Clouds, batches
+from .folder import MANIFEST, Settings, checked_names, part_path, parts_in, read_settings
+from .labels import checked_labels
 from .manifest import COLUMNS as MANIFEST_COLUMNS
-from .manifest import FAILED, ManifestRow, manifest_schema, rows_of
-from .part_labels import checked_labels
+from .manifest import FAILED, ManifestRow, manifest_table
+from .part_files import arrays_in, opened_manifest, opened_part, rows_of, stacked
 
 if TYPE_CHECKING:
     import pyarrow
@@ -38,7 +38,7 @@ def open_dataset(folder: PathLike) -> Dataset:
     Parameters
     ----------
     folder : str or Path
-        The folder. A run may still be writing to it: its shards are seen as they are finished.
+        The folder. A run may still be writing to it: parts are seen as they are done.
 
     Returns
     -------
@@ -70,8 +70,10 @@ def open_dataset(folder: PathLike) -> Dataset:
 class Dataset:
     """The samples of many parts, in a folder; `open_dataset` opens it.
 
-    Parts have the numbers that they had in the list of `sample_many`, from 0 on. A part is there
-    when its shard is finished. ``len(dataset)`` is the number of parts, those that failed included.
+    Parts have the numbers that they had in the list of `sample_many`, from 0 on:
+    ``len(dataset)`` is their number, those that failed included, and ``dataset[part]`` are the
+    samples of one, as `samples` returns them; ``dataset[-1]`` is the last one. A loop goes over the
+    samples of all parts that did not fail.
 
     Attributes
     ----------
@@ -95,6 +97,10 @@ class Dataset:
     (3, 'dataset', 'float64')
     >>> dataset.fields[:3], dataset.units["gaussian_curvature"]
     (('points', 'normals', 'uv'), '1/L^2')
+    >>> dataset[1]
+    Samples(500 points on sphere: ...)
+    >>> [samples.report.surface for samples in dataset]
+    ['torus', 'sphere', 'ellipsoid']
 
     """
 
@@ -112,11 +118,18 @@ class Dataset:
         return {name: UNITS[name] for name in self.fields if name in UNITS}
 
     def __len__(self) -> int:
-        count = 0
-        for number in shards_in(self.folder):
-            with self._opened(MANIFEST, number) as file:
-                count += file.metadata.num_rows
-        return count
+        if not (self.folder / MANIFEST).exists():
+            return len(parts_in(self.folder))
+        with opened_manifest(self.folder) as file:
+            return file.metadata.num_rows
+
+    def __getitem__(self, part: SupportsIndex) -> Samples:
+        number = whole_number(part, "part", least=-len(self))
+        return self.samples(number % len(self) if number < 0 else number)
+
+    def __iter__(self) -> Iterator[Samples]:
+        table = self.manifest(("part", "status")).to_pylist()
+        return (self.samples(row["part"]) for row in table if row["status"] != FAILED)
 
     def __repr__(self) -> str:
         return f"Dataset({str(self.folder)!r})"
@@ -176,13 +189,11 @@ class Dataset:
         names = tuple(MANIFEST_COLUMNS)
         if columns is not None:
             names = checked_names(columns, names, "column")
-        arrow = from_extra("pyarrow", "batch", "a data set")
-        schema = arrow.schema([manifest_schema().field(name) for name in names])
-        tables = [schema.empty_table()]
-        for number in shards_in(self.folder):
-            with self._opened(MANIFEST, number) as file:
-                tables.append(file.read(columns=schema.names, use_threads=False).cast(schema))
-        return arrow.concat_tables(tables).combine_chunks()
+        if not (self.folder / MANIFEST).exists():  # a run goes on, or was stopped
+            rows = rows_of(self.folder, self.settings, parts_in(self.folder))
+            return manifest_table(rows).select(names)
+        with opened_manifest(self.folder) as file:
+            return file.read(columns=list(names), use_threads=False).select(names)
 
     def samples(self, part: SupportsIndex) -> Samples:
         """Return the samples of a part.
@@ -214,24 +225,73 @@ class Dataset:
 
         """
         number = whole_number(part, "part", least=0)
-        shard, rows = number // self.settings.parts_per_shard, []
-        if shard_path(self.folder, MANIFEST, shard).exists():
-            with self._opened(MANIFEST, shard) as file:
-                rows = [x for x in rows_of(file.read(use_threads=False)) if x.part == number]
-        if not rows:
+        if not part_path(self.folder, number).exists():
             raise UnknownNameError(f"there is no part {number} in '{self.folder}'.")
-        (row,) = rows
+        with opened_part(self.folder, self.settings, number) as (file, row):
+            table = file.read(use_threads=False)
         if row.status == FAILED:
             raise UnknownNameError(f"part {number} ('{row.name}') has failed: {row.error}")
-        with self._opened(POINTS, shard) as file:
-            table = rows_of_parts(file, [number])
-        if len(table) != row.samples:
-            path = shard_path(self.folder, POINTS, shard)
-            raise FileError(f"'{path}' does not belong to its manifest; {REMEDY}.")
         held = [name for name in self.fields if table[COLUMNS[name][0]].null_count < len(table)]
         wanted = held or self.fields  # a part without samples has empty arrays
         arrays = {name: stacked(x, name) for name, x in arrays_in(table, wanted).items()}
         return _samples(arrays, row)
+
+    def clouds(
+        self,
+        points: int = 2048,
+        *,
+        fields: Sequence[str] = ("points", "normals"),
+        shuffle: int | Sequence[int] | None = None,
+        dtype: DTypeLike | None = None,
+        labels: str | Mapping[int, float] | Mapping[str, float] | ArrayLike | None = None,
+    ) -> Clouds:
+        """Return the same number of points of each part, for training: a data set for PyTorch.
+
+        Parameters
+        ----------
+        points : int, default 2048
+            How many points of each part, as in `batches`.
+        fields : sequence of str, default ("points", "normals")
+            What is wanted of the samples.
+        shuffle : int or sequence of int, optional
+            A seed, by which points are drawn; without it they are the first ones.
+        dtype : {float32, float64}, optional
+            The type of the numbers; that of the data set by default.
+        labels : str, mapping or (P,) array_like, optional
+            A number for each part, as in `batches`.
+
+        Returns
+        -------
+        Clouds
+            A sequence, and a map-style data set of PyTorch: ``clouds[k]`` is a tuple of an array
+            for each field, the number of the part, and its label, if any; ``len(clouds)`` is the
+            number of parts that have samples. A file is read when its part is asked for.
+
+        Raises
+        ------
+        InputError
+            If an argument is out of range, or a name of `labels` is that of several parts.
+        UnknownNameError
+            If the data set has no such field, or the manifest no such column.
+        FileError
+            If a file cannot be read.
+
+        Warns
+        -----
+        GaussmapWarning
+            If a part has fewer samples than `points`.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> clouds = gm.open_dataset("dataset").clouds(256, dtype="float32", labels=[0, 1, 1])
+        >>> points, normals, part, label = clouds[2]
+        >>> len(clouds), points.shape, part, label
+        (3, (256, 3), 2, 1)
+        >>> # torch.utils.data.DataLoader(clouds, batch_size=16, shuffle=True, num_workers=4)
+
+        """
+        return self._clouds(points, fields, shuffle, dtype, labels)
 
     def batches(
         self,
@@ -244,7 +304,6 @@ class Dataset:
         labels: str | Mapping[int, float] | Mapping[str, float] | ArrayLike | None = None,
         shard: tuple[int, int] = (0, 1),
         drop_last: bool = False,
-        buffer: int = 512,
     ) -> Iterator[tuple[NDArray[Any], ...]]:
         """Return batches for training: the same number of points of each of several parts.
 
@@ -270,11 +329,9 @@ class Dataset:
             names, if no two parts of one name are meant.
         shard : (int, int), default (0, 1)
             ``(i, n)`` is for worker `i` of `n`, from 0 on: each part is in the batches of one of
-            them. Whole files are divided among them.
+            them.
         drop_last : bool, default False
             Leave out the last batch if it has fewer parts.
-        buffer : int, default 512
-            From how many parts in memory the next one is drawn, if they are shuffled.
 
         Returns
         -------
@@ -302,8 +359,7 @@ class Dataset:
         Notes
         -----
         The same seed gives the same batches. The points that are drawn of a part do not depend on
-        the number of workers. At most `buffer` parts, one batch, and one row group of a file (about
-        2^17 samples, or one part) are in memory.
+        the number of workers. One part and one batch are in memory.
 
         Examples
         --------
@@ -319,23 +375,38 @@ class Dataset:
         ([0, 1, 2], [0, 1, 1])
 
         """
-        known, label_type = checked_labels(labels, self.manifest)
-        return Loader(
-            folder=self.folder,
-            settings=self.settings,
-            points=whole_number(points, "points"),
-            parts=whole_number(parts, "parts"),
-            types=self._types(fields, dtype),
-            seed=_checked_seed(shuffle),
-            buffer=whole_number(buffer, "buffer"),
-            shard=_checked_shard(shard),
-            drop_last=yes_or_no(drop_last, "drop_last"),
-            labels=known,
-            label_type=label_type,
-        ).batches()
+        return batches(
+            self._clouds(points, fields, shuffle, dtype, labels),
+            whole_number(parts, "parts"),
+            _checked_shard(shard),
+            yes_or_no(drop_last, "drop_last"),
+        )
 
-    def _opened(self, kind: str, number: int) -> AbstractContextManager[Any]:
-        return opened(self.folder, self.settings, kind, number)
+    def _clouds(
+        self,
+        points: int,
+        fields: Sequence[str],
+        shuffle: int | Sequence[int] | None,
+        dtype: DTypeLike | None,
+        labels: str | Mapping[int, float] | Mapping[str, float] | ArrayLike | None,
+    ) -> Clouds:
+        """Return the clouds; a warning is of the line of the user two calls above."""
+        count, types = whole_number(points, "points"), self._types(fields, dtype)
+        seed = _checked_seed(shuffle)
+        known, label_type = checked_labels(labels, self.manifest)
+        table = self.manifest(("part", "samples"))
+        numbers, samples = (np.asarray(table[name]) for name in ("part", "samples"))
+        few = (samples > 0) & (samples < count)
+        if few.any():
+            part, held = numbers[few][0], samples[few][0]
+            warnings.warn(
+                f"part {part} has {held:,} samples, fewer than points={count}: some of them are "
+                "repeated in its batch, as are those of other parts with fewer.",
+                GaussmapWarning,
+                stacklevel=3,
+            )
+        held = numbers[samples > 0]
+        return Clouds(self.folder, self.settings, held, count, types, seed, known, label_type)
 
     def _types(self, fields: Sequence[str], dtype: DTypeLike | None) -> dict[str, np.dtype[Any]]:
         number = checked_dtype(self.settings.dtype if dtype is None else dtype)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -16,13 +16,13 @@ from ...runtime.base.errors import FileError, InputError, shown
 from ...runtime.base.extras import from_extra
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
-from ...runtime.surface.surfaces import CATALOGUE, named
+from ...runtime.surface.surfaces import CATALOGUE, CatalogueFunction, named
 from ..cad.part import Part
 from ..files.numpy_files import array_file
 from ..files.paths import checked_path, reason_of
 from .manifest import as_text
 
-__all__ = ["Input", "Source", "content_of", "in_shards", "inputs_of"]
+__all__ = ["Input", "Source", "content_of", "inputs_of", "parameters_of"]
 
 Source = Surface | Spline | Part | str | os.PathLike[str]
 # Surfaces are known again by their points at so many parameters along u and v: more than a cell, so
@@ -80,13 +80,6 @@ def _of_surface(part: int, surface: Surface | Spline | Part) -> Input:
         ) from error
 
 
-def in_shards(inputs: Iterable[Input], size: int) -> Iterator[list[Input]]:
-    """Yield lists of `size` consecutive parts, and of what is left."""
-    waiting = iter(inputs)
-    while shard := list(islice(waiting, size)):
-        yield shard
-
-
 # --- in the worker --------------------------------------------------------------------------------
 
 
@@ -110,6 +103,16 @@ def content_of(source: Surface | Spline | Part | Path) -> str:
     else:
         _add_surface(digest, source)
     return digest.hexdigest()
+
+
+def parameters_of(source: Surface | Spline | Part) -> str:
+    """Return the parameters of a surface of the catalogue, as JSON; nothing for others."""
+    function = getattr(source, "function", None)
+    if not isinstance(function, CatalogueFunction):
+        return ""
+    return json.dumps(
+        dict(zip(CATALOGUE[function.name]["parameters"], function.values, strict=True))
+    )
 
 
 def _add_surface(digest: Any, surface: Surface) -> None:  # noqa: ANN401

@@ -5,21 +5,30 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sized
 from contextlib import closing, contextmanager
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from tqdm import tqdm
 
-from ...runtime.base.checks import whole_number
+from ...runtime.base.checks import positive_number, whole_number
 from ...runtime.base.extras import check_extra
+from ...runtime.base.memory import GIB
+from ...runtime.base.memory import memory_limit as most_memory
 from ...runtime.base.threads import seen, thread_count
-from ..files.paths import PathLike, checked_path
-from .folder import FILES, Settings, opened, parts_per_shard, remove_from
-from .inputs import Source, in_shards, inputs_of
-from .plan import Asked, Plan, limits_of
-from .running import Tally, run_locally
+from ..files.paths import PathLike, atomic_path, checked_path
+from .folder import NORMALS, opened, remove_from
+from .inputs import Source, inputs_of
+from .options import Plan
+from .part_files import write_manifest
+from .workers import Tally, run_locally
 
-__all__ = ["make", "progress", "watched"]
+__all__ = ["limits_of", "make", "progress", "watched"]
+
+# The part of this machine's memory that all workers may use.
+SHARE = 0.9
 
 # In seconds: how often a log gets a line.
 INTERVAL = 10.0
@@ -28,7 +37,7 @@ INTERVAL = 10.0
 def watched(
     tallies: Iterable[Tally], parts: int | None, dashboard: str | None, how: Mapping[str, Any]
 ) -> Iterator[Tally]:
-    """Yield what became of the parts of shards, and show it: parts done, failures, rate, time left.
+    """Yield what became of parts, and show it: parts done, failures, rate, time left.
 
     `how` are options of tqdm. The number of parts may be unknown; `dashboard` is that of Dask.
     """
@@ -73,8 +82,8 @@ def progress() -> dict[str, Any]:
 def make(
     sources: Iterable[Source],
     folder: PathLike,
-    asked: Asked,
-    settings: dict[str, Any],
+    plan: Plan,
+    normals: NDArray[np.float64] | None,
     *,
     workers: int | None,
     scheduler: object,
@@ -86,39 +95,44 @@ def make(
 ) -> Tally:
     """Sample all parts into a data set; return what became of them.
 
-    `settings` has the fields, dtype, compression and files of `Settings`, `how` options of tqdm.
+    `plan` says what to sample, at `normals` if they are prescribed; `how` are options of tqdm.
     Raises InputError and FileError where `folder.opened` does, and FileError if the data set cannot
     be written.
     """
     count = thread_count(None) if workers is None else whole_number(workers, "workers")
-    limits = limits_of(count, time_limit, memory_limit)
-    check_extra("pyarrow", "batch", "a data set")
-    check_extra("cloudpickle", "batch", "a data set")
+    seconds, memory = limits_of(count, time_limit, memory_limit)
+    for module in ("pyarrow", "cloudpickle", "loky"):
+        check_extra(module, "batch", "a data set")
     parts = len(sources) if isinstance(sources, Sized) else None
-    wanted = Settings.of_this_version(
-        asked=asked.to_json(),
-        parts_per_shard=parts_per_shard(parts, asked.arguments.get("count")),
-        **settings,
-    )
     path = checked_path(folder).absolute()
-    with _runner(count, scheduler) as (run, dashboard), opened(folder, wanted, overwrite) as known:
-        if known.files is not None:
-            (path / FILES).mkdir(exist_ok=True)
-        plan = Plan(str(path), known, asked.stored(path), limits, again)
-        shards = enumerate(in_shards(inputs_of(sources), known.parts_per_shard))
+    plan = replace(plan, folder=path, seconds=seconds, memory=memory, again=again)
+    with _runner(count, scheduler) as (run, dashboard), opened(path, plan.settings, overwrite):
+        if normals is not None:
+            with atomic_path(path / NORMALS) as temporary:
+                np.save(temporary, normals, allow_pickle=False)
         tally = Tally()
-        with closing(run(plan, shards)) as found:
+        with closing(run(plan, inputs_of(sources), parts)) as found:
             for more in watched(found, parts, dashboard, how):
                 tally += more
-        remove_from(path, -(-tally.parts // known.parts_per_shard), tally.parts)
+        remove_from(path, tally.parts)
+        write_manifest(path, plan.settings, range(tally.parts))
         return tally
+
+
+def limits_of(workers: int, seconds: float, memory: float | None) -> tuple[float, float]:
+    """Return the longest time of a part, and the most memory of each of so many processes."""
+    share = SHARE * most_memory() / GIB / workers
+    return (
+        positive_number(seconds, "time_limit", "seconds"),
+        positive_number(share if memory is None else memory, "memory_limit", "GiB"),
+    )
 
 
 @contextmanager
 def _runner(
     workers: int, scheduler: object
 ) -> Iterator[tuple[Callable[..., Generator[Tally]], str | None]]:
-    """Yield what runs shards, here or on a cluster, and the address of Dask's dashboard."""
+    """Yield what samples parts, here or on a cluster, and the address of Dask's dashboard."""
     if scheduler is None:
         yield partial(run_locally, workers=workers), None
         return

@@ -16,13 +16,11 @@ __all__ = [
     "as_text",
     "manifest_schema",
     "manifest_table",
-    "rows_of",
 ]
 
 OK, FAILED = "ok", "failed"
 # The types of Arrow for those of the columns.
-TYPES = {"int": "int64", "str": "string", "float": "float64", "float | None": "float64"}
-NARROWER = {"attempts": "int32"}  # columns with types of their own
+TYPES = {"int": "int64", "str": "string", "float | None": "float64"}
 
 
 def _column(meaning: str, unit: str = "", **default: Any) -> Any:  # noqa: ANN401
@@ -33,14 +31,16 @@ def _column(meaning: str, unit: str = "", **default: Any) -> Any:  # noqa: ANN40
 
 @dataclass(frozen=True, slots=True)
 class ManifestRow:
-    """What became of a part."""
+    """What became of a part. Nothing in it depends on when, or how often, the part was sampled."""
 
     part: int = _column("the number of the part in the list, from 0 on")
     name: str = _column("the name of the part")
     source: str = _column("the path of the file, or the type of the surface")
-    content: str = _column("a SHA-256 of what was sampled, by which it is known again")
+    content: str = _column("a SHA-256 of what was sampled, by which it is known again", default="")
     status: str = _column('"ok" or "failed"', default=OK)
-    attempts: int = _column("how often sampling was tried", default=1)
+    parameters: str = _column(
+        "those of a surface of the catalogue, as JSON; empty for others", default=""
+    )
     samples: int = _column("the number of samples", default=0)
     unit_of_length: str = _column('L: the unit of lengths, as "mm"; empty if unknown', default="")
     misfit: float | None = _column(
@@ -52,7 +52,6 @@ class ManifestRow:
     angle: float | None = _column(
         "the largest angle between normals of surface and sample", "degree", default=None
     )
-    seconds: float = _column("the time that sampling took", "s", default=0.0)
     warnings: str = _column("the warnings, a line for each", default="")
     error: str = _column("why sampling failed, in one sentence", default="")
 
@@ -66,9 +65,7 @@ def manifest_schema() -> Any:  # noqa: ANN401
     return arrow.schema(
         [
             arrow.field(
-                name,
-                arrow.type_for_alias(NARROWER.get(name, TYPES[str(x.type)])),
-                nullable="None" in str(x.type),
+                name, arrow.type_for_alias(TYPES[str(x.type)]), nullable="None" in str(x.type)
             ).with_metadata(dict(x.metadata))
             for name, x in COLUMNS.items()
         ]
@@ -84,11 +81,6 @@ def manifest_table(rows: Iterable[ManifestRow]) -> Any:  # noqa: ANN401
         for row in rows
     ]
     return arrow.Table.from_pylist(known, schema=manifest_schema())
-
-
-def rows_of(table: Any) -> list[ManifestRow]:  # noqa: ANN401
-    """Return the rows that `manifest_table` was given."""
-    return [ManifestRow(**row) for row in table.to_pylist()]
 
 
 def as_text(text: str) -> str:

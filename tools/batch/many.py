@@ -24,7 +24,7 @@ from ..files.paths import PathLike
 from .dataset import Dataset, open_dataset
 from .inputs import Source
 from .making import make
-from .plan import CODEC, SECONDS, asked_of, stored
+from .options import CODEC, SECONDS, plan_of
 
 __all__ = ["sample_many"]
 
@@ -249,11 +249,15 @@ def sample_many(
     if on_error is not None or threads is not None:
         name = "threads" if on_error is None else "on_error"
         raise InputError(f"{name}=… does not go together with out=…; leave it out.")
+    plan = plan_of(
+        request, cells=cells, on=on, measured=yes_or_no(measure, "measure"), fields=fields,
+        dtype=dtype, compression=compression, files=files,
+    )  # fmt: skip
     make(
         surfaces,
         out,
-        asked_of(request, cells, on, yes_or_no(measure, "measure")),
-        stored(fields, dtype, compression, files),
+        plan,
+        request.normals,
         workers=workers,
         scheduler=scheduler,
         time_limit=time_limit,

@@ -17,11 +17,11 @@ from ...runtime.base.wording import plural
 from ...runtime.surface.surfaces import CATALOGUE
 from ..batch.inputs import Source
 from ..batch.making import make, progress
-from ..batch.plan import SECONDS, asked_of, stored
-from ..batch.running import Tally
+from ..batch.options import SECONDS, plan_of
+from ..batch.workers import Tally
 from ..sources.named import Named
 from ..sources.surface_of import surface_of
-from .console import say, table
+from .console import complain, say, table
 from .inputs import request_of
 from .part_lists import listed
 
@@ -37,25 +37,29 @@ def run(options: SimpleNamespace) -> None:
     parts, named = _parts_of(options)
     request = request_of(options, COUNT)
     fields = None if options.fields is None else options.fields.split(",")
+    plan = plan_of(
+        request, cells=options.cells, on=options.on, measured=options.measure, fields=fields,
+        dtype=np.float32 if options.float32 else np.float64, compression=options.compression,
+        files=options.files, named=named,
+    )  # fmt: skip
     start = time.monotonic()
-    tally = make(
-        parts,
-        options.output,
-        asked_of(request, options.cells, options.on, options.measure, named),
-        stored(
-            fields,
-            np.float32 if options.float32 else np.float64,
-            options.compression,
-            options.files,
-        ),
-        workers=options.workers,
-        scheduler=options.scheduler,
-        time_limit=SECONDS if options.time_limit is None else options.time_limit,
-        memory_limit=options.memory_limit,
-        how={"disable": True} if options.quiet else progress(),
-        overwrite=options.overwrite,
-        again=options.retry_failed,
-    )
+    try:
+        tally = make(
+            parts,
+            options.output,
+            plan,
+            request.normals,
+            workers=options.workers,
+            scheduler=options.scheduler,
+            time_limit=SECONDS if options.time_limit is None else options.time_limit,
+            memory_limit=options.memory_limit,
+            how={"disable": True} if options.quiet else progress(),
+            overwrite=options.overwrite,
+            again=options.retry_failed,
+        )
+    except KeyboardInterrupt:
+        complain("what is done is kept: the same command goes on with the rest")
+        raise
     _report(options, tally, time.monotonic() - start)
     if tally.failed:
         raise click.exceptions.Exit(SOME_FAILED)

@@ -5,17 +5,15 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.batch.data_files import points_table
-from gaussmap.tools.batch.folder import Settings, create
+from gaussmap.tools.batch.folder import Settings, opened
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow
-from gaussmap.tools.batch.shards import Shard
+from gaussmap.tools.batch.part_files import write_manifest, write_part
 
 FIELDS = ("points", "normals", "gaussian_curvature", "normal_index", "on_surface", "face_index")
 # Of 13 parts two have no samples, and one has fewer than a batch takes.
 COUNTS = (40, 0, 55, 3, 70, 50, 50, 60, 45, 50, 61, 50, 0)
 BROKEN = 12
 HELD = [part for part, count in enumerate(COUNTS) if count]
-SEPARATE = 5  # parts of a shard
 
 
 def samples_of(part: int, count: int, dtype: str = "float64") -> gm.Samples:
@@ -38,26 +36,20 @@ def samples_of(part: int, count: int, dtype: str = "float64") -> gm.Samples:
 
 def row_of(part: int, count: int) -> ManifestRow:
     if part == BROKEN:
-        return ManifestRow(part, "broken", "a.step", "0", FAILED, 2, error="no such file.")
+        return ManifestRow(part, "broken", "a.step", "0", FAILED, error="no such file.")
     return ManifestRow(part, f"part {part}", "Surface", "0", samples=count, misfit=0.25)
 
 
-def write(
-    folder: Path,
-    counts: tuple[int, ...] = COUNTS,
-    dtype: str = "float64",
-    compression: str = "zstd",
-) -> gm.Dataset:
+def settings(**known) -> Settings:
+    return Settings.of_this_version(**{"asked": {}, "fields": FIELDS} | known)
+
+
+def write(folder: Path, counts: tuple[int, ...] = COUNTS, **known) -> gm.Dataset:
     """Write a data set with parts of so many samples."""
-    known = Settings.of_this_version(
-        asked={}, fields=FIELDS, dtype=dtype, parts_per_shard=SEPARATE, compression=compression
-    )
-    create(folder, known)
-    for number in range(-(-len(counts) // SEPARATE)):
-        parts = range(len(counts))[number * SEPARATE : (number + 1) * SEPARATE]
-        shard = Shard(folder, number, known)
-        for part in parts:
-            table = points_table(samples_of(part, counts[part], dtype), part, shard.schema)
-            shard.add(row_of(part, counts[part]), None if part == BROKEN else table)
-        shard.commit(parts)
+    how = settings(**known)
+    with opened(folder, how):
+        for part, count in enumerate(counts):
+            samples = None if part == BROKEN else samples_of(part, count, how.dtype)
+            write_part(folder, how, row_of(part, count), samples)
+        write_manifest(folder, how, range(len(counts)))
     return gm.open_dataset(folder)

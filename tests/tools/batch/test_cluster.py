@@ -4,7 +4,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,16 +12,15 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.batch import making
-from gaussmap.tools.batch.making import make
-from gaussmap.tools.batch.plan import Asked
-from gaussmap.tools.batch.running import Tally
+from gaussmap.tools.batch.workers import Tally
 
 pytest.importorskip("pyarrow")
 distributed = pytest.importorskip("distributed")
 PARTS = 40
-STORED = {"fields": ("points", "normals"), "dtype": "float32", "compression": "zstd", "files": None}
-LIMITS: dict[str, Any] = {"time_limit": 60.0, "memory_limit": 4.0}
-ASKED = Asked({"count": 50, "density": "uniform", "cells": [8, 8]})
+HOW: dict[str, Any] = {
+    "density": "uniform", "cells": (8, 8), "dtype": "float32", "progress": False,
+    "time_limit": 60.0, "memory_limit": 4.0,
+}  # fmt: skip
 
 
 def waves(seed: int) -> gm.Surface:
@@ -39,23 +38,24 @@ def free_port() -> int:
 
 
 def data_of(folder: Path) -> dict[str, Any]:
-    manifest = gm.open_dataset(folder).manifest().drop_columns(["seconds", "attempts"])
-    points = {x.name: x.read_bytes() for x in sorted((folder / "points").iterdir())}
-    return {"points": points, "manifest": manifest.to_pylist()}
+    """Return the bytes of all files of a data set."""
+    return {str(x.relative_to(folder)): x.read_bytes() for x in folder.rglob("*") if x.is_file()}
 
 
 class Cluster:
-    """A scheduler and workers of one thread each, which can be killed."""
+    """A scheduler and workers of one thread each, which can be killed; of each kind one."""
 
-    def __init__(self, folder: Path, workers: int) -> None:
+    def __init__(self, folder: Path, workers: Sequence[str]) -> None:
         self.address = f"tcp://127.0.0.1:{free_port()}"
         port = self.address.rpartition(":")[2]
         self.folder = folder
         self.processes = [
             self.start("scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard")
         ]
-        for _ in range(workers):
-            self.add_worker()
+        for nanny in workers:
+            self.processes.append(
+                self.start("worker", self.address, "--nthreads", "1", nanny, "--no-dashboard")
+            )
 
     def start(self, kind: str, *arguments: str) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-m", f"distributed.cli.dask_{kind}", *arguments]
@@ -63,21 +63,16 @@ class Cluster:
             command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL, cwd=self.folder
         )
 
-    def add_worker(self) -> None:
-        self.processes.append(
-            self.start("worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
-        )
-
     def end(self) -> None:
         for process in self.processes:
-            process.kill()
+            process.terminate()  # with which a nanny ends its worker
             process.wait()
 
 
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[Cluster]:
     (tmp_path / "workers").mkdir()
-    found = Cluster(tmp_path / "workers", 2)
+    found = Cluster(tmp_path / "workers", ("--no-nanny", "--nanny"))
     yield found
     found.end()
 
@@ -97,14 +92,11 @@ def test_a_worker_that_is_killed_loses_nothing(tmp_path, cluster, monkeypatch):
             yield tally
 
     monkeypatch.setattr(making, "watched", killing)
-    how = {"disable": True}
-    tally = make(parts, tmp_path / "cluster", ASKED, STORED,
-                 workers=None, scheduler=cluster.address, how=how, **LIMITS)  # fmt: skip
+    data = gm.sample_many(parts, 50, out=tmp_path / "cluster", scheduler=cluster.address, **HOW)
     assert killed
-    assert (tally.parts, tally.failed) == (PARTS, 0)
-    make(parts, tmp_path / "here", ASKED, STORED, workers=2, scheduler=None, how=how, **LIMITS)
+    assert data.summary() == f"{PARTS} parts with {50 * PARTS:,} samples"
+    gm.sample_many(parts, 50, out=tmp_path / "here", workers=2, **HOW)
     assert data_of(tmp_path / "cluster") == data_of(tmp_path / "here")
-    assert not list((tmp_path / "cluster" / "partial").iterdir())
 
 
 @pytest.mark.slow
@@ -121,8 +113,13 @@ def test_the_same_call_with_a_client(tmp_path, cluster):
 @pytest.mark.slow
 def test_a_scheduler_without_workers(tmp_path, monkeypatch):
     monkeypatch.setattr("gaussmap.tools.batch.cluster.PATIENCE", 3)
-    found = Cluster(tmp_path, 0)
+    found = Cluster(tmp_path, ())
+    late = time.monotonic() + 60
     try:
+        with socket.socket() as place:  # until the scheduler answers
+            while place.connect_ex(("127.0.0.1", int(found.address.rpartition(":")[2]))):
+                assert time.monotonic() < late
+                time.sleep(0.05)
         with pytest.raises(gm.errors.FileError, match="has no workers"):
             gm.sample_many(["torus"], 50, out=tmp_path / "set", scheduler=found.address)
     finally:

@@ -8,8 +8,8 @@ from typing import Any
 
 import gaussmap as gm
 import pytest
-from gaussmap.tools.batch.folder import MANIFEST, POINTS, Settings, opened, shard_path
-from gaussmap.tools.batch.shards import Shard
+from gaussmap.tools.batch.folder import MANIFEST, part_path, read_settings
+from gaussmap.tools.batch.part_files import row_of
 
 from . import made
 
@@ -21,8 +21,6 @@ ASKED = {
     "on": "surface", "normals": "5, SHA-256 0", "measured": False, "spacing": [30.0, -30.0],
     "set": [["minor", 0.5]], "crs": "EPSG:32617", "tolerance": 0.1, "band": 1,
 }  # fmt: skip
-NO_NUMBER: tuple[Any, ...] = (None, "5", [5], {"a": 5}, True)
-NO_COUNT = (*NO_NUMBER, 2.5, 0, -1, float("nan"), 10**30)
 NO_TEXT: tuple[Any, ...] = (None, 5, ["a"], {"a": 5}, False)
 WRONG: dict[str, tuple[Any, ...]] = {
     "asked": (None, [], "count", 5, [["count", 5]]),
@@ -30,21 +28,16 @@ WRONG: dict[str, tuple[Any, ...]] = {
                ["other_uv"], [["points"]]),
     "dtype": (*NO_TEXT, "float16", ""),
     "compression": (*NO_TEXT, "zip"),
-    "parts_per_shard": (*NO_COUNT, 257),
     "files": (5, [], True),
     "gaussmap": NO_TEXT,
     "formulas": NO_TEXT,
-    "format": (None, "2", 0, 1, [2], True),
+    "format": (None, "3", 0, 1, [3], True),
 }  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("data") / "whole"
-    made.write(folder)
-    known = json.loads((folder / "dataset.json").read_text())
-    (folder / "dataset.json").write_text(json.dumps(known | {"asked": ASKED}))
-    return folder
+    return made.write(tmp_path_factory.mktemp("data") / "whole", asked=ASKED).folder
 
 
 @pytest.fixture
@@ -56,11 +49,11 @@ def folder(whole: Path, tmp_path: Path) -> Path:
 def used(folder: Path) -> list[str]:
     """Read a data set in every way; return the errors, which are sentences."""
     ways: list[Callable[[gm.Dataset], object]] = [
-        len,
+        lambda data: len(data),
         lambda data: data.summary(),
         lambda data: data.manifest(["name"]),
-        *(lambda data, part=part: data.samples(part) for part in made.HELD),
-        lambda data: list(data.batches(8)),
+        *(lambda data, part=part: data[part] for part in made.HELD),
+        lambda data: list(data.clouds(8)),
         lambda data: list(data.batches(8, shuffle=1, labels="samples")),
     ]
     errors = []
@@ -88,8 +81,7 @@ def refused(folder: Path, known: Any) -> str:
 def test_what_is_whole_is_read(folder: Path) -> None:
     assert used(folder) == []
     assert gm.open_dataset(folder).settings.asked == ASKED
-    known = json.loads((folder / "dataset.json").read_text())
-    assert known.keys() == WRONG.keys()
+    assert json.loads((folder / "dataset.json").read_text()).keys() == WRONG.keys()
 
 
 @pytest.mark.parametrize("key", WRONG)
@@ -113,9 +105,9 @@ def test_settings_that_are_no_json(folder: Path, data: bytes) -> None:
         gm.open_dataset(folder)
 
 
-def test_settings_of_other_shards(folder: Path) -> None:
+def test_settings_of_another_data_set(folder: Path) -> None:
     known = json.loads((folder / "dataset.json").read_text())
-    for name, value in {"parts_per_shard": 4, "dtype": "float32"}.items():
+    for name, value in {"asked": {"count": 41}, "dtype": "float32"}.items():
         (folder / "dataset.json").write_text(json.dumps(known | {name: value}))
         assert any(".parquet' cannot be read" in text for text in used(folder))
     (folder / "dataset.json").unlink()
@@ -144,107 +136,65 @@ def directory(path: Path) -> None:
     path.mkdir()
 
 
+def zeros(path: Path, start: int, stop: int) -> None:
+    data = path.read_bytes()
+    stop = stop % len(data)
+    path.write_bytes(data[:start] + bytes(stop - start) + data[stop:])
+
+
 DAMAGE: dict[str, Callable[[Path], object]] = {
     "empty": lambda path: path.write_bytes(b""),
     "half": lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]),
     "without its end": lambda path: path.write_bytes(path.read_bytes()[:-1]),
     "text": lambda path: path.write_text("points"),
-    "zeros": lambda path: path.write_bytes(bytes(path.stat().st_size)),
-    "zeros in the middle": lambda path: path.write_bytes(
-        path.read_bytes()[:100] + bytes(path.stat().st_size - 108) + path.read_bytes()[-8:]
-    ),
+    "zeros": lambda path: zeros(path, 0, -1),
+    "zeros in the middle": lambda path: zeros(path, 100, -8),
     "an Arrow file": arrow_file,
     "another table": another_table,
     "a folder": directory,
     "the other kind": lambda path: shutil.copy(
-        path.parent.parent / ({POINTS, MANIFEST} - {path.parent.name}).pop() / path.name, path
+        part_path(path.parent, 0) if path.name == MANIFEST else path.parents[1] / MANIFEST, path
     ),
-    "another shard": lambda path: shutil.copy(path.with_name("shard-000002.parquet"), path),
+    "another part": lambda path: shutil.copy(
+        part_path(path.parent if path.name == MANIFEST else path.parents[1], 2), path
+    ),
 }
 
 
-@pytest.mark.parametrize("kind", [POINTS, MANIFEST])
+@pytest.mark.parametrize("name", [MANIFEST, "points/000004.parquet"])
 @pytest.mark.parametrize("damage", DAMAGE)
-def test_each_file(folder: Path, kind: str, damage: str) -> None:
-    path = shard_path(folder, kind, 1)
+def test_each_file(folder: Path, name: str, damage: str) -> None:
+    path = folder / name
     DAMAGE[damage](path)
     errors = used(folder)
     assert errors
-    assert all(f"'{path}'" in text for text in errors)
-    settings = gm.open_dataset(folder).settings
-    if path.is_file():  # and what the sentence asks for helps
-        shard = Shard(folder, 1, settings)
-        assert not shard.rows
+    assert all(f"'{path}'" in text and "again" in text for text in errors)
+    # What the sentence asks for helps: the part is done again.
+    assert (row_of(folder, read_settings(folder), 4) is None) is (name != MANIFEST)
 
 
-def test_swapped_files(folder: Path) -> None:
-    points, manifest = (shard_path(folder, kind, 0) for kind in (POINTS, MANIFEST))
-    kept = points.read_bytes()
-    points.write_bytes(manifest.read_bytes())
-    manifest.write_bytes(kept)
-    assert "does not have the columns of manifest" in used(folder)[0]
-
-
-def test_damaged_numbers_of_points(folder: Path) -> None:
+@pytest.mark.parametrize("compression", ["none", "zstd"])
+def test_damaged_numbers_of_points(tmp_path: Path, compression: str) -> None:
     """The end of the file, which is read first, is whole."""
-    path = shard_path(folder, POINTS, 0)
-    data = path.read_bytes()
-    path.write_bytes(data[:4] + bytes(500) + data[504:])
-    assert any(f"'{path}' cannot be read" in text for text in used(folder))
+    data = made.write(tmp_path, compression=compression)
+    path = part_path(tmp_path, 4)
+    zeros(path, 200, 900)
+    with pytest.raises(gm.errors.FileError, match="cannot be read") as error:
+        data.samples(4)
+    assert str(path) in str(error.value)
+    assert data.samples(5).report.index == 5
 
 
 def test_points_of_another_data_set(folder: Path, tmp_path: Path) -> None:
-    other = made.write(tmp_path / "other", (10, *made.COUNTS[1:]))
-    shutil.copy(shard_path(other.folder, POINTS, 0), shard_path(folder, POINTS, 0))
-    with pytest.raises(gm.errors.FileError, match="does not belong to its manifest"):
+    other = made.write(tmp_path / "other")
+    shutil.copy(part_path(other.folder, 0), part_path(folder, 0))
+    with pytest.raises(gm.errors.FileError, match="it is of another data set"):
         gm.open_dataset(folder).samples(0)
 
 
-def test_copies_with_other_names_are_no_shards(folder: Path) -> None:
-    for kind in (POINTS, MANIFEST):
-        for name in ("shard-000001 (copy).parquet", "shard-000001x.parquet", "shard-01.parquet"):
-            shutil.copy(shard_path(folder, kind, 1), folder / kind / name)
+def test_copies_with_other_names_are_no_parts(folder: Path) -> None:
+    (folder / MANIFEST).unlink()
+    for name in ("000001 (copy).parquet", "000001x.parquet", "01.parquet"):
+        shutil.copy(part_path(folder, 1), folder / "points" / name)
     assert used(folder) == []
     assert len(gm.open_dataset(folder)) == len(made.COUNTS)
-
-
-class TestLinks:
-    def settings(self) -> Settings:
-        return Settings.of_this_version({}, made.FIELDS, parts_per_shard=made.SEPARATE)
-
-    @pytest.mark.parametrize(
-        "name", ["points", "manifest", "partial", "files", "normals.npy", ".lock", "dataset.json",
-                 "points/shard-000000.parquet", "partial/shard-000000.arrow", "files/000000.ply"],
-    )  # fmt: skip
-    @pytest.mark.parametrize("overwrite", [False, True])
-    def test_are_refused_before_anything_is_written(
-        self, tmp_path: Path, name: str, overwrite: bool
-    ) -> None:
-        folder, target = tmp_path / "set", tmp_path / "elsewhere"
-        made.write(folder)
-        (folder / "files").mkdir()
-        if (folder / name).exists():
-            (folder / name).rename(target)
-        (folder / name).symlink_to(target)
-        before = contents(tmp_path)
-        with (
-            pytest.raises(gm.errors.FileError, match=f"{name}' is a symbolic link"),
-            opened(folder, self.settings(), overwrite),
-        ):
-            pass
-        assert contents(tmp_path) == before
-
-    def test_the_folder_itself_may_be_one(self, tmp_path: Path) -> None:
-        (tmp_path / "disk").mkdir()
-        (tmp_path / "set").symlink_to("disk")
-        with opened(tmp_path / "set", self.settings()):
-            pass
-        assert (tmp_path / "disk" / "dataset.json").is_file()
-
-
-def contents(folder: Path) -> dict[str, Any]:
-    """Return what lies in a folder: the bytes of files, and where links lead."""
-    return {
-        str(x): x.readlink() if x.is_symlink() else x.read_bytes() if x.is_file() else None
-        for x in sorted(folder.rglob("*"))
-    }

@@ -7,7 +7,7 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.batch.folder import MANIFEST, POINTS, shard_path
+from gaussmap.tools.batch.folder import MANIFEST, part_path
 from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST_COLUMNS
 
 from ...refusals import refused
@@ -86,32 +86,32 @@ def test_columns_that_are_not_there(dataset, columns, error):
         dataset.manifest(columns)
 
 
-def test_a_shard_that_is_not_finished_is_not_there(tmp_path):
+def test_a_sequence(dataset):
+    assert dataset[2].report == dataset.samples(2).report
+    assert dataset[-3].report.index == PARTS - 3
+    ok = [part for part in range(PARTS) if part != made.BROKEN]
+    assert [samples.report.index for samples in dataset] == ok
+    for part in (PARTS, made.BROKEN, -1):
+        with pytest.raises(gm.errors.UnknownNameError):
+            dataset[part]
+    for part in (-PARTS - 1, "0", slice(2)):
+        with pytest.raises(gm.errors.InputError):
+            dataset[part]
+
+
+def test_parts_are_seen_as_they_are_done(tmp_path):
+    """While a run goes on, and after one that was killed, there is no manifest."""
     dataset = made.write(tmp_path)
-    shard_path(tmp_path, MANIFEST, 1).unlink()
-    assert len(dataset) == PARTS - made.SEPARATE
+    whole = dataset.manifest()
+    (tmp_path / MANIFEST).unlink()
+    assert dataset.manifest().equals(whole, check_metadata=True)
+    part_path(tmp_path, 4).unlink()
+    assert len(dataset) == len(dataset.manifest(["part"])) == PARTS - 1
     with pytest.raises(gm.errors.UnknownNameError):
-        dataset.samples(made.SEPARATE)
-    for number in (0, 2):
-        shard_path(tmp_path, MANIFEST, number).unlink()
-    assert (len(dataset), len(dataset.manifest())) == (0, 0)
+        dataset.samples(4)
+    for part in range(PARTS):
+        part_path(tmp_path, part).unlink(missing_ok=True)
     assert dataset.summary() == "0 parts with 0 samples"
-
-
-def test_files_that_are_damaged_or_missing(tmp_path):
-    dataset = made.write(tmp_path)
-    points, manifest = (shard_path(tmp_path, kind, 0) for kind in (POINTS, MANIFEST))
-    points.write_bytes(shard_path(tmp_path, POINTS, 1).read_bytes())
-    with pytest.raises(
-        gm.errors.FileError, match=r"it has parts of another shard, 5 to 9; remove it"
-    ):
-        dataset.samples(0)
-    points.write_bytes(points.read_bytes()[:-100])
-    refused(r"cannot be read.*again", dataset.samples, 0, error=gm.errors.FileError)
-    points.unlink()
-    refused(r"cannot be read.*again", list, dataset.batches(8), error=gm.errors.FileError)
-    manifest.write_bytes(b"")
-    refused("cannot be read", dataset.summary, error=gm.errors.FileError)
     refused("no data set", gm.open_dataset, tmp_path / "points", error=gm.errors.FileError)
     refused("a path", gm.open_dataset, 3)
 
@@ -143,7 +143,7 @@ class TestOtherReaders:
         for name, column in self.expected().items():
             np.testing.assert_array_equal(table[name].to_numpy(), column, strict=True)
         assert table["face_index"].notna().sum() == self.faces()
-        manifest = pandas.read_parquet(dataset.folder / "manifest")
+        manifest = pandas.read_parquet(dataset.folder / "manifest.parquet")
         counts = table.groupby("part").size().reindex(manifest["part"], fill_value=0)
         assert counts.tolist() == manifest["samples"].tolist() == list(made.COUNTS)
         one = pandas.read_parquet(dataset.folder / "points", filters=[("part", "==", 2)])
@@ -158,13 +158,13 @@ class TestOtherReaders:
         assert table.schema["on_surface"] == polars.Boolean
         assert table.schema["part"] == table.schema["face_index"] == polars.Int64
         assert len(table) - table["face_index"].null_count() == self.faces()
-        manifest = polars.scan_parquet(dataset.folder / "manifest" / "*.parquet")
+        manifest = polars.scan_parquet(dataset.folder / "manifest.parquet")
         joined = points.join(manifest, on="part").filter(polars.col("name") == "part 2").collect()
         assert len(joined) == made.COUNTS[2]
 
     def test_duckdb(self, dataset):
         duckdb = pytest.importorskip("duckdb")
-        points, manifest = (f"'{dataset.folder}/{x}/*.parquet'" for x in ("points", "manifest"))
+        points, manifest = (f"'{dataset.folder}/{x}.parquet'" for x in ("points/*", "manifest"))
         columns = ", ".join(self.expected())
         table = duckdb.sql(f"SELECT {columns} FROM {points} ORDER BY part, normal_index")
         for name, column in table.fetchnumpy().items():
@@ -184,18 +184,6 @@ class TestOtherReaders:
         assert types["on_surface"] == "BOOLEAN"
 
 
-def test_row_groups_are_found_by_the_part(dataset):
-    import pyarrow.parquet as parquet
-
-    for path in sorted((dataset.folder / POINTS).iterdir()):
-        file = parquet.ParquetFile(path).metadata
-        for group in range(file.num_row_groups):
-            known = file.row_group(group).column(0)
-            assert known.path_in_schema == "part"
-            assert known.statistics.min <= known.statistics.max
-            assert known.compression == "ZSTD"
-
-
 @pytest.mark.parametrize("compression", ["none", "zstd", "snappy"])
 def test_single_precision_and_compression(tmp_path, compression):
     import pyarrow.parquet as parquet
@@ -205,7 +193,7 @@ def test_single_precision_and_compression(tmp_path, compression):
     assert found.points.dtype == found.gaussian_curvature.dtype == np.float32
     assert found.normal_index.dtype == np.int64
     np.testing.assert_array_equal(found.points, made.samples_of(4, 70, "float32").points)
-    column = parquet.ParquetFile(shard_path(tmp_path, POINTS, 0)).metadata.row_group(0).column(1)
+    column = parquet.ParquetFile(part_path(tmp_path, 0)).metadata.row_group(0).column(1)
     assert column.compression == {"none": "UNCOMPRESSED"}.get(compression, compression.upper())
     assert column.physical_type == "FLOAT"
 

@@ -13,7 +13,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.batch.inputs import inputs_of
-from gaussmap.tools.batch.plan import file_name
+from gaussmap.tools.batch.making import limits_of
 
 from ...refusals import refused
 
@@ -45,6 +45,8 @@ def doing(what: str) -> gm.Surface:
             time.sleep(1000)
         if what == "exits":
             os._exit(3)
+        if what == "aborts":
+            os.abort()
         if what == "is killed":
             os.kill(os.getpid(), signal.SIGKILL)
         if what == "takes all memory":
@@ -52,17 +54,15 @@ def doing(what: str) -> gm.Surface:
         if what == "takes all memory bit by bit":
             kept = []
             while True:
-                kept.append(np.ones(1 << 24))
+                kept.append(np.empty(1 << 24))
         return u
 
     return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=what)
 
 
 def data_of(folder: Path) -> dict[str, Any]:
-    """Return the bytes of all files with points, and the manifest without times."""
-    manifest = gm.open_dataset(folder).manifest().drop_columns(["seconds", "attempts"])
-    points = {x.name: x.read_bytes() for x in sorted((folder / "points").iterdir())}
-    return {"points": points, "manifest": manifest.to_pylist()}
+    """Return the bytes of all files of a data set."""
+    return {str(x.relative_to(folder)): x.read_bytes() for x in folder.rglob("*") if x.is_file()}
 
 
 def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
@@ -78,7 +78,7 @@ def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
     rows = data.manifest().to_pylist()
     assert [row["status"] for row in rows] == ["ok", "ok", "failed", "failed", "failed", "ok"]
     assert [row["samples"] for row in rows] == [100, 100, 0, 0, 0, 100]
-    assert [row["attempts"] for row in rows] == [1, 1, 2, 2, 2, 1]
+    assert [row["parameters"] for row in rows] == ["", '{"major": 1.0, "minor": 0.35}', *4 * [""]]
     assert "by hand" in rows[2]["error"]
     assert "damaged" in rows[3]["error"]
     assert "missing.step' does not exist" in rows[4]["error"]
@@ -106,14 +106,25 @@ def test_arguments(tmp_path):
     def sampled(parts: Any = ("torus",), **known: Any) -> object:
         return gm.sample_many(parts, 10, **known)  # pyright: ignore[reportCallIssue]
 
+    out = tmp_path / "set"
+    (tmp_path / "other").touch()
     refused("for data sets", sampled, workers=2)
-    refused("on_error", sampled, out=tmp_path / "a", on_error="skip")
-    refused("part 1 must be a Surface", sampled, ["torus", 5], out=tmp_path / "b", progress=False)
-    refused("compression", sampled, out=tmp_path / "c", compression="zip", error=LookupError)
-    refused("suffix", sampled, out=tmp_path / "c", files="ply", error=LookupError)
-    refused("workers must be a whole number", sampled, out=tmp_path / "c", workers=0)
+    refused("on_error", sampled, out=out, on_error="skip")
+    refused("compression", sampled, out=out, compression="zip", error=LookupError)
+    refused("suffix", sampled, out=out, files="ply", error=LookupError)
+    refused("workers must be a whole number", sampled, out=out, workers=0)
     refused("new or empty", sampled, out=tmp_path, error=gm.errors.FileError)
-    assert not (tmp_path / "c").exists()
+    assert not out.exists()
+    refused("part 1 must be a Surface", sampled, ["torus", 5], out=out, progress=False)
+
+
+@pytest.mark.parametrize("workers", [1, 7])
+def test_all_workers_together_leave_memory_to_others(workers: int) -> None:
+    installed = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30
+    _, memory = limits_of(workers, 600.0, None)
+    assert memory * workers == pytest.approx(limits_of(1, 600.0, None)[1])
+    assert 0.0 < memory * workers < 0.92 * installed
+    assert limits_of(workers, 600.0, 2.0) == (600.0, 2.0)
 
 
 def test_names_that_are_no_text(tmp_path):
@@ -122,43 +133,23 @@ def test_names_that_are_no_text(tmp_path):
     assert part.path == str(Path("a\udcff").absolute() / "b\udcff.step")
 
 
-@pytest.mark.parametrize(
-    ("part", "name", "expected"),
-    [(3, "../../etc/passwd", "000003-etc-passwd.ply"), (0, "/a/b", "000000-a-b.ply"),
-     (1_234_567, "", "1234567.ply"), (1, "Größe 5\n", "000001-Groe-5.ply"),
-     (1, "." * 5, "000001.ply"), (1, "x" * 1000, f"000001-{'x' * 60}.ply")],
-)  # fmt: skip
-def test_names_of_files_stay_in_their_folder(part, name, expected):
-    assert file_name(part, name, ".ply") == expected
-
-
 @pytest.mark.slow
 class TestSlow:
     def test_what_ends_a_process_is_a_row(self, tmp_path):
-        kinds = [
-            "raises", "hangs", "exits", "is killed", "takes all memory",
-            "takes all memory bit by bit",
-        ]  # fmt: skip
+        kinds = {
+            "raises": "by hand", "hangs": "longer than time_limit (8 s)", "exits": "exit code 3",
+            "is killed": "signal 9", "aborts": "signal 6", "takes all memory": "memory",
+            "takes all memory bit by bit": "memory",
+        }  # fmt: skip
         parts = [x for kind in kinds for x in (doing(kind), waves(len(kind)))]
-        data = gm.sample_many(
-            parts, 50, out=tmp_path / "set", workers=2, progress=False, time_limit=3.0,
-            memory_limit=2.0, **ASKED,
-        )  # fmt: skip
-        rows = data.manifest().to_pylist()
-        assert [row["status"] for row in rows] == ["failed", "ok"] * len(kinds)
-        errors = [row["error"] for row in rows[::2]]
-        assert "by hand" in errors[0]
-        assert "longer than time_limit (3 s)" in errors[1]
-        assert "exit code 3" in errors[2]
-        assert "signal 9" in errors[3]
-        assert "memory" in errors[4]
-        assert "memory" in errors[5]
-        assert all(row["attempts"] == 2 for row in rows[::2])
-        seen = gm.sample_many(
-            parts, 50, out=tmp_path / "set", workers=2, progress=False, time_limit=3.0,
-            memory_limit=2.0, retry_failed=True, **ASKED,
-        ).manifest()  # fmt: skip
-        assert seen["status"].to_pylist() == data.manifest()["status"].to_pylist()
+        how: dict[str, Any] = ASKED | {"workers": 2, "time_limit": 8.0, "memory_limit": 1.0}
+        for again in (False, True):
+            rows = gm.sample_many(
+                parts, 50, out=tmp_path / "set", progress=False, retry_failed=again, **how
+            ).manifest().to_pylist()  # fmt: skip
+            assert [row["status"] for row in rows] == ["failed", "ok"] * len(kinds)
+            for row, text in zip(rows[::2], kinds.values(), strict=True):
+                assert text in row["error"]
 
     def test_a_file_for_each_part(self, tmp_path):
         parts = [waves(1), "torus"]
@@ -178,7 +169,7 @@ class TestSlow:
             gm.sample_many(parts, 50, out=tmp_path / f"{workers}", workers=workers,
                            progress=False, **ASKED)  # fmt: skip
         assert data_of(tmp_path / "1") == data_of(tmp_path / "2") == data_of(tmp_path / "3")
-        assert len(list((tmp_path / "1" / "points").iterdir())) == 65
+        assert len(list((tmp_path / "1" / "points").iterdir())) == 130
 
     def test_a_surface_that_changed_is_sampled_again(self, tmp_path):
         log = tmp_path / "log"
@@ -221,18 +212,20 @@ gm.sample_many([waves(k, log) for k in range(40)], 50, out=out, workers=int(work
 """
 
 
-def started(tmp_path: Path, out: Path, workers: int = 2) -> subprocess.Popen[bytes]:
+def started(tmp_path: Path, out: Path, **more: str) -> subprocess.Popen[bytes]:
     program = tmp_path / "program.py"
     program.write_text(PROGRAM)
-    command = [sys.executable, str(program), str(tmp_path / "log"), str(out), str(workers)]
-    return subprocess.Popen(command, stderr=subprocess.DEVNULL, start_new_session=True)
+    command = [sys.executable, str(program), str(tmp_path / "log"), str(out), "2"]
+    return subprocess.Popen(
+        command, stderr=subprocess.DEVNULL, start_new_session=True, env=os.environ | more
+    )
 
 
-def left_in(group: int) -> list[str]:
-    """Return the processes of a group that still run."""
-    listed = subprocess.run(["ps", "-eo", "pgid,stat,args"], capture_output=True, text=True)
-    rows = [line.split(None, 2) for line in listed.stdout.splitlines()[1:]]
-    return [x[2] for x in rows if x[0] == str(group) and not x[1].startswith("Z")]
+def left_in(group: int) -> dict[int, str]:
+    """Return the processes of a group that still run, and their commands."""
+    listed = subprocess.run(["ps", "-eo", "pid,pgid,stat,args"], capture_output=True, text=True)
+    rows = [line.split(None, 3) for line in listed.stdout.splitlines()[1:]]
+    return {int(x[0]): x[3] for x in rows if x[1] == str(group) and not x[2].startswith("Z")}
 
 
 def read_by_others(folder: Path) -> None:
@@ -240,10 +233,9 @@ def read_by_others(folder: Path) -> None:
     polars = pytest.importorskip("polars")
     data = gm.open_dataset(folder)
     parts = data.manifest()["part"].to_pylist()
-    for kind in ("points", "manifest"):
-        if any((folder / kind).iterdir()):
-            table = polars.scan_parquet(folder / kind / "*.parquet").collect()
-            assert {*parts} <= {*table["part"]}
+    if any((folder / "points").iterdir()):
+        table = polars.scan_parquet(folder / "points" / "*.parquet").collect()
+        assert {*table["part"]} == {*parts}
 
 
 @pytest.mark.slow
@@ -268,24 +260,56 @@ def test_a_run_that_is_ended_again_and_again_ends_with_the_same_bytes(tmp_path, 
             read_by_others(out)
     assert started(tmp_path, out).wait() == 0
     assert data_of(out) == data_of(tmp_path / "whole")
-    assert not list((out / "partial").iterdir())
     sampled = (tmp_path / "log").read_text().split()
     # Each part is sampled once, but for those in work at the end of a run: one for each worker.
     assert len(set(sampled)) == 40
 
 
-@pytest.mark.slow
-def test_two_interrupts_leave_nothing_that_runs(tmp_path):
-    process = started(tmp_path, tmp_path / "set")
+def some_are_sampled(tmp_path: Path) -> None:
     late = time.monotonic() + 60
     while not (tmp_path / "log").exists():
         assert time.monotonic() < late
         time.sleep(0.05)
+
+
+@pytest.mark.slow
+def test_processes_that_are_killed_cost_nothing(tmp_path):
+    assert started(tmp_path, tmp_path / "whole").wait() == 0
+    (tmp_path / "log").unlink()
+    process = started(tmp_path, tmp_path / "set")
+    some_are_sampled(tmp_path)
+    for number, what in left_in(process.pid).items():
+        if "--process-name" in what:
+            os.kill(number, signal.SIGKILL)
+    assert process.wait(60) == 0
+    assert data_of(tmp_path / "set") == data_of(tmp_path / "whole")
+
+
+@pytest.mark.slow
+def test_a_run_that_is_killed_with_all_its_processes_leaves_nothing_outside(tmp_path):
+    (tmp_path / "temporary").mkdir()
+    shared = Path("/dev/shm")
+    before = {*shared.iterdir()} if shared.is_dir() else set()
+    process = started(tmp_path, tmp_path / "set", TMPDIR=str(tmp_path / "temporary"))
+    some_are_sampled(tmp_path)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait(60)
+    assert not any((tmp_path / "temporary").iterdir())
+    assert ({*shared.iterdir()} if shared.is_dir() else set()) <= before
+
+
+@pytest.mark.slow
+def test_two_interrupts_leave_nothing_that_runs(tmp_path):
+    process = started(tmp_path, tmp_path / "set")
+    some_are_sampled(tmp_path)
     for _ in range(2):
         process.send_signal(signal.SIGINT)
         time.sleep(0.05)
-    assert process.wait(10) != 0
-    assert not left_in(process.pid)
+    assert process.wait(20) != 0
+    late = time.monotonic() + 20
+    while left_in(process.pid):
+        assert time.monotonic() < late
+        time.sleep(0.05)
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 import pytest
 from gaussmap.tools.batch import making
-from gaussmap.tools.batch.running import Tally
+from gaussmap.tools.batch.workers import Tally
 
 
 def test_a_log_has_few_lines(

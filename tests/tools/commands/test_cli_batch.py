@@ -1,8 +1,10 @@
 """The command `gaussmap batch`: lists of parts, what is reported, exit codes."""
 
 import json
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import gaussmap as gm
@@ -160,3 +162,19 @@ def test_a_list_on_standard_input_and_files_that_would_lie_elsewhere() -> None:
         "inner/set/files/000000-grid.npz",
         "inner/set/files/000001-torus.npz",
     ]
+
+
+@pytest.mark.slow
+def test_ctrl_c_says_how_to_go_on() -> None:
+    command = [sys.executable, "-m", "gaussmap", "batch", *40 * ["torus"], *SMALL, "-o", "set"]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    while not Path("set/points/000000.parquet").exists():
+        assert process.poll() is None
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=20)
+    assert process.returncode == 130
+    assert "gaussmap: what is done is kept: the same command goes on with the rest\n" in err
+    assert 1 <= len(gm.open_dataset("set")) < 40
+    assert subprocess.run([*command, "--quiet"]).returncode == 0
+    assert len(gm.open_dataset("set")) == 40

@@ -1,5 +1,7 @@
 """Batches for training: every part once, reproducible, divided among workers, in own memory."""
 
+import gc
+import pickle
 import re
 import tracemalloc
 import warnings
@@ -46,9 +48,8 @@ def test_in_the_order_of_the_list(dataset):
             np.testing.assert_array_equal(n, known.normals[rows])
 
 
-@pytest.mark.parametrize("buffer", [1, 3, 512])
-def test_shuffled_every_part_comes_once(dataset, buffer):
-    batches = list(dataset.batches(45, 4, shuffle=3, buffer=buffer))
+def test_shuffled_every_part_comes_once(dataset):
+    batches = list(dataset.batches(45, 4, shuffle=3))
     assert [len(x[2]) for x in batches] == [4, 4, 3]
     found = points_by_part(batches)
     assert sorted(found) == made.HELD
@@ -71,7 +72,7 @@ def test_points_belong_to_their_normals(dataset):
 
 def test_the_same_seed_gives_the_same_batches(dataset):
     def run(seed: int | tuple[int, ...]) -> list[bytes]:
-        return [a.tobytes() for x in dataset.batches(16, 3, shuffle=seed, buffer=4) for a in x]
+        return [a.tobytes() for x in dataset.batches(16, 3, shuffle=seed) for a in x]
 
     assert run(0) == run(0) == run((0,))
     assert len({tuple(run(x)) for x in (0, 1, (0, 0), (0, 1), (1, 0))}) == 5
@@ -195,19 +196,52 @@ def test_arrays_are_taken_by_pytorch_without_a_copy(dataset):
         seen += batch
 
 
-def test_pytorch(dataset):
+def test_clouds_are_the_batches_one_by_one(dataset):
+    how = {"shuffle": 3, "dtype": "float32", "labels": "samples"}
+    clouds = dataset.clouds(45, **how)
+    found = {part: (*arrays, label) for *arrays, part, label in clouds}
+    assert (len(clouds), list(found)) == (len(made.HELD), made.HELD)
+    for *arrays, numbers, labels in dataset.batches(45, 4, **how):
+        for k, part in enumerate(numbers.tolist()):
+            *cloud, label = found[part]
+            assert label == labels[k]
+            for one, several in zip(cloud, arrays, strict=True):
+                np.testing.assert_array_equal(one, several[k], strict=True)
+    assert {type(x) for x in clouds[0][2:]} == {int}
+    assert isinstance(dataset.clouds(9, labels="misfit")[-1][-1], float)
+    with pytest.raises(IndexError):
+        clouds[len(clouds)]
+    refused("part 2 has no label", dataset.clouds(9, labels={0: 1}).__getitem__, 1)
+
+
+def test_clouds_are_pickled_as_for_the_processes_of_a_loader(dataset):
+    clouds = dataset.clouds(9, shuffle=1, labels="samples")
+    copy = pickle.loads(pickle.dumps(clouds))
+    for a, b in zip(clouds[3], copy[3], strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_pytorch(dataset, workers):
     torch = pytest.importorskip("torch")
 
-    class Clouds(torch.utils.data.IterableDataset):
+    class Batches(torch.utils.data.IterableDataset):
         def __iter__(self):
             worker = torch.utils.data.get_worker_info()
             shard = (worker.id, worker.num_workers) if worker else (0, 1)
             for batch in dataset.batches(32, 4, shuffle=0, dtype="float32", shard=shard):
                 yield tuple(torch.from_numpy(x) for x in batch)
 
-    for workers in (0, 2):
-        batches = list(torch.utils.data.DataLoader(Clouds(), batch_size=None, num_workers=workers))
-        assert sorted(x for *_, part in batches for x in part.tolist()) == made.HELD
+    load = torch.utils.data.DataLoader
+    clouds = dataset.clouds(32, dtype="float32", labels="misfit")
+    for loader in (
+        load(Batches(), batch_size=None, num_workers=workers),
+        load(clouds, batch_size=4, shuffle=True, num_workers=workers),
+    ):
+        batches = list(loader)
+        assert sorted(x for batch in batches for x in batch[2].tolist()) == made.HELD
+        assert batches[0][0].shape == (4, 32, 3)
+        assert batches[0][0].dtype == torch.float32
 
 
 @pytest.mark.parametrize(
@@ -235,22 +269,24 @@ def test_pytorch(dataset):
         ({"labels": 13 * ["chair"]}, gm.errors.InputError, "real numbers"),
         ({"labels": {0: 1, "part 2": 1}}, gm.errors.InputError, "not by both"),
         ({"labels": {0: "chair"}}, gm.errors.InputError, "must be a number, not 'chair'"),
-        ({"buffer": 0}, gm.errors.InputError, "buffer"),
         ({"drop_last": np.zeros(2)}, gm.errors.InputError, "drop_last"),
     ],
 )
 def test_wrong_arguments_are_refused_at_once(dataset, wrong, error, text):
     refused(text, dataset.batches, **wrong, error=error)
+    if not wrong.keys() & {"parts", "shard", "drop_last"}:
+        refused(text, dataset.clouds, **wrong, error=error)
 
 
 def test_memory_does_not_grow_with_the_number_of_parts(tmp_path):
     peaks = []
     for parts in (30, 150):
         dataset = made.write(tmp_path / str(parts), parts * (200,))
+        next(dataset.batches(1))  # what is imported
         tracemalloc.start()
-        for _ in dataset.batches(100, 4, shuffle=0, buffer=16):
-            pass
+        for _ in dataset.batches(100, 4, shuffle=0):
+            gc.collect()
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    # 16 parts in the buffer and 4 in a batch; as many again while a batch is put together.
-    assert max(peaks) < 2 * (16 + 4) * 100 * 6 * 8 + 300_000
+    # 4 parts in a batch, as many again while it is put together, and the columns of one.
+    assert max(peaks) < 2 * 5 * 200 * 6 * 8 + 120_000

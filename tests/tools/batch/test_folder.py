@@ -1,0 +1,255 @@
+"""The folder of a data set: whose it is, who writes to it, and what kills leave there."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.batch.folder import (
+    FILES,
+    MANIFEST,
+    PARTIAL,
+    POINTS,
+    file_name,
+    opened,
+    part_path,
+    parts_in,
+    read_settings,
+    remove_from,
+    replaced,
+)  # fmt: skip
+from gaussmap.tools.batch.manifest import FAILED, ManifestRow
+from gaussmap.tools.batch.part_files import row_of, write_part
+
+from . import made
+
+pytest.importorskip("pyarrow")
+KNOWN = made.settings(asked={"count": 5})
+
+
+def begin(path: Path, overwrite: bool = False, **changes: Any) -> None:
+    with opened(path, replace(KNOWN, **changes), overwrite):
+        pass
+
+
+def contents(folder: Path) -> dict[str, Any]:
+    """Return what lies in a folder: the bytes of files, and where links lead."""
+    return {
+        str(x): x.readlink() if x.is_symlink() else x.read_bytes() if x.is_file() else None
+        for x in sorted(folder.rglob("*"))
+    }
+
+
+@pytest.mark.parametrize("step", [31, pytest.param(1, marks=pytest.mark.slow)])
+def test_a_part_that_is_cut_anywhere_is_done_again(tmp_path: Path, step: int) -> None:
+    made.write(tmp_path)
+    path, known = part_path(tmp_path, 3), read_settings(tmp_path)
+    data = path.read_bytes()
+    for size in range(0, len(data), step):
+        path.write_bytes(data[:size])
+        assert row_of(tmp_path, known, 3) is None, size
+    path.write_bytes(data)
+    assert row_of(tmp_path, known, 3) == made.row_of(3, made.COUNTS[3])
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        ManifestRow(1, "a", "b", "c", FAILED, error="no such file.", misfit=0.5),
+        ManifestRow(1, "é\n'", "\\udcff", misfit=float("inf"), warnings="é\n'", angle=1e-300),
+    ],
+)
+def test_rows_are_read_as_they_were_written(tmp_path: Path, row: ManifestRow) -> None:
+    with opened(tmp_path, KNOWN):
+        write_part(tmp_path, KNOWN, row)
+    assert row_of(tmp_path, KNOWN, 1) == row
+    (read,) = gm.open_dataset(tmp_path).manifest().to_pylist()
+    assert ManifestRow(**read) == row
+
+
+def test_names_that_are_no_text(tmp_path: Path) -> None:
+    with opened(tmp_path, KNOWN):
+        write_part(tmp_path, KNOWN, ManifestRow(0, "part\udcff.step", "\0\n"))
+    assert gm.open_dataset(tmp_path).manifest()["name"].to_pylist() == ["part\\udcff.step"]
+
+
+def test_fields_that_some_parts_lack(tmp_path: Path) -> None:
+    known = made.settings(fields=("points", "normals", "patch_index"))
+    vectors: dict[str, Any] = dict.fromkeys(("points", "normals"), np.ones((5, 3)))
+    with opened(tmp_path, known):
+        for part in (0, 1):
+            more: dict[str, Any] = {"patch_index": np.arange(5)} if part else {}
+            some = gm.Samples(**vectors, **more, report=made.samples_of(0, 5).report)
+            write_part(tmp_path, known, ManifestRow(part, "a", "b", samples=5), some)
+    data = gm.open_dataset(tmp_path)
+    assert data[0].fields == ("points", "normals")
+    np.testing.assert_array_equal(data[1].patch_index, np.arange(5))
+
+
+@contextmanager
+def files_of_at_most(size: int) -> Iterator[None]:
+    """Let no process write a larger file: as if the disk were full."""
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_a_full_disk_leaves_what_is_done(tmp_path: Path) -> None:
+    made.write(tmp_path)
+    known, before = read_settings(tmp_path), contents(tmp_path)
+    with opened(tmp_path, known):
+        for _ in range(2):
+            with (
+                files_of_at_most(4_000),
+                pytest.raises(gm.errors.FileError, match="what is done is kept") as error,
+            ):
+                write_part(tmp_path, known, made.row_of(3, 900), made.samples_of(3, 900))
+            assert "\n" not in str(error.value)
+    before.pop(str(tmp_path / MANIFEST))
+    assert contents(tmp_path) == before
+
+
+def test_settings_are_compared_as_they_are_read(tmp_path: Path) -> None:
+    for _ in range(2):
+        begin(tmp_path / "new" / "set", asked={"cells": (16, 16), "nodata": float("nan")})
+    known = read_settings(tmp_path / "new" / "set")
+    assert repr(known.asked) == "{'cells': [16, 16], 'nodata': nan}"
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        ({"compression": "none"}, 'compression="zstd", not "none"'),
+        ({"asked": {"count": 6}}, "count=5, not 6"),
+        ({"dtype": "float32"}, 'dtype="float64", not "float32"'),
+        ({"formulas": "other"}, "another version"),
+        ({"asked": {"count": 5, "angle": 3.0}}, "angle=null, not 3.0"),
+    ],
+)
+def test_other_settings(tmp_path: Path, change: dict[str, Any], what: str) -> None:
+    made.write(tmp_path, asked={"count": 5})
+    (tmp_path / "notes.txt").write_text("mine")
+    before = contents(tmp_path)
+    with pytest.raises(gm.errors.InputError, match="another folder") as error:
+        begin(tmp_path, **change)
+    assert what in str(error.value)
+    assert contents(tmp_path) == before
+    begin(tmp_path, overwrite=True, **change)
+    assert read_settings(tmp_path) == replace(KNOWN, **change)
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+    assert not parts_in(tmp_path)
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_folders_of_something_else(tmp_path: Path, overwrite: bool) -> None:
+    (tmp_path / "a").write_text("b")
+    with pytest.raises(gm.errors.FileError, match="new or empty folder"):
+        begin(tmp_path, overwrite)
+    with pytest.raises(gm.errors.FileError, match="is a file"):
+        begin(tmp_path / "a", overwrite)
+    with pytest.raises(gm.errors.FileError, match="no data set"):
+        read_settings(tmp_path)
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[1]", '{"format": 99}', "\0"])
+def test_damaged_settings(tmp_path: Path, text: str) -> None:
+    made.write(tmp_path)
+    (tmp_path / "dataset.json").write_text(text)
+    before = contents(tmp_path)
+    for overwrite, match in ((False, "cannot be used"), (True, "not of gaussmap")):
+        with pytest.raises(gm.errors.FileError, match=match):
+            begin(tmp_path, overwrite)
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_one_run_at_a_time(tmp_path: Path, overwrite: bool) -> None:
+    with opened(tmp_path, KNOWN):
+        write_part(tmp_path, KNOWN, made.row_of(made.BROKEN, 0))
+        with pytest.raises(gm.errors.FileError, match="another run"):
+            begin(tmp_path, overwrite)
+        assert parts_in(tmp_path)
+    begin(tmp_path, overwrite)
+    assert bool(parts_in(tmp_path)) is not overwrite
+
+
+def test_what_killed_runs_leave_is_removed(tmp_path: Path) -> None:
+    for name in (".gaussmap-0123.json", ".lock"):  # of one that was killed at once
+        (tmp_path / name).write_text("{")
+    begin(tmp_path, files=".ply")
+    with (
+        opened(tmp_path, replace(KNOWN, files=".ply")),
+        replaced(tmp_path, part_path(tmp_path, 0)) as temporary,
+    ):
+        assert temporary.parent == tmp_path / PARTIAL
+        temporary.touch()
+        for left in (temporary.with_name("a"), tmp_path / FILES / ".gaussmap-0.ply"):
+            left.write_bytes(b"PAR1")
+    begin(tmp_path, files=".ply")
+    left = sorted(str(x.relative_to(tmp_path)) for x in tmp_path.rglob("*"))
+    assert left == [".lock", "dataset.json", "files", "points", "points/000000.parquet"]
+
+
+def test_parts_of_a_longer_list_are_removed(tmp_path: Path) -> None:
+    (tmp_path / POINTS).mkdir()
+    (tmp_path / FILES).mkdir()
+    for part in (13, 14, 1_234_567):
+        part_path(tmp_path, part).touch()
+        (tmp_path / FILES / file_name(part, "a part", ".ply")).touch()
+    (tmp_path / POINTS / "mine.txt").touch()
+    remove_from(tmp_path, 14)
+    left = sorted(x.name for kind in (POINTS, FILES) for x in (tmp_path / kind).iterdir())
+    assert left == ["000013-a-part.ply", "000013.parquet", "mine.txt"]
+
+
+@pytest.mark.parametrize("overwrite", [False, True])
+@pytest.mark.parametrize(
+    "name", [POINTS, FILES, PARTIAL, MANIFEST, "normals.npy", ".lock", "dataset.json",
+             "points/000001.parquet", "partial/a", "files/000000.ply"],
+)  # fmt: skip
+def test_links_are_refused(tmp_path: Path, name: str, overwrite: bool) -> None:
+    folder, target = tmp_path / "set", tmp_path / "elsewhere"
+    made.write(folder)
+    for kind in (FILES, PARTIAL):
+        (folder / kind).mkdir()
+    if (folder / name).exists():
+        (folder / name).rename(target)
+    (folder / name).symlink_to(target)
+    before = contents(tmp_path)
+    with pytest.raises(gm.errors.FileError, match=f"{name}' is a symbolic link"):
+        begin(folder, overwrite)
+    assert contents(tmp_path) == before
+
+
+def test_the_folder_itself_may_be_a_link(tmp_path: Path) -> None:
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "set").symlink_to("disk")
+    begin(tmp_path / "set")
+    assert (tmp_path / "disk" / "dataset.json").is_file()
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "expected"),
+    [
+        (42, "bracket", "000042-bracket.ply"),
+        (42, "../etc/Größe 3,5\n", "000042-etc-Groe-3-5.ply"),
+        (3, "../../etc/passwd", "000003-etc-passwd.ply"),
+        (0, "/a/b", "000000-a-b.ply"),
+        (42, "螺丝", "000042.ply"),
+        (1_234_567, "", "1234567.ply"),
+        (1, "." * 5, "000001.ply"),
+        (1, "x" * 1000, f"000001-{'x' * 60}.ply"),
+    ],
+)
+def test_names_of_files_are_harmless_and_stay_in_their_folder(
+    part: int, name: str, expected: str
+) -> None:
+    assert file_name(part, name, ".ply") == expected

@@ -1,0 +1,127 @@
+"""What a run does: what is asked of each part, how it is stored, and within which limits."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...runtime.base.checks import known_name, listed, pair_of_cells
+from ...runtime.place.on_surface import checked_place
+from ...runtime.samples.fields import FLOAT_NAMES, PART_NAMES, checked_dtype, checked_fields
+from ...runtime.samples.request import Request
+from ..files.formats import SUFFIXES
+from ..sources.named import Named
+from .folder import CODECS, FILES, NORMALS, Settings, file_name
+
+__all__ = ["CODEC", "SECONDS", "Plan", "plan_of"]
+
+CODEC, SECONDS = "zstd", 600.0
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Plan:
+    """What all parts of a run have in common.
+
+    Attributes
+    ----------
+    settings : Settings
+        Those of the data set.
+    arguments : dict
+        The arguments of `sample` that are numbers and names: count, angle, coverage, density,
+        reach, cells, on.
+    named : Named
+        The options with which files become surfaces.
+    measured : bool
+        Whether coverage and normal deviation are measured where they were not asked for.
+    folder : Path
+        The absolute path of the data set, the same on all machines.
+    seconds : float
+        The longest time that a part may take.
+    memory : float
+        The most memory of a process, in GiB.
+    again : bool
+        Whether parts that failed in an earlier run are tried again.
+    run : str
+        What distinguishes this run from others.
+
+    """
+
+    settings: Settings
+    arguments: dict[str, Any]
+    named: Named = field(default_factory=Named)
+    measured: bool = False
+    folder: Path = Path()
+    seconds: float = SECONDS
+    memory: float = 1.0
+    again: bool = False
+    run: str = field(default_factory=secrets.token_hex)
+
+    def file(self, part: int, name: str) -> Path | None:
+        """Return the path of a part's file of another format, if there are any."""
+        suffix = self.settings.files
+        return None if suffix is None else self.folder / FILES / file_name(part, name, suffix)
+
+    def normals(self) -> NDArray[np.float64] | None:
+        """Return the prescribed normals, which are in a file: they may be larger than all else."""
+        return _read(self.folder / NORMALS) if "normals" in self.settings.asked else None
+
+
+@cache
+def _read(path: Path) -> NDArray[np.float64]:
+    return np.load(path, allow_pickle=False)
+
+
+def plan_of(
+    request: Request,
+    *,
+    cells: Sequence[int] | None,
+    on: str | None,
+    measured: bool,
+    fields: Sequence[str] | None,
+    dtype: DTypeLike,
+    compression: str,
+    files: str | None,
+    named: Named | None = None,
+) -> Plan:
+    """Return what is asked of each part; `named` has the options with which files are read."""
+    reach, named = request.reach, named or Named()
+    arguments = {
+        "count": request.count,
+        "angle": request.angle,
+        "coverage": request.coverage,
+        "density": request.density,
+        "reach": None if reach is None else [reach.axis.tolist(), reach.angle],
+        "cells": None if cells is None else list(pair_of_cells(cells)),
+        "on": checked_place(on),
+    }
+    asked = {name: value for name, value in arguments.items() if value is not None}
+    asked |= named.given() | {"measured": measured}
+    if request.normals is not None:
+        data = np.ascontiguousarray(request.normals)
+        asked["normals"] = f"{len(data)}, SHA-256 {hashlib.sha256(data.data).hexdigest()}"
+    settings = Settings.of_this_version(
+        asked=asked,
+        fields=FLOAT_NAMES if fields is None else _known_fields(fields),
+        dtype=checked_dtype(dtype).name,
+        compression=known_name(compression, CODECS, "compression"),
+        files=None if files is None else known_name(files, SUFFIXES, "suffix of files"),
+    )
+    return Plan(settings, arguments, named, measured)
+
+
+def _known_fields(fields: Sequence[str]) -> tuple[str, ...]:
+    """Return fields of which some parts may have none: those of CAD parts, and of grids."""
+    names = listed(fields)
+    if names is None:
+        return checked_fields(fields)  # which raises
+    others = [name for name in names if not isinstance(name, str) or name not in PART_NAMES]
+    wanted = checked_fields(others, True, grid=True)
+    return wanted + tuple(name for name in PART_NAMES if name in names)

@@ -1,0 +1,182 @@
+"""What the process does that samples parts.
+
+It gets pickled tasks by a pipe and answers with texts of JSON; what functions of users print goes
+to standard error. It ends when the pipe does.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pickle
+import signal
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from multiprocessing.connection import Connection
+from typing import TYPE_CHECKING, Any
+
+from ..files.processes import end_with_parent, limit
+
+if TYPE_CHECKING:
+    from .inputs import Input
+    from .manifest import ManifestRow
+    from .options import Plan
+
+__all__ = ["KEPT", "STOPPED", "Task", "serve"]
+
+GIB = 2**30
+# What becomes of a part beside "ok" and "failed": it is unchanged; its samples cannot be written.
+KEPT, STOPPED = "kept", "stopped"
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A part to sample.
+
+    Attributes
+    ----------
+    input : Input
+        The part.
+    plan : Plan
+        What to sample, and where the data set is.
+    before : ManifestRow or None
+        What is there of the part, if it need not be done again unless its content has changed.
+    again : bool
+        Whether this is another attempt.
+
+    """
+
+    input: Input
+    plan: Plan
+    before: ManifestRow | None = None
+    again: bool = False
+
+    def row(self, about: dict[str, Any]) -> ManifestRow:
+        """Return what became of the part."""
+        from .manifest import ManifestRow
+
+        return ManifestRow(self.input.part, self.input.name, self.input.source, **about)
+
+
+def serve(pipe: Connection, memory: float, parent: int) -> None:
+    """Answer tasks until there are no more, with at most so many GiB of memory."""
+    end_with_parent("SIGKILL", parent)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that asks
+    limit(RLIMIT_DATA=int(memory * GIB))
+    os.dup2(2, 1)
+    from ...runtime.sample import sample  # noqa: F401 - which takes its time, and that is not a part's
+
+    _say(pipe, {})
+    while True:
+        try:
+            task = pickle.loads(pipe.recv_bytes())
+        except EOFError:
+            return
+        for about in _answers(task):
+            _say(pipe, about)
+
+
+def _say(pipe: Connection, about: dict[str, Any]) -> None:
+    """Write a text. It is no pickle: what reads it runs no code that a file may hold."""
+    pipe.send_bytes(json.dumps(about).encode())
+
+
+def _answers(task: Task) -> Iterator[dict[str, Any]]:
+    """Yield the content of a part, and what became of it when its samples are written."""
+    from ...runtime.base.errors import FileError, GaussmapError
+    from .manifest import FAILED, OK
+    from .part_files import write_part
+
+    about: dict[str, Any] = {"status": FAILED}
+    samples = None
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            surface, known = _source(task)
+            # First of all: it is known then, even if sampling kills this process.
+            yield known
+            if task.before is not None and known["content"] == task.before.content:
+                yield {"status": KEPT}
+                return
+            more, samples = _sampled(surface, task)
+            about = {"status": OK} | known | more
+        except GaussmapError as error:
+            about["error"] = str(error)
+        except MemoryError:
+            about["error"] = "needs more memory than memory_limit; raise it."
+        except Exception as error:  # of what users' functions and files do
+            about["error"] = f"{type(error).__name__}: {error}"
+    about["warnings"] = "\n".join(dict.fromkeys(str(x.message) for x in caught))
+    if samples is not None:
+        try:
+            write_part(task.plan.folder, task.plan.settings, task.row(about), samples)
+        except FileError as error:
+            about = {"status": STOPPED, "error": str(error)}
+    yield about
+
+
+def _source(task: Task) -> tuple[Any, dict[str, str]]:
+    """Return the part, and what it is known by."""
+    from ..cad.inspection import is_part_file
+    from ..files.numpy_files import array_file
+    from ..sources.surface_of import surface_of
+    from .inputs import content_of, parameters_of
+
+    path = task.input.path
+    if path is None:
+        surface = pickle.loads(task.input.pickled)
+        return surface, {"content": content_of(surface), "parameters": parameters_of(surface)}
+    known = {"content": content_of(array_file(path))}
+    if task.before is not None and known["content"] == task.before.content:
+        return None, known
+    named = replace(task.plan.named, surface=path, quiet=True)
+    if is_part_file(path):  # neither of which has cells
+        plan = task.plan
+        named = replace(named, tolerance=None, time_limit=plan.seconds, memory_limit=plan.memory)
+    return surface_of(named), known
+
+
+def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: ANN401
+    """Return numbers of the manifest, and the samples; write the file of another format."""
+    from ...runtime.place.on_surface import place_of_samples
+    from ...runtime.sample import sample
+    from ...runtime.samples.fields import checked_fields
+    from ..cad.part import Part
+    from ..files.lengths import unit_of
+    from ..sources.surface_of import with_tolerance
+
+    plan, settings = task.plan, task.plan.settings
+    arguments = dict(plan.arguments)
+    part = isinstance(source, Part)
+    if part:
+        surface, arguments["cells"] = source, None
+    else:
+        named = replace(plan.named, cells=arguments["cells"], quiet=True)
+        surface, arguments["cells"] = with_tolerance(source, named)
+    on = "surface" if part else place_of_samples(surface, arguments.get("on"))
+    grid = arguments.get("density") == "aligned"
+    known = checked_fields(None, on == "surface", grid=grid and not part, part=part)
+    samples = sample(
+        surface,
+        normals=plan.normals(),
+        fields=tuple(name for name in settings.fields if name in known),
+        dtype=settings.dtype,
+        threads=1,
+        **arguments,
+    )
+    report = samples.report
+    about = {
+        "samples": len(samples),
+        "unit_of_length": unit_of(samples) or "",
+        "misfit": report.fit_distance,
+        "coverage": report.coverage,
+        "angle": report.angle,
+    }
+    if plan.measured and len(samples):
+        about["coverage"] = samples.coverage(threads=1)
+        about["angle"] = samples.normal_deviation(threads=1)
+    file = plan.file(task.input.part, task.input.name)
+    if file is not None:
+        samples.write(file)
+    return about, samples

@@ -1,0 +1,241 @@
+"""Sampling parts by processes: what fails is a row, and what ends a process costs one part."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import pickle
+import signal
+import time
+from collections.abc import Generator, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from multiprocessing.connection import Connection, wait
+from typing import Any, Self
+
+from ...runtime.base.errors import FileError
+from ...runtime.base.extras import from_extra
+from .folder import PARTIAL
+from .inputs import Input
+from .manifest import FAILED, ManifestRow
+from .options import Plan
+from .part_files import row_of, write_part
+from .sampling import KEPT, STOPPED, Task, serve
+
+__all__ = ["Tally", "Worker", "run_locally", "sampled"]
+
+# So many failures are shown when a run ends; the manifest has all.
+SHOWN = 10
+# A process has one thread, as many processes run as there are cores. Modules of users are found
+# after those of Python and of packages: none hides them.
+ENVIRONMENT = dict.fromkeys(
+    ("NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS",
+     "PYTHONSAFEPATH"), "1"
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Tally:
+    """What became of parts: how many are sampled, failed, or done by an earlier run.
+
+    `failures` are the names of the first ones, and why.
+    """
+
+    ok: int = 0
+    failed: int = 0
+    kept: int = 0
+    samples: int = 0
+    failures: tuple[tuple[str, str], ...] = ()
+
+    @classmethod
+    def of(cls, row: ManifestRow, kept: bool) -> Self:
+        """Return the tally of one part."""
+        if row.status == FAILED:
+            return cls(failed=1, failures=((row.name, row.error),))
+        return cls(ok=int(not kept), kept=int(kept), samples=row.samples)
+
+    @property
+    def parts(self) -> int:
+        """The number of parts."""
+        return self.ok + self.failed + self.kept
+
+    def __add__(self, other: Self) -> Tally:
+        return Tally(
+            self.ok + other.ok,
+            self.failed + other.failed,
+            self.kept + other.kept,
+            self.samples + other.samples,
+            (self.failures + other.failures)[:SHOWN],
+        )
+
+
+class Worker:
+    """A process that samples one part at a time; it is started when it is needed, and again.
+
+    Attributes
+    ----------
+    plan : Plan
+        That of the run.
+    pipe : Connection
+        Something can be read there when `answer` is to be called,
+    deadline : float
+        or when it is so late, as `time.monotonic` says.
+
+    """
+
+    pipe: Connection
+    task: Task
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.deadline = math.inf
+        self._process: Any = None
+        self._about: dict[str, Any] = {}
+
+    def begin(self, task: Task) -> None:
+        """Let the process sample a part."""
+        self.task, self._about = task, {}
+        if self._process is not None and self._process.is_alive():
+            self._send()
+        else:
+            self.end()
+            self._start()
+
+    def answer(self) -> dict[str, Any] | None:
+        """Return what became of the part; None if that is not known yet.
+
+        Raises FileError if the process does not start.
+        """
+        try:
+            if not self.pipe.poll():
+                self.end()
+                seconds = self.plan.seconds
+                return self._failed(f"takes longer than time_limit ({seconds:g} s); raise it.")
+            told = json.loads(self.pipe.recv_bytes())
+        except (EOFError, OSError):
+            return self._failed(self._why())
+        if not told:
+            self._send()
+        self._about |= told
+        return self._about if "status" in self._about else None
+
+    def end(self) -> None:
+        """End the process."""
+        if self._process is not None:
+            with suppress(OSError):  # it has ended just now
+                if self._process.is_alive():
+                    os.kill(self._process.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
+            self._process.join()
+            self.pipe.close()
+            self._process, self.deadline = None, math.inf
+
+    def _start(self) -> None:
+        # Unlike multiprocessing's, its processes do not run the program of the user again.
+        loky = from_extra("loky.backend", "batch", "a data set").get_context("loky")
+        self.pipe, theirs = loky.Pipe()
+        self._process = loky.Process(
+            target=serve,
+            args=(theirs, self.plan.memory, os.getpid()),
+            daemon=True,
+            env=ENVIRONMENT | {"TMPDIR": str(self.plan.folder / PARTIAL)},
+        )
+        self._process.start()
+        theirs.close()
+
+    def _send(self) -> None:
+        self.deadline = time.monotonic() + self.plan.seconds
+        with suppress(OSError):  # it has ended: `answer` says why
+            self.pipe.send_bytes(pickle.dumps(self.task))
+
+    def _failed(self, error: str) -> dict[str, Any]:
+        return self._about | {"status": FAILED, "error": error}
+
+    def _why(self) -> str:
+        """Return why the process has ended."""
+        process, begun = self._process, self.deadline < math.inf
+        process.join(1.0)
+        self.end()
+        code = process.exitcode
+        if not begun:
+            raise FileError(
+                f"the process for sampling did not start (exit code {code}); see its messages, or "
+                "raise memory_limit."
+            )
+        how = f"by signal {-code}" if code < 0 else f"with exit code {code}"
+        return (
+            f"the process that sampled it ended {how}; it may need more memory than "
+            f"{self.plan.memory:g} GiB, or its function or file ends processes."
+        )
+
+
+def run_locally(
+    plan: Plan, parts: Iterable[Input], count: int | None, workers: int
+) -> Generator[Tally]:
+    """Yield what became of each part; closing the iterator, errors and Ctrl-C end all processes."""
+    crew = [Worker(plan) for _ in range(workers if count is None else min(workers, count))]
+    try:
+        yield from sampled(parts, crew)
+    finally:
+        for worker in crew:
+            worker.end()
+
+
+def sampled(parts: Iterable[Input], crew: Sequence[Worker]) -> Generator[Tally]:
+    """Yield what became of each part, sampled by processes.
+
+    Raises FileError if the data set cannot be written.
+    """
+    left, idle = iter(parts), list(crew)
+    busy: dict[Connection, Worker] = {}
+
+    def begin(worker: Worker, task: Task) -> None:
+        worker.begin(task)
+        busy[worker.pipe] = worker
+
+    while True:
+        while idle and (part := next(left, None)) is not None:
+            begin(worker := idle.pop(), _task(worker.plan, part))
+        if not busy:
+            return
+        late = min(worker.deadline for worker in busy.values()) - time.monotonic()
+        ready = wait(list(busy), None if late == math.inf else max(late, 0.0))
+        for pipe, worker in list(busy.items()):
+            if pipe not in ready and worker.deadline > time.monotonic():
+                continue
+            if (about := worker.answer()) is None:
+                continue
+            del busy[pipe]
+            if about["status"] == FAILED and not worker.task.again:
+                begin(worker, replace(worker.task, again=True))
+                continue
+            idle.append(worker)
+            yield _done(worker.task, about)
+
+
+def _task(plan: Plan, part: Input) -> Task:
+    """Return what is to be done of a part, and of what is there of it."""
+    row = row_of(plan.folder, plan.settings, part.part)
+    file = plan.file(part.part, part.name)
+    if row is not None and (row.name, row.source) != (part.name, part.source):
+        old = plan.file(row.part, row.name)
+        if old is not None and old != file:
+            old.unlink(missing_ok=True)
+        row = None
+    lacks = file is not None and not file.exists()
+    if row is not None and (plan.again if row.status == FAILED else lacks):
+        row = None
+    return Task(part, plan, row)
+
+
+def _done(task: Task, about: dict[str, Any]) -> Tally:
+    """Return what became of a part; write that it failed."""
+    if about["status"] == STOPPED:
+        raise FileError(about["error"])
+    if about["status"] == KEPT:
+        assert task.before is not None
+        return Tally.of(task.before, kept=True)
+    row = task.row(about)
+    if row.status == FAILED and row != task.before:
+        write_part(task.plan.folder, task.plan.settings, row)
+    return Tally.of(row, kept=False)
