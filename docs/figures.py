@@ -17,6 +17,7 @@ from gaussmap.docs.animation import palette_of, reduced, with_palette
 from gaussmap.docs.curve_figures import figure_4, figure_5
 from gaussmap.docs.dark import dark
 from gaussmap.docs.patch_figures import figure_2, figure_3
+from gaussmap.docs.search_figure import search_figure
 from gaussmap.docs.surface_figures import figure_6, figure_7
 from gaussmap.tools.files.paths import atomic_path
 from gaussmap.tools.pictures.palette import STYLE
@@ -32,6 +33,8 @@ FIGURES: dict[int, Callable[[], tuple[Figure, str]]] = {
     6: figure_6,
     7: figure_7,
 }
+# Those of other pages, by their names.
+OTHERS: dict[str, Callable[[], Figure]] = {"search": search_figure}
 # The pictures that `make demo` draws, and that the README shows with fewer colours.
 DEMO, COLOURS = ("torus", "terrain"), 250
 HEAD = """# The figures of the paper
@@ -42,17 +45,26 @@ Written by `make figures`: do not edit. Blue is elliptic (on curves κ > 0), ora
 
 
 def page(folder: Path) -> str:
-    """Draw the figures into a folder, and return the page that shows them."""
+    """Draw the figures into a folder, and return the page that shows those of the paper."""
     folder.mkdir(exist_ok=True)
     parts = [HEAD]
+    style = ["default", STYLE, {"mathtext.fontset": "stix"}]
+    for name, draw_other in OTHERS.items():
+        with matplotlib.style.context(style):
+            save(draw_other(), folder / f"{name}.png")
     for number, draw in FIGURES.items():
-        with matplotlib.style.context(["default", STYLE, {"mathtext.fontset": "stix"}]):
+        with matplotlib.style.context(style):
             figure, caption = draw()
-            with atomic_path(folder / f"figure_{number}.png") as temporary:
-                figure.savefig(temporary, format="png", metadata={"Software": None})
+            save(figure, folder / f"figure_{number}.png")
         text = filled(f"**Fig. {number}.** {caption}")
         parts.append(f"\n![Fig. {number}](figures/figure_{number}.png)\n\n{text}\n")
     return "".join(parts)
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a picture."""
+    with atomic_path(path) as temporary:
+        figure.savefig(temporary, format="png", metadata={"Software": None})
 
 
 def demo(made: Path, folder: Path) -> None:

@@ -172,8 +172,11 @@ class _Stream:
         arrays = found.fields
         if start and "normal_index" in arrays:
             arrays["normal_index"] = arrays["normal_index"] + start
-        report = replace(report, samples=found.number, infinite_curvatures=count_infinite(arrays))
-        return self.geometry.samples(arrays, report, found.unrefined)
+        report = replace(
+            report, samples=found.number, infinite_curvatures=count_infinite(arrays),
+            unrefined=found.unrefined,
+        )  # fmt: skip
+        return self.geometry.samples(arrays, report)
 
 
 def _chunk(found: Samples, start: int, total: int, is_first: bool) -> Samples:

@@ -47,7 +47,7 @@ def over_ranges(
     With `progress`, a bar on standard error shows work that takes longer than a second.
     """
     starts = range(0, total, size)
-    workers = min(thread_count(threads), len(starts))
+    workers = min(thread_count(threads), len(starts)) if len(starts) > 1 else 1
     # Work inside of work takes the thread that it has: all others may be waiting for it.
     if workers <= 1 or getattr(_HERE, "is_worker", False):
         results = (work(first, min(first + size, total)) for first in starts)

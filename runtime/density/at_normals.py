@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from operator import attrgetter
 from typing import Any, NamedTuple
@@ -200,8 +200,10 @@ def samples_at(
     if hits is None:
         hits = find(geometry.spline, normals, threads, progress)
     found = geometry.at_hits(normals, hits, fields, dtype)
-    report = geometry.report(len(normals), chosen.density, hits.developable, found.fields)
-    return geometry.samples(found.fields, report, found.unrefined), normals
+    report = geometry.report(
+        len(normals), chosen.density, hits.developable, found.fields, unrefined=found.unrefined
+    )
+    return geometry.samples(found.fields, report), normals
 
 
 def _proved(
@@ -218,9 +220,11 @@ def _proved(
         geometry.surface, geometry.spline, index, normals, fields, dtype, threads
     )
     developable = developable_patches(geometry.spline, threads)
-    report = geometry.report(len(normals), chosen.density, developable, found.fields)
-    report = replace(report, **proof._asdict())
-    return geometry.samples(found.fields, report, found.unrefined), normals
+    report = geometry.report(
+        len(normals), chosen.density, developable, found.fields, unrefined=found.unrefined,
+        **proof._asdict(),
+    )  # fmt: skip
+    return geometry.samples(found.fields, report), normals
 
 
 def _with_all_fields(geometry: OnSpline, chosen: Chosen, progress: bool) -> tuple[Samples, Array]:

@@ -1,4 +1,4 @@
-"""Pieces of a surface: the patches of a spline, each with a cone of its normals.
+"""Pieces of a surface, each with a cone of its normals: patches of a spline, or cells of a surface.
 
 The normals of a patch are combinations of its control normals with positive weights. So a cone that
 holds the directions of these holds all normals: those within a distance, a chord, of an axis. Long
@@ -25,7 +25,10 @@ from .vectors import dot, length, row_vector, set_row
 __all__ = [
     "BOUND",
     "CHORD",
+    "CONE",
     "EVERYTHING",
+    "REST_S",
+    "REST_T",
     "SLAB",
     "VECTORS",
     "WIDTH",
@@ -37,8 +40,10 @@ __all__ = [
 
 # Columns of cones: the axis, the chord; the direction of the slab, and half its width.
 CHORD, SLAB, WIDTH, CONE = 3, 4, 7, 8
-# Columns of patches: the vectors a, b, c, d, e, and the error of U, V, W.
+# Columns of patches: the vectors a, b, c, d, e, and the error of U, V, W; those of cells of a
+# surface have bounds of what the patch leaves out of x_s and x_t instead.
 BOUND, VECTORS = 15, 16
+REST_S, REST_T = 15, 16
 # The chord of a cone that holds all directions, and the width of a slab that does.
 EVERYTHING = 2.0
 # Cones with a chord above this are not used: weights add up to less than the cosine of their angle.
@@ -62,10 +67,9 @@ class Coefficients(NamedTuple):
 
 
 class Pieces(NamedTuple):
-    """Cones with slabs (K, 8) and patches (K, 16), see the columns above.
+    """Cones with slabs (K, 8) and patches (K, 16 or more), see the columns above.
 
-    A slab of width EVERYTHING also says that normals have to be compared with that of the patch:
-    its cone does not exclude their opposites.
+    A slab of width EVERYTHING also says that the cone does not exclude the opposites of normals.
     """
 
     cones: NDArray[np.float64]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ...generated.proved import contraction, normal_ordinates, remainders
 from ...generated.vectors import Patch, Vector
 from ..machine_code.jit import inline, jit, loop
+from .pieces import REST_S, REST_T
 from .tape import LANES, POINT, UU, UV, VV, U, V, evaluate_points
 from .tape_balls import BALL, evaluate_boxes
 from .tape_rounding import rounding_of_points
@@ -27,8 +28,6 @@ __all__ = [
     "FIRST_T",
     "OPEN",
     "REACH",
-    "REST_S",
-    "REST_T",
     "SECOND",
     "WIDE",
     "Cells",
@@ -46,7 +45,7 @@ EPS = 2.0**-52
 # Bounds hold beyond the sides of a cell, so that neighbours share the points near a common side.
 INFLATED = 1.0 + 1.0 / 16.0
 # The columns of `hot`: five vectors of the patch, then what it leaves out.
-REST_S, REST_T, HOT = 15, 16, 17
+HOT = 17
 # The columns of `noise`: of derivatives by s and t, of second derivatives; then how far bounds go.
 FIRST_S, FIRST_T, SECOND, REACH = range(4)
 # The chord of a cone: from here on its half angle is too wide to tell n from −n; no bound at all.

@@ -1,21 +1,15 @@
-"""The search: the places of cells with normals that two evaluations of the surface prove.
-
-Normals come in the order of bins, so that those of a tile have nearly the same cells.
-"""
+"""The places of pairs of a normal and a cell that two evaluations of the surface prove."""
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...generated.proved import excesses
-from ...generated.vectors import Vector
-from ..machine_code.jit import jit, long_vectors, loop
-from .bins import bin_index, cube_face
-from .proved_cells import REST_S, REST_T, WIDE, Cells, linear_forms_of, patch_of
+from ..machine_code.jit import jit, loop
+from .lists import NUMBER
+from .proved_cells import Cells
 from .proved_pairs import (
     DETERMINANT,
     HARD,
@@ -31,34 +25,25 @@ from .proved_pairs import (
     load_pair,
 )  # fmt: skip
 from .tape import LANES, evaluate_points
-from .vectors import dot, row_vector
+from .vectors import row_vector
 
-__all__ = ["PLACE", "Found", "Index", "Tiles", "search_normals"]
+__all__ = ["PLACE", "Found", "Index", "Tiles", "evaluate_pairs"]
 
 # The columns of places: u, v, how far each may be from the exact one, D, and whether the border of
 # the domain is so near.
 PLACE = 6
-# Rows of a tile of normals: x, y, z, and the largest of what excludes a cell.
-Y, Z, EXCESS = (np.uint64(k * LANES) for k in range(1, 4))
 
 
 class Index(NamedTuple):
-    """Cells, and those of them that may have the normals of each bin of the sphere.
-
-    `starts` (6 grid² + 1,) are the starts of the bins in `members`, the numbers of cells. From
-    number `discs` on, cells are discs around poles.
-    """
+    """Cells; from number `discs` on, they are discs around poles."""
 
     cells: Cells
     discs: int
-    starts: NDArray[np.int64]
-    members: NDArray[np.int32]
 
 
 class Tiles(NamedTuple):
-    """Work arrays: a tile of normals, and one of pairs with their cells and numbers of normals."""
+    """Work arrays: a tile of pairs with their cells and numbers of normals."""
 
-    normals: NDArray[np.float64]
     pairs: NDArray[np.float64]
     cells: NDArray[np.int64]
     numbers: NDArray[np.int64]
@@ -70,7 +55,7 @@ class Tiles(NamedTuple):
         """Return new work arrays."""
         cells, numbers = np.zeros((2, LANES), np.int64)
         u, v = np.zeros((2, LANES))
-        return cls(np.zeros(4 * LANES), np.zeros(ROWS * LANES), cells, numbers, u, v)
+        return cls(np.zeros(ROWS * LANES), cells, numbers, u, v)
 
 
 class Found(NamedTuple):
@@ -91,47 +76,6 @@ class Found(NamedTuple):
             np.empty((places, PLACE)), np.empty(places, np.int64), np.empty((hard, 2), np.int64),
             np.zeros(2, np.int64),
         )  # fmt: skip
-
-
-@loop
-def bin_of(normals, k, grid):
-    """Return the bin of the cube of row k of normals."""
-    face, s, t = cube_face(row_vector(normals, k))
-    return (face * grid + bin_index(t, grid)) * grid + bin_index(s, grid)
-
-
-@loop
-def exclude(tile, count, cells, j):
-    """Write a positive number for each normal of a tile that cell j does not have by its bounds."""
-    long_vectors()
-    patch = patch_of(cells.hot, j)
-    rest_s, rest_t = cells.hot[j, REST_S], cells.hot[j, REST_T]
-    axis, chord = row_vector(cells.cone, j), cells.cone[j, 3]
-    square = chord * chord
-    for k in range(count):
-        i = np.uint64(k)
-        n = Vector(tile[i], tile[i + Y], tile[i + Z])
-        a, b, c, p, q = linear_forms_of(patch, n)
-        e1, e2, e3, e4 = excesses(a, b, c, p, q, rest_s, rest_t)
-        away = 2.0 - 2.0 * dot(axis, n) - square
-        tile[i + EXCESS] = max(max(max(e1, e2), max(e3, e4)), away)
-
-
-@loop
-def load_normals(tile, normals, first, last):
-    """Write normals first, …, last − 1 to a tile; return their middle and distance from it."""
-    x = y = z = 0.0
-    for k in range(first, last):
-        i = np.uint64(k - first)
-        tile[i], tile[i + Y], tile[i + Z] = normals[k, 0], normals[k, 1], normals[k, 2]
-        x, y, z = x + normals[k, 0], y + normals[k, 1], z + normals[k, 2]
-    size = float(last - first)
-    middle = Vector(x / size, y / size, z / size)
-    square = 0.0
-    for k in range(first, last):
-        n = row_vector(normals, k)
-        square = max(square, (n.x - middle.x) ** 2 + (n.y - middle.y) ** 2 + (n.z - middle.z) ** 2)
-    return middle, math.sqrt(square) * (1.0 + 1e-12)
 
 
 @loop
@@ -182,47 +126,22 @@ def store_hard(t, count, tiles, found):
 
 
 @jit
-def search_normals(index, tape, work, normals, grid, first, last, tiles, found):
-    """Find the places with the normals first, …, last − 1; say whether there was room for them.
+def evaluate_pairs(cells, tape, work, normals, keys, tiles, found):
+    """Find the places of pairs; say whether there was room for them.
 
-    A row of normals (S, 4) is a unit normal and its number; `grid` is that of the bins.
+    A key is number of a normal (S, 3) << 32 | cell.
     """
     found.counts[0] = found.counts[1] = 0
-    cells, tile = index.cells, tiles.normals
     kept = count = 0  # pairs in the tile, those that have been there before in front
-    at = first
-    while at < last:
-        square = bin_of(normals, at, grid)
-        end = at + 1
-        while end < last and end - at < LANES and bin_of(normals, end, grid) == square:
-            end += 1
-        middle, radius = load_normals(tile, normals, at, end)
-        for member in range(index.starts[square], index.starts[square + 1]):
-            j = index.members[member]
-            axis = row_vector(cells.cone, j)
-            x, y, z = axis.x - middle.x, axis.y - middle.y, axis.z - middle.z
-            reach = cells.cone[j, 3] + radius
-            if x * x + y * y + z * z > reach * reach:
-                continue
-            exclude(tile, end - at, cells, j)
-            for k in range(end - at):
-                if tile[np.uint64(k) + EXCESS] > 0.0:
-                    continue
-                if cells.cone[j, 3] >= WIDE or j >= index.discs:
-                    hard = found.counts[1]
-                    if hard >= found.hard.shape[0]:
-                        return False
-                    found.hard[hard, 0], found.hard[hard, 1] = np.int64(normals[at + k, 3]), j
-                    found.counts[1] += 1
-                    continue
-                load_pair(tiles.pairs, count, cells, j, row_vector(normals, at + k))
-                tiles.cells[count], tiles.numbers[count] = j, np.int64(normals[at + k, 3])
-                count += 1
-                while count == LANES:
-                    kept = count = flush(tape, work, cells, tiles, kept, count, found)
-                if count < 0:
-                    return False
-        at = end
+    for key in keys:
+        number, j = key >> 32, key & NUMBER
+        load_pair(tiles.pairs, count, cells, j, row_vector(normals, number))
+        tiles.cells[count], tiles.numbers[count] = j, number
+        count += 1
+        while count == LANES:
+            kept = count = flush(tape, work, cells, tiles, kept, count, found)
+        if count < 0:
+            return False
     while count > 0:
         kept = count = flush(tape, work, cells, tiles, kept, count, found)
     return count == 0

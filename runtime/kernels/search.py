@@ -1,7 +1,8 @@
-"""The search: which pieces have which normals, by the signs of U, V, W and D.
+"""The search: which pieces have which normals.
 
 Normals come in the order of their bins. A tile is up to LANES normals of one bin; the pieces of the
-bin whose cones meet a cap around the tile are tested at all of its normals.
+bin whose cones meet a cap around the tile are tested at all of its normals. The signs of U, V, W
+and D decide for the patch of a spline; a cell of a surface is excluded, or left to the proof.
 """
 
 from __future__ import annotations
@@ -13,15 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...generated.patch import forms, parameters
+from ...generated.proved import excesses
 from ...generated.vectors import Patch, Vector
 from ..base.tolerances import ACCURATE
 from ..machine_code.jit import inline, jit, loop
 from .lists import FINEST, NUMBER, meets
 from .patch import normal_of_patch
-from .pieces import BOUND, CHORD, EVERYTHING, WIDTH
+from .pieces import BOUND, CHORD, EVERYTHING, REST_S, REST_T, WIDTH
 from .vectors import dot, row_vector
 
-__all__ = ["Found", "Memory", "search"]
+__all__ = ["CELLS", "PATCHES", "Found", "Memory", "search"]
+
+# The kinds of pieces.
+PATCHES, CELLS = 0, 1
 
 # The normals of a tile, and how many of them are tested at a time.
 LANES, STEP = 64, 8
@@ -61,8 +66,8 @@ class Found(NamedTuple):
 
 
 @jit
-def search(pieces, lists, normals, order, first, last, memory, found):
-    """Find the pieces of the normals order[first], …, order[last − 1].
+def search(kind, pieces, lists, normals, order, first, last, memory, found):
+    """Find the pieces, which are of a kind, of the normals order[first], …, order[last − 1].
 
     `order` (S,) are keys of `order_normals`. Returns where there was no more room, and how much
     room is needed there.
@@ -84,9 +89,12 @@ def search(pieces, lists, normals, order, first, last, memory, found):
             return at, size * count
         for m in range(size):
             j = near[m]
-            test_tile(cones[j], pieces.patches[j], tile, count)
-            if cones[j, WIDTH] >= EVERYTHING:
-                look_again(pieces.patches[j], tile, count)
+            if kind == CELLS:
+                exclude_tile(cones[j], pieces.patches[j], tile, count)
+            else:
+                test_tile(cones[j], pieces.patches[j], tile, count)
+                if cones[j, WIDTH] >= EVERYTHING:
+                    look_again(pieces.patches[j], tile, count)
             store(tile, count, order, at, j, found)
         at = end
     return last, 0
@@ -160,6 +168,28 @@ def test_tile(cone, row, tile, count):
             out = ((low < -bound) & (high > bound)) | (x * x + y * y + z * z > square)
             sure = ((low > bound) | (high < -bound)) & (abs(D) > least)
             tile[i + CODE] = NO if out else YES if sure else UNDECIDED
+
+
+@loop
+def exclude_tile(cone, row, tile, count):
+    """Write the codes of the normals of a tile: NO for those that a cell does not have by bounds.
+
+    The others are UNDECIDED if its cone does not exclude the opposites of normals.
+    """
+    patch, rest_s, rest_t = patch_in(row), row[REST_S], row[REST_T]
+    axis, square = Vector(cone[0], cone[1], cone[2]), cone[CHORD] * cone[CHORD]
+    code = UNDECIDED if cone[WIDTH] >= EVERYTHING else YES
+    for start in range(0, count, STEP):
+        for c in range(STEP):
+            i = np.uint64(start + c)
+            n = Vector(tile[i], tile[i + Y], tile[i + Z])
+            e1, e2, e3, e4 = excesses(
+                dot(patch.a, n), dot(patch.b, n), dot(patch.c, n), dot(patch.d, n),
+                dot(patch.e, n), rest_s, rest_t,
+            )  # fmt: skip
+            x, y, z = n.x - axis.x, n.y - axis.y, n.z - axis.z
+            largest = max(max(e1, e2), max(e3, e4))
+            tile[i + CODE] = NO if (largest > 0.0) | (x * x + y * y + z * z > square) else code
 
 
 @loop

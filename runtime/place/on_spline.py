@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from types import MappingProxyType
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -86,6 +85,8 @@ class OnSpline:
         Raises SurfaceError if points are beyond the range of `dtype`.
         """
         check_range(self.spline, dtype)
+        if threads == self.threads and not memory and not self.memory:
+            return self
         return replace(self, threads=threads, memory=memory)
 
     def within(self, reach: Cap | None) -> Self:
@@ -107,12 +108,12 @@ class OnSpline:
             places[:, axis] = np.clip(places[:, axis], low, high)
         return self.spline.normals(*places.T)
 
-    @cached_property
+    @property
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`."""
         return self.spline.measure
 
-    @cached_property
+    @property
     def cell_measure(self) -> CellMeasure:
         """The same of the cells."""
         return self.spline._cell_measure
@@ -146,15 +147,21 @@ class OnSpline:
             yield self.at_hits(normals, hits, fields, dtype)
 
     def report(
-        self, normals: int, density: float, developable: int | None, arrays: Fields
+        self,
+        normals: int,
+        density: float,
+        developable: int | None,
+        arrays: Fields,
+        **known: Any,  # noqa: ANN401
     ) -> SamplingReport:
         """Return the report of samples with some fields; see `sampling_report`."""
         count, cells = count_of(arrays) if arrays else 0, self.cell_measure
-        return sampling_report(self.spline, normals, count, density, developable, arrays, cells)
+        return sampling_report(
+            self.spline, normals, count, density, developable, arrays, cells, on=self.on, **known
+        )
 
-    def samples(self, fields: Fields, report: SamplingReport, unrefined: int | None) -> Samples:
-        """Return samples of fields, with what is known of all of them."""
-        report = replace(report, on=self.on, unrefined=unrefined)
+    def samples(self, fields: Fields, report: SamplingReport) -> Samples:
+        """Return samples of fields with their report."""
         return Samples(
             **fields, report=report, spline=self.spline, surface=self.surface, offset_of=None
         )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -12,6 +11,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.checks import known_name
 from ..base.errors import InputError
+from ..base.kept import kept
 from ..fitting.fit import spline_of
 from ..kernels import nodes as kernels
 from ..samples.fields import FLAG_NAMES
@@ -96,23 +96,31 @@ class OnSurface(OnSpline):
         assert self.surface is not None
         return evaluate_on_surface(self.surface, self.spline, places.copy(), threads=1)[1]
 
-    @cached_property
+    @property
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`.
 
         The solid angle is that of the cell, in equal parts: K at its Gauss points. A function whose
-        derivatives are differences of many evaluations has that of its spline.
+        derivatives are differences of many evaluations has that of its spline. They are kept with
+        the spline, which is that of one surface.
         """
+        return kept(self.spline, "measure of the surface", self._measured)
+
+    def _measured(self) -> tuple[Array, Array]:
         if not self.knows_jets:
             return self.spline.measure
         areas, inside = self.spline.measure[0], self.spline.inside
         solid_angles = np.repeat(self._at_gauss_points.reshape(-1, 4).sum(axis=1) / 16.0, 4)
         return areas, solid_angles if inside is None else solid_angles * inside.shares
 
-    @cached_property
+    @property
     def cell_measure(self) -> CellMeasure:
         """The same of the cells."""
-        return CellMeasure.of(self.measure, self.spline.cells)
+
+        def of_cells() -> CellMeasure:
+            return CellMeasure.of(self.measure, self.spline.cells)
+
+        return kept(self.spline, "measure of cells of the surface", of_cells)
 
     @property
     def _at_gauss_points(self) -> Array:
@@ -189,7 +197,7 @@ class OnSurface(OnSpline):
         """Return which samples do not repeat another one."""
         return kept_once(self.spline, arrays, self._at_poles(arrays))
 
-    @cached_property
+    @property
     def _charts(self) -> list[PoleChart]:
         assert self.surface is not None
         return pole_charts(self.surface, self.spline)

@@ -11,6 +11,7 @@ from numpy.typing import DTypeLike, NDArray
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..domain.trim import Trim
+from ..kernels.forms import patches_at
 from ..kernels.proved_cells import Work
 from ..kernels.proved_samples import CURVATURES, SampleFields, fill_places
 from ..kernels.tape import Tape
@@ -55,14 +56,35 @@ def proved_samples(
     dtype: DTypeLike,
     threads: int | None,
 ) -> tuple[FieldsOfSamples, Proof]:
-    """Return fields of all points that have unit normals (S, 3), by normal, and the proof."""
-    found = index.query(normals, threads)
+    """Return fields of all points that have unit normals (S, 3), and the proof.
+
+    They come in the order of normals, then of the patches of the spline, then of u and v.
+    """
+    found = _by_patch(index.query(normals, threads), spline)
     check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
     wanted = with_uv(spline.trim, fields)
     arrays = _arrays(surface, spline, index.tape, normals, found, wanted, threads)
     arrays = samples_inside(spline.trim, arrays, fields)
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
     return FieldsOfSamples(kept, 0), proof_of(normals, found.undecided, spline.trim)
+
+
+def _by_patch(found: ProvedPlaces, spline: Spline) -> ProvedPlaces:
+    """Return places in the order of normals, then of patches.
+
+    They are sorted by u, and so by rows of cells: only those of one row may have to be exchanged.
+    """
+    frame, numbers = spline.frame, found.numbers
+    row = np.clip((found.places[:, 0] - frame[0]) / frame[2], 0, spline.cells[0] - 1).astype(int)
+    same = np.flatnonzero((row[1:] == row[:-1]) & (numbers[1:] == numbers[:-1]))
+    if len(same) == 0:
+        return found
+    some = np.flatnonzero(np.isin(numbers, numbers[same]))
+    patches, local = np.empty(len(some), np.int64), np.empty((len(some), 2))
+    patches_at(*spline.cells, (found.uv[some] - frame[:2]) / frame[2:], patches, local)
+    places = found.places.copy()
+    places[some] = found.places[some[np.lexsort((patches, numbers[some]))]]
+    return found._replace(places=places)
 
 
 def _arrays(

@@ -306,10 +306,11 @@ def sampling_report(
     developable: int | None,
     arrays: Mapping[str, NDArray[Any]] = MappingProxyType({}),
     cells: CellMeasure | None = None,
+    **known: Any,  # noqa: ANN401
 ) -> SamplingReport:
     """Return the report of a sampling with `density` normals per steradian and its `arrays`.
 
-    `cells` are those of the surface, if it was sampled beside its spline.
+    `cells` are those of the surface, if it was sampled beside its spline, `known` other entries.
     """
     misfit, place = spline.misfit, spline.georeference
     return SamplingReport(
@@ -326,6 +327,7 @@ def sampling_report(
         apexes=spline.apexes,
         crs=None if place is None else place.crs,
         origin=None if place is None else place.origin,
+        **known,
     )
 
 

@@ -34,7 +34,7 @@ NORMALS_PER_BIN = 4
 LOOKED_AT = 1 << 12
 # Directions that fill a cap are spread over a face of the cube if its tangent is below this; it
 # counts as this at least.
-WIDEST_CAP, NARROWEST_CAP = 0.5, 2.0**-20
+WIDEST_CAP, NARROWEST_CAP = 0.5, 2.0**-30
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,12 +20,13 @@ from numpy.typing import NDArray
 from ..base.aliases import Array
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
+from ..kernels.lists import NUMBER, Lists
+from ..kernels.pieces import CHORD, CONE, EVERYTHING, WIDTH, Pieces
 from ..kernels.proved_answers import BORDER, BOX, KINDS, Answers, merge_places
-from ..kernels.proved_bins import count_members, list_members, write_squares
-from ..kernels.proved_cells import OPEN, REACH, Cells, Work, cut_cells
+from ..kernels.proved_cells import OPEN, REACH, WIDE, Cells, Work, cut_cells
 from ..kernels.proved_discs import decide_discs
 from ..kernels.proved_places import Boxes, decide_normals
-from ..kernels.proved_search import Found, Index, Tiles, search_normals
+from ..kernels.proved_search import PLACE, Found, Index, Tiles, evaluate_pairs
 from ..kernels.proved_sorting import (
     Sorted,
     count_places,
@@ -33,8 +34,11 @@ from ..kernels.proved_sorting import (
     put_places,
     start_normals,
 )
+from ..kernels.search import CELLS as KIND
+from ..kernels.search import Found as Pairs
+from ..kernels.search import Memory, search
 from ..kernels.tape import LANES, Tape
-from .bins import sorted_normals
+from .index import listed, ordered
 from .proved_discs import PoleDisc, pole_disc
 from .proved_lines import lines_of
 
@@ -48,11 +52,8 @@ CELLS = (64, 64)
 PROBES = 4
 # Base cells, normals and hard normals that are worked on at a time.
 CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
-# Room for cells, and for what is found at a time, in the beginning.
-CELL_ROOM, ROOM = 2048, 1 << 12
-# Normals of a tile are close to one another if there are so many in a bin; fewer are not sorted.
-NORMALS_PER_BIN, SORTED = 24, 64
-FINEST = 1024
+# Room for cells, for pairs of normals and cells, and for what is found at a time, in the beginning.
+CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
 # Cells without a cone of normals are in all bins: they are this part of the domain at most.
 MOST_OPEN = 0.25
 
@@ -116,8 +117,10 @@ class Rooms(NamedTuple):
     """Work arrays of one thread."""
 
     work: Work
+    memory: Memory
     tiles: Tiles
     boxes: Boxes
+    pairs: list[Pairs]
     found: list[Found]
     answers: list[Answers]
 
@@ -134,7 +137,8 @@ class ProvedIndex:
     tape: Tape
     domain: NDArray[np.float64]
     index: Index
-    grid: int  # of the bins
+    pieces: Pieces
+    lists: Lists
     discs: tuple[PoleDisc, ...]
     unbounded: NDArray[np.float64]
     _rooms: deque[Rooms] = field(default_factory=deque, repr=False)
@@ -188,9 +192,9 @@ class ProvedIndex:
         if sizes[cut.cone[:, 3] >= OPEN].sum() > MOST_OPEN * sizes.sum():
             return None
         both = Cells(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
-        levels = max(2, round(np.log2(np.sqrt(len(both.place) / 24.0 + 1.0))))
-        index = _listed(both, len(cut.place), levels)
-        return cls(tape, box, index, 1 << levels, discs, unbounded)
+        index = Index(both, len(cut.place))
+        pieces = _pieces_of(index)
+        return cls(tape, box, index, pieces, listed(pieces.cones), discs, unbounded)
 
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
         """Return all points with unit normals (S, 3).
@@ -211,33 +215,51 @@ class ProvedIndex:
         self, normals: NDArray[np.float64], threads: int | None
     ) -> tuple[list[Places], NDArray[np.int64]]:
         """Return what is found at once, and hard pairs (k, 2) of normals and cells."""
-        ordered = self._ordered(normals, threads)
+        order = ordered(normals, self.lists, threads)
+        nothing = Places(np.empty((0, PLACE)), np.empty(0, np.int64)), np.empty((0, 2), np.int64)
 
-        def work(first: int, last: int) -> tuple[Places, NDArray[np.int64]]:
+        def work(first: int, last: int) -> list[tuple[Places, NDArray[np.int64]]]:
+            numbers, count, parts, start = order[first:last] & NUMBER, last - first, [], 0
+            # Normals of a range side by side, since those of a bin are read for each of its cells.
+            some = np.take(normals, numbers, axis=0)
+            keys = (order[first:last] & ~NUMBER) | np.arange(count)
             with self._room() as rooms:
-                while not search_normals(
-                    self.index, self.tape, rooms.work, ordered, self.grid, first, last,
-                    rooms.tiles, rooms.found[0],
-                ):  # fmt: skip
-                    room = rooms.found[0]
-                    rooms.found[0] = Found.new(2 * len(room.numbers), 2 * len(room.hard))
-                found = rooms.found[0]
-                places, hard = found.counts
-                taken = Places(found.places[:places].copy(), found.numbers[:places].copy())
-                return taken, found.hard[:hard].copy()
+                while start < count:
+                    start, needed = search(
+                        KIND, self.pieces, self.lists, some, keys, start, count, rooms.memory,
+                        rooms.pairs[0],
+                    )  # fmt: skip
+                    parts.append(self._evaluated(some, numbers, rooms))
+                    if needed > len(rooms.pairs[0].certain):
+                        rooms.pairs[0] = Pairs.new(needed)
+            return parts
 
-        results = list(over_ranges(work, len(normals), NORMALS_AT_A_TIME, threads))
-        pairs = [np.empty((0, 2), np.int64), *(hard for _, hard in results)]
-        return [places for places, _ in results], np.concatenate(pairs)
+        ranges = over_ranges(work, len(order), NORMALS_AT_A_TIME, threads)
+        places, hard = zip(nothing, *(x for parts in ranges for x in parts), strict=True)
+        return list(places), np.concatenate(hard)
 
-    def _ordered(self, normals: NDArray[np.float64], threads: int | None) -> NDArray[np.float64]:
-        """Return normals with their numbers (S, 4), those of a bin together."""
-        if len(normals) < SORTED:
-            return np.column_stack([normals, np.arange(len(normals), dtype=np.float64)])
-        grid = self.grid
-        while 6 * (2 * grid) ** 2 * NORMALS_PER_BIN <= len(normals) and grid < FINEST:
-            grid *= 2
-        return sorted_normals(normals, np.eye(3), grid, threads)[1]
+    def _evaluated(
+        self, normals: NDArray[np.float64], numbers: NDArray[np.int64], rooms: Rooms
+    ) -> tuple[Places, NDArray[np.int64]]:
+        """Return what is found of the pairs of normals and cells in a room; see `_search`.
+
+        `numbers` (k,) are those of the normals (k, 3) in the query.
+        """
+        certain, undecided = rooms.pairs[0].counts
+        keys = rooms.pairs[0].certain[:certain]
+        while not evaluate_pairs(
+            self.index.cells, self.tape, rooms.work, normals, keys, rooms.tiles, rooms.found[0]
+        ):
+            room = rooms.found[0]
+            rooms.found[0] = Found.new(2 * len(room.numbers), 2 * len(room.hard))
+        found = rooms.found[0]
+        places, hard = found.counts
+        others = rooms.pairs[0].undecided[:undecided]
+        left = np.concatenate(
+            [found.hard[:hard], np.stack([others >> 32, others & NUMBER], axis=1)]
+        )
+        left[:, 0] = numbers[left[:, 0]]
+        return Places(found.places[:places].copy(), numbers[found.numbers[:places]]), left
 
     def _decide(
         self, normals: NDArray[np.float64], hard: NDArray[np.int64], threads: int | None
@@ -332,9 +354,10 @@ class ProvedIndex:
             rooms = self._rooms.pop()
         except IndexError:
             rooms = Rooms(
-                Work.new(len(self.tape.operations)), Tiles.new(),
-                Boxes.new(len(self.index.cells.place)), [Found.new(ROOM, ROOM)],
-                [Answers.new(ROOM)],
+                Work.new(len(self.tape.operations)),
+                Memory.new(int(np.diff(self.lists.starts).max())), Tiles.new(),
+                Boxes.new(len(self.index.cells.place)), [Pairs.new(PAIRS)],
+                [Found.new(ROOM, ROOM)], [Answers.new(ROOM)],
             )  # fmt: skip
         yield rooms
         self._rooms.append(rooms)
@@ -399,15 +422,14 @@ def _cut(
     return Cells(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
 
-def _listed(cells: Cells, discs: int, levels: int) -> Index:
-    """Return the cells with the lists of those that may have the normals of bins."""
-    starts, stack = np.zeros(6 * 4**levels + 1, np.int64), np.empty((4 + 3 * levels, 3), np.int64)
-    squares = np.empty((6 * (4 ** (levels + 1) - 1) // 3, 4))
-    write_squares(levels, squares)
-    count_members(cells.cone, squares, levels, stack, starts, np.empty(0, np.int32))
-    members = np.empty(starts.sum(), np.int32)
-    list_members(cells.cone, squares, levels, stack, starts, members)
-    return Index(cells, discs, starts, members)
+def _pieces_of(index: Index) -> Pieces:
+    """Return the cells as pieces of a search; discs and cells without a narrow cone are wide."""
+    cells = index.cells
+    cones = np.zeros((len(cells.cone), CONE))
+    cones[:, : CHORD + 1], cones[:, WIDTH] = cells.cone, 1.0
+    cones[cells.cone[:, CHORD] >= WIDE, WIDTH] = EVERYTHING
+    cones[index.discs :, WIDTH] = EVERYTHING
+    return Pieces(cones, cells.hot)
 
 
 def _taken(room: Answers) -> Answers:

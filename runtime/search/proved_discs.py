@@ -20,7 +20,8 @@ from ..base.aliases import Array
 from ..base.balls import Ball
 from ..base.formula_calls import python_function
 from ..domain.domain import Domain
-from ..kernels.proved_cells import EPS, REST_S, REST_T, WIDE, Cells, write_one_cone
+from ..kernels.pieces import REST_S, REST_T
+from ..kernels.proved_cells import EPS, WIDE, Cells, write_one_cone
 from ..kernels.proved_discs import Disc
 from ..kernels.tape import Tape
 from ..kernels.tape_balls import BALL

@@ -22,7 +22,7 @@ from ..base.threads import over_ranges
 from ..kernels.developable import count_developable
 from ..kernels.lists import NUMBER
 from ..kernels.pieces import BOUND
-from ..kernels.search import Found, Memory, search
+from ..kernels.search import PATCHES, Found, Memory, search
 from ..kernels.sort import order_few
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
@@ -30,7 +30,7 @@ from .exact import decide
 from .in_nets import decide_in_nets, flat_nets
 from .index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
-__all__ = ["Hits", "developable_patches", "find", "find_in_turn"]
+__all__ = ["Hits", "developable_patches", "find", "find_in_turn", "on_border"]
 
 # Normals whose hits are found, sorted and decided together, at most; fewer if they have more hits
 # than this.
@@ -166,7 +166,7 @@ def _ranges(
         memory, found, parts = Memory.new(index.most), Found.new(ROOM), []
         while first < last:
             first, needed = search(
-                index.pieces, index.lists, normals, order, first, last, memory, found
+                PATCHES, index.pieces, index.lists, normals, order, first, last, memory, found
             )
             certain, undecided = found.counts
             parts.append((found.certain[:certain].copy(), found.undecided[:undecided].copy()))
@@ -191,7 +191,7 @@ def _decided(
         if isinstance(spline, NetSpline):
             decision = decide_in_nets(spline, patches, normals[numbers])
         else:
-            forgiven = np.where(_on_border(spline, patches), bounds[order], 0.0)
+            forgiven = np.where(on_border(spline, patches), bounds[order], 0.0)
             decision = decide(spline, patches, normals[numbers], numbers, forgiven, threads)
         decided = undecided[order][decision.which]
         order = np.argsort(decided)
@@ -220,7 +220,7 @@ def developable_patches(spline: Spline, threads: int | None) -> int:
     return kept(spline, "developable", count)
 
 
-def _on_border(spline: Spline, patches: NDArray[np.int64]) -> Flags:
+def on_border(spline: Spline, patches: NDArray[np.int64]) -> Flags:
     """Return which patches have their outer edge on the open border of the domain."""
     cell, turn = np.divmod(patches, 4)
     i, j = np.divmod(cell, spline.cells[1])

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +30,8 @@ def widened(values: NDArray[Any], mode: Literal["edge", "wrap"] = "wrap") -> NDA
     return values
 
 
-class CellMeasure(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class CellMeasure:
     """Of the cells (m n,): areas, absolute solid angles of their images, and the largest |K| there.
 
     K is the signed solid angle of a cell divided by its area: on a developable surface the elliptic
@@ -60,6 +63,13 @@ class CellMeasure(NamedTuple):
 
     def developable_share(self, density: float) -> float:
         """Return the share of the area that `density` normals per steradian do not sample."""
+        return self._share_of_few if density <= LEAST_DENSITY else self._share(density)
+
+    @cached_property
+    def _share_of_few(self) -> float:
+        return self._share(LEAST_DENSITY)
+
+    def _share(self, density: float) -> float:
         total = float(self.areas.sum())
         return float(self.areas[~self.curved(density)].sum()) / total if total > 0.0 else 1.0
 

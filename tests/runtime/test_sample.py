@@ -190,8 +190,8 @@ def test_samples_answer_their_normals(name, cells):
     assert (report.surface, report.normals, report.samples) == (name, 700, len(samples))
     assert report.patches == spline.patches
     np.testing.assert_array_equal(samples.normals, normals[samples.normal_index])
-    pairs = samples.patch_index * 700 + samples.normal_index
-    assert (np.diff(pairs) > 0).all()  # by patch, then by normal, and no pair twice
+    pairs = samples.normal_index * spline.patches + samples.patch_index
+    assert (np.diff(pairs) > 0).all()  # by normal, then by patch, and no pair twice
     np.testing.assert_allclose(
         samples.support, (samples.normals * samples.points).sum(axis=1), rtol=0, atol=4e-15
     )

@@ -6,6 +6,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.runtime.place import on_surface
 from gaussmap.runtime.place.on_surface import geometry_of
 from scipy.spatial import KDTree
 
@@ -293,3 +294,24 @@ def test_where_the_surface_is_singular_samples_stay_on_the_spline():
     assert np.isfinite(samples.points).all()
     assert np.isfinite(samples.normals).all()
     np.testing.assert_allclose(np.linalg.norm(samples.normals, axis=1), 1.0, rtol=1e-12)
+
+
+@pytest.mark.compiled
+@pytest.mark.usefixtures("unproved")
+@pytest.mark.filterwarnings("ignore:.*could not be moved")
+@pytest.mark.parametrize("name", ["wavy_graph", "sphere"])
+def test_chunks_make_the_whole(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Samples that repeat others are left out, and yet chunks are full."""
+    monkeypatch.setattr(on_surface, "TOGETHER", 50)
+    surface = gm.surfaces.surface(name)
+    for asked in ({"count": 700}, {"normals": gm.fibonacci(300)}):
+        known: dict[str, Any] = {"cells": (8, 6), **asked}
+        whole = gm.sample(surface, density="gauss", threads=1, **known)
+        for size in (7, 100, 10**9):
+            chunks = list(gm.sample_stream(surface, chunk=size, **known))
+            assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
+            joined = gm.Samples.concatenate(chunks)
+            assert joined.fields == whole.fields
+            for field in whole.fields:
+                assert (getattr(joined, field) == getattr(whole, field)).all()
+            assert joined.report.unrefined == whole.report.unrefined

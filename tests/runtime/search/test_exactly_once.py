@@ -268,7 +268,7 @@ def spiral(axis: Array, angle: float, count: int) -> Array:
     cells=[(3, 3), (6, 5)],
     cap=[180.0, 40.0, 3.0],
 )
-def test_search_by_bins_finds_what_brute_force_finds(
+def test_the_search_finds_what_brute_force_finds(
     name: str, cells: tuple[int, int], cap: float
 ) -> None:
     """Generic normals lie on no boundary: there the signs of U, V, W and of N·n decide alone."""
@@ -279,9 +279,9 @@ def test_search_by_bins_finds_what_brute_force_finds(
     for index in range(spline.patches):
         D, U, V, W, towards = forms(spline.control_nets[index], normals)
         inside = (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
-        found |= {(index, int(k)) for k in np.flatnonzero(inside & (towards > 0) & (D != 0))}
+        found |= {(int(k), index) for k in np.flatnonzero(inside & (towards > 0) & (D != 0))}
     samples = gm.sample(spline, normals=normals)
-    pairs = list(zip(samples.patch_index.tolist(), samples.normal_index.tolist(), strict=True))
+    pairs = list(zip(samples.normal_index.tolist(), samples.patch_index.tolist(), strict=True))
     assert pairs == sorted(found)
     assert len(pairs) > 500
 

@@ -70,7 +70,7 @@ def every(spline: gm.Spline, normals: Array) -> set[tuple[int, int]]:
         near = (local > -1e-3).all(axis=1) & (local.sum(axis=1) < 1.0 + 1e-3)
     patches, numbers = patches[near], numbers[near]
     bounds = index_of(spline, 1).pieces.patches[:, BOUND]
-    forgiven = np.where(search._on_border(spline, patches), bounds[patches], 0.0)
+    forgiven = np.where(search.on_border(spline, patches), bounds[patches], 0.0)
     decision = exact.decide(spline, patches, normals[numbers], numbers, forgiven)
     return set(zip(numbers[decision.which].tolist(), patches[decision.which].tolist(), strict=True))
 
