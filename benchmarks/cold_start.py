@@ -174,7 +174,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if options.usual is not None:
         for name in USUAL:
-            cost(programs()[name], options.usual, HERE_ONLY)
+            cost(programs()[name], options.usual.resolve(), HERE_ONLY)
         return 0
     return 1 if check(programs() if options.all else USUAL) and options.check else 0
 
