@@ -14,7 +14,7 @@ from ..base.kept import kept
 from ..base.threads import over_ranges
 from ..directions.unit import perpendicular
 from ..kernels.lists import FINEST, Lists, list_pieces, order_normals, write_caps
-from ..kernels.pieces import CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
+from ..kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
 from ..kernels.sort import count_keys, place_keys
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
@@ -48,6 +48,11 @@ class Index:
     lists: Lists
     first: int
     most: int
+
+    @property
+    def bounds(self) -> Array:
+        """The errors of U, V, W (K,) of the pieces."""
+        return self.pieces.patches[:, BOUND]
 
 
 def index_of(spline: Spline, threads: int | None, first: int = 0) -> Index:

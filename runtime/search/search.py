@@ -21,7 +21,6 @@ from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..kernels.developable import count_developable
 from ..kernels.lists import NUMBER
-from ..kernels.pieces import BOUND
 from ..kernels.search import PATCHES, Found, Memory, search
 from ..kernels.sort import order_few
 from ..spline.nets import NetSpline
@@ -146,7 +145,7 @@ def _keys(
         index = index_of(spline, threads, first)
         with closing(_ranges(index, normals, threads, progress)) as ranges:
             for sure, open_ in (x for parts in ranges for x in parts):
-                bounds.append(index.pieces.patches[open_ & NUMBER, BOUND])
+                bounds.append(index.bounds[open_ & NUMBER])
                 certain.append(sure + first if first else sure)
                 undecided.append(open_ + first)
                 total += len(sure) + len(open_)

@@ -87,7 +87,8 @@ def test_long_parts_are_called(kernel: Any, monkeypatch: pytest.MonkeyPatch) -> 
 def test_copies_are_listed() -> None:
     """Kernels that are compiled here, one of each family that calls the most parts."""
     copies: set[str] = set()
-    for name in ("decide.decide_exactly", "fill.fill_samples", "proved_search.search_normals"):
+    names = "decide.decide_exactly", "fill.fill_samples", "proved_search.evaluate_pairs"
+    for name in (*names, "search.search"):
         full = f"gaussmap.runtime.kernels.{name}"
         kernel = jit.jit(building.kernel_named(full).py_func)
         kernel._cache = NullCache()

@@ -6,7 +6,6 @@ import threading
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.kernels.pieces import BOUND
 from gaussmap.runtime.search import exact, index, search
 from gaussmap.runtime.search.index import Index, index_of
 from gaussmap.runtime.search.search import Hits, find
@@ -69,7 +68,7 @@ def every(spline: gm.Spline, normals: Array) -> set[tuple[int, int]]:
     with np.errstate(invalid="ignore"):
         near = (local > -1e-3).all(axis=1) & (local.sum(axis=1) < 1.0 + 1e-3)
     patches, numbers = patches[near], numbers[near]
-    bounds = index_of(spline, 1).pieces.patches[:, BOUND]
+    bounds = index_of(spline, 1).bounds
     forgiven = np.where(search.on_border(spline, patches), bounds[patches], 0.0)
     decision = exact.decide(spline, patches, normals[numbers], numbers, forgiven)
     return set(zip(numbers[decision.which].tolist(), patches[decision.which].tolist(), strict=True))
