@@ -105,7 +105,7 @@ class Samples(SampleArrays, Methods):
     >>> samples[samples.elliptic][:10]
     Samples(10 points on torus: 10 with K > 0)
     >>> samples[0], [len(one) for one in samples[:3]]
-    (Samples(1 point on torus: 1 with K > 0), [1, 1, 1])
+    (Samples(1 point on torus: 1 with K < 0), [1, 1, 1])
     >>> np.asarray(samples) is samples.points
     True
     >>> samples.points.shape, samples.normals.shape, samples.uv.shape

@@ -23,9 +23,9 @@ def test_a_count_is_concluded_from_a_smaller_one(name, monkeypatch):
     monkeypatch.setattr(chosen_normals, "PILOT", 2000)
     tried, find = [], chosen_normals.find
 
-    def recorded(spline, bins, *rest):
-        tried.append(len(bins.normals))
-        return find(spline, bins, *rest)
+    def recorded(spline, normals, *rest):
+        tried.append(len(normals))
+        return find(spline, normals, *rest)
 
     monkeypatch.setattr(chosen_normals, "find", recorded)
     samples = gm.sample(spline, count=50_000, density="gauss")

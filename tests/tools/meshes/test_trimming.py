@@ -128,7 +128,7 @@ def test_samples_on_the_border_are_its_vertices():
     strip = TORUS.trimmed(within=lambda u, v: u < 1).flipped()
     spline = gm.fit(strip, (16, 16))
     samples = gm.sample(spline, 150)
-    on_border = samples.uv[::40].copy()
+    on_border = samples.uv[3::40].copy()
     on_border[:, 0] = spline.domain[0][1]
     u, v = on_border.T
     added = replace(
