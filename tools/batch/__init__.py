@@ -1,1 +1,1 @@
-"""Data sets of many parts: how they are made, by many processes, and how they are read."""
+"""Data sets of many parts: creation by several processes, and reading."""

@@ -20,26 +20,26 @@ __all__ = ["Clouds", "batches"]
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Clouds:
-    """Points of the parts of a data set: a sequence, which PyTorch takes for a map-style data set.
+    """Point clouds of the parts of a data set: a sequence, usable as a PyTorch map-style data set.
 
     Attributes
     ----------
     folder : Path
         The data set.
     settings : Settings
-        Those of the data set.
+        The settings of the data set.
     parts : (P,) int64 array
-        The numbers of the parts that have samples.
+        The indices of the parts that have samples.
     points : int
-        How many points of each.
+        The number of points of each part.
     types : dict of str to dtype
-        The type of each field that is wanted.
+        The type of each requested field.
     seed : tuple of int or None
-        By which points are drawn; without it the first ones are taken.
+        The seed for drawing points; without it, the first points are taken.
     labels : dict of int to number or None
-        By the numbers of parts.
+        The labels, keyed by part index.
     label_type : dtype or None
-        That of the labels.
+        The type of the labels.
 
     """
 
@@ -69,7 +69,7 @@ class Clouds:
         return (self[place] for place in range(len(self)))
 
     def _rows(self, part: int, count: int) -> NDArray[np.int64]:
-        """Return which samples of a part are taken: each once, before any comes again."""
+        """Return the indices of the samples to take: each once before any is repeated."""
         if self.seed is None:
             return np.arange(self.points, dtype=np.int64) % count
         rng = self.generator(0, part)
@@ -94,16 +94,16 @@ class Clouds:
         return (np.array(np.nan if value is None else value, dtype=self.label_type).item(),)
 
     def generator(self, *key: int) -> np.random.Generator:
-        """Return a generator of its own for each key."""
+        """Return an independent generator for each key."""
         seed = self.seed or ()
-        # With the length of the seed: (1,) and (1, 0) would be the same otherwise.
+        # # The key includes the length of the seed: (1,) and (1, 0) would be the same otherwise.
         return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(len(seed), *key)))
 
 
 def batches(
     clouds: Clouds, parts: int, shard: tuple[int, int], drop_last: bool
 ) -> Iterator[tuple[NDArray[Any], ...]]:
-    """Yield batches of so many clouds, those of one of several workers; a seed shuffles them."""
+    """Yield the batches of one worker, `parts` clouds each; a seed shuffles them."""
     count = len(clouds)
     order = np.arange(count) if clouds.seed is None else clouds.generator(1).permutation(count)
     index, workers = shard

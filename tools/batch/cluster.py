@@ -2,7 +2,7 @@
 
 A task is a few parts: the worker that gets it writes them into the folder of the data set, which
 all machines see by the same path, and answers with a few numbers. If a worker is lost, Dask gives
-its task to another one, which does what is missing.
+its task to another one, which samples the missing parts.
 """
 
 from __future__ import annotations
@@ -27,13 +27,14 @@ from .workers import Tally, Worker, sampled
 
 __all__ = ["connected", "run_on_cluster"]
 
-# How often a task is given to another worker after one was lost.
+# # The number of times a task may lose its worker and be given to another one.
 LOST = 10
-# In seconds: how long a scheduler, and its first worker, may take to answer.
+# # Seconds that a scheduler, or its first worker, may take to answer.
 PATIENCE = 30
-# Tasks for each worker that wait: the scheduler knows of no others.
+# # Waiting tasks for each worker: the scheduler knows of no others.
 AHEAD = 2
-# A task has at most so many parts, and a worker does so many of them, if there are enough parts.
+# # The largest number of parts of a task, and the least number of tasks for each worker if there
+# are enough parts.
 MOST_PARTS, LEAST_TASKS = 64, 8
 
 _HERE = threading.local()
@@ -43,7 +44,7 @@ _HERE = threading.local()
 def connected(scheduler: Any) -> Iterator[Any]:  # noqa: ANN401
     """Yield a client of Dask for a client, a cluster or an address.
 
-    Raises FileError if nobody answers there, InputError for anything else.
+    Raises FileError if no scheduler answers, InputError for any other argument.
     """
     distributed = from_extra("distributed", "cluster", "sampling on a cluster")
     if isinstance(scheduler, distributed.Client):
@@ -71,10 +72,10 @@ def run_on_cluster(
     count: int | None,
     client: Any,  # noqa: ANN401
 ) -> Generator[Tally]:
-    """Yield what became of a few of `count` parts; closing it cancels those that wait.
+    """Yield tallies of `count` parts, a few at a time; closing the iterator cancels waiting tasks.
 
     Raises FileError if workers have another version or do not see the folder of the data set, and
-    if the scheduler is lost. Workers finish the tasks that they are at even if a run is stopped.
+    if the scheduler is lost. Workers finish their current tasks even if a run is stopped.
     """
     distributed = from_extra("distributed", "cluster", "sampling on a cluster")
     threads = _checked_workers(client, plan)
@@ -102,14 +103,15 @@ def run_on_cluster(
 
 def work(plan: Plan, parts: Sequence[Input]) -> Tally:
     """Sample parts by a process of this thread of a worker of Dask."""
-    # Dask's nanny lets a worker have no children: it might leave them behind. These end with it.
+    # # Dask's nanny starts workers that may have no child processes, lest they are left behind. The
+    # processes of a task end with it.
     multiprocessing.current_process().daemon = False
     worker = getattr(_HERE, "worker", None)
     if worker is None or worker.plan.run != plan.run:
         if worker is not None:
             worker.end()
         worker = _HERE.worker = Worker(plan)
-    # One that nobody waits for may come after another run.
+    # # A task whose run was given up may start after another run has begun.
     if read_settings(plan.folder).to_json() != plan.settings.to_json():
         raise FileError(f"'{plan.folder}' holds another data set by now.")
     return sum(sampled(parts, [worker]), Tally())

@@ -1,4 +1,4 @@
-"""`Dataset`: what a folder of many sampled parts holds, and how it is read."""
+"""`Dataset`: the contents of a folder of many sampled parts, and their reading."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def open_dataset(folder: PathLike) -> Dataset:
     Parameters
     ----------
     folder : str or Path
-        The folder. A run may still be writing to it: parts are seen as they are done.
+        The folder. A run may still be writing to it: finished parts are visible at once.
 
     Returns
     -------
@@ -70,18 +70,18 @@ def open_dataset(folder: PathLike) -> Dataset:
 class Dataset:
     """The samples of many parts, in a folder; `open_dataset` opens it.
 
-    Parts have the numbers that they had in the list of `sample_many`, from 0 on:
-    ``len(dataset)`` is their number, those that failed included, and ``dataset[part]`` are the
-    samples of one, as `samples` returns them; ``dataset[-1]`` is the last one. A loop goes over the
-    samples of all parts that did not fail.
+    Parts are numbered as in the list of `sample_many`, from 0: ``len(dataset)`` is the number of
+    all parts, failed ones included, ``dataset[part]`` are the samples of one part, as `samples`
+    returns them, and ``dataset[-1]`` are those of the last part. Iteration goes over the samples of
+    all parts that did not fail.
 
     Attributes
     ----------
     folder : Path
-        Where it is.
+        The folder.
     settings : Settings
-        What all parts have in common: ``settings.asked`` is what was asked for of each of them,
-        ``settings.dtype`` the type of the numbers.
+        The settings that all parts have in common: ``settings.asked`` holds the requested
+        arguments, ``settings.dtype`` the type of the numbers.
 
     Notes
     -----
@@ -109,7 +109,7 @@ class Dataset:
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """The fields that the samples have, a tuple of str; some parts may lack some of them."""
+        """The fields of the samples, a tuple of str; some parts may lack some of them."""
         return self.settings.fields
 
     @property
@@ -156,18 +156,18 @@ class Dataset:
         return f"{plural(len(table), 'part')}{some} with {samples:,} samples"
 
     def manifest(self, columns: Sequence[str] | None = None) -> pyarrow.Table:
-        """Return the manifest: a row for each part, what became of it.
+        """Return the manifest: a row for each part, with its status and results.
 
         Parameters
         ----------
         columns : sequence of str, optional
-            The columns that are wanted; all by default.
+            The requested columns; all by default.
 
         Returns
         -------
         pyarrow.Table
-            The rows in the order of the parts. The metadata of the columns has what they mean, and
-            their units.
+            The rows in the order of the parts. The metadata of the columns hold their meanings and
+            units.
 
         Raises
         ------
@@ -206,8 +206,8 @@ class Dataset:
         Returns
         -------
         Samples
-            The samples, in the order in which `sample` has returned them. The report has what the
-            manifest knows, and None for the rest.
+            The samples, in the order of `sample`. The report holds the values that are in the
+            manifest, and None for all others.
 
         Raises
         ------
@@ -226,7 +226,7 @@ class Dataset:
         """
         number = whole_number(part, "part", least=0)
         if not part_path(self.folder, number).exists():
-            raise UnknownNameError(f"there is no part {number} in '{self.folder}'.")
+            raise UnknownNameError(f"'{self.folder}' has no part {number}.")
         with opened_part(self.folder, self.settings, number) as (file, row):
             table = file.read(use_threads=False)
         if row.status == FAILED:
@@ -250,11 +250,11 @@ class Dataset:
         Parameters
         ----------
         points : int, default 2048
-            How many points of each part, as in `batches`.
+            The number of points of each part, as in `batches`.
         fields : sequence of str, default ("points", "normals")
-            What is wanted of the samples.
+            The requested fields of the samples.
         shuffle : int or sequence of int, optional
-            A seed, by which points are drawn; without it they are the first ones.
+            A seed for drawing points; without it, the first points are taken.
         dtype : {float32, float64}, optional
             The type of the numbers; that of the data set by default.
         labels : str, mapping or (P,) array_like, optional
@@ -262,17 +262,16 @@ class Dataset:
 
         Returns
         -------
-        Clouds
-            A sequence, and a map-style data set of PyTorch: ``clouds[k]`` is a tuple of an array
-            for each field, the number of the part, and its label, if any; ``len(clouds)`` is the
-            number of parts that have samples. A file is read when its part is asked for.
+        A sequence, usable as a map-style data set of PyTorch: ``clouds[k]`` is a tuple of an array
+        for each field, the index of the part, and its label, if any; ``len(clouds)`` is the number
+        of parts that have samples. A file is read when its part is accessed.
 
         Raises
         ------
         InputError
-            If an argument is out of range, or a name of `labels` is that of several parts.
+            If an argument is out of range, or a name in `labels` belongs to several parts.
         UnknownNameError
-            If the data set has no such field, or the manifest no such column.
+            If the data set has no such field, or its manifest no such column.
         FileError
             If a file cannot be read.
 
@@ -310,26 +309,25 @@ class Dataset:
         Parameters
         ----------
         points : int, default 2048
-            How many points of each part. A part with fewer samples is repeated until there are
-            enough: each of its points comes about equally often, and a warning says so once.
+            The number of points of each part. The samples of a part with fewer are repeated: each
+            of its points comes about equally often, and a warning says so once.
         parts : int, default 16
-            How many parts are in a batch; parts without samples are left out.
+            The number of parts in a batch; parts without samples are left out.
         fields : sequence of str, default ("points", "normals")
-            What is wanted of the samples. What a part lacks is NaN, −1 or False.
+            The requested fields of the samples. A field that a part lacks is NaN, −1 or False.
         shuffle : int or sequence of int, optional
-            A seed, by which the parts are shuffled, and points are drawn at random, those of a part
-            without repetition where there are enough. ``shuffle=(seed, epoch)`` gives each epoch an
-            order of its own. Without it parts come in the order of the list, with their first
-            points.
+            A seed for shuffling the parts and for drawing points at random, without repetition if
+            the part has enough. ``shuffle=(seed, epoch)`` gives each epoch its own order. Without a
+            seed, parts come in the order of the list, with their first points.
         dtype : {float32, float64}, optional
             The type of the numbers; that of the data set by default.
         labels : str, mapping or (P,) array_like, optional
-            A number for each part: the name of a column of the manifest; an array with one for each
-            of the P parts of the data set; or a mapping from the numbers of parts, or from their
-            names, if no two parts of one name are meant.
+            A number for each part: the name of a column of the manifest; an array with one number
+            for each of the P parts of the data set; or a mapping from part indices, or from part
+            names if each name in it belongs to one part only.
         shard : (int, int), default (0, 1)
-            ``(i, n)`` is for worker `i` of `n`, from 0 on: each part is in the batches of one of
-            them.
+            ``(i, n)`` selects the batches of worker `i` of `n`, counted from 0: each part is in the
+            batches of exactly one worker.
         drop_last : bool, default False
             Leave out the last batch if it has fewer parts.
 
@@ -337,17 +335,17 @@ class Dataset:
         -------
         iterator of tuple of array
             A batch is an array (parts, points, 3) or (parts, points) for each field; then the
-            numbers of the parts, (parts,) int64; then their labels, (parts,) int64 or float64, if
-            any. The arrays are contiguous, writable, and not used again, so that
-            ``torch.from_numpy`` takes them without a copy.
+            indices of the parts, (parts,) int64; then their labels, (parts,) int64 or float64, if
+            any. The arrays are contiguous, writable and never reused, so that ``torch.from_numpy``
+            takes them without a copy.
 
         Raises
         ------
         InputError
-            If an argument is out of range, a part has no label, or a name of `labels` is that of
+            If an argument is out of range, a part has no label, or a name in `labels` belongs to
             several parts.
         UnknownNameError
-            If the data set has no such field, or the manifest no such column.
+            If the data set has no such field, or its manifest no such column.
         FileError
             If a file cannot be read.
 
@@ -358,8 +356,8 @@ class Dataset:
 
         Notes
         -----
-        The same seed gives the same batches. The points that are drawn of a part do not depend on
-        the number of workers. One part and one batch are in memory.
+        The same seed gives the same batches. The points drawn from a part do not depend on the
+        number of workers. One part and one batch are in memory at a time.
 
         Examples
         --------
@@ -390,7 +388,7 @@ class Dataset:
         dtype: DTypeLike | None,
         labels: str | Mapping[int, float] | Mapping[str, float] | ArrayLike | None,
     ) -> Clouds:
-        """Return the clouds; a warning is of the line of the user two calls above."""
+        """Return the clouds; a warning names the user's line, two calls above."""
         count, types = whole_number(points, "points"), self._types(fields, dtype)
         seed = _checked_seed(shuffle)
         known, label_type = checked_labels(labels, self.manifest)
@@ -415,7 +413,7 @@ class Dataset:
 
 
 def _samples(arrays: dict[str, NDArray[Any]], row: ManifestRow) -> Samples:
-    # Here, and not above: they bring Numba, which reading batches does without.
+    # # Imported here because these modules load Numba, which reading batches does not need.
     from ...runtime.samples.report import SamplingReport
     from ...runtime.samples.samples import Samples
 

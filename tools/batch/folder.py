@@ -1,13 +1,13 @@
-"""The folder of a data set: what is in it, its settings, and that one run at a time writes to it.
+"""The folder of a data set: its contents, its settings, and a lock for the run that writes.
 
     dataset.json           the settings
     points/000000.parquet  the samples of a part, and its row of the manifest
     manifest.parquet       the rows of all parts, when a run has ended
-    files/                 a file for each part, if wanted
+    files/                 a file for each part, if requested
     normals.npy            the prescribed normals, if there are any
-    partial/               what is being written; it is there while a run is
+    partial/               files that are being written; it exists only during a run
 
-A part is done when its file in points/ is there.
+A part is done when its file in points/ exists.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ POINTS, PARTIAL, FILES = FOLDERS = "points", "partial", "files"
 FORMAT = 3
 CODECS = ("zstd", "snappy", "gzip", "lz4", "none")
 FIELDS = tuple(name for name in COLUMNS if name not in EDGE_NAMES)
-LONGEST_NAME = 60  # of a part, in the name of its file
+LONGEST_NAME = 60  # of the name of a part, in the name of its file
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,16 +65,16 @@ class Settings:
     Attributes
     ----------
     asked : dict
-        What was asked for of each part, as `sample` takes it: count, density, cells …; and the
-        options with which `gaussmap batch` reads files: spacing, crs, unit …
+        The requested arguments of `sample`: count, density, cells …; and the options with which
+        `gaussmap batch` reads files: spacing, crs, unit …
     fields : tuple of str
         The fields of the samples.
     dtype : {"float64", "float32"}
         The type of all numbers but the indices.
     compression : str
-        That of the Parquet files.
+        The compression of the Parquet files.
     files : str or None
-        The suffix of the files of other formats, one for each part, if there are any.
+        The suffix of additional files in another format, one for each part, if any.
     gaussmap, formulas : str
         The version of the package, and a digest of the formulas and kernels.
     format : int
@@ -100,9 +100,9 @@ class Settings:
         compression: str = "zstd",
         files: str | None = None,
     ) -> Settings:
-        """Return settings for samples that this version of the package computes."""
+        """Return settings of samples computed by this version of the package."""
         how = fields, dtype, compression, files
-        # As they are read again: tuples become lists.
+        # # As they are read from JSON: tuples become lists.
         return cls.from_json(cls(asked, *how, __version__, digest(), FORMAT).to_json())
 
     def to_json(self) -> str:
@@ -111,7 +111,7 @@ class Settings:
 
     @classmethod
     def from_json(cls, written: str) -> Settings:
-        """Return the settings that `to_json` has written; an error if the text has none."""
+        """Return the settings that `to_json` has written; InputError if the text holds none."""
         known, names = json.loads(written), [x.name for x in fields(cls)]
         if not isinstance(known, dict):
             raise InputError(f"it must be a dictionary of entries, not {shown(known)}.")
@@ -137,7 +137,7 @@ class Settings:
 
 
 def checked_names(names: object, known: Sequence[str], kind: str) -> tuple[str, ...]:
-    """Return names, each known: at least one, and none twice."""
+    """Return the names if they are known, at least one, and none twice."""
     items = None if isinstance(names, str) else listed(names)
     if items is None:
         raise InputError(f"{kind}s must be a tuple of names, not {shown(names)}.")
@@ -169,7 +169,7 @@ def part_path(folder: Path, part: int) -> Path:
 
 
 def file_name(part: int, name: str, suffix: str) -> str:
-    """Return the name of a part's file of another format: its number, and what is harmless."""
+    """Return the name of a part's file in another format: its index and a harmless part name."""
     plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
     clean = re.sub(r"[^A-Za-z0-9_-]+", "-", plain).strip("-")[:LONGEST_NAME]
     return f"{part:06d}{'-' if clean else ''}{clean}{suffix}"
@@ -181,7 +181,7 @@ def parts_in(folder: Path) -> list[int]:
 
 
 def _numbers(folder: Path, names: str) -> dict[int, Path]:
-    """Return the files of parts in a folder, by the numbers of these."""
+    """Return the files of the parts in a folder, keyed by part index."""
     with suppress(FileNotFoundError), os.scandir(folder) as entries:
         found = ((re.fullmatch(names, x.name), Path(x.path)) for x in entries)
         return {int(match[1]): path for match, path in found if match}
@@ -189,7 +189,7 @@ def _numbers(folder: Path, names: str) -> dict[int, Path]:
 
 
 def remove_from(folder: Path, parts: int) -> None:
-    """Remove the parts from this number on: they are of a list that was longer."""
+    """Remove the parts from index `parts` on, left by a run with a longer list."""
     with _writing(folder):
         for kind, names in {POINTS: r"([0-9]{6,})\.parquet", FILES: r"([0-9]{6,})\b.*"}.items():
             for number, path in _numbers(folder / kind, names).items():
@@ -201,7 +201,7 @@ def remove_from(folder: Path, parts: int) -> None:
 def replaced(folder: Path, path: Path) -> Iterator[Path]:
     """Yield a path to write to; the file takes the place of `path` when it is complete.
 
-    It is not where finished files are: Polars and DuckDB would take it for one of them.
+    The path is in another folder: Polars and DuckDB would read an unfinished file as a part.
     """
     temporary = folder / PARTIAL / secrets.token_hex(8)
     try:
@@ -222,17 +222,17 @@ def replaced(folder: Path, path: Path) -> Iterator[Path]:
 
 @contextmanager
 def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Iterator[None]:
-    """Make the folder of a data set, or go on with one; no other run may write.
+    """Make the folder of a data set, or continue with an existing one; other runs may not write.
 
-    One that exists must have the same settings. With `overwrite` what is there of another data set
-    is removed first. The manifest goes: it is written again when all parts are done.
+    An existing data set must have the same settings; with `overwrite` it is removed first. The
+    manifest is removed, and written again when all parts are done.
 
     Raises
     ------
     InputError
         If the data set has other settings.
     FileError
-        If the folder holds something else, or cannot be written to, or if another run writes.
+        If the folder holds other files or cannot be written to, or if another run is writing.
 
     """
     path = checked_path(folder)
@@ -240,7 +240,7 @@ def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Ite
         _refuse_links(path)
         path.mkdir(parents=True, exist_ok=True)
         if not (path / SETTINGS).exists() and any(
-            # Of a run that was killed while it wrote the settings.
+            # # Left by a run that was killed while it wrote the settings.
             entry.name != LOCK and not entry.name.startswith(BEGUN)
             for entry in path.iterdir()
         ):
@@ -259,7 +259,7 @@ def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Ite
 
 
 def _begin(path: Path, settings: Settings, overwrite: bool) -> None:
-    """Check or write the settings, and remove what killed runs have left."""
+    """Check or write the settings, and remove the leftovers of killed runs."""
     if (path / SETTINGS).exists() and overwrite:
         _remove(path)
     if (path / SETTINGS).exists():
@@ -275,7 +275,7 @@ def _begin(path: Path, settings: Settings, overwrite: bool) -> None:
 
 
 def _refuse_links(path: Path) -> None:
-    """Raise FileError for symbolic links: what is written to them would lie elsewhere."""
+    """Raise FileError for symbolic links: writing through them would change other folders."""
     for folder in (path, *(path / name for name in FOLDERS)):
         with suppress(FileNotFoundError), os.scandir(folder) as entries:
             for entry in entries:
@@ -318,7 +318,7 @@ def _short(text: str) -> str:
 
 
 def _remove(path: Path) -> None:
-    """Remove the data set of a folder, the settings last, and nothing else that lies there."""
+    """Remove the data set in a folder, its settings last, and no other files."""
     if '"gaussmap":' not in (path / SETTINGS).read_text(encoding="utf-8", errors="replace"):
         raise FileError(f"'{path / SETTINGS}' is not of gaussmap; name another folder.")
     for name in FOLDERS:
@@ -329,9 +329,9 @@ def _remove(path: Path) -> None:
 
 
 def _lock(file: IO[bytes], folder: Path) -> None:
-    """Raise FileError if another run has the lock, which the system takes from a killed one.
+    """Raise FileError if another run holds the lock; the system releases that of a killed run.
 
-    Where the file system has no locks there is none.
+    On a file system without locks, nothing is locked.
     """
     try:
         import fcntl

@@ -25,16 +25,16 @@ from .manifest import as_text
 __all__ = ["Input", "Source", "content_of", "inputs_of", "parameters_of"]
 
 Source = Surface | Spline | Part | str | os.PathLike[str]
-# Surfaces are known again by their points at so many parameters along u and v: more than a cell, so
-# that small changes are seen, and fewer than sampling takes.
+# # The fingerprint of a surface is its points at this number of parameters along u and along v:
+# more than one cell has, so that small changes are seen, and fewer than sampling takes.
 LATTICE = 17
 
 
 @dataclass(frozen=True, slots=True)
 class Input:
-    """A part: its number in the list, its name, where it comes from, and what a worker gets.
+    """A part: its index in the list, its name, its source, and the data sent to a worker.
 
-    That is a path, or FILE.npz:NAME, or a pickled surface, which only the worker unpickles.
+    The data are a path, or FILE.npz:NAME, or a pickled surface, which only the worker unpickles.
     """
 
     part: int
@@ -47,8 +47,8 @@ class Input:
 def inputs_of(sources: Iterable[Source]) -> Iterator[Input]:
     """Yield the parts of a list, one by one.
 
-    Names of files are not looked at: a worker does that. Raises InputError for what is neither a
-    surface nor a text.
+    Whether files exist is not checked: a worker does that. Raises InputError for an entry that is
+    neither a surface nor a text.
     """
     for part, source in enumerate(sources):
         if isinstance(source, str) and source in CATALOGUE:
@@ -68,12 +68,13 @@ def inputs_of(sources: Iterable[Source]) -> Iterator[Input]:
 
 
 def _of_surface(part: int, surface: Surface | Spline | Part) -> Input:
-    # Functions of the program itself, and of notebooks, can be unpickled nowhere else.
+    # # Functions defined in the user's program or notebook can be unpickled only if they are
+    # pickled by value.
     pickle = from_extra("cloudpickle", "batch", "a data set of surfaces")
     try:
         name = as_text(str(surface.name or "surface"))
         return Input(part, name, type(surface).__name__, None, pickle.dumps(surface))
-    except Exception as error:  # of what users' functions hold
+    except Exception as error:  # of any type: users' functions may hold anything
         raise InputError(
             f"part {part} ({surface.name}) cannot be sent to another process: its function cannot "
             f"be pickled ({type(error).__name__}: {error})."
@@ -84,10 +85,10 @@ def _of_surface(part: int, surface: Surface | Spline | Part) -> Input:
 
 
 def content_of(source: Surface | Spline | Part | Path) -> str:
-    """Return a SHA-256 of what is sampled: of a file's bytes, or of a surface's points.
+    """Return the SHA-256 of the sampled data: of a file's bytes, or of a surface's points.
 
-    A surface that is given by a function is known by its points at a lattice of parameters: what
-    its code says does not matter.
+    A surface given by a function is identified by its points at a lattice of parameters; the code
+    of the function does not matter.
     """
     digest = hashlib.sha256(type(source).__name__.encode())
     if isinstance(source, Path):
@@ -106,7 +107,7 @@ def content_of(source: Surface | Spline | Part | Path) -> str:
 
 
 def parameters_of(source: Surface | Spline | Part) -> str:
-    """Return the parameters of a surface of the catalogue, as JSON; nothing for others."""
+    """Return the parameters of a catalogue surface as JSON; an empty text for others."""
     function = getattr(source, "function", None)
     if not isinstance(function, CatalogueFunction):
         return ""

@@ -20,9 +20,9 @@ NUMBERS = tuple(name for name, column in COLUMNS.items() if column.type != "str"
 def checked_labels(
     labels: str | Mapping[Any, float] | ArrayLike | None, manifest: Callable[[Sequence[str]], Any]
 ) -> tuple[dict[int, Any] | None, np.dtype[Any] | None]:
-    """Return the labels by the numbers of the parts, and their type: int64 or float64.
+    """Return the labels keyed by part index, and their type: int64 or float64.
 
-    `manifest` returns the columns of the manifest that it is given.
+    `manifest` returns the requested columns of the manifest.
     """
     if labels is None:
         return None, None
@@ -40,7 +40,7 @@ def checked_labels(
 
 
 def _by_part(labels: Mapping[Any, Any], table: Any) -> dict[int, Any]:  # noqa: ANN401
-    """Return labels by the numbers of the parts; InputError for names of several parts."""
+    """Return labels keyed by part index; InputError for a name that several parts have."""
     if not all(isinstance(key, str) for key in labels):
         raise InputError("labels are by the names of parts, or by their numbers, not by both.")
     known: dict[str, int] = {}
@@ -54,7 +54,7 @@ def _by_part(labels: Mapping[Any, Any], table: Any) -> dict[int, Any]:  # noqa: 
 
 
 def _of_array(labels: ArrayLike, parts: Sequence[int]) -> dict[int, Any]:
-    """Return the entries of an array by the numbers of the parts, one for each."""
+    """Return the entries of an array, one for each part, keyed by part index."""
     values = real_values(labels, "labels")
     count = max(parts, default=-1) + 1
     if values.shape != (count,):
@@ -66,7 +66,7 @@ def _of_array(labels: ArrayLike, parts: Sequence[int]) -> dict[int, Any]:
 
 
 def _type_of(labels: Mapping[int, Any]) -> np.dtype[Any]:
-    """Return the type of labels; null, as of parts that failed, makes it float64."""
+    """Return the type of labels; a null, as a failed part has, makes it float64."""
     floating = False
     for value in labels.values():
         if value is None or isinstance(value, float | np.floating):

@@ -1,4 +1,4 @@
-"""Making a data set: what to do, on this machine or on a cluster, and watching it."""
+"""Making a data set on this machine or on a cluster, with its progress."""
 
 from __future__ import annotations
 
@@ -27,24 +27,24 @@ from .workers import Tally, run_locally
 
 __all__ = ["limits_of", "make", "progress", "watched"]
 
-# The part of this machine's memory that all workers may use.
+# # The share of this machine's memory that all workers together may use.
 SHARE = 0.9
 
-# In seconds: how often a log gets a line.
+# # Seconds between two lines of a log.
 INTERVAL = 10.0
 
 
 def watched(
     tallies: Iterable[Tally], parts: int | None, dashboard: str | None, how: Mapping[str, Any]
 ) -> Iterator[Tally]:
-    """Yield what became of parts, and show it: parts done, failures, rate, time left.
+    """Yield tallies of parts, and show the progress: parts done, failures, rate, time left.
 
-    `how` are options of tqdm. The number of parts may be unknown; `dashboard` is that of Dask.
+    `how` are options of tqdm. The number of parts may be unknown; `dashboard` is an address.
     """
     if dashboard is not None and not how.get("disable"):
         _Lines().write(f"Dask's dashboard: {dashboard}")
     failed = 0
-    # The first parts take longer, and those of an earlier run no time: the rate is a mean.
+    # # The first parts take longer, and parts of an earlier run no time: the rate is a moving mean.
     with tqdm(total=parts, desc="sampling", unit="part", smoothing=0.1, **how) as bar:
         for tally in tallies:
             failed += tally.failed
@@ -66,7 +66,7 @@ class _Lines:
 
 
 def progress() -> dict[str, Any]:
-    """Return how a run is shown on standard error: a bar, or a line of a log every ten seconds."""
+    """Return the options of progress on standard error: a bar, or a log line every ten seconds."""
     if seen(True):
         return {}
     return {
@@ -93,11 +93,11 @@ def make(
     overwrite: bool = False,
     again: bool = False,
 ) -> Tally:
-    """Sample all parts into a data set; return what became of them.
+    """Sample all parts into a data set; return the tally of all parts.
 
     `plan` says what to sample, at `normals` if they are prescribed; `how` are options of tqdm.
-    Raises InputError and FileError where `folder.opened` does, and FileError if the data set cannot
-    be written.
+    Raises InputError and FileError as `folder.opened` does, and FileError if the data set cannot be
+    written.
     """
     count = thread_count(None) if workers is None else whole_number(workers, "workers")
     seconds, memory = limits_of(count, time_limit, memory_limit)
@@ -120,7 +120,7 @@ def make(
 
 
 def limits_of(workers: int, seconds: float, memory: float | None) -> tuple[float, float]:
-    """Return the longest time of a part, and the most memory of each of so many processes."""
+    """Return the time limit of a part, and the memory limit of each of `workers` processes."""
     share = SHARE * most_memory() / GIB / workers
     return (
         positive_number(seconds, "time_limit", "seconds"),
@@ -132,7 +132,7 @@ def limits_of(workers: int, seconds: float, memory: float | None) -> tuple[float
 def _runner(
     workers: int, scheduler: object
 ) -> Iterator[tuple[Callable[..., Generator[Tally]], str | None]]:
-    """Yield what samples parts, here or on a cluster, and the address of Dask's dashboard."""
+    """Yield the function that samples parts, here or on a cluster, and Dask's dashboard address."""
     if scheduler is None:
         yield partial(run_locally, workers=workers), None
         return

@@ -1,4 +1,4 @@
-"""The manifest of a data set: a row for each part, what became of it."""
+"""The manifest of a data set: a row for each part, with its status and results."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ __all__ = [
 ]
 
 OK, FAILED = "ok", "failed"
-# The types of Arrow for those of the columns.
+# # Arrow's type for each type of a column.
 TYPES = {"int": "int64", "str": "string", "float | None": "float64"}
 
 
 def _column(meaning: str, unit: str = "", **default: Any) -> Any:  # noqa: ANN401
-    """Return the field of a column, with what it is, and its unit."""
+    """Return the field of a column, with its meaning and its unit."""
     about = {"meaning": meaning} | ({"unit": unit} if unit else {})
     return field(metadata=about, **default)
 
 
 @dataclass(frozen=True, slots=True)
 class ManifestRow:
-    """What became of a part. Nothing in it depends on when, or how often, the part was sampled."""
+    """The status and results of a part, whenever, and however often, it was sampled."""
 
     part: int = _column("the number of the part in the list, from 0 on")
     name: str = _column("the name of the part")
@@ -60,7 +60,7 @@ COLUMNS = {x.name: x for x in fields(ManifestRow)}
 
 
 def manifest_schema() -> Any:  # noqa: ANN401
-    """Return the schema of Arrow: types, and in the metadata units and meanings."""
+    """Return Arrow's schema, with units and meanings in the metadata."""
     arrow = from_extra("pyarrow", "batch", "a data set")
     return arrow.schema(
         [
@@ -73,9 +73,9 @@ def manifest_schema() -> Any:  # noqa: ANN401
 
 
 def manifest_table(rows: Iterable[ManifestRow]) -> Any:  # noqa: ANN401
-    """Return rows as a table of Arrow."""
+    """Return the rows as an Arrow table."""
     arrow = from_extra("pyarrow", "batch", "a data set")
-    # Paths may hold bytes that are no text, which Arrow refuses.
+    # # Paths may hold bytes that are not valid UTF-8, which Arrow refuses.
     known = [
         {name: as_text(x) if isinstance(x, str) else x for name, x in asdict(row).items()}
         for row in rows
@@ -84,5 +84,5 @@ def manifest_table(rows: Iterable[ManifestRow]) -> Any:  # noqa: ANN401
 
 
 def as_text(text: str) -> str:
-    """Return a text that can be written: bytes of a path that are no text become escapes."""
+    """Return an encodable text: bytes of a path that are not valid UTF-8 become escapes."""
     return text.encode("utf-8", "backslashreplace").decode()

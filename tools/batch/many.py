@@ -1,4 +1,4 @@
-"""`sample_many`: the samples of many surfaces, in the order of these, or as a data set."""
+"""`sample_many`: samples of many surfaces, in the order given, or as a data set."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ON_ERROR = ("raise", "skip", "none", "return")
 
 
 class _How(TypedDict, total=False):
-    """The options with which each surface is sampled."""
+    """The sampling options of each surface."""
 
     normals: ArrayLike | None
     progress: bool
@@ -134,18 +134,17 @@ def sample_many(
     """Yield the samples of each of several surfaces, in order; or make a data set of them.
 
     With `out` the parts are sampled by several processes, on this machine or on a cluster, into a
-    folder of Parquet files (docs/datasets.md). A part that fails has a row in its manifest, too. If
-    the run is stopped, or killed, the same call goes on with what is missing.
+    folder of Parquet files (docs/datasets.md). A part that fails has a row in the manifest, too. If
+    the run is stopped or killed, the same call resumes it.
 
     Parameters
     ----------
-    surfaces : iterable of Surface, Spline or str
-        The surfaces; they may be made one by one. With `out` also CAD parts and paths: CAD files,
-        parts that were saved, GeoTIFFs, and points (m, n, 3) in .npy and .npz files (FILE.npz:NAME
-        if that holds several arrays).
+    The surfaces; an iterator may make them one by one. With `out` also CAD parts and paths: CAD
+    files, saved parts, GeoTIFFs, and points (m, n, 3) in .npy and .npz files (FILE.npz:NAME if the
+    file holds several arrays).
     count, normals, angle, coverage, density, cells, on, fields, dtype, threads : optional
-        As in `sample`. With `out`, the fields are those without indices by default, and each
-        process has one thread.
+        As in `sample`. With `out`, the default fields are all but indices, and each process has one
+        thread.
     reach : (axis, angle), optional
         As in `sample`.
     progress : bool, default True
@@ -155,34 +154,34 @@ def sample_many(
         left out with a warning; or None is yielded in its place, with a warning; or its error is
         yielded there.
     out : path, optional
-        The folder of the data set. All that follow are for data sets only.
+        The folder of the data set. All following arguments are for data sets only.
     workers : int, optional
         The number of processes; by default one for each core.
     scheduler : str or distributed.Client, optional
-        The address of a scheduler of Dask, or a client: its workers sample the parts, and see the
-        folder by the same path. The extra `cluster` brings Dask.
+        The address of a Dask scheduler, or a client: its workers sample the parts, and must see the
+        folder by the same path. The extra `cluster` installs Dask.
     time_limit : float, default 600.0
         The longest time for a part, in seconds.
     memory_limit : float, optional
-        The most memory of a process, in GiB (not on macOS and Windows); by default the workers
-        share nine tenths of this machine's.
+        The memory limit of a process, in GiB (not on macOS and Windows); by default the workers
+        share nine tenths of this machine's memory.
     measure : bool, default False
-        Measure coverage and normal deviation of each part for the manifest, where they were not
-        asked for; that may take ten times as long as sampling.
+        Measure coverage and normal deviation of each part for the manifest, even where they were
+        not requested; that may take ten times as long as sampling.
     files : str, optional
-        A suffix such as ".ply": each part gets a file of its own in the folder ``files``, too.
+        A suffix such as ".ply": each part also gets a file in this format, in the folder ``files``.
     compression : {"zstd", "snappy", "gzip", "lz4", "none"}, default "zstd"
-        That of the Parquet files.
+        The compression of the Parquet files.
     overwrite : bool, default False
-        Remove the data set that is in the folder first.
+        Remove the data set that is in the folder, if any, first.
     retry_failed : bool, default False
-        Try parts again that failed in an earlier run.
+        Sample again the parts that failed in an earlier run.
 
     Yields
     ------
     Samples, GaussmapError or None
-        The samples of the next surface: ``samples.report.index`` is its number among `surfaces`,
-        from 0 on, and ``samples.report.surface`` its name.
+        The samples of the next surface: ``samples.report.index`` is its index in `surfaces`, and
+        ``samples.report.surface`` its name.
 
     Returns
     -------
@@ -192,27 +191,28 @@ def sample_many(
     Raises
     ------
     InputError
-        For arguments with which no surface can be sampled, and if the folder has a data set with
+        For arguments with which no surface can be sampled, and if the folder holds a data set with
         other settings.
     FileError
-        If the folder holds something else or cannot be written to, if another run writes to it, or
-        if Dask's scheduler or its workers cannot be used.
+        If the folder holds other files or cannot be written to, if another run writes to it, or if
+        Dask's scheduler or its workers cannot be used.
     MissingExtraError
         If an extra is missing: `batch` for data sets, `cluster` for schedulers.
     GaussmapError
-        If a surface cannot be sampled, unless `on_error` says otherwise; a note says which one.
+        If a surface cannot be sampled, unless `on_error` says otherwise; a note names the surface.
 
     Warns
     -----
     GaussmapWarning
-        If a surface is left out, or None stands for it.
+        If a surface is left out or replaced by None.
 
     Notes
     -----
     Without `out`, surfaces are sampled one after the other, each on all cores; Python functions run
-    on one core. With `out`, each process samples a surface on one core: that is faster for many.
+    on one core. With `out`, each process samples one surface on one core, which is faster for many
+    surfaces.
 
-    A part is known again by its content: the bytes of its file, or points of its surface.
+    A part is identified by its content: the bytes of its file, or points of its surface.
 
     Examples
     --------
@@ -270,7 +270,7 @@ def sample_many(
 
 
 def _iterates(surfaces: Iterable[Source]) -> bool:
-    """Say whether there is anything to go through: there is not in arrays without dimension."""
+    """Return whether `surfaces` can be iterated over, which arrays without dimension cannot."""
     try:
         iter(surfaces)
     except TypeError:
@@ -281,7 +281,7 @@ def _iterates(surfaces: Iterable[Source]) -> bool:
 def _each(
     surfaces: Iterable[Any], request: Request, how: dict[str, Any], on_error: str, shows: bool
 ) -> Iterator[Samples | GaussmapError | None]:
-    """Yield the samples of each surface, or what `on_error` says."""
+    """Yield the samples of each surface, or the substitute that `on_error` names."""
     from tqdm import tqdm
 
     bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if shows else True)
@@ -307,6 +307,6 @@ def _each(
 
 
 def _name(surface: object) -> str:
-    """Return the name of a surface, or the type of what is none."""
+    """Return the name of a surface, or the type of any other object."""
     name = getattr(surface, "name", surface if isinstance(surface, str) else None)
     return name or type(surface).__name__

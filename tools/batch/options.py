@@ -1,4 +1,4 @@
-"""What a run does: what is asked of each part, how it is stored, and within which limits."""
+"""The plan of a run: the requested samples of each part, their storage, and limits."""
 
 from __future__ import annotations
 
@@ -28,29 +28,29 @@ CODEC, SECONDS = "zstd", 600.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Plan:
-    """What all parts of a run have in common.
+    """The options that all parts of a run have in common.
 
     Attributes
     ----------
     settings : Settings
-        Those of the data set.
+        The settings of the data set.
     arguments : dict
         The arguments of `sample` that are numbers and names: count, angle, coverage, density,
         reach, cells, on.
     named : Named
-        The options with which files become surfaces.
+        The options for making surfaces from files.
     measured : bool
-        Whether coverage and normal deviation are measured where they were not asked for.
+        Whether coverage and normal deviation are measured even where they were not requested.
     folder : Path
         The absolute path of the data set, the same on all machines.
     seconds : float
-        The longest time that a part may take.
+        The time limit of a part, in seconds.
     memory : float
-        The most memory of a process, in GiB.
+        The memory limit of a process, in GiB.
     again : bool
         Whether parts that failed in an earlier run are tried again.
     run : str
-        What distinguishes this run from others.
+        An identifier of this run.
 
     """
 
@@ -65,12 +65,12 @@ class Plan:
     run: str = field(default_factory=secrets.token_hex)
 
     def file(self, part: int, name: str) -> Path | None:
-        """Return the path of a part's file of another format, if there are any."""
+        """Return the path of a part's file in another format, or None without such files."""
         suffix = self.settings.files
         return None if suffix is None else self.folder / FILES / file_name(part, name, suffix)
 
     def normals(self) -> NDArray[np.float64] | None:
-        """Return the prescribed normals, which are in a file: they may be larger than all else."""
+        """Return the prescribed normals, read from their file: they may be larger than the rest."""
         return _read(self.folder / NORMALS) if "normals" in self.settings.asked else None
 
 
@@ -91,7 +91,7 @@ def plan_of(
     files: str | None,
     named: Named | None = None,
 ) -> Plan:
-    """Return what is asked of each part; `named` has the options with which files are read."""
+    """Return the plan of a run; `named` has the options for reading files."""
     reach, named = request.reach, named or Named()
     arguments = {
         "count": request.count,
@@ -118,7 +118,7 @@ def plan_of(
 
 
 def _known_fields(fields: Sequence[str]) -> tuple[str, ...]:
-    """Return fields of which some parts may have none: those of CAD parts, and of grids."""
+    """Return the fields; some parts may lack those of CAD parts and of grids."""
     names = listed(fields)
     if names is None:
         return checked_fields(fields)  # which raises

@@ -1,7 +1,7 @@
-"""The files of a data set: a Parquet file for each part, with its row of the manifest, and this.
+"""The files of a data set: a Parquet file for each part, with its manifest row, and the manifest.
 
-The row is in the metadata of the file's schema, so that a part and what is known of it appear in
-one step, and the manifest can be made of the files at any time. A part that failed has a file
+The row is in the metadata of the file's schema, so that the samples of a part and its row appear in
+one step, and the manifest can be made from the files at any time. A part that failed has a file
 without samples.
 """
 
@@ -33,7 +33,7 @@ from ...runtime.samples.fields import (
 from .folder import MANIFEST, Settings, part_path, replaced
 from .manifest import ManifestRow, manifest_schema, manifest_table
 
-if TYPE_CHECKING:  # which brings Numba; reading a data set does without
+if TYPE_CHECKING:  # imports Numba, which reading a data set does not need
     from ...runtime.samples.samples import Samples
 
 __all__ = [
@@ -51,16 +51,16 @@ __all__ = [
 
 LONGEST_REASON = 100
 REMEDY = "remove it, and run the same sampling again"
-# The fields that all samples have if they were asked for, of surfaces and of CAD parts.
+# # The fields that all samples have if requested, of surfaces and of CAD parts.
 ALWAYS = tuple(name for name in ARRAY_NAMES if name in ARRAY_NAMES_OF_PART)
 ROW, SETTINGS = b"row", b"settings"  # in the metadata of a part's schema
 ROWS_AT_ONCE = 1 << 16  # of the manifest
 
 
 def points_schema(settings: Settings) -> Any:  # noqa: ANN401
-    """Return the schema: the number of the part, and a column for each number of a sample.
+    """Return the schema: the index of the part, and a column for each component of a field.
 
-    Only what some parts have and others have not may be null: the face of a sample, for example.
+    Only fields that some parts lack may be null: the face of a sample, for example.
     """
     arrow = from_extra("pyarrow", "batch", "a data set")
     columns = [
@@ -78,12 +78,12 @@ def points_schema(settings: Settings) -> Any:  # noqa: ANN401
 
 
 def _key(settings: Settings) -> str:
-    """Return what files of one data set have in common, and those of others have not."""
+    """Return a text that all files of one data set share, and files of other data sets do not."""
     return hashlib.sha256(settings.to_json().encode()).hexdigest()
 
 
 def points_table(samples: Samples, part: int, schema: Any) -> Any:  # noqa: ANN401
-    """Return the samples of a part; what they lack is null."""
+    """Return the samples of a part; fields that they lack are null."""
     arrow = from_extra("pyarrow", "batch", "a data set")
     held = columns_of(samples.arrays())
     count = len(samples)
@@ -100,7 +100,7 @@ def points_table(samples: Samples, part: int, schema: Any) -> Any:  # noqa: ANN4
 def write_part(
     folder: Path, settings: Settings, row: ManifestRow, samples: Samples | None = None
 ) -> None:
-    """Write a part and its row, in place of what is there of it."""
+    """Write a part and its row, replacing an existing file."""
     schema = points_schema(settings)
     table = schema.empty_table() if samples is None else points_table(samples, row.part, schema)
     table = table.replace_schema_metadata({**schema.metadata, ROW: json.dumps(asdict(row))})
@@ -112,7 +112,7 @@ def write_part(
 
 
 def write_manifest(folder: Path, settings: Settings, parts: Iterable[int]) -> None:
-    """Write the manifest of these parts, whose files are there."""
+    """Write the manifest of these parts, all of which have files."""
     rows = rows_of(folder, settings, parts)
     with (
         replaced(folder, folder / MANIFEST) as temporary,
@@ -125,14 +125,14 @@ def write_manifest(folder: Path, settings: Settings, parts: Iterable[int]) -> No
 
 
 def rows_of(folder: Path, settings: Settings, parts: Iterable[int]) -> Iterator[ManifestRow]:
-    """Yield the rows of parts, whose files are there."""
+    """Yield the rows of parts, all of which have files."""
     for part in parts:
         with opened_part(folder, settings, part) as (_, row):
             yield row
 
 
 def row_of(folder: Path, settings: Settings, part: int) -> ManifestRow | None:
-    """Return the row of a part if its file is there, whole, and of this data set."""
+    """Return the row of a part if its file exists, is complete, and belongs to this data set."""
     if not part_path(folder, part).exists():
         return None
     try:
@@ -144,7 +144,7 @@ def row_of(folder: Path, settings: Settings, part: int) -> ManifestRow | None:
 
 @contextmanager
 def opened_part(folder: Path, settings: Settings, part: int) -> Iterator[tuple[Any, ManifestRow]]:
-    """Yield the open file of a part, and its row; FileError if it is damaged, or of another one."""
+    """Yield the open file of a part, and its row; FileError if damaged or of another data set."""
     schema = points_schema(settings)
     with _opened(part_path(folder, part), schema) as file:
         about = file.schema_arrow.metadata
@@ -152,7 +152,7 @@ def opened_part(folder: Path, settings: Settings, part: int) -> Iterator[tuple[A
             raise ValueError("it is of another data set")
         row = ManifestRow(**json.loads(about[ROW]))
         if row.part != part:
-            raise ValueError(f"it has part {row.part}")
+            raise ValueError(f"it holds part {row.part}")
         if row.samples != file.metadata.num_rows:
             raise ValueError(f"it has {file.metadata.num_rows} samples of {row.samples}")
         yield file, row
@@ -167,7 +167,7 @@ def opened_manifest(folder: Path) -> Iterator[Any]:
 
 @contextmanager
 def _opened(path: Path, schema: Any) -> Iterator[Any]:  # noqa: ANN401
-    """Yield an open Parquet file; FileError if it, or what the caller reads of it, is damaged."""
+    """Yield an open Parquet file; FileError if it is damaged, also if only reading shows that."""
     parquet = _parquet()
     try:
         with parquet.ParquetFile(path, page_checksum_verification=True) as file:
@@ -177,7 +177,7 @@ def _opened(path: Path, schema: Any) -> Iterator[Any]:  # noqa: ANN401
             yield file
     except (FileError, MemoryError):
         raise
-    except Exception as error:  # Arrow raises a dozen kinds on bad bytes
+    except Exception as error:  # Arrow raises a dozen types of exceptions on bad bytes
         reason = " ".join(str(error).split())[:LONGEST_REASON] or type(error).__name__
         raise FileError(f"'{path}' cannot be read: {reason}; {REMEDY}.") from error
 
@@ -187,7 +187,7 @@ def _parquet() -> Any:  # noqa: ANN401
 
 
 def arrays_in(table: Any, names: Sequence[str]) -> dict[str, list[NDArray[Any]]]:  # noqa: ANN401
-    """Return the columns of fields; what is null is NaN, −1 or False."""
+    """Return the columns of fields; nulls become NaN, −1 or False."""
     return {name: [_filled(table[column]) for column in COLUMNS[name]] for name in names}
 
 
@@ -203,7 +203,7 @@ def _filled(column: Any) -> NDArray[Any]:  # noqa: ANN401
 
 
 def stacked(columns: Sequence[NDArray[Any]], name: str) -> NDArray[Any]:
-    """Return the columns of a field as its array, which is writable and has its own memory."""
+    """Return the columns of a field as its array, writable and in its own memory."""
     if row_shape(name):
         return np.stack(columns, axis=1)
     return np.array(columns[0])

@@ -1,7 +1,7 @@
-"""What the process does that samples parts.
+"""The loop of the process that samples parts.
 
-It gets pickled tasks by a pipe and answers with texts of JSON; what functions of users print goes
-to standard error. It ends when the pipe does.
+It receives pickled tasks through a pipe and answers with JSON texts; the output of users' functions
+goes to standard error. It ends when the pipe is closed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["KEPT", "STOPPED", "Task", "serve"]
 
 GIB = 2**30
-# What becomes of a part beside "ok" and "failed": it is unchanged; its samples cannot be written.
+# # The statuses beside "ok" and "failed": the part is unchanged; its samples cannot be written.
 KEPT, STOPPED = "kept", "stopped"
 
 
@@ -38,12 +38,12 @@ class Task:
     ----------
     input : Input
         The part.
-    plan : Plan
+    The plan of the run.
         What to sample, and where the data set is.
     before : ManifestRow or None
-        What is there of the part, if it need not be done again unless its content has changed.
+        The existing row of the part, which is kept if its content has not changed.
     again : bool
-        Whether this is another attempt.
+        Whether this is a second attempt.
 
     """
 
@@ -53,16 +53,16 @@ class Task:
     again: bool = False
 
     def row(self, about: dict[str, Any]) -> ManifestRow:
-        """Return what became of the part."""
+        """Return the manifest row of the part, with the results in `about`."""
         from .manifest import ManifestRow
 
         return ManifestRow(self.input.part, self.input.name, self.input.source, **about)
 
 
 def serve(pipe: Connection, memory: float, parent: int) -> None:
-    """Answer tasks until there are no more, with at most so many GiB of memory."""
+    """Answer tasks until the pipe is closed, with at most `memory` GiB."""
     end_with_parent("SIGKILL", parent)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that asks
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent process
     limit(RLIMIT_DATA=int(memory * GIB))
     os.dup2(2, 1)
     from ...runtime.sample import sample  # noqa: F401 - which takes its time, and that is not a part's
@@ -78,12 +78,12 @@ def serve(pipe: Connection, memory: float, parent: int) -> None:
 
 
 def _say(pipe: Connection, about: dict[str, Any]) -> None:
-    """Write a text. It is no pickle: what reads it runs no code that a file may hold."""
+    """Write a JSON text: unlike a pickle, it runs no code when it is read."""
     pipe.send_bytes(json.dumps(about).encode())
 
 
 def _answers(task: Task) -> Iterator[dict[str, Any]]:
-    """Yield the content of a part, and what became of it when its samples are written."""
+    """Yield the content of a part, and then its results when its samples are written."""
     from ...runtime.base.errors import FileError, GaussmapError
     from .manifest import FAILED, OK
     from .part_files import write_part
@@ -94,7 +94,7 @@ def _answers(task: Task) -> Iterator[dict[str, Any]]:
         warnings.simplefilter("always")
         try:
             surface, known = _source(task)
-            # First of all: it is known then, even if sampling kills this process.
+            # # Sent first: the parent then knows it even if sampling kills this process.
             yield known
             if task.before is not None and known["content"] == task.before.content:
                 yield {"status": KEPT}
@@ -105,7 +105,7 @@ def _answers(task: Task) -> Iterator[dict[str, Any]]:
             about["error"] = str(error)
         except MemoryError:
             about["error"] = "needs more memory than memory_limit; raise it."
-        except Exception as error:  # of what users' functions and files do
+        except Exception as error:  # users' functions and files may raise anything
             about["error"] = f"{type(error).__name__}: {error}"
     about["warnings"] = "\n".join(dict.fromkeys(str(x.message) for x in caught))
     if samples is not None:
@@ -117,7 +117,7 @@ def _answers(task: Task) -> Iterator[dict[str, Any]]:
 
 
 def _source(task: Task) -> tuple[Any, dict[str, str]]:
-    """Return the part, and what it is known by."""
+    """Return the part, and its identifying columns of the manifest."""
     from ..cad.inspection import is_part_file
     from ..files.numpy_files import array_file
     from ..sources.surface_of import surface_of
@@ -131,14 +131,14 @@ def _source(task: Task) -> tuple[Any, dict[str, str]]:
     if task.before is not None and known["content"] == task.before.content:
         return None, known
     named = replace(task.plan.named, surface=path, quiet=True)
-    if is_part_file(path):  # neither of which has cells
+    if is_part_file(path):  # neither of these has cells
         plan = task.plan
         named = replace(named, tolerance=None, time_limit=plan.seconds, memory_limit=plan.memory)
     return surface_of(named), known
 
 
 def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: ANN401
-    """Return numbers of the manifest, and the samples; write the file of another format."""
+    """Return numbers for the manifest, and the samples; write the file in another format."""
     from ...runtime.place.on_surface import place_of_samples
     from ...runtime.sample import sample
     from ...runtime.samples.fields import checked_fields

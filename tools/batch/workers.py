@@ -1,4 +1,4 @@
-"""Sampling parts by processes: what fails is a row, and what ends a process costs one part."""
+"""Sampling parts by processes: an error or a crash costs the part that caused it only."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from .sampling import KEPT, STOPPED, Task, serve
 
 __all__ = ["Tally", "Worker", "run_locally", "sampled"]
 
-# So many failures are shown when a run ends; the manifest has all.
+# # The number of failures that are shown when a run ends; the manifest has all.
 SHOWN = 10
-# A process has one thread, as many processes run as there are cores. Modules of users are found
-# after those of Python and of packages: none hides them.
+# # A process has one thread, as one process runs on each core. Modules of users are found after
+# those of Python and of packages, so that they hide none of these.
 ENVIRONMENT = dict.fromkeys(
     ("NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS",
      "PYTHONSAFEPATH"), "1"
@@ -37,9 +37,9 @@ ENVIRONMENT = dict.fromkeys(
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """What became of parts: how many are sampled, failed, or done by an earlier run.
+    """The numbers of parts that are sampled, failed, or done by an earlier run.
 
-    `failures` are the names of the first ones, and why.
+    `failures` are the names of the first failed parts, with their errors.
     """
 
     ok: int = 0
@@ -71,16 +71,16 @@ class Tally:
 
 
 class Worker:
-    """A process that samples one part at a time; it is started when it is needed, and again.
+    """A process that samples one part at a time; it is started when needed, and restarted.
 
     Attributes
     ----------
     plan : Plan
-        That of the run.
+        The plan of the run.
     pipe : Connection
-        Something can be read there when `answer` is to be called,
+        The connection to the process; call `answer` when it is readable,
     deadline : float
-        or when it is so late, as `time.monotonic` says.
+        or at this time of `time.monotonic`, whichever is first.
 
     """
 
@@ -103,7 +103,7 @@ class Worker:
             self._start()
 
     def answer(self) -> dict[str, Any] | None:
-        """Return what became of the part; None if that is not known yet.
+        """Return the results of the part; None if it is not done yet.
 
         Raises FileError if the process does not start.
         """
@@ -123,7 +123,7 @@ class Worker:
     def end(self) -> None:
         """End the process."""
         if self._process is not None:
-            with suppress(OSError):  # it has ended just now
+            with suppress(OSError):  # it has just ended
                 if self._process.is_alive():
                     os.kill(self._process.pid, getattr(signal, "SIGKILL", signal.SIGTERM))
             self._process.join()
@@ -131,7 +131,8 @@ class Worker:
             self._process, self.deadline = None, math.inf
 
     def _start(self) -> None:
-        # Unlike multiprocessing's, its processes do not run the program of the user again.
+        # # Unlike the processes of multiprocessing, those of loky do not run the user's program
+        # again.
         loky = from_extra("loky.backend", "batch", "a data set").get_context("loky")
         self.pipe, theirs = loky.Pipe()
         self._process = loky.Process(
@@ -152,7 +153,7 @@ class Worker:
         return self._about | {"status": FAILED, "error": error}
 
     def _why(self) -> str:
-        """Return why the process has ended."""
+        """Return the reason why the process has ended."""
         process, begun = self._process, self.deadline < math.inf
         process.join(1.0)
         self.end()
@@ -172,7 +173,7 @@ class Worker:
 def run_locally(
     plan: Plan, parts: Iterable[Input], count: int | None, workers: int
 ) -> Generator[Tally]:
-    """Yield what became of each part; closing the iterator, errors and Ctrl-C end all processes."""
+    """Yield a tally of each part; closing the iterator, errors and Ctrl-C end all processes."""
     crew = [Worker(plan) for _ in range(workers if count is None else min(workers, count))]
     try:
         yield from sampled(parts, crew)
@@ -182,7 +183,7 @@ def run_locally(
 
 
 def sampled(parts: Iterable[Input], crew: Sequence[Worker]) -> Generator[Tally]:
-    """Yield what became of each part, sampled by processes.
+    """Yield a tally of each part, sampled by processes.
 
     Raises FileError if the data set cannot be written.
     """
@@ -214,7 +215,7 @@ def sampled(parts: Iterable[Input], crew: Sequence[Worker]) -> Generator[Tally]:
 
 
 def _task(plan: Plan, part: Input) -> Task:
-    """Return what is to be done of a part, and of what is there of it."""
+    """Return the task of a part, with its existing row, if any."""
     row = row_of(plan.folder, plan.settings, part.part)
     file = plan.file(part.part, part.name)
     if row is not None and (row.name, row.source) != (part.name, part.source):
@@ -229,7 +230,7 @@ def _task(plan: Plan, part: Input) -> Task:
 
 
 def _done(task: Task, about: dict[str, Any]) -> Tally:
-    """Return what became of a part; write that it failed."""
+    """Return the tally of a part; write its row if it failed."""
     if about["status"] == STOPPED:
         raise FileError(about["error"])
     if about["status"] == KEPT:
