@@ -1,1 +1,1 @@
-"""CAD parts: what is read of STEP, IGES and BREP files, kept as arrays, and sampled."""
+"""CAD parts: reading STEP, IGES and BREP files, keeping their faces as arrays, and sampling."""

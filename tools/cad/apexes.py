@@ -1,7 +1,8 @@
-"""Sides of the domain of a face that are one point: where there is no normal, and none is missed.
+"""Sides of the domain of a face that are one point: no point beside them has a certain normal.
 
-If u = u₁ is such a side, x_v is 0 on it. So n·x_v = (u − u₁) n·x_uv at a place between, for each n,
-and a point with the normal n beside it has n·x_u = 0, and n·x_uv = 0 between it and the side.
+If u = u₁ is such a side, x_v is 0 on it. So, for each n, n·x_v = (u − u₁) n·x_uv with x_uv at some
+position between, and a point beside the side with normal n has n·x_u = 0, and n·x_uv = 0 somewhere
+between it and the side.
 """
 
 from __future__ import annotations
@@ -21,25 +22,26 @@ __all__ = ["Apex", "apexes_of"]
 Array = NDArray[np.float64]
 
 SINGULAR = KINDS.index("singular")
-# A side of the domain is mapped to one point if the points at PLACES parameters along it differ by
-# at most ROUNDINGS units in the last place of the largest coordinate of all sides. Those of the
-# point itself do not do: near the origin they are small, but their rounding errors are not.
+# # A side of the domain is mapped to one point if the points at PLACES parameters along it differ
+# by at most ROUNDINGS units in the last place of the largest coordinate of all sides. The
+# coordinates of the point itself are no measure: near the origin they are small, but their rounding
+# errors are not.
 PLACES, ROUNDINGS = 17, 64.0
-MIXED = 4  # the place of the coefficient of u v in Taylor polynomials; those of u and v are 1 and 2
+MIXED = 4  # the index of the coefficient of u v in Taylor polynomials; those of u and v are 1 and 2
 
 
 @dataclass(frozen=True, eq=False)
 class Apex:
-    """The side of u (axis 0) or of v where it has the value `end`, of a surface with a tape."""
+    """A side of the domain of a surface with a tape: u (axis 0) or v (axis 1) is `end`."""
 
     tape: Tape
     axis: int
     end: float
 
     def decided(self, open_: Undecided, normals: Array) -> Undecided:
-        """Return boxes without those that have no point with the normal, one of normals (S, 3)."""
+        """Return the boxes that may hold a point with their normal, one of normals (S, 3)."""
         low, high = 2 * self.axis, 2 * self.axis + 1
-        # Those that touch the side.
+        # # The boxes that touch the side.
         (rows,) = np.nonzero(
             (open_.kinds == SINGULAR)
             & (open_.boxes[:, low] <= self.end)
@@ -72,6 +74,6 @@ def apexes_of(surface: Surface, tape: Tape) -> list[Apex]:
 
 
 def _points_of_side(surface: Surface, axis: int, end: float) -> Array:
-    """Return points (PLACES, 3) on the side of u (axis 0) or of v where it has the value `end`."""
+    """Return points (PLACES, 3) on the side where u (axis 0) or v (axis 1) is `end`."""
     places = [np.full(PLACES, end), np.linspace(*surface.domain[1 - axis], PLACES)]
     return surface.jets(*(places if axis == 0 else places[::-1]))[:, 0]

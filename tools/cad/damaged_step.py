@@ -1,7 +1,7 @@
-"""STEP files with damaged faces: which these are, and the file without them.
+"""STEP files with damaged faces: finding these faces, and the file without them.
 
-A face that refers to something that the file lacks, or to numbers that are not finite, would become
-an infinite plane, or hang Open CASCADE. The others can be read.
+A face that refers to a missing entity, or to numbers that are not finite, would become an infinite
+plane, or hang Open CASCADE. The other faces can be read.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ COPY = "copy.step"
 
 @dataclass(frozen=True)
 class LostFace:
-    """A face that was left out: its name, or its number in the file, and why."""
+    """A face that was left out: its name, or its entity number in the file, and the reason."""
 
     name: str
     reason: str
@@ -40,10 +40,10 @@ def numbers_of_entities(content: bytes) -> list[int]:
 def without_damaged_faces(
     content: bytes, damaged: Mapping[int, str]
 ) -> tuple[bytes, tuple[LostFace, ...]]:
-    """Return a STEP file without its damaged faces, and these.
+    """Return a STEP file without its damaged faces, and these faces.
 
-    `damaged` has numbers of entities that Open CASCADE cannot read, and why. BadFileError for
-    numbers that are not finite and belong to no face.
+    `damaged` maps numbers of entities that Open CASCADE cannot read to reasons. Raises BadFileError
+    for numbers that are not finite and belong to no face.
     """
     content = COMMENT.sub(b"", content)
     bodies = {int(number): body for number, body in ENTITY.findall(content)}
@@ -125,9 +125,9 @@ def _name(number: int, body: bytes) -> str:
 
 @dataclass(frozen=True)
 class Source:
-    """A file to read: its format, its content, and the faces that have been left out of it.
+    """A file to read: its format, its content, and the faces left out of it.
 
-    `folder` is for copies.
+    `folder` is for temporary copies.
     """
 
     path: Path
@@ -139,7 +139,7 @@ class Source:
     def without(self, damaged: Mapping[int, str]) -> Source | None:
         """Return a STEP file without its damaged faces, or None if it has none.
 
-        `damaged` has numbers of entities that cannot be read, with reasons.
+        `damaged` maps numbers of entities that cannot be read to reasons.
         """
         content, lost = without_damaged_faces(self.content, damaged)
         if not lost:
@@ -150,7 +150,7 @@ class Source:
 
 
 def prepared(path: Path, folder: Path) -> Source:
-    """Return what is to be read of a file; BadFileError says why nothing is."""
+    """Return the readable content of a file; BadFileError with the reason if there is none."""
     content = path.read_bytes()
     form, finite = checked_format(content)
     source = Source(path, folder, form, content)

@@ -1,4 +1,4 @@
-"""What planes, cylinders, cones, spheres and tori are given by: axes, centres, radii."""
+"""The dimensions of planes, cylinders, cones, spheres and tori: axes, centres, radii."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ Dimensions = dict[str, Any]
 def dimensions_of(
     geometry: Geometry, domain: Sequence[Sequence[float]], is_reversed: bool
 ) -> Dimensions:
-    """Return what `Face.dimensions` is, from the numbers that `saving` describes."""
+    """Return the value of `Face.dimensions`, from the numbers that `saving` describes."""
     if geometry.kind not in ("plane", "cylinder", "cone", "sphere", "torus"):
         return {}
     origin, x, y, z = geometry.numbers[:12].reshape(4, 3).copy()
     sizes = geometry.numbers[12:].tolist()
-    # x_u × x_v points outward, or along z, if the frame is right-handed.
+    # With a right-handed frame, x_u × x_v points outward, or along z on a plane.
     outward = is_reversed == bool(np.cross(x, y) @ z < 0.0)
     if geometry.kind == "plane":
         return {"point": origin, "normal": z if outward else -z}
@@ -41,7 +41,7 @@ def dimensions_of(
 
 
 def _cone(origin: Array, z: Array, sizes: Sequence[float], v: float) -> Dimensions:
-    """Return the dimensions of a cone, the middle of which is at v; none if it does not widen."""
+    """Return the dimensions of a cone whose middle is at v; none if its half-angle is zero."""
     radius, angle = sizes
     if angle == 0.0:
         return {}

@@ -1,4 +1,4 @@
-"""Files of parts of version 1, as those of version 2: they have edges between two faces only."""
+"""Converting saved parts of version 1 to version 2: their edges lie between two faces only."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["OF_SECOND", "is_of_first", "names_of_first", "of_second"]
 
 Arrays = dict[str, NDArray[Any]]
 
-# The arrays that only one of the versions has.
+# # The arrays that only version 1 has.
 OF_FIRST = ("edge_faces", "edge_points", "edge_point_starts")
 OF_SECOND = (
     "vertices", "edge_vertices", "edge_degenerate", "edge_side_starts", "side_faces",
@@ -26,7 +26,7 @@ OF_SECOND = (
 
 
 def is_of_first(names: Iterable[str]) -> bool:
-    """Return whether arrays are those of a file of version 1."""
+    """Return whether the arrays are those of a file of version 1."""
     held = set(names)
     return held.issuperset(OF_FIRST) and not held.intersection(OF_SECOND)
 

@@ -1,4 +1,4 @@
-"""Samples on the sharp edges of a part, as far apart as its other samples are there."""
+"""Samples on the sharp edges of a part, spaced like its other samples nearby."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ from .results import PartSpace
 
 __all__ = ["step_of", "with_edges"]
 
-# Steps are measured between this many places of an edge, or more.
+# # The spacing is measured between at least this many positions on an edge.
 PLACES = 32
-# So many steps are there between two ends: an edge may lose the samples there to its neighbours.
+# # The least number of steps between two ends: near corners, an edge may lose samples to its
+# neighbours.
 FEWEST = 2
-# Ends of edges that are closer than this part of the size of the part are one corner.
+# # Ends of edges within this distance, relative to the size of the part, are one corner.
 SAME_CORNER = 1e-5
-# Of a step that is left over so much is not worth a sample.
+# # A remainder smaller than this part of a step gets no sample of its own.
 SLACK = 1e-6
 
 
@@ -38,7 +39,7 @@ def with_edges(
 ) -> dict[str, NDArray[Any]]:
     """Return fields of `count` samples of a part, followed by those on its sharp edges.
 
-    These are in the order of the edges. Each corner, where edges end, has one.
+    Samples on edges are in the order of the edges. Each corner, where edges end, has one sample.
     """
     found = {x: y.astype(dtype_of(x, dtype)) for x, y in _on_edges(space, count).items()}
     others = {
@@ -53,9 +54,9 @@ def with_edges(
 
 
 def _on_edges(space: PartSpace, count: int) -> dict[str, NDArray[Any]]:
-    """Return all fields of the samples on edges of a part that has `count` others.
+    """Return all fields of the samples on edges of a part that has `count` other samples.
 
-    If the part has a reach, both normals of each are in it.
+    If the part has a reach, both normals of each sample are in it.
     """
     edges = edges_of(space)
     owner, places, ends = _spaced(edges, step_of(space, count), max(count, 1))
@@ -79,10 +80,10 @@ def step_of(space: Space, count: int) -> float:
 
 
 def _spaced(edges: Edges, step: float, most: int) -> tuple[Indices, Array, Flags]:
-    """Return the edges (M,) and places (M,) of samples, and which are at the ends.
+    """Return the edges (M,) and positions (M,) of samples, and a mask of those at ends.
 
-    Ends are those of edges, and places where edges begin to be sharp. No part of an edge between
-    two ends has more than `most` steps.
+    Ends are the ends of edges and the positions where edges become sharp. An edge has at most
+    `most` steps between two ends.
     """
     owner, places = _many_places(edges)
     sides = sides_at(edges.space, edges.pieces[owner], edges.at(owner, places))
@@ -100,7 +101,7 @@ def _spaced(edges: Edges, step: float, most: int) -> tuple[Indices, Array, Flags
 
 
 def _many_places(edges: Edges) -> tuple[Indices, Array]:
-    """Return edges (M,) and places (M,) on them, `PLACES` parts of each or more."""
+    """Return edges (M,) and positions (M,) on them that make at least `PLACES` steps each."""
     steps = np.diff(edges.starts) - 1
     parts = -(-PLACES // np.maximum(steps, 1))
     counts = steps * parts + 1
@@ -110,9 +111,9 @@ def _many_places(edges: Edges) -> tuple[Indices, Array]:
 
 
 def _costs(space: PartSpace, sides: Sides) -> Array:
-    """Return the lengths (M − 1,) between neighbouring places, in units of the sizing function.
+    """Return the lengths (M − 1,) between neighbouring positions, in units of the sizing function.
 
-    Where the target density follows the curvature, normals turn by no more than this between them.
+    A cost is at least the angle between the normals if the target density follows the curvature.
     """
     target = space.target
     lengths = np.linalg.norm(np.diff(sides.points[:, 0], axis=0), axis=1) * space.unit
@@ -129,7 +130,7 @@ def _costs(space: PartSpace, sides: Sides) -> Array:
 
 
 def _divided(places: Array, costs: Array, most: int) -> Array:
-    """Return places with equal costs between them, 1 at most, from the first to the last."""
+    """Return positions with equal costs between them, at most 1, from the first to the last."""
     if not len(costs):
         return places
     if not costs.any():
@@ -142,9 +143,9 @@ def _divided(places: Array, costs: Array, most: int) -> Array:
 
 
 def _one_a_corner(sides: Sides, solids: Indices, ends: Flags, tolerance: float) -> Indices:
-    """Return which samples stay: of ends that are one corner, that with the largest angle.
+    """Return the indices of the samples to keep: one at each corner, with the largest angle.
 
-    Corners of two solids that touch are two.
+    Corners of two touching solids are two corners.
     """
     rows = np.flatnonzero(ends)
     dropped = np.zeros(len(sides), dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""Places on the sharp edges of a part, as parameters on both of the faces that meet there."""
+"""Positions on the sharp edges of a part, as parameters on both adjacent faces."""
 
 from __future__ import annotations
 
@@ -26,23 +26,24 @@ __all__ = [
     "sides_at",
 ]
 
-# Edges are sharp where the normals of their two faces differ by more than this, in degrees.
+# # Edges are sharp where the normals of the two faces differ by more than this, in degrees.
 SHARP = 1.0
-# Newton's method ends where the points on both faces are closer than this part of the part's size,
-# and has found a place if they are within so many times that.
+# # Newton's method stops when the points on both faces are closer than SAME, relative to the size
+# of the part, and has succeeded if they are closer than FOUND times that.
 SAME, FOUND, MOST_ROUNDS = 1e-14, 1e3, 12
-# A place moves so many times as far as the faces are apart there, by the sine of their angle.
+# # The largest distance that Newton's method may move a point: this factor times the distance of
+# the faces, over the sine of their angle.
 TIMES_APART = 3.0
-# Points of a file whose two faces are farther apart, relative to the size, are on no edge.
+# # Points of a file where the two faces are farther apart, relative to the size, are on no edge.
 APART = 1e-4
-# A surface collapses where it is so many times longer along one parameter than along the other;
-# parameters beyond its domain by this part of it are its end.
+# # A surface collapses where one of |x_u|, |x_v| is this many times the other; parameters that
+# exceed the domain by less than this part of it are moved to its end.
 COLLAPSED, BEYOND = 1e10, 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """The edges (E,) between two faces of a part: polylines of parameters.
+    """Edges (E,) between two faces of a part each: polylines of parameters.
 
     The points of edge i are `points` (k, 4) from `starts`[i] to `starts`[i + 1]: u, v on the
     surfaces of the two `pieces` (E, 2) of a space.
@@ -57,9 +58,9 @@ class Edges:
         return len(self.pieces)
 
     def at(self, edges: Indices, places: Array) -> Array:
-        """Return parameters (M, 4) at places (M,), 0 at the first point of an edge, 1 at the next.
+        """Return parameters (M, 4) at positions (M,): k at the k-th point of an edge.
 
-        Between two points they are interpolated.
+        Between two points they are interpolated linearly.
         """
         last = np.diff(self.starts)[edges] - 1
         before = np.minimum(np.floor(places).astype(np.int64), last - 1)
@@ -85,12 +86,12 @@ def edges_of(space: PartSpace, *, seams: bool = False) -> Edges:
 
 
 def between_two(part: Part, *, seams: bool = False) -> tuple[Indices, Array, Indices]:
-    """Return the edges with a face at either side: these faces (E, 2), and points.
+    """Return the edges between two faces: the faces (E, 2), the points, and their starts.
 
-    The faces are different ones, but for `seams`.
+    Without `seams`, the two faces are different.
 
-    The points of edge i are u, v on the first and on the second face, (k, 4), from starts[i] to
-    starts[i + 1].
+    The points (k, 4) of edge i, from starts[i] to starts[i + 1], are u, v on the first and on the
+    second face.
     """
     arrays = part.arrays
     first, faces = arrays["edge_side_starts"], arrays["side_faces"]
@@ -112,7 +113,7 @@ def between_two(part: Part, *, seams: bool = False) -> tuple[Indices, Array, Ind
 
 
 def _of_surfaces(space: PartSpace, pieces: Indices, points: Array) -> Array:
-    """Return parameters (k, 4) of the surfaces of pieces (k, 2), from those of the file."""
+    """Return parameters (k, 4) on the surfaces of pieces (k, 2), from those of the file."""
     found = points.copy()
     for side in (0, 1):
         columns = slice(2 * side, 2 * side + 2)
@@ -128,11 +129,12 @@ def _of_surfaces(space: PartSpace, pieces: Indices, points: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """The two faces at places (M,): `pieces` (M, 2), and u, v (M, 4) on their surfaces.
+    """Both faces at M positions: `pieces` (M, 2), and u, v (M, 4) on their surfaces.
 
-    Of each: points (M, 2, 3) in L, tangents x_u, x_v (M, 2, 2, 3), unit normals (M, 2, 3), which
-    are 0 where there are none, and the curvatures K, H (M, 2, 2). `collapsed` (M, 2) says where a
-    side of a surface is one point, as a pole; of these only those of spheres have normals.
+    For both faces: points (M, 2, 3) in L, tangents x_u, x_v (M, 2, 2, 3), unit normals (M, 2, 3),
+    which are 0 where they are undefined, and the curvatures K, H (M, 2, 2). `collapsed` (M, 2)
+    marks positions on a side of the domain that is one point, as a pole; of these, only those of
+    spheres have normals.
     """
 
     pieces: Indices
@@ -147,18 +149,18 @@ class Sides:
         return len(self.uv)
 
     def __getitem__(self, rows: Indices | Flags) -> Sides:
-        """Return some of the places."""
+        """Return a selection of the positions."""
         return Sides(*(x[rows] for x in vars(self).values()))
 
     @property
     def chords(self) -> Array:
-        """The chords (M,) of the angles between the normals, 0 where there are none."""
+        """The chords (M,) of the angles between the normals, 0 where one is undefined."""
         chords = np.linalg.norm(self.normals[:, 0] - self.normals[:, 1], axis=1)
         return np.where(np.all(np.any(self.normals, axis=2), axis=1), chords, 0.0)
 
     @property
     def sharp(self) -> Flags:
-        """Where the normals differ by more than `SHARP` degrees."""
+        """A mask of the positions whose normals differ by more than `SHARP` degrees."""
         return self.chords > 2.0 * math.sin(math.radians(SHARP) / 2.0)
 
     @property
@@ -168,7 +170,7 @@ class Sides:
 
 
 def sides_at(space: PartSpace, pieces: Indices, uv: Array) -> Sides:
-    """Return what is known of both faces at places (M,)."""
+    """Return points, tangents, normals and curvatures of both faces at positions (M,)."""
     found = at_places(space, pieces.ravel(), uv.reshape(-1, 2))
     return Sides(
         pieces,
@@ -182,7 +184,7 @@ def sides_at(space: PartSpace, pieces: Indices, uv: Array) -> Sides:
 
 
 class Places(NamedTuple):
-    """What `Sides` has of both faces, at places (M,) on one; `vectors` (M, 3, 3): x, x_u, x_v."""
+    """The fields of `Sides` for one face at M positions; `vectors` (M, 3, 3) are x, x_u, x_v."""
 
     uv: Array
     vectors: Array
@@ -192,7 +194,7 @@ class Places(NamedTuple):
 
 
 def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
-    """Return what is known of pieces (M,) at u, v (M, 2) of their surfaces."""
+    """Return the fields of pieces (M,) at u, v (M, 2) of their surfaces."""
     places, scales = _inside(space, owner, uv), np.array([space.unit, 1.0, 1.0])
     vectors, normals = np.empty((len(owner), 3, 3)), np.empty((len(owner), 3))
     curvatures = np.empty((len(owner), 2))
@@ -211,7 +213,7 @@ def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
 
 
 def _inside(space: PartSpace, owner: Indices, places: Array) -> Array:
-    """Return places (k, 2), those that are beyond the domain by rounding at its end."""
+    """Return parameters (k, 2); those beyond the domain by rounding are moved to its end."""
     low, high = np.array([x.surface.domain for x in space.pieces])[owner].transpose(2, 0, 1)
     slack = BEYOND * (high - low)
     places = np.where((places < low) & (places >= low - slack), low, places)
@@ -222,11 +224,11 @@ def _inside(space: PartSpace, owner: Indices, places: Array) -> Array:
 
 
 def exact_places(edges: Edges, owner: Indices, places: Array) -> tuple[Sides, Indices]:
-    """Return both sides at sharp places of edges (M,), and which of the places these are.
+    """Return both sides at sharp positions of edges (M,), and the indices of these positions.
 
-    The faces intersect there: by Newton's method from the places, across the edge. Where they do
-    not, because the faces of the file meet within a tolerance only, a point of the file that is
-    near is taken; where the faces are farther apart than `APART`, there is none.
+    Newton's method finds the intersection of the faces, in the plane across the edge. If the faces
+    do not intersect, because they meet within a tolerance only, a nearby point of the file is
+    taken; where the faces are farther apart than `APART`, there is no position.
     """
     space, pieces = edges.space, edges.pieces[owner]
     starts = sides_at(space, pieces, edges.at(owner, places))
@@ -247,12 +249,12 @@ def _size(space: PartSpace) -> float:
 
 
 def _intersections(space: PartSpace, starts: Sides) -> tuple[Array, Flags]:
-    """Return parameters (M, 4) where two faces intersect near places, and which were found.
+    """Return parameters (M, 4) where two faces intersect near `starts`, and a mask of successes.
 
-    Both points meet in the plane across the edge.
+    Both points move in the plane across the edge.
     """
     along = np.cross(starts.normals[:, 0], starts.normals[:, 1])
-    least = math.sin(math.radians(SHARP) / 2.0)  # at cusps, too, where normals are opposite
+    least = math.sin(math.radians(SHARP) / 2.0)  # not smaller at cusps, where normals are opposite
     sines = np.maximum(np.linalg.norm(along, axis=1, keepdims=True), least)
     along /= sines
     same = SAME * _size(space)
@@ -275,7 +277,7 @@ def _intersections(space: PartSpace, starts: Sides) -> tuple[Array, Flags]:
 
 
 def _step(sides: Sides, along: Array, ahead: Array) -> Array:
-    """Return Newton's steps (M, 4) for points that coincide, in planes across `along`."""
+    """Return Newton steps (M, 4) that make both points coincide, in planes across `along`."""
     one, other = sides.tangents[:, 0], sides.tangents[:, 1]
     matrices = np.zeros((len(sides), 4, 4))
     matrices[:, :3, :2] = one.transpose(0, 2, 1)

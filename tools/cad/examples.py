@@ -65,7 +65,7 @@ def box_faces(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> li
 def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[EdgeRecord]:
     """Return the twelve sharp edges between the faces of `box_faces`.
 
-    The bits of the number of a vertex say at which end of the axes it is.
+    Bit k of the number of a vertex says at which end of axis k it is.
     """
     size, found = np.array([width, depth, height]), []
     for first, second in itertools.combinations(range(3), 2):
@@ -82,7 +82,7 @@ def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> li
 
 
 def all_kinds() -> Part:
-    """Return a part with a face of each kind, cut by a circle of parameters.
+    """Return a part with a face of each kind, trimmed by a circle in the parameters.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What tables of samples say of the face that each sample lies on."""
+"""Columns in tables of samples that describe the face of each sample."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ __all__ = ["face_columns"]
 
 
 def face_columns(part: Part) -> list[FaceColumn]:
-    """Return the number in the file, the name, the kind and the radius of all faces.
+    """Return the face number in the file, the name, the kind and the radius of all faces.
 
-    The radius is that of cylinders and spheres, and of tori the smaller one.
+    The radius is that of cylinders and spheres, and the smaller one of tori.
     """
     sizes = (x.dimensions for x in part.faces)
     radii = [x.get("radius", x.get("minor_radius")) for x in sizes]

@@ -1,4 +1,4 @@
-"""What finds all points of faces with given normals, with a proof: in closed form, or an index."""
+"""Indices that find all points of faces with given normals, proved, or in closed form."""
 
 from __future__ import annotations
 
@@ -29,19 +29,20 @@ __all__ = ["face_index"]
 
 Array = NDArray[np.float64]
 
-# Cells of an index before they are cut: faces are simple, and there are many.
+# # The cells of an index before bisection: faces are simple, and there are many.
 CELLS = (4, 4)
-# Ends of a side are looked at if their distance is less than this part of the largest one.
+# # A side of the domain may be one point if the distance of its ends is less than this part of the
+# largest such distance.
 CLOSE = 1e-3
 SINGULAR = KINDS.index("singular")
-# The places of Taylor coefficients of bounds.
+# # The indices of Taylor coefficients in bounds.
 U1, V1, U2, U1V1, V2 = range(1, 6)
 
 
 def face_index(
     geometry: Geometry, surface: Surface, domain: Domain, *, is_reversed: bool
 ) -> FaceIndex | None:
-    """Return the index of the surface of a face over a domain; None if nothing is proved."""
+    """Return the index of the surface of a face over a domain; None if no proof is possible."""
     simple = simplest(geometry, domain)
     if simple.kind in ROUND:
         return RoundFace.of(simple, surface.domain, is_reversed=is_reversed)
@@ -57,7 +58,7 @@ def face_index(
 
 @dataclass(frozen=True, eq=False)
 class SmoothPiece:
-    """The index of a smooth piece of a surface, and its sides that are one point."""
+    """The index of a smooth piece of a surface, and the sides of its domain that are one point."""
 
     index: ProvedIndex
     apexes: Sequence[Apex]
@@ -80,7 +81,7 @@ class SmoothPieces:
 
     @classmethod
     def of(cls, surface: Surface) -> SmoothPieces | None:
-        """Return those of a surface; None if one has none."""
+        """Return the indices of a surface; None if one of its pieces has none."""
         found = []
         for piece in surface.pieces():
             may_have_points = _has_corners_that_meet(piece)
@@ -100,14 +101,14 @@ class SmoothPieces:
 
 @dataclass(frozen=True, eq=False)
 class Offset:
-    """An offset of the surface of a face, from the index of that.
+    """The index of an offset of a surface, by the index of that surface (the basis).
 
-    Both have the same parameters, and opposite normals where one principal curvature has a centre
-    that is nearer than the offset: there (1 + d κ₁) (1 + d κ₂) is negative.
+    Both have the same parameters. Their normals are opposite where the offset has passed one centre
+    of principal curvature: there (1 + d κ₁) (1 + d κ₂) is negative.
     """
 
     basis: FaceIndex
-    tape: Tape  # of the other surface
+    tape: Tape  # of the basis
     distance: float
 
     def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
@@ -118,9 +119,9 @@ class Offset:
         ])  # fmt: skip
 
     def _turned(self, found: FacePlaces, normals: Array, sign: float) -> FacePlaces:
-        """Return those of places of the other surface at which normals have a sign.
+        """Return the points of the basis at which the normal of the offset has the given sign.
 
-        Boxes that are open there stay open: the sign may change inside of them.
+        Undecided boxes of the basis stay undecided: the sign may change inside of them.
         """
         sides = self._sides(found, normals[found.numbers])
         is_known = np.abs(sides.middle) > sides.radius
@@ -136,9 +137,9 @@ class Offset:
         )
 
     def _sides(self, found: FacePlaces, normals: Array) -> Ball:
-        """Return bounds (k,) of numbers with the sign of products of both normals.
+        """Return enclosures (k,) of numbers whose sign is that of the product of both normals.
 
-        That of the other surface is exactly one of normals (k, 3), somewhere within the radii.
+        The normal of the basis is exactly one of normals (k, 3), somewhere within the radii.
         """
         bounds = bounds_over_boxes(self.tape, found.uv, found.radius)
         factors = zip((U2, U1V1, V2, U1, V1), (2.0, 1.0, 2.0, 1.0, 1.0), strict=True)
@@ -151,7 +152,7 @@ class Offset:
 
 
 def _has_corners_that_meet(surface: Surface) -> bool:
-    """Say whether a side of the domain may be one point: its ends are close to one another."""
+    """Return whether a side of the domain may be one point: two corners are close together."""
     (u0, u1), (v0, v1) = surface.domain
     places = np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)]).T.copy()
     points = surface.jets(*places)[:, 0]

@@ -1,4 +1,4 @@
-"""A face of a part as what is sampled: its surface, the lines where that is cut, and its border."""
+"""A face of a part as a piece to sample: its surface, the lines that divide it, its boundary."""
 
 from __future__ import annotations
 
@@ -42,23 +42,23 @@ Array = NDArray[np.float64]
 
 # Angles are divided into parts of at most this, in radians.
 ANGLE = 0.25
-# The parts between two knots, at least, unless there are more parts than MOST_PARTS along a
-# parameter: polynomials of higher degrees turn in between.
+# # The least number of parts between two knots, for polynomials of higher degrees may turn there,
+# unless there would be more than MOST_PARTS parts along a parameter.
 PARTS_OF_SPAN, MOST_PARTS = 2, 64
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
-# Of surfaces whose function is not known, the domain is divided into this number of parts.
+# # The number of parts along each parameter of a surface whose function is not known.
 PARTS_OF_SURFACE = 16
-# At poles, curvatures are those at this part of the domain from there.
+# # Curvatures at a pole are those at this distance from it, relative to the domain.
 BESIDE = 1e-6
 CURVATURES = ("gaussian_curvature", "mean_curvature")
-# Where nothing is proved, and at normals of lattices, points are searched on a spline: its cells
-# for each part of a span, and their least and largest number. At the border, points are lost by the
-# error of the spline.
+# # Where no proof is possible, and for normals of lattices, points are searched on a spline: the
+# number of its cells for each part of a span, and the least and largest number of cells. Near the
+# boundary, the error of the spline loses points.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
-# What is measured on a raster of a face, is so at about this number of places squared.
+# # Measurements on a raster of a face use about this number of positions, squared.
 RASTER = 64
-# Which parameters of a kind of face are angles.
+# # The parameters that are angles, for each kind of face.
 ANGLES = {
     "cylinder": (True, False),
     "cone": (True, False),
@@ -70,7 +70,7 @@ ANGLES = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacePiece(Piece):
-    """A face, and its surface, whose normals point outward; of these, those in a `reach`."""
+    """A face with its surface, whose normals point outward, restricted to normals in a `reach`."""
 
     face: Face
     surface: Surface
@@ -88,17 +88,17 @@ class FacePiece(Piece):
 
     @cached_property
     def size(self) -> float:
-        """The root of the area, in L."""
+        """The square root of the area, in L."""
         return math.sqrt(self.area)
 
     @property
     def area(self) -> float:
-        """The area of what is in the reach, in L²."""
+        """The area of the part whose normals are in the reach, in L²."""
         return self.face.area * self._share
 
     @cached_property
     def _share(self) -> float:
-        """The part of the area whose normals are in the reach, measured on a raster."""
+        """The fraction of the area whose normals are in the reach, measured on a raster."""
         if self.reach is None:
             return 1.0
         jets = self.on_raster()
@@ -107,7 +107,7 @@ class FacePiece(Piece):
         return float(areas[inside].sum() / areas.sum()) if inside.any() else 0.0
 
     def on_raster(self) -> Array:
-        """Return the 2-jets (k, 6, 3) at the places of a raster of the domain inside the trim."""
+        """Return the 2-jets (k, 6, 3) on a raster of the domain, inside the trim."""
         n = max(2, math.ceil(RASTER / math.sqrt(len(self.boxes))))
         shares = (np.indices((n, n)).reshape(2, -1).T + 0.5) / n
         low, sizes = self.boxes[:, None, :2], self.boxes[:, None, 2:] - self.boxes[:, None, :2]
@@ -118,20 +118,20 @@ class FacePiece(Piece):
 
     @property
     def boxes(self) -> Array:
-        """Boxes (M, 4) that the domain is made of, in each of which the surface is smooth."""
+        """The boxes (M, 4) that make up the domain; the surface is smooth in each."""
         geometry, domain = self.face.geometry, self.surface.domain
         u, v = (_lines(self.face, geometry, axis, domain[axis]) for axis in (0, 1))
         return boxes_between(u, v)
 
     def lines(self, axis: int) -> Array:
-        """Return the values of u (axis 0) or v between which the surface is smooth."""
+        """Return the values of u (axis 0) or v (axis 1) between which the surface is smooth."""
         return np.unique(self.boxes[:, [axis, axis + 2]])
 
     @property
     def polygons(self) -> list[Array]:
-        """The closed polygons (k, 2) around it, the first point of which is not repeated.
+        """The closed polygons (k, 2) that bound the face; the first point is not repeated.
 
-        Loops of files leave the domain by rounding, or by the tolerance of the file: these do not.
+        Loops of files exceed the domain by rounding, or by the tolerance of the file: these do not.
         """
         (u0, v0), (u1, v1) = low, high = np.array(self.surface.domain).T
         if self.surface.trim is None:
@@ -145,12 +145,12 @@ class FacePiece(Piece):
         return self.surface.unchecked_jets(*np.array([u, v]))  # faces are many, and have few places
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
-        """Return what is searched for points with a normal; GaussmapError if it has no spline."""
+        """Return the geometries to search for points; GaussmapError if there is no spline."""
         found = kept(self.surface, FacePiece, self._geometries)
         return [x.used(np.float64, threads).within(self.reach) for x in found]
 
     def proved_at(self, normals: Array, threads: int | None) -> list[Samples] | None:
-        """Return all points with unit normals (S, 3), with a proof; None if there is none."""
+        """Return all points with unit normals (S, 3), proved; None if no proof is possible."""
         index = kept(self.surface, face_index, self._index)
         if index is None:
             return None
@@ -159,7 +159,7 @@ class FacePiece(Piece):
         return [] if nothing else [self._samples(normals, found)]
 
     def _samples(self, normals: Array, found: FacePlaces) -> Samples:
-        """Return the places with normals (S, 3) that are inside the trim."""
+        """Return the points with normals (S, 3) that are inside the trim."""
         inside = self.contains(found.uv)
         check_memory("stored", int(inside.sum()), bytes_of(ARRAY_NAMES_OF_PART, np.float64))
         given, uv = normals[found.numbers[inside]], found.uv[inside]
@@ -189,14 +189,14 @@ class FacePiece(Piece):
 
     def _geometries(self) -> list[OnSpline]:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, which is only a start
+            warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, a starting value only
             pieces = self.surface.pieces()
             return [geometry_of(x, self._cells(x.domain), "surface") for x in pieces]
 
     def _cells(self, domain: Domain) -> tuple[int, int]:
-        """Return the numbers of cells, for each part of its lines some, of a spline over a domain.
+        """Return the numbers of cells of a spline over a domain, by the parts between lines.
 
-        The fit of any surface compares splines with it, which takes longer than all the rest.
+        `fit` would choose them by comparing splines, which takes longer than all the rest.
         """
         along_u, along_v = (
             min(max(CELLS_A_PART * (1 + int(((lines > low) & (lines < high)).sum())), FEWEST), MOST)
@@ -230,9 +230,9 @@ class FacePiece(Piece):
 def pieces_of(
     faces: tuple[Face, ...], reach: Cap | None = None
 ) -> tuple[list[FacePiece], dict[int, str]]:
-    """Return the faces that can be sampled, and by their index why others cannot.
+    """Return the faces that can be sampled, and for each other face, by its index, the reason.
 
-    Those without normals in a `reach` are in neither.
+    Faces without normals in a `reach` are in neither.
     """
     pieces, reasons = [], {}
     for face in faces:
@@ -251,11 +251,11 @@ def pieces_of(
 
 
 def _lines(face: Face, geometry: Geometry, axis: int, ends: tuple[float, float]) -> Array:
-    """Return where the domain is cut along an axis: at knots, and into parts of them."""
+    """Return the values that divide the domain along an axis: at knots, and between them."""
     knots, degree = _knots(geometry, axis)
     while geometry.basis is not None:
         geometry = geometry.basis
-    if axis == 0 and face.reversed:  # as u of its surface is
+    if axis == 0 and face.reversed:  # u of its surface is reversed, too
         knots = sum(ends) - knots
     lines, parts = np.array(ends), 1
     if len(knots):
@@ -284,7 +284,7 @@ def _between(knots: Array, ends: tuple[float, float], period: float) -> Array:
 
 
 def _knots(geometry: Geometry, axis: int) -> tuple[Array, int]:
-    """Return the knots of a surface along an axis, and the degree between them; 0 if none."""
+    """Return the knots of a surface along an axis, and the degree between them; 0 without knots."""
     if geometry.basis is not None:
         return _knots(geometry.basis, axis)
     net, of_curve = geometry.net, {"revolution": 1, "extrusion": 0}.get(geometry.kind)

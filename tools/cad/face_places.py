@@ -1,4 +1,4 @@
-"""The points of a face that have given normals, and what is not known of them."""
+"""The points of a face that have given normals, and boxes that are undecided."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Indices = NDArray[np.int64]
 
 
 class FacePlaces(NamedTuple):
-    """Points of a face, and boxes where there may be further ones.
+    """Points of a face, and undecided boxes, where there may be further points.
 
-    numbers (k,) are those of normals; uv (k, 2) the parameters, and radius (k, 2) how far the exact
-    ones may be from them; sign (k,) that of the Gaussian curvature.
+    numbers (k,) are the indices of normals; uv (k, 2) the parameters, and radius (k, 2) the radii
+    of boxes around them that hold the exact ones; sign (k,) that of the Gaussian curvature.
     """
 
     numbers: Indices
@@ -30,7 +30,7 @@ class FacePlaces(NamedTuple):
     undecided: Undecided
 
     def reversed_in(self, total: float) -> FacePlaces:
-        """Return the same for u → total − u."""
+        """Return the same points for the parameter total − u in place of u."""
         uv, boxes = self.uv.copy(), self.undecided.boxes.copy()
         uv[:, 0] = total - uv[:, 0]
         boxes[:, :2] = total - boxes[:, 1::-1]
@@ -41,15 +41,15 @@ class FacePlaces(NamedTuple):
 
 
 class FaceIndex(Protocol):
-    """What finds all points of a face with given normals."""
+    """An index that finds all points of a face with given normals."""
 
     def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
-        """Return all points with unit normals (S, 3), but for those in undecided boxes."""
+        """Return all points with unit normals (S, 3), except those in undecided boxes."""
         ...
 
 
 def undecided(numbers: Indices, boxes: Array, kind: int, border: bool) -> Undecided:
-    """Return boxes (k, 4) of one kind, of normals with some numbers (k,)."""
+    """Return boxes (k, 4) of one kind as undecided, for the normals with indices (k,)."""
     count = len(numbers)
     return Undecided(numbers, boxes, np.full(count, kind), np.full(count, border))
 

@@ -1,8 +1,8 @@
 """Surfaces of faces: from the arrays of a face to a surface with exact derivatives and its trim.
 
-Parameters are those of Open CASCADE and STEP, see `saving`; their domain is that of the loops.
-Planes, cylinders, cones, spheres, tori and surfaces of revolution are evaluated in their own frame,
-and placed. What is extruded is a NURBS. Second derivatives of offsets are numerical (see
+Parameters are those of Open CASCADE and STEP (see `saving`); their domain is the bounding box of
+the loops. Planes, cylinders, cones, spheres, tori and surfaces of revolution are evaluated in their
+own frame, and placed. Extrusions are NURBS. Second derivatives of offsets are numerical (see
 `offset_surface`).
 """
 
@@ -37,15 +37,16 @@ TURN = 2.0 * math.pi
 QUARTER = math.pi / 2.0
 OPEN: BoundaryPair = ("open", "open")
 PERIODIC: BoundaryPair = ("periodic", "periodic")
-# A loop is the border of the domain if it is as near to it as this part of the domain.
+# # A loop is the boundary of the domain if it is within this distance of it, relative to the
+# domain.
 ON_BORDER = 1e-9
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A surface without its trim: its function, before it is placed, and its boundary conditions.
+    """A surface without its trim: its function in its own frame, and its boundary conditions.
 
-    `collapses` says whether sides that are one point have to be looked for.
+    `collapses` says whether the domain may have sides that are one point, to be looked for.
     """
 
     function: Differentiable
@@ -63,10 +64,11 @@ def face_surface(
     is_reversed: bool = False,
     name: str = "face",
 ) -> Surface:
-    """Return the surface of a geometry over the bounds of the loops, with its trim.
+    """Return the surface of a geometry over the bounding box of the loops, with its trim.
 
     If `is_reversed`, its normals are opposite to x_u × x_v of the geometry, and u is reversed:
-    `own_parameters` gives those of the file. Raises InputError for numbers that define no surface.
+    `own_parameters` returns the parameters of the file. Raises InputError for numbers that define
+    no surface.
     """
     if geometry.surface is not None:  # with its own domain and trim
         surface = replace(geometry.surface, name=name)
@@ -79,7 +81,8 @@ def face_surface(
     if shape.placement is None:
         surface = Surface(name, function, *ends, trim=trim, assumed_open=assumed)
         return surface.flipped() if is_reversed else surface
-    # At once, for there are many of these faces. Both ends of u are of one kind.
+    # # Placed and reversed in one step, for such faces are many. Both ends of u have the same
+    # boundary condition.
     moved = Moved(Surface(name, function, *ends), shape.placement, is_reversed, shape.domain[0])
     if is_reversed and trim is not None:
         trim = turned_trim(trim, shape.boundary)
@@ -95,7 +98,7 @@ def own_parameters(surface: Surface, uv: Array, *, is_reversed: bool) -> Array:
 
 
 def _is_whole(loops: Sequence[Array], domain: Domain) -> bool:
-    """Return whether one loop goes around the whole domain."""
+    """Return whether there is a single loop, the boundary of the whole domain."""
     if len(loops) != 1:
         return False
     (loop,) = loops
@@ -149,7 +152,7 @@ def _cone(geometry: Geometry, domain: Domain) -> Shape:
 
 
 def _sphere(geometry: Geometry, domain: Domain) -> Shape:
-    """Return a sphere: a torus whose circles meet in one, where it is cut off at the poles."""
+    """Return a sphere: a torus whose radii make its circles meet, restricted between the poles."""
     function = CatalogueFunction("torus", (0.0, float(geometry.numbers[12])))
     around, ends = _around(domain[0])
     slack = SAME_END * TURN
@@ -195,7 +198,7 @@ def _of_nurbs(nurbs: Nurbs) -> Shape:
 
 
 def _revolution(geometry: Geometry, domain: Domain) -> Shape:
-    """Turn the curve about the z axis of a frame, whose x axis is arbitrary."""
+    """Return a curve turned about the z axis of a frame whose x axis is arbitrary."""
     assert geometry.net is not None
     origin, axis = np.asarray(geometry.numbers).reshape(2, 3)
     frame = _frame(axis)
@@ -216,7 +219,7 @@ def _frame(axis: Array) -> Array:
 
 
 def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:
-    """Return an interval of an angle, and whether it is a whole turn, which it then is exactly."""
+    """Return an interval of an angle, exactly one turn if nearly so, and its conditions."""
     low, high = interval
     if abs(high - low - TURN) <= SAME_END * TURN:
         return (low, low + TURN), PERIODIC
@@ -227,7 +230,7 @@ def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:
 
 
 def _offset(geometry: Geometry, domain: Domain) -> Shape:
-    """Return an offset: of planes, cylinders, cones, spheres and tori, another one of its kind."""
+    """Return an offset; those of planes, cylinders, cones, spheres and tori keep their kind."""
     simple = simplest(geometry, domain)
     if simple.kind != "offset":
         return _shape(simple, domain)
@@ -252,7 +255,7 @@ def simplest(geometry: Geometry, domain: Domain) -> Geometry:
 
 
 def _moved_numbers(basis: Geometry, distance: float, domain: Domain) -> Array | None:
-    """Return the numbers of the surface of the same kind at a distance; None if there is none.
+    """Return the numbers of a surface of the same kind at a distance; None if there is none.
 
     The distance is along x_u × x_v, which points away from the axis if the frame is right-handed
     and the radius positive.
@@ -273,7 +276,7 @@ def _moved_numbers(basis: Geometry, distance: float, domain: Domain) -> Array | 
         numbers[12] += moved * math.cos(angle)
     elif abs(numbers[12]) > abs(numbers[13]):
         numbers[13] += moved
-    else:  # its normal points to the axis where it has passed it
+    else:  # the offset has passed the axis, and its normal points to it
         return None
     return numbers
 

@@ -1,4 +1,4 @@
-"""A part made of surfaces: their faces, the edges that they share, and one orientation."""
+"""A part made of surfaces: faces, shared edges, and one orientation."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .surface_geometry import geometry_of_surface
 
 __all__ = ["part_of_surfaces"]
 
-# Borders coincide up to this part of the size of all surfaces.
+# # Boundaries coincide within this distance, relative to the size of all surfaces.
 TOLERANCE = 1e-6
 
 
@@ -41,11 +41,11 @@ def part_of_surfaces(
     name: str,
     unit: str | None,
 ) -> Part:
-    """Return what `Part([...])` is to be; raises what that raises."""
+    """Return the part `Part([...])`, with the exceptions of `Part`."""
     held, known = _checked(surfaces), None if unit is None else checked_unit(unit)
     most = None if tolerance is None else positive_number(tolerance, "tolerance")
     faces = [_face(x) for x in held]
-    # Areas are not known yet, and faces without an area are no pieces.
+    # # The areas are not known yet, and faces without an area are not made into pieces.
     bare = part_of(
         PartRecord(text(name, "name"), known or "", METRES.get(known or "", 1.0), False, faces)
     )
@@ -62,9 +62,9 @@ def part_of_surfaces(
 
 
 def _checked(surfaces: object) -> list[Surface]:
-    """Return the surfaces, of those that were given by points their splines.
+    """Return the surfaces; those given by points become splines.
 
-    InputError unless there are some, and they are nothing else.
+    Raises InputError for an empty list, and for other entries.
     """
     given = None if isinstance(surfaces, Surface) else listed(surfaces)
     if not given:
@@ -94,7 +94,7 @@ def _face(surface: Surface) -> FaceRecord:
 
 
 def _loops(surface: Surface) -> list[Array]:
-    """Return the polygons around a surface; InputError for a trim that has none, or several."""
+    """Return the boundary polygons of a surface; InputError for trims other than loops."""
     (u0, u1), (v0, v1) = surface.domain
     if surface.trim is None:
         return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
@@ -120,14 +120,14 @@ def _loops(surface: Surface) -> list[Array]:
 
 
 def _corners(piece: FacePiece) -> Array:
-    """Return points (k, 3) all over a surface."""
+    """Return points (k, 3) spread over a surface."""
     u0, v0, u1, v1 = piece.boxes.T
     places = np.concatenate([np.stack(x, axis=1) for x in ((u0, v0), (u1, v1))])
     return piece.jets(*places.T.copy())[:, 0]
 
 
 def _borders(piece: FacePiece) -> list[Border]:
-    """Return the border of a face, which lies at its left."""
+    """Return the boundaries of a face, which lies to their left."""
     whole = piece.surface.trim is None
     found = []
     for polygon, sign in zip(piece.polygons, signs_of(piece), strict=True):
@@ -148,7 +148,7 @@ def _part(
     found: Sewn,
     centre: Array,
 ) -> Part:
-    """Return the part of faces whose edges are known."""
+    """Return the part made of faces whose edges are known."""
     integrals = [integrals_of(x, centre) for x in pieces]
     for face, (_, area) in zip(faces, integrals, strict=True):
         if not area > 0.0:
@@ -177,7 +177,7 @@ def _part(
 
 
 def _warnings(faces: Sequence[FaceRecord], found: Sewn) -> Iterator[str]:
-    """Yield sentences: which surfaces are flipped, and where these do not fit."""
+    """Yield warnings: the flipped surfaces, and the positions where surfaces do not fit."""
     flipped = [k for k, face in enumerate(faces) if face.reversed]
     if len(flipped) == 1:
         yield f"surface {flipped[0]} ({faces[flipped[0]].name!r}) is flipped."

@@ -1,8 +1,7 @@
-"""What kind of CAD file a file is, whether it is whole, and how many faces it says that it has.
+"""The format of a CAD file, whether it is complete, and its number of faces by its own account.
 
-Files are looked at before they are read.
-Open CASCADE reads the beginning of a file that was cut off as if nothing were missing, and hangs on
-coordinates that are not finite.
+Files are inspected before Open CASCADE reads them: it reads the beginning of a truncated file as if
+nothing were missing, and hangs on coordinates that are not finite.
 """
 
 from __future__ import annotations
@@ -29,11 +28,11 @@ HEAD = 4096
 START_OF_STEP = re.compile(rb"(?<!END-)ISO-10303-21\s*;")
 END_OF_STEP = b"END-ISO-10303-21"
 BREP = (b"DBRep_DrawableShape", b"CASCADE Topology V")
-# Exponents that are too large: larger ones than 307, in decimal digits.
+# # Decimal exponents that are too large: greater than 307.
 TOO_LARGE = rb"e\+?0*(?:30[89]|3[1-9]\d|[4-9]\d\d|\d{4,})"
 SUSPICIOUS = re.compile(rb"nan|inf|" + TOO_LARGE)
 NUMBER = rb"[-+]?(?:nan|inf(?:inity)?|\d*\.?\d*" + TOO_LARGE + rb")"
-# A number that is not finite, in the aggregates of STEP, the lists of IGES and the lines of BREP.
+# # A number that is not finite, in the aggregates of STEP, the lists of IGES and the lines of BREP.
 NOT_FINITE = {
     "STEP": re.compile(rb"[(,]\s*" + NUMBER + rb"\s*(?=[,)])", re.IGNORECASE),
     "IGES": re.compile(rb"[,;]\s*" + NUMBER + rb"\s*(?=[,;])", re.IGNORECASE),
@@ -48,7 +47,7 @@ SHELL = re.compile(
 REFERENCE = re.compile(rb"#\d+")
 # The types of entities of IGES that are faces: bounded and trimmed surfaces, and faces of shells.
 IGES_FACES = (b"143", b"144", b"510")
-# Among the names of the arrays of a part that gaussmap saved.
+# # Names of arrays that every part saved by gaussmap has.
 NAMES = {"about.npy", "face_loops.npy"}
 
 
@@ -59,7 +58,7 @@ class BadFileError(Exception):
 def checked_format(content: bytes) -> tuple[str, bool]:
     """Return the format of a file, STEP, IGES or BREP, and whether all its numbers are finite.
 
-    BadFileError says what is wrong with a file; only STEP files with other numbers can be read.
+    Raises BadFileError for damaged files; only STEP files may hold numbers that are not finite.
     """
     if not content.strip():
         raise BadFileError("is empty.")
@@ -87,7 +86,7 @@ def _is_finite(content: bytes, form: str) -> bool:
 
 
 def format_of(head: bytes) -> str | None:
-    """Return STEP, IGES or BREP, of which a file is by its first bytes; None if of no such."""
+    """Return STEP, IGES or BREP by the first bytes of a file; None if it is none of these."""
     if START_OF_STEP.search(head):
         return "STEP"
     if any(x in head for x in BREP):
@@ -103,7 +102,7 @@ def _letters(lines: list[bytes]) -> str:
 
 
 def _check_iges(content: bytes) -> None:
-    """Compare the lines of all sections with their numbers in the last line: BadFileError."""
+    """Compare the line counts of sections with those in the last line; BadFileError."""
     lines = [x for x in content.splitlines() if x.strip()]
     letters = _letters(lines)
     end = letters.find("T")
@@ -120,7 +119,7 @@ def _check_iges(content: bytes) -> None:
 
 
 def _check_brep(content: bytes) -> None:
-    """Count the shapes, each ends with a star, and find the last line: BadFileError."""
+    """Check that each shape ends with a star, and the last line exists, else BadFileError."""
     start = SHAPES.search(content)
     whole = start is not None and WHOLE.search(content[-HEAD:])
     if start is None or not whole or content.count(b"*", start.end()) != int(start[1]):
@@ -128,7 +127,7 @@ def _check_brep(content: bytes) -> None:
 
 
 def faces_said(content: bytes, form: str) -> int:
-    """Return the number of faces in a file, each counted once; a smaller one if that is unsure."""
+    """Return the number of distinct faces in a file, or a lower bound if it is uncertain."""
     if form == "STEP":
         return len({x for shell in SHELL.findall(content) for x in REFERENCE.findall(shell)})
     if form == "IGES":
@@ -142,7 +141,7 @@ def _directory(content: bytes) -> list[bytes]:
 
 
 def is_part_file(source: str | None) -> bool:
-    """Say whether a text names a file that holds a part, by its suffix, beginning or arrays.
+    """Return whether a text names a file that holds a part, by its suffix, beginning or arrays.
 
     `read_cad` goes by the content of files, and takes any suffix.
     """

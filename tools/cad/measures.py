@@ -1,4 +1,4 @@
-"""The box around a part, the volume of its solids, and the gaps between its faces."""
+"""The bounding box of a part, the volume of its solids, and the gaps between its faces."""
 
 from __future__ import annotations
 
@@ -16,12 +16,14 @@ from .results import space_of
 
 __all__ = ["bounds_of", "gap_of", "integrals_of", "signs_of", "volume_of"]
 
-# Nodes and weights of Gauss's rule on [0, 1], for each span of a surface and each part of a border.
+# # Nodes and weights of Gauss's rule on [0, 1], for each span of a surface and each segment of a
+# boundary.
 NODES, WEIGHTS = (x / 2.0 for x in np.polynomial.legendre.leggauss(5))
 NODES = NODES + 0.5
-# Newton's method takes so many steps.
+# # The number of steps of Newton's method.
 STEPS = 8
-# A place this far left of a border, relative to the domain, tells on which side of it the face is.
+# # A point this far to the left of a boundary, relative to the domain, decides on which side the
+# face is.
 BESIDE = 1e-6
 
 
@@ -43,7 +45,8 @@ def volume_of(part: Part) -> float:
 def _mean_height(piece: FacePiece, centre: Array) -> float:
     """Return the mean of (x − c)·n over a face.
 
-    The area is the CAD library's, so that of the polygons of the border need not be exact.
+    The area comes from the CAD library, so that the area of the boundary polygons need not be
+    exact.
     """
     heights, area = integrals_of(piece, centre)
     return heights / area
@@ -52,13 +55,14 @@ def _mean_height(piece: FacePiece, centre: Array) -> float:
 def integrals_of(piece: FacePiece, centre: Array) -> tuple[float, float]:
     """Return the integral of (x − c)·n over a face, in L³, and its area, in L².
 
-    By Green's theorem: ∫∫ g du dv over the face is ∮ G dv around it, G the integral of g along u.
+    By Green's theorem, ∫∫ g du dv over the face is ∮ G dv around it, with G the integral of g along
+    u.
     """
     lines = piece.lines(0), piece.lines(1)
     total = np.zeros(2)
     for polygon, sign in zip(piece.polygons, signs_of(piece), strict=True):
         places, steps = _divided(polygon, lines)
-        # Parts of the border along u have no dv.
+        # # Segments of constant v have dv = 0.
         places, steps = (x[steps[:, 1] != 0.0] for x in (places, steps))
         ends = (places[:, None] + NODES[:, None] * steps[:, None]).reshape(-1, 2)
         weights = sign * (WEIGHTS * steps[:, 1:]).ravel()
@@ -67,7 +71,7 @@ def integrals_of(piece: FacePiece, centre: Array) -> tuple[float, float]:
 
 
 def _along_u(piece: FacePiece, ends: Array, lines: Array, centre: Array) -> Array:
-    """Return the integrals (k, 2) of (x − c)·N and |N| along u, from the first line to places."""
+    """Return the integrals (k, 2) of (x − c)·N and |N| along u, from the first line to `ends`."""
     found = np.zeros((len(ends), 2))
     for low, high in itertools.pairwise(lines):
         rows = np.flatnonzero(ends[:, 0] > low)
@@ -85,7 +89,7 @@ def _along_u(piece: FacePiece, ends: Array, lines: Array, centre: Array) -> Arra
 
 
 def signs_of(piece: FacePiece) -> Array:
-    """Return for each polygon 1 if the face lies left of it, else −1."""
+    """Return for each polygon 1 if the face lies to its left, else −1."""
     places = []
     for x in piece.polygons:
         steps = (np.roll(x, -1, axis=0) - x) / piece.sizes
@@ -100,7 +104,7 @@ def signs_of(piece: FacePiece) -> Array:
 
 
 def _divided(polygon: Array, lines: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Return places (k, 2) on a polygon and the steps (k, 2) to the next, no line between them."""
+    """Return points (k, 2) that divide a polygon at lines, and steps (k, 2) to the next ones."""
     steps = np.roll(polygon, -1, axis=0) - polygon
     owners, shares = [np.arange(len(polygon))], [np.zeros(len(polygon))]
     for axis in (0, 1):
@@ -124,8 +128,8 @@ def _divided(polygon: Array, lines: tuple[Array, Array]) -> tuple[Array, Array]:
 def bounds_of(part: Part) -> Array:
     """Return the smallest and the largest coordinates (2, 3); SurfaceError if no face is usable.
 
-    A coordinate is largest on a border, or where its derivatives are 0: Newton's method finds it
-    from all cells, and from all parts of borders, that reach farther than the points known so far.
+    A coordinate is extremal on a boundary, or where its derivatives are 0: Newton's method starts
+    in all cells, and on all boundary segments, that may reach beyond the points known so far.
     """
     space, found = space_of(part, None), []
     for k, rows in by_piece(space.first):
@@ -136,7 +140,7 @@ def bounds_of(part: Part) -> Array:
         for polygon in piece.polygons:
             starts, steps = _divided(polygon, lines)
             points, ends = _points(piece, starts), _points(piece, starts + steps)
-            # A part that turns by less than half a turn is nowhere farther than its other end.
+            # # A segment that turns by less than half a turn stays within this radius of its start.
             reach = np.linalg.norm(ends - points, axis=1)
             found.append((piece, starts, steps, points, reach))
     directions = np.concatenate([-np.eye(3), np.eye(3)])
@@ -159,7 +163,7 @@ def _points(piece: FacePiece, places: Array) -> Array:
 
 
 def _highest_inside(piece: FacePiece, places: Array, direction: Array) -> Array:
-    """Return places (m, 2) of the face where a coordinate may be largest, from others (k, 2)."""
+    """Return parameter pairs (m, 2) where a coordinate may be largest, from starts (k, 2)."""
     low, high = np.array(piece.surface.domain).T
     for _ in range(STEPS):
         jets = piece.surface.jets(*places.T.copy()) @ direction
@@ -172,7 +176,7 @@ def _highest_inside(piece: FacePiece, places: Array, direction: Array) -> Array:
 
 
 def _highest_on_border(piece: FacePiece, starts: Array, steps: Array, direction: Array) -> Array:
-    """Return the places (k, 2) on parts of a border where a coordinate is largest."""
+    """Return the parameter pairs (k, 2) on boundary segments where a coordinate is largest."""
     share = np.full((len(starts), 1), 0.5)
     for _ in range(STEPS):
         jets = piece.surface.jets(*(starts + share * steps).T.copy()) @ direction

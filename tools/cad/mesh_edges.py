@@ -1,4 +1,4 @@
-"""Edges and vertices of a part as those of a mesh: sampled once, for all faces around them."""
+"""Edges and vertices of a part in a mesh: sampled once, for all adjacent faces."""
 
 from __future__ import annotations
 
@@ -18,22 +18,20 @@ from .results import PartSpace
 
 __all__ = ["MeshEdges", "SampledEdges"]
 
-# Steps of edges are measured between this many places, at equal parameters.
+# # The spacing along an edge is measured at this many steps of equal parameters.
 PLACES = 64
-# An edge that ends where it begins has at least so many steps.
+# # The least number of steps of a closed edge.
 CLOSED = 3
-# Ends of an edge without vertices that are closer than this part of the size are one.
+# # Ends of an edge without vertices are one if closer than this, relative to the size.
 SAME = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class SampledEdges:
-    """Vertices on edges: points (M, 3), in L; of each edge their numbers and their shares, 0 to 1.
+    """Vertices on edges: points (M, 3), in L; for each edge, vertex indices, and shares in [0, 1].
 
-    And of each side u, v.
-
-    These are on the surfaces of pieces of the space, in the direction of the edge, which `edges`
-    has for each side.
+    For each side of an edge, `uv` has the parameters on the surface of its piece, in the direction
+    of the edge, and `edges` its edge.
     """
 
     points: Array
@@ -45,10 +43,10 @@ class SampledEdges:
 
 @dataclass(eq=False)
 class MeshEdges:
-    """All edges around the pieces of a space, and into how many steps they are divided.
+    """All edges around the pieces of a space, and their division into steps.
 
-    `sides` (S,) are places in the sides of edges of the part; `owner` (S,) are their edges,
-    `pieces` (S,) their pieces. `more` are shares of edges at which there are further vertices.
+    `sides` (S,) are indices of sides of edges of the part; `owner` (S,) are their edges, `pieces`
+    (S,) their pieces. `more` are shares of edges at which there are further vertices.
     """
 
     spacing: Spacing
@@ -59,7 +57,7 @@ class MeshEdges:
 
     @classmethod
     def of(cls, spacing: Spacing) -> MeshEdges:
-        """Return the edges whose places are known on a piece."""
+        """Return the edges that have known parameters on a piece."""
         space = spacing.space
         arrays = space.pieces[0].face.part.arrays
         edges = len(arrays["edge_vertices"])
@@ -87,7 +85,7 @@ class MeshEdges:
         return self.space.pieces[0].face.part.arrays
 
     def is_known(self, face: Face) -> bool:
-        """Return whether a face has wires, and the places of all edges along them are known."""
+        """Return whether a face has wires, and known parameters along all their edges."""
         sides = [side for wire in face.wires for side, _ in wire]
         return bool(sides) and bool(np.isin(sides, self.sides).all())
 
@@ -95,24 +93,25 @@ class MeshEdges:
 
     @property
     def least(self) -> int:
-        """The number of vertices of edges that are divided as little as they may be."""
+        """The number of vertices on edges with as few steps as possible."""
         return self._count(self._steps(math.inf))
 
     def _count(self, steps: Indices) -> int:
-        """Return how many vertices edges of numbers of steps (E,) have."""
+        """Return the number of vertices on edges that have `steps` (E,) steps."""
         more = sum(map(len, self.more.values()))
         return len(self._vertices[0]) + int((steps - 1)[self._divided].sum()) + more
 
     @cached_property
     def _divided(self) -> Flags:
-        """Which edges (E,) have vertices between their ends."""
+        """A mask of the edges (E,) that may have vertices between their ends."""
         return self.used & (self.arrays["edge_degenerate"] == 0)
 
     def _steps_for(self, count: int) -> Indices:
-        """Return the numbers of steps (E,) of edges in a mesh of a count, `least` or more.
+        """Return the steps (E,) of edges in a mesh of `count` vertices, at least `least`.
 
-        Steps are the smallest ones that leave enough vertices for the inside of faces. If nothing
-        is covered there, edges have all of them: the longest steps are divided further.
+        The step is the smallest one that leaves enough vertices for the interior of faces. If no
+        face needs interior vertices, all vertices are on edges: the longest steps are divided
+        further.
         """
         costs = self._costs[:, -1]
         low = max(self.spacing.smallest_step, costs.sum() / (count + len(costs)))
@@ -131,22 +130,22 @@ class MeshEdges:
         return steps
 
     def _total(self, steps: Indices, step: float) -> float:
-        """Return how many vertices edges of numbers of steps have, and the inside with a step."""
+        """Return the number of vertices: on edges with `steps` (E,), and inside for a `step`."""
         around = np.bincount(self.pieces, steps[self.owner], len(self.space.pieces))
         return self._count(steps) + self.spacing.inside(step, around)
 
     @cached_property
     def used(self) -> Flags:
-        """Which edges (E,) of the part have a side here."""
+        """A mask of the edges (E,) of the part that bound a piece of the space."""
         return self.around > 0
 
     @cached_property
     def around(self) -> Indices:
-        """The numbers of sides (E,) that edges of the part have here."""
+        """The numbers of sides (E,) of each edge that are on pieces of the space."""
         return np.bincount(self.owner, minlength=len(self.arrays["edge_vertices"]))
 
     def _steps(self, step: float) -> Indices:
-        """Return the numbers of steps (E,) of edges for the length of a step."""
+        """Return the numbers of steps (E,) of edges for a step length."""
         ends = self._vertices[1]
         least = np.where(ends[:, 0] == ends[:, 1], CLOSED, 1)
         wanted = np.ceil(self._costs[:, -1] / step).astype(np.int64)
@@ -154,7 +153,7 @@ class MeshEdges:
 
     @cached_property
     def _vertices(self) -> tuple[Array, Indices]:
-        """The vertices (V, 3) that are used, and those at the ends of edges (E, 2)."""
+        """The vertices (V, 3) in use, and the indices (E, 2) of those at the ends of edges."""
         points, ends = list(self.arrays["vertices"]), self.arrays["edge_vertices"].copy()
         for row in np.flatnonzero(self.used & (ends < 0).any(axis=1)).tolist():
             side = int(np.flatnonzero(self.owner == row)[0])
@@ -169,7 +168,7 @@ class MeshEdges:
         return np.array(points).reshape(-1, 3)[numbers], ends
 
     def refine(self, sampled: SampledEdges, segments: dict[int, Flags]) -> None:
-        """Add a vertex in the middle of some segments between the vertices of edges."""
+        """Add a vertex in the middle of the chosen segments of edges."""
         for edge, chosen in segments.items():
             if not self.arrays["edge_degenerate"][edge]:
                 at = sampled.shares[edge]
@@ -180,9 +179,9 @@ class MeshEdges:
 
     @cached_property
     def _costs(self) -> Array:
-        """The lengths (E, PLACES + 1) of edges up to places, as their spacing measures them.
+        """The cumulative lengths (E, PLACES + 1) along edges, measured by the spacing.
 
-        The largest one of those on the faces around counts.
+        Of the faces at an edge, the one with the largest length counts.
         """
         shares = np.linspace(0.0, 1.0, PLACES + 1)
         sides = np.repeat(np.arange(len(self.sides)), len(shares))
@@ -194,9 +193,9 @@ class MeshEdges:
         return np.pad(np.cumsum(found, axis=1), ((0, 0), (1, 0)))
 
     def _uv(self, sides: Indices, shares: Array) -> Array:
-        """Return u, v (M, 2) on their surfaces at shares (M,) of edges, on some of the sides (M,).
+        """Return u, v (M, 2) on the surfaces of sides (M,), at shares (M,) of their edges.
 
-        Between points of the part, which have derivatives, they are cubic.
+        Between points of the part, which have derivatives, interpolation is cubic.
         """
         starts, points = self.arrays["side_point_starts"], self.arrays["side_points"]
         first, last = (starts[self.sides[sides] + k] for k in (0, 1))
@@ -214,9 +213,9 @@ class MeshEdges:
         return found
 
     def sampled(self, count: int) -> SampledEdges:
-        """Return the vertices on edges in a mesh of a count, `least` or more.
+        """Return the vertices on edges in a mesh of `count` vertices, at least `least`.
 
-        Where edges as fine as the inside of faces would have more than these, they are coarser.
+        If edges as fine as the interior of faces would have more vertices, they are coarser.
         """
         points, ends = self._vertices
         steps, first = self._steps_for(count), len(points)
@@ -239,7 +238,7 @@ class MeshEdges:
     def _points(
         self, vertices: Array, count: int, numbers: dict[int, Indices], uv: dict[int, Array]
     ) -> Array:
-        """Return the points of vertices, of inner ones those of the first face of their edge."""
+        """Return the points of vertices; those between ends are on the first face of their edge."""
         found = np.concatenate([vertices, np.empty((count - len(vertices), 3))])
         firsts = np.sort(np.unique(self.owner, return_index=True)[1])
         rows = [numbers[int(self.owner[k])][1:-1] for k in firsts]

@@ -1,4 +1,4 @@
-"""The triangles of one face of a part, between vertices on its edges and inside of it."""
+"""The triangles of one face of a part, between vertices on its edges and in its interior."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from .mesh_edges import SampledEdges
 
 __all__ = ["EXTRA", "Crossing", "FaceBorder", "triangles_of"]
 
-# Shapely's constrained triangulations have no points inside; SciPy's have no constraints; the
-# library `triangle` is not free for all uses. Predicates of this one are exact.
+# # Shapely's constrained triangulations have no interior points; SciPy's have no constraints; the
+# library `triangle` is not free for all uses. The predicates of pythoncdt are exact.
 EXTRA = "pythoncdt", "mesh", "a mesh of a CAD part"
-# Places are one if they are as close as this part of the face.
+# # Parameter pairs are equal if they are as close as this, relative to the face.
 SAME = 1e-11
 
 
 class Crossing(Exception):  # noqa: N818 - it says what was found
-    """The border of a face crosses itself, or has nothing inside; `face` is its index if known."""
+    """The boundary of a face crosses itself, or encloses nothing; `face` is its index if known."""
 
     face = -1
 
 
 @dataclass(frozen=True, eq=False)
 class FaceBorder:
-    """The border of a face: places (k, 2), the numbers (k,) of vertices there, and segments (k, 2).
+    """The boundary of a face: positions (k, 2), their vertex indices (k,), and segments (k, 2).
 
-    Segments join places, by their number; `edges` (k,) are the edges of the part they are on.
+    Segments join two positions, by index; `edges` (k,) are the edges of the part that they are on.
     """
 
     uv: Array
@@ -40,7 +40,7 @@ class FaceBorder:
 
     @classmethod
     def of(cls, piece: FacePiece, sampled: SampledEdges) -> FaceBorder:
-        """Return the border of a piece, whose wires are known."""
+        """Return the boundary of a piece whose wires are known."""
         uv, numbers, segments, edges, first = [], [], [], [], 0
         for wire in piece.face.wires:
             start = first
@@ -59,18 +59,18 @@ class FaceBorder:
 
 
 def triangles_of(border: FaceBorder, places: Array) -> tuple[Indices, Indices]:
-    """Return triangles (k, 3) between places (n, 2) of a plane, the first ones of the border.
+    """Return triangles (k, 3) of positions (n, 2) in a plane, of which the boundary's come first.
 
-    They run counterclockwise. And the segments (m, 2) between these vertices that are constraints.
-    Of places that are one, the first is a vertex. Raises Crossing if the border crosses itself.
+    Triangles run counterclockwise. The segments (m, 2) that are constraints are returned, too. Of
+    equal positions, only the first is a vertex. Raises Crossing if the boundary crosses itself.
     """
     cdt = from_extra(*EXTRA)
     low = places.min(axis=0)
     size = float(np.ptp(places, axis=0).max())
     keys = np.round((places - low) / (SAME * size))
-    # Complex numbers are sorted much faster than rows.
+    # # Complex numbers are sorted much faster than rows.
     _, firsts, same = np.unique(keys @ [1.0, 1.0j], return_index=True, return_inverse=True)
-    order = np.argsort(firsts)  # vertices in their own order
+    order = np.argsort(firsts)  # vertices in the order of their first positions
     firsts, rank = firsts[order], np.argsort(order)
     segments = np.sort(rank[same[border.segments]], axis=1)
     segments = segments[segments[:, 0] != segments[:, 1]] @ [len(firsts), 1]

@@ -1,7 +1,7 @@
-"""Sizes that grow slowly from the edges of a part into its faces, so that triangles stay even.
+"""Sizes that grow slowly from the edges of a part into its faces, for well-shaped triangles.
 
-Edges are as fine as the finer one of the faces at them needs. A plane beside a fillet would have
-long triangles at the edge between them if its vertices followed its own curvature only.
+An edge is as fine as the finest adjacent face requires. A plane beside a fillet would have long
+triangles at their common edge if its vertices followed its own curvature only.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ if TYPE_CHECKING:
 
 __all__ = ["graded"]
 
-# From an edge on, distances between vertices grow by at most this part of the way.
+# # The size grows by at most this much for each unit of distance from an edge.
 GROWTH = 0.55
-# Cells are halved until sizes differ by about this part of the smallest in them.
+# # Cells are halved until the sizes in each differ by about this fraction of the smallest.
 UNEVEN = 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class Sources:
-    """Sizes at the places of a tree, and an infinite one at last, for points that are near to none.
+    """Prescribed sizes at tree nodes; the last, inf, is for queries with no node within `reach`.
 
-    At other points they are those of the nearest place, and larger by `growth` times its distance.
-    Farther than `reach` from all places they are too large to matter.
+    At other points the size is that of the nearest node plus `growth` times its distance. Beyond
+    `reach` of all nodes it is too large to matter.
     """
 
     tree: KDTree
@@ -46,30 +46,30 @@ class Sources:
     reach: float
 
     def sizes_at(self, points: Array, reach: float) -> Array:
-        """Return the largest sizes (M,) at points (M, 3); infinite farther than a reach."""
+        """Return bounds (M,) of the size at points (M, 3); inf with no node within `reach`."""
         distances, rows = self.tree.query(points, distance_upper_bound=reach)
         return self.sizes[rows] + self.growth * distances
 
 
 @dataclass(frozen=True, eq=False)
 class GradedSpace(PartSpace):
-    """A space whose sizes are at most those of the `sources` of a piece, where there are any.
+    """A space whose sizes are bounded by the `sources` of each piece that has some.
 
-    Sizes are 1/√w, with the target density w.
+    Sizes are 1/√w, where w is the target density.
     """
 
     sources: Mapping[int, Sources] = field(default_factory=dict)
 
     def known(self, cells: Cells, *, keep: bool = False) -> Cells:
-        """Return what `Space.known` returns."""
+        """Return the value of `Space.known`, graded."""
         found = super().known(cells, keep=keep)
         self.grade(found.pieces, found.rows)
         return found
 
     def grade(self, pieces: Indices, rows: Array, *, far: bool = False) -> Array:
-        """Raise densities in rows (M, 8) of pieces (M,); return bounds of sizes (M,).
+        """Raise densities in rows (M, 8) of pieces (M,); return bounds (M,) of the size.
 
-        These are infinite where they are too large to matter, but for `far`.
+        Bounds that are too large to matter are inf, unless `far`.
         """
         sizes = np.full(len(rows), np.inf)
         for k, here in grouped(pieces):
@@ -82,7 +82,7 @@ class GradedSpace(PartSpace):
 def graded(edges: MeshEdges, count: int) -> PartSpace:
     """Return the space of edges, with sizes that grow slowly from their steps in a mesh.
 
-    Nothing changes beside steps from which sizes would grow to those of the face at once.
+    Steps that are hardly smaller than the largest size of the face do not change it.
     """
     space, sampled = edges.space, edges.sampled(count)
     step, points = step_of(space, count), space.scaled_points(sampled.points)
@@ -109,7 +109,7 @@ def graded(edges: MeshEdges, count: int) -> PartSpace:
 
 
 def _borders(space: GradedSpace, lines: BorderLines) -> BorderLines:
-    """Return the borders of a space, graded."""
+    """Return the boundaries of a space, graded."""
     lines = replace(lines, rows=lines.rows.copy())
     space.grade(np.repeat(lines.pieces, np.diff(lines.starts)), lines.rows)
     return lines
