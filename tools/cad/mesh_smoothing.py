@@ -1,4 +1,4 @@
-"""Vertices of thin triangles move inside of their faces, so that the smallest angles grow."""
+"""Moving vertices of thin triangles inside their faces, to increase the smallest angles."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ __all__ = ["smoothed"]
 
 # Vertices of triangles with an angle below SMALL degrees move, at most ROUNDS times.
 SMALL, ROUNDS = 30.0, 6
-# The height of an even triangle, by its side.
+# # The ratio of height and side of an equilateral triangle.
 EVEN = math.sqrt(0.75)
 
 
 def smoothed(
     space: PartSpace, pieces: Indices, known: Places, triangles: Indices, points: Array, free: Flags
 ) -> tuple[Places, Array]:
-    """Return places on pieces (C,) whose `free` ones have moved, and their points (C, 3).
+    """Return parameters and fields (C,) whose `free` rows have moved, and their points (C, 3).
 
-    Of the triangles around one that moves the smallest angle grows, and none turns away from the
+    The smallest angle around a moved vertex grows, and no triangle there turns away from the
     normals by more than `LARGEST_DEVIATION` degrees, unless it did before.
     """
     known, points = Places._make(x.copy() for x in known), points.copy()
@@ -34,12 +34,12 @@ def smoothed(
         thin[triangles[tangents < math.tan(math.radians(SMALL))]] = True
         chosen = np.flatnonzero(thin & free)
         rows, corners = np.nonzero((thin & free)[triangles])
-        # The triangles around the chosen vertices, each of which is their first corner.
+        # # The triangles around the chosen vertices, rotated so that these are first corners.
         around = triangles[rows[:, None], (corners[:, None] + np.arange(3)) % 3]
         owner = np.searchsorted(chosen, around[:, 0])
         steps = _steps(points[around], tangents[rows], owner, len(chosen))
         moved = _moved(space, pieces[chosen], known, chosen, steps)
-        # At the ends of a domain a surface may have no point.
+        # # At the ends of its domain a surface may be undefined.
         lost = ~np.isfinite(moved.vectors[:, 0]).all(axis=1)
         for mine, others in zip(moved, known, strict=True):
             mine[lost] = others[chosen[lost]]
@@ -59,9 +59,10 @@ def smoothed(
 
 
 def _steps(corners: Array, tangents: Array, owner: Indices, count: int) -> Array:
-    """Return how far (count, 3) the first corners of triangles (k, 3, 3) are to move.
+    """Return displacements (count, 3) of the first corners of triangles (k, 3, 3).
 
-    That is to the mean of the tips of even triangles on the opposite sides; thin ones count more.
+    The target is the mean of the tips of equilateral triangles on the opposite sides, in which thin
+    triangles count more.
     """
     tip, one, other = corners.transpose(1, 0, 2)
     side, up = other - one, tip - (one + other) / 2.0
@@ -78,7 +79,7 @@ def _steps(corners: Array, tangents: Array, owner: Indices, count: int) -> Array
 def _moved(
     space: PartSpace, pieces: Indices, known: Places, chosen: Indices, steps: Array
 ) -> Places:
-    """Return the places of chosen vertices after steps (k, 3), in the tangent plane."""
+    """Return the fields of chosen vertices after steps (k, 3) in the tangent plane."""
     x_u, x_v = known.vectors[chosen, 1:].transpose(1, 0, 2)
     E, F, G, a, b = (
         np.einsum("kx,kx->k", *x)
@@ -94,7 +95,7 @@ def _moved(
 def _tangents(corners: Array, normals: Array, least: Array) -> Array:
     """Return the tangents of the smallest angles of triangles (k, 3, 3).
 
-    They are −1 where the cosine with one of the normals at the corners is below `least` (k,).
+    A tangent is −1 where the cosine with one of the normals at the corners is below `least` (k,).
     """
     own = np.arange(3 * len(corners)).reshape(-1, 3)
     points, normals = corners.reshape(-1, 3), normals.reshape(-1, 3)
@@ -109,7 +110,7 @@ def _least(values: Array, owner: Indices, count: int) -> Array:
 
 
 def _first(chosen: Indices, better: Flags, now: Array, around: Indices, count: int) -> Indices:
-    """Return which of the chosen vertices (k,) move at once: of neighbours, the worst one."""
+    """Return the chosen vertices (k,) to move together: of two neighbours, the worse one."""
     rank = np.full(count, len(chosen))
     rank[chosen[better]] = np.argsort(np.argsort(now[better]))
     nearest = rank[around].min(axis=1)

@@ -1,9 +1,9 @@
-"""How far apart vertices of a mesh of a part are, and the planes in which faces are triangulated.
+"""The spacing of vertices in a mesh of a part, and the planes in which faces are triangulated.
 
-For well-shaped triangles vertices follow the target density of the space, which is as κ. For
-triangles that are close to the normals each parameter of a face is replaced by how far the normal
-turns along it: vertices are even in the plane of these two. So rulings, and the inside of planes,
-need none.
+For well-shaped triangles, the vertices follow the target density of the space, proportional to κ.
+For triangles close to the normals, each parameter of a face is replaced by the accumulated angle of
+the normal along it: vertices are evenly spaced in the plane of these two angles. So rulings, and
+the interior of planes, need no vertices.
 """
 
 from __future__ import annotations
@@ -29,36 +29,36 @@ from .results import PartSpace
 
 __all__ = ["ByNormals", "Spacing", "TurnedPiece", "least_enough"]
 
-# Normals are compared at this number of places along each parameter, and at all knots.
+# # Normals are compared at this number of values of each parameter, and at all knots.
 PLACES = 33
-# A face whose normals turn by less than this along a parameter, in radians, is ruled; and a
-# straight edge of the size of the part counts as this angle.
+# # A face whose normals turn by less than this along a parameter, in radians, is ruled; a straight
+# edge as long as the part counts as this angle.
 RULED = 1e-6
-# Of two parameters, one counts as this part of the other at least.
+# # The least weight of one parameter relative to the other.
 LEAST = 1e-3
-# The angle by which an edge turns counts as this part of one by which normals do.
+# # The weight of the turning of an edge relative to that of normals.
 CURVED = 0.5
-# No step is longer than this times the mean of all.
+# # The largest step, relative to the mean step.
 LONGEST = 3.0
-# Planes of different faces are so far apart, in radians.
+# # The distance of the planes of different faces, in radians.
 APART = 100.0
 
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """A count of vertices follows the target density of a space; planes are scaled by lengths."""
+    """Spacing of `count` vertices by the target density of a space; planes scaled by lengths."""
 
     space: PartSpace
     count: int
-    # Whether triangles are to be well shaped, and not close to the normals.
+    # # Whether triangles are to be well shaped, rather than close to the normals.
     by_shape: ClassVar[bool] = True
-    # The density is κ^(2 · exponent): triangles of size h are κ h²/8 from the surface, and these
-    # distances are even if 1/h² is as κ.
+    # # The density is κ^(2 · exponent): triangles of size h are κ h²/8 from the surface, which is
+    # constant if 1/h² is proportional to κ.
     exponent: ClassVar[float] = 0.5
 
     @cached_property
     def covered(self) -> tuple[Space, Indices]:
-        """What is covered with vertices, and the numbers of its pieces in the space."""
+        """The space to cover with vertices, and the indices of its pieces in the part's space."""
         return self.space, np.arange(len(self.space.pieces))
 
     @property
@@ -67,11 +67,11 @@ class Spacing:
         return step_of(self.space, self.count)
 
     def inside(self, step: float, around: Indices) -> float:
-        """Return how many vertices are to be left inside; `around` (P,) are steps around pieces."""
+        """Return the number of vertices kept for the interior; `around` (P,) are boundary steps."""
         return 0.0
 
     def costs(self, pieces: Indices, uv: Array) -> Array:
-        """Return the lengths (S, n − 1) of sides of edges between places (S, n, 2), in steps."""
+        """Return the lengths (S, n − 1) between positions (S, n, 2) on sides of edges, in steps."""
         owner = np.repeat(pieces, uv.shape[1])
         rows = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows
         rows = rows.reshape(*uv.shape[:2], 8)
@@ -80,20 +80,20 @@ class Spacing:
         return np.maximum(rates[:, 1:], rates[:, :-1]) * lengths
 
     def plane(self, piece: int, uv: Array, tangents: Array) -> Array:
-        """Return places (k, 2) in the plane of a piece; `tangents` (k, 2, 3) are x_u and x_v."""
+        """Return planar coordinates (k, 2) on a piece; `tangents` (k, 2, 3) are x_u and x_v."""
         lengths = np.sqrt((tangents**2).sum(axis=2).mean(axis=0))
         return uv * np.where(lengths > 0.0, lengths, 1.0)
 
 
 class ByNormals(Spacing):
-    """Vertices are even by how far normals turn, along each parameter of a face."""
+    """Spacing by the angle through which normals turn, along each parameter of a face."""
 
     by_shape: ClassVar[bool] = False
     exponent: ClassVar[float] = 1.0
 
     @cached_property
     def pieces(self) -> list[TurnedPiece]:
-        """The planes of all pieces, apart from one another, in steps."""
+        """The planes of all pieces, disjoint, in units of steps."""
         planes = [TurnedPiece.of(x, k) for k, x in enumerate(self.space.pieces)]
         steps = _best_steps(planes, self.count).tolist()
         return [x.in_steps(y) for x, y in zip(planes, steps, strict=True)]
@@ -108,11 +108,11 @@ class ByNormals(Spacing):
 
     @property
     def smallest_step(self) -> float:
-        """0: edges may have all vertices."""
+        """0: all vertices may be on edges."""
         return 0.0
 
     def inside(self, step: float, around: Indices) -> float:
-        """Return how many vertices cover the inside; half of those around a face are there, too."""
+        """Return the number of interior vertices, counting boundary vertices by one half."""
         space, numbers = self.covered
         if not len(numbers):
             return 0.0
@@ -120,7 +120,7 @@ class ByNormals(Spacing):
         return max(samples - around[numbers].sum() / 2.0, 0.0)
 
     def costs(self, pieces: Indices, uv: Array) -> Array:
-        """Return how far normals and edges turn between places (S, n, 2), in steps (S, n − 1)."""
+        """Return turns (S, n − 1) of normals and edges between positions (S, n, 2), in steps."""
         owner = np.repeat(pieces, uv.shape[1])
         points = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows[:, :3]
         lengths, turns = _lengths_and_turns(points.reshape(*uv.shape[:2], 3))
@@ -131,17 +131,18 @@ class ByNormals(Spacing):
         return np.maximum(costs, np.maximum(CURVED * turns, straight) / steps[:, None])
 
     def plane(self, piece: int, uv: Array, tangents: Array) -> Array:
-        """Return places (k, 2) in the plane of a piece; planes of a part are as they are."""
+        """Return planar coordinates (k, 2) on a piece; plane faces keep their own."""
         turned = self.pieces[piece]
         return turned.turned(uv) if turned.turns else super().plane(piece, uv, tangents)
 
 
 def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
-    """Return the steps (P,) in planes for which a count of vertices has the least mean angle.
+    """Return the steps (P,) in planes that minimize the mean angle for `count` vertices.
 
-    Angles are about as large as steps. A face has P/s vertices on its border and F/s² inside, with
-    its perimeter P and area F in the plane: the area of the face, which counts its angle s, is a
-    common factor times the derivative of that. No step is much longer than their mean.
+    Angles are proportional to steps. With perimeter P and area F in the plane, a face has P/s
+    vertices on its boundary and F/s² inside; at the minimum, the area of the face, the weight of
+    its angle s, is a common factor times the derivative of that number. No step exceeds `LONGEST`
+    times the mean.
     """
     areas = np.array([x.piece.size**2 for x in planes])
     around = np.array([x.perimeter if x.turns else 0.0 for x in planes])
@@ -178,7 +179,7 @@ def least_enough(is_enough: Callable[[float], bool], low: float, high: float) ->
 
 
 def _lengths_and_turns(points: Array) -> tuple[Array, Array]:
-    """Return lengths (S, n − 1) between points (S, n, 3), and how far these polygons turn there."""
+    """Return lengths (S, n − 1) between points (S, n, 3), and turning angles of these polygons."""
     steps = np.diff(points, axis=1)
     lengths = np.linalg.norm(steps, axis=2)
     along = steps / np.where(lengths > 0.0, lengths, 1.0)[..., None]
@@ -188,10 +189,11 @@ def _lengths_and_turns(points: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TurnedPiece(Piece):
-    """A face as a plane of two lengths: how far its normal turns along u, and along v.
+    """A face as a plane whose coordinates are the angles of the normal along u and along v.
 
-    `knots` are values of u and v, and `lengths` the lengths up to there, by what is the largest
-    angle of all lines; `turns` is the larger one of both. A sphere stays one, of radius 1.
+    `knots` are values of u and v, and `lengths` the coordinates there, sums of the largest angle
+    over all parameter lines; `turns` is the larger total of both. A sphere stays a sphere, of
+    radius 1.
     """
 
     piece: FacePiece
@@ -234,12 +236,12 @@ class TurnedPiece(Piece):
 
     @property
     def perimeter(self) -> float:
-        """The length of the border in the plane."""
+        """The length of the boundary in the plane."""
         around = [self.turned(np.concatenate([x, x[:1]])) for x in self.polygons]
         return float(sum(np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in around))
 
     def turned(self, uv: Array) -> Array:
-        """Return places (k, 2) in the plane."""
+        """Return planar coordinates (k, 2)."""
         return np.stack(
             [np.interp(uv[:, k], self.knots[k], self.lengths[k]) for k in (0, 1)], axis=1
         )
@@ -262,38 +264,38 @@ class TurnedPiece(Piece):
 
     @property
     def _radius(self) -> float:
-        """The radius of a sphere, 0 of other faces."""
+        """The radius of a sphere, 0 for other faces."""
         return self.piece.face.dimensions["radius"] if self.piece.face.kind == "sphere" else 0.0
 
     @cached_property
     def size(self) -> float:
-        """The root of the area in the plane, or on the sphere."""
+        """The square root of the area in the plane, or on the sphere."""
         size = self.piece.size / (self._radius * self.step) if self._radius else 0.0
         return size or math.sqrt(self.area)
 
     @property
     def polygons(self) -> list[Array]:
-        """Those of the face."""
+        """The polygons of the face."""
         return self.piece.polygons
 
     @property
     def boxes(self) -> Array:
-        """Those of the face."""
+        """The boxes of the face."""
         return self.piece.boxes
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
-        """Return those of the face."""
+        """Return the geometries of the face."""
         return self.piece.geometries(threads)
 
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> dict[str, NDArray[Any]]:
-        """Return those of the face."""
+        """Return the fields of the face."""
         return self.piece.fields_at(uv, rows, fields, dtype)
 
 
 def _places(piece: FacePiece, axis: int) -> Array:
-    """Return values of a parameter: even ones, and those between which a face is smooth."""
+    """Return values of a parameter: equally spaced ones, and the ends of smooth parts."""
     return np.unique(np.concatenate([np.linspace(*piece.domain[axis], PLACES), piece.lines(axis)]))
 
 
@@ -308,7 +310,7 @@ def _angles(normals: Array, inside: Flags, axis: int) -> Array:
 
 
 def _area(piece: FacePiece, knots: Sequence[Array], lengths: Sequence[Array]) -> float:
-    """Return the area inside of a plane of lengths, by the middles between knots."""
+    """Return the area in the plane, by the midpoints between knots that are inside the trim."""
     middles = np.meshgrid(*((x[1:] + x[:-1]) / 2.0 for x in knots), indexing="ij")
     inside = piece.contains(np.stack(middles, axis=-1).reshape(-1, 2))
     areas = np.outer(np.diff(lengths[0]), np.diff(lengths[1])).ravel()

@@ -1,8 +1,8 @@
-"""Meshes of parts: edges first, then the inside of faces, then triangles between them.
+"""Meshes of parts: edges first, then the interior of faces, then triangles.
 
-All vertices and edges are sampled once, and shared by the faces around them. With these given, the
-cover that samples parts fills the faces. Each face is triangulated in a plane of its parameters,
-scaled by its mean lengths, and edges are flipped in space.
+All vertices and edges are sampled once, and shared by the adjacent faces. With these vertices
+given, the greedy cover of `sample` fills the faces. Each face is triangulated in a plane of its
+parameters, scaled by its mean lengths, and edges are flipped in space.
 """
 
 from __future__ import annotations
@@ -45,13 +45,13 @@ from .results import PartSpace, space_of
 
 __all__ = ["mesh_of_part", "mesh_of_samples"]
 
-# Where a face has no normal, that at this part of the way into the triangle is taken.
+# # Where a face has no normal, the normal at this fraction of the way into the triangle is taken.
 INSIDE = 1e-6
-# Edges are divided further so many times, until triangles are proper; samples that fell outside of
-# the polygons around faces are replaced so many times.
+# # The number of times that edges are divided further, until triangles are valid; and the number of
+# times that samples outside of the polygons around faces are replaced.
 ROUNDS, REFILLS = 15, 8
-# If a mesh has faults, larger counts are tried: each is MORE times the one before, and below MANY
-# times the least count of the edges. The error names the first one whose mesh has no faults.
+# # If a mesh has faults, larger counts are tried, each MORE times the one before, up to MANY times
+# the least count of the edges. The error names the first count whose mesh has no faults.
 MORE, MANY = 1.2, 16
 # The densities of samples that meshes follow.
 DENSITIES = ("balanced", "uniform")
@@ -59,7 +59,7 @@ SPACINGS = {"shape": Spacing, "normals": ByNormals}
 
 
 def mesh_of_samples(samples: Samples, angle: float | None, prefer: str) -> PartMesh:
-    """Return what `Samples.mesh` returns for samples of a part."""
+    """Return the mesh of samples of a part, as `Samples.mesh` does."""
     spaced, part = SPACINGS[checked_prefer(prefer)], samples.surface
     assert isinstance(part, Part)
     if angle is not None:
@@ -100,7 +100,7 @@ def mesh_of_part(
         whole = whole.to_power(spaced.exponent)
     known = MeshEdges.of(Spacing(whole, count))
     failed = dict(whole.failed) | {
-        x.face.index: f"{x.label} has edges whose places on it are not known."
+        x.face.index: f"{x.label} has edges whose parameters on it are not known."
         for x in whole.pieces
         if not known.is_known(x.face)
     }
@@ -127,7 +127,7 @@ def mesh_of_part(
 
 
 def _inward(mesh: PartMesh, whole: PartSpace, rows: Indices) -> str:
-    """Say that triangles point inward, and on which face."""
+    """Return a sentence: triangles point inward, and on which face."""
     face = mesh.face_index[rows[0]]
     label = next(x.label for x in whole.pieces if x.face.index == face)
     return (
@@ -140,7 +140,7 @@ def _inward(mesh: PartMesh, whole: PartSpace, rows: Indices) -> str:
 def mesh_and_soundness(
     part: Part, whole: PartSpace, count: int, failed: Mapping[int, str], spaced: type[Spacing]
 ) -> tuple[PartMesh, bool]:
-    """Return a mesh, and whether no face failed beside those, and no triangle points inward."""
+    """Return a mesh, and whether it is sound: no further face failed, no triangle points inward."""
     lacking = dict(failed)
     while True:
         meshing = Meshing.of(part, whole, count, lacking, spaced)
@@ -148,7 +148,7 @@ def mesh_and_soundness(
         if not bad:
             try:
                 mesh, bad = meshing.mesh()
-            except Crossing as error:  # by rounding
+            except Crossing as error:  # after rounding
                 bad = {error.face: f"of face {error.face}, {error}."}
             else:
                 if not bad:
@@ -164,7 +164,7 @@ def _check_larger(
     spaced: type[Spacing],
     edges: MeshEdges,
 ) -> None:
-    """Raise InputError if a larger count, not too large, has a mesh without faults."""
+    """Raise InputError if a larger count, up to a limit, gives a mesh without faults."""
     larger = math.ceil(MORE * count)
     while larger < MANY * edges.least:
         with suppress(SurfaceError):  # no face has triangles
@@ -183,10 +183,10 @@ def request_of(count: int, density: str) -> Request:
 
 @dataclass(frozen=True, eq=False)
 class Corners:
-    """Triangles (T, 3) of all faces between places (C,), each of which is on one face.
+    """Triangles (T, 3) of all faces between corners (C,), each of which is on one face.
 
-    `pieces` (C,) are these, `numbers` (C,) the vertices at places, and `known` what else is known
-    of places. `fixed` (m, 2) are segments between places that stay.
+    `pieces` (C,) are the faces of the corners, `numbers` (C,) their vertices, and `known` their
+    parameters and fields. `fixed` (m, 2) are segments between corners that must stay.
     """
 
     pieces: Indices
@@ -198,11 +198,11 @@ class Corners:
     def improved(
         self, space: PartSpace, points: Array, first: int, by_shape: bool
     ) -> tuple[Corners, Array]:
-        """Return these with triangles that flips of edges have improved, and points (C, 3).
+        """Return the corners with triangles improved by edge flips, and their points (C, 3).
 
-        They are closer to the normals; `by_shape`, better shaped, also by moving vertices from the
-        number `first` on, and then closer to the normals where no angle becomes small. Triangles
-        at places without a normal, as at tips, stay.
+        The triangles become closer to the normals. With `by_shape`, they become better shaped
+        first, also by moving vertices from index `first` on, and then closer to the normals where
+        no angle becomes small. Triangles at corners without a normal, as at apexes, stay.
         """
         count, normals = len(self.pieces), self.known.normals
         triangles = self.triangles.copy()
@@ -230,8 +230,9 @@ class Corners:
     def normals(self, space: PartSpace, triangles: Indices) -> Array:
         """Return unit normals (T, 3, 3) at the corners of triangles.
 
-        Where a face has none, and is one point all along a parameter, that from inside of the
-        triangle is taken: at its middle by this parameter, and close to the corner by the other.
+        A corner where the face has no normal, because a line of one parameter is a point, takes a
+        normal from inside the triangle: half-way along that parameter, and close to the corner
+        along the other.
         """
         uv, found = self.known.uv, self.known.normals[triangles]
         rows, corner = np.nonzero(~found.any(axis=2))
@@ -246,7 +247,7 @@ class Corners:
 
 @dataclass(frozen=True, eq=False)
 class Meshing:
-    """A mesh of a part that is being made; `failed` are the faces that it lacks, with reasons."""
+    """A mesh of a part under construction; `failed` are the missing faces, with reasons."""
 
     part: Part
     space: PartSpace
@@ -263,7 +264,7 @@ class Meshing:
         failed: dict[int, str],
         spaced: type[Spacing],
     ) -> Meshing:
-        """Return the beginning of a mesh of the pieces of a space that have not failed."""
+        """Return the start of a mesh: the pieces of a space that have not failed."""
         pieces = tuple(x for x in whole.pieces if x.face.index not in failed)
         if not pieces:
             reason = next(iter(failed.values()))
@@ -283,7 +284,7 @@ class Meshing:
         return cls(part, made, edges, count, failed)
 
     def refine(self) -> dict[int, str]:
-        """Divide edges until no border crosses itself; return the faces for which that fails."""
+        """Divide edges until no boundary crosses itself; return the faces where one still does."""
         crossing = self._crossing()
         while crossing:
             sampled = self._sampled()
@@ -297,7 +298,7 @@ class Meshing:
         return {k: text for k, _, text in crossing}
 
     def _crossing(self) -> list[tuple[int, FaceBorder, str]]:
-        """Return the faces whose borders cross themselves, these, and what is wrong."""
+        """Return the faces whose boundaries cross themselves, the boundaries, and the errors."""
         found = []
         for k, border in enumerate(self._borders(self._sampled())):
             piece, even = self.space.pieces[k], np.ones((len(border.uv), 2, 3))
@@ -308,10 +309,10 @@ class Meshing:
         return found
 
     def mesh(self) -> tuple[PartMesh, dict[int, str]]:
-        """Return the mesh, and the faces at edges that are in too few or too many triangles.
+        """Return the mesh, and the faces at edges that have too few or too many triangles.
 
-        Edges are divided where they are, and where triangles point inward, as long as that helps.
-        Raises Crossing if the border of a face crosses itself.
+        Such edges are divided, and those near triangles that point inward, as long as that helps.
+        Raises Crossing if the boundary of a face crosses itself.
         """
         best, least, wrong_of_best = None, (0, 0), np.empty((0, 2), dtype=np.int64)
         for _ in range(ROUNDS):
@@ -333,7 +334,7 @@ class Meshing:
         return _without_unused(best), self._faces_at(best, wrong_of_best)
 
     def _faces_at(self, mesh: PartMesh, wrong: Indices) -> dict[int, str]:
-        """Return the faces of triangles with edges (k, 2), and why they cannot be meshed."""
+        """Return the faces of triangles with edges (k, 2), with the reason for their failure."""
         count = len(mesh.vertices)
         at = np.isin(edge_numbers(mesh.triangles, count), np.sort(wrong, axis=1) @ [count, 1])
         faces = np.unique(mesh.face_index[at.any(axis=1)]).tolist()
@@ -345,7 +346,7 @@ class Meshing:
         }
 
     def _refine(self, sampled: SampledEdges, segments: dict[int, Flags]) -> bool:
-        """Divide segments of edges, if there are vertices enough for that; return whether."""
+        """Split edge segments while vertices remain; return True if any was split."""
         before, least = dict(self.edges.more), self.edges.least
         self.edges.refine(sampled, segments)
         if least < self.edges.least <= self.count:
@@ -365,10 +366,10 @@ class Meshing:
         return [FaceBorder.of(x, sampled) for x in self.space.pieces]
 
     def _made(self, sampled: SampledEdges) -> PartMesh:
-        """Return a mesh, whose edges may still be wrong; its vertices are numbered as edges say.
+        """Return a mesh whose edges may still be wrong; edge vertices are numbered as in `sampled`.
 
-        Vertices inside of faces are replaced by others if they fell outside of polygons, or are in
-        a triangle that points inward.
+        Interior vertices are replaced if they are outside of the polygons, or in a triangle that
+        points inward.
         """
         borders = self._borders(sampled)
         cover = self._cover(sampled, borders)
@@ -390,9 +391,9 @@ class Meshing:
         return mesh
 
     def _cover(self, sampled: SampledEdges, borders: list[FaceBorder]) -> Cover | None:
-        """Return the cover of faces: samples at vertices on edges, and others inside.
+        """Return the cover of faces: the vertices on edges as given samples, and interior samples.
 
-        None if all faces are ruled, and have none.
+        Returns None if all faces are ruled, and have no interior samples.
         """
         space, numbers = self.edges.spacing.covered
         if not len(numbers):
@@ -409,7 +410,7 @@ class Meshing:
         return cover
 
     def _corners(self, borders: list[FaceBorder], added: Cells, names: Indices) -> Corners:
-        """Return the triangles between vertices on edges and added ones, numbered by `names`."""
+        """Return the triangles between edge vertices and interior vertices, numbered by `names`."""
         order = np.argsort(added.pieces, kind="stable")
         cells, spacing = added[order], self.edges.spacing
         cells = replace(cells, pieces=spacing.covered[1][cells.pieces]) if len(cells) else cells
@@ -437,7 +438,7 @@ class Meshing:
             [x for b, y in zip(borders, numbers, strict=True) for x in (b.numbers, y)]
         )
         found = np.concatenate(triangles)
-        a, b, c = at[found].T  # at a pole, two may be one
+        a, b, c = at[found].T  # at a pole, two corners may be one vertex
         proper = (a != b) & (b != c) & (c != a)
         return Corners(pieces, at, known, found[proper], np.concatenate(fixed))
 
@@ -471,9 +472,9 @@ class Meshing:
 
 
 def wrong_edges(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:
-    """Return the edges (k, 2) of a mesh that are not in as many triangles as they are to be.
+    """Return the edges (k, 2) of a mesh with a wrong number of triangles.
 
-    These are two, or, along edges of a part, as many as these have faces around.
+    The right number is two or, along an edge of the part, the number of its adjacent faces.
     """
     count = len(mesh.vertices)
     numbers, times = np.unique(edge_numbers(mesh.triangles, count), return_counts=True)
@@ -497,7 +498,8 @@ def wrong_edges(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indi
 def inverted_triangles(mesh: PartMesh) -> Indices:
     """Return the triangles (k,) that point away from the mean normal of their corners.
 
-    From one at a corner they may, where a face of a file folds over at its end.
+    A triangle that points away from the normal of one corner only is allowed: a face of a file may
+    fold over at its end.
     """
     a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
@@ -505,7 +507,7 @@ def inverted_triangles(mesh: PartMesh) -> Indices:
 
 
 def _between(pairs: Indices, sampled: SampledEdges) -> dict[int, Flags]:
-    """Return the segments of edges of a part between the vertices of pairs (k, 2)."""
+    """Return masks of the segments of edges of a part between pairs (k, 2) of vertices."""
     at: dict[int, dict[int, list[int]]] = {x: {} for x in np.unique(pairs).tolist()}
     for edge, line in sampled.numbers.items():
         for place in np.flatnonzero(np.isin(line, pairs)).tolist():
@@ -521,7 +523,7 @@ def _between(pairs: Indices, sampled: SampledEdges) -> dict[int, Flags]:
 
 
 def _without_unused(mesh: PartMesh) -> PartMesh:
-    """Return a mesh with those vertices only that its triangles have."""
+    """Return a mesh without the vertices that no triangle uses."""
     used = np.zeros(len(mesh.vertices), dtype=np.bool_)
     used[mesh.triangles] = True
     new = np.cumsum(used) - 1

@@ -1,6 +1,6 @@
-"""The methods of `Part` that modules above it define: `methods.pyi` says what they are.
+"""The methods of `Part` defined in modules above it; `methods.pyi` declares them.
 
-Each is loaded when it is first asked for. Nothing here imports what stands on parts.
+Each is loaded on first access. Nothing here imports modules that build on parts.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ RESULTS, SAMPLING = "gaussmap.tools.cad.results", "gaussmap.tools.cad.sampling"
 
 
 class Methods:
-    """What `Whole` asks of a part, and what is made of parts."""
+    """The methods that `Whole` calls on a part, and those that make something from parts."""
 
     plot = Later(PLOT, "plot_part")
     select = Later(SELECTION)

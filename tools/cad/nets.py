@@ -1,4 +1,4 @@
-"""NURBS of faces over the domain of the face: cut off, or continued around a period."""
+"""NURBS of faces over the domain of the face: cut, or continued periodically."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ __all__ = ["SAME_END", "curve_of_net", "line_of", "nurbs_of_curve", "nurbs_of_ne
 
 Array = NDArray[np.float64]
 
-# Ends of domains that differ by less than this, relative to the period or the length, are the same:
+# # Ends of domains that differ by less than this, relative to the period or the length, are equal:
 # CAD systems compare parameters to 1e-9, and faces leave larger gaps along their seams.
 SAME_END = 1e-7
 
 
 def nurbs_of_net(net: Net) -> Nurbs:
-    """Return the NURBS surface of a net over all of its knots; InputError if it is none."""
+    """Return the NURBS surface of a net over all of its knots; InputError if the net is invalid."""
     return nurbs_of(net.degrees, net.knots, net.points, net.weights)
 
 
 def nurbs_of_curve(net: Net, along: Array, length: Interval) -> Nurbs:
-    """Return the surface of a NURBS curve at u that is moved by v along a vector (3,).
+    """Return the surface of a NURBS curve, with parameter u, translated along a vector (3,) by v.
 
-    v is between the ends of `length`. InputError if the net is no curve.
+    v runs over `length`. Raises InputError if the net is no curve.
     """
     (degree,), (knots,) = net.degrees, net.knots
     points = net.points[:, None] + along * np.array(length)[:, None]
@@ -43,8 +43,8 @@ def nurbs_of_curve(net: Net, along: Array, length: Interval) -> Nurbs:
 def curve_of_net(net: Net) -> Nurbs:
     """Return a NURBS curve as the line v = 0 of a surface.
 
-    The surface goes along the direction in which the curve is shortest, so that its normals turn
-    where the curve has a kink.
+    The surface extends along the direction in which the curve is shortest, so that its normals turn
+    at kinks of the curve.
     """
     points = net.points - net.points.mean(axis=0)
     direction = np.linalg.svd(points, full_matrices=True)[2][-1]
@@ -66,7 +66,7 @@ def line_of(start: Array, way: Array, ends: Interval) -> Nurbs:
 def nurbs_over(nurbs: Nurbs, domain: tuple[Interval, Interval]) -> Nurbs:
     """Return a NURBS over a domain, with its creases, and periodic where it closes smoothly.
 
-    A domain beyond the ends is continued around the period if they meet, and else cut off.
+    A domain beyond the ends is covered periodically if the ends meet; otherwise the NURBS is cut.
     """
     for axis in (0, 1):
         nurbs = _over(nurbs, axis, domain[axis])
@@ -96,9 +96,9 @@ def _over(nurbs: Nurbs, axis: int, interval: Interval) -> Nurbs:
 
 
 def _at_knot(knots: Array, end: float, slack: float) -> float:
-    """Return the knot that is the end of an interval up to a slack, else the end itself.
+    """Return the knot within `slack` of the end of an interval, or else the end itself.
 
-    Faces end where their surface has a kink: beyond it there is a piece without an area.
+    Faces often end at a kink of their surface: beyond the knot there would be a piece without area.
     """
     nearest = float(knots[np.abs(knots - end).argmin()])
     return nearest if abs(nearest - end) <= slack else end

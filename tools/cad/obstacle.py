@@ -12,12 +12,12 @@ from .results import space_of
 
 __all__ = ["obstacle_of"]
 
-# The number of vertices, or where edges alone need more than half of it, twice of what these need.
+# # The number of vertices, or twice the number that edges need if that is larger.
 VERTICES = 20_000
 
 
 def obstacle_of(part: Part) -> PartMesh:
-    """Return the mesh of a part, which is kept with it; InputError and warnings of meshes."""
+    """Return the mesh of a part, stored with the part; raises InputError and warns as meshes do."""
     return kept(part, obstacle_of, lambda: _made(part))
 
 

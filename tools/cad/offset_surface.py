@@ -1,9 +1,9 @@
-"""OffsetSurface surfaces: the points at a distance from another surface, along its normals.
+"""Offset surfaces: the points at a distance from another surface, the basis, along its normals.
 
-Points and first derivatives follow from the 2-jet of the other surface. Second derivatives need
-its third ones, too. These are numerical: differences of its second derivatives at nine places of
-one knot span. The second derivatives are good to about 1e-12, relative to the largest; 1e-10 where
-the reader has interpolated a circle or another curve that is no NURBS.
+Points and first derivatives follow from the 2-jet of the basis. Second derivatives also need its
+third derivatives, which are numerical: differences of its second derivatives at nine positions in
+one knot span. The relative error of the second derivatives, to the largest one, is about 1e-12, or
+1e-10 where the reader has interpolated a circle or another curve that is no NURBS.
 """
 
 from __future__ import annotations
@@ -33,19 +33,19 @@ __all__ = ["OffsetSurface", "Turned"]
 
 Array = NDArray[np.float64]
 
-# A step is the largest power of two up to this part of a knot span.
+# # A step is the largest power of two up to this fraction of a knot span.
 STEP = 1 / 128
 NODES = np.arange(9)[:, None] - 4
-# Where the other surface has no normal, at a pole or an apex, it is taken at this part of the
-# domain from there.
+# # Where the basis has no normal, at a pole or an apex, it is taken at this distance from there,
+# relative to the domain.
 BESIDE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class Turned(Differentiable):
-    """The surface x(u,v) of a curve that is turned about the z axis by the angle u.
+    """The surface x(u,v) of a curve rotated about the z axis by the angle u.
 
-    The curve is the line v = 0 of a NURBS, whose u is v here.
+    The curve is the line v = 0 of a NURBS, with u of the NURBS as the parameter v.
     """
 
     curve: Nurbs
@@ -64,11 +64,11 @@ class Turned(Differentiable):
         return jets
 
     def tape(self) -> Tape | None:
-        """Return the operations of the curve, and those that turn it."""
+        """Return the operations of the curve, and those of the rotation."""
         return turned_tape(self.curve)
 
     def restricted(self, domain: Domain) -> Turned:
-        """Return a part of the surface, evaluated from inside where the curve is not smooth."""
+        """Return the surface over a subdomain, evaluated from inside where it is not smooth."""
         return Turned(self.curve.restricted((domain[1], self.curve.domain[1])))
 
 
@@ -93,18 +93,18 @@ class OffsetSurface(Differentiable):
         return points.reshape(*u.shape, 3)
 
     def jets(self, u: Array, v: Array) -> Array:
-        """Return positions and derivatives (k, 6, 3); NaN where the other surface is singular."""
+        """Return positions and derivatives (k, 6, 3); NaN where the basis is singular."""
         jets = self.basis.jets(u, v)
         along_u, along_v = self._differences(0, u, v), self._differences(1, u, v)
         thirds = np.concatenate([along_u, along_v[:, 2:]], axis=1)
         return self._at_distance(jets, thirds)
 
     def restricted(self, domain: Domain) -> OffsetSurface:
-        """Return a part of the surface, evaluated from inside where it is not smooth."""
+        """Return the surface over a subdomain, evaluated from inside where it is not smooth."""
         return replace(self, basis=self.basis.restricted(domain), domain=domain)
 
     def _at_distance(self, jets: Array, thirds: Array) -> Array:
-        """Return positions and derivatives (k, 6, 3), of jets and third derivatives (k, 4, 3)."""
+        """Return positions and derivatives (k, 6, 3), from jets and third derivatives (k, 4, 3)."""
         out = np.empty_like(jets)
         kernels.offset(self.distance, jets, thirds, out)
         return out
@@ -128,7 +128,7 @@ class OffsetSurface(Differentiable):
         return np.stack(by, axis=1) / step[:, None, None]
 
     def _span(self, axis: int, values: Array) -> tuple[Array, Array]:
-        """Return the ends of the knot spans that hold values (k,), inside the domain."""
+        """Return the ends of the knot spans that hold parameters (k,), inside the domain."""
         (first, last), knots = self.domain[axis], _knots_of(self.basis, axis)
         inner = np.unique(knots[(knots > first) & (knots < last)])
         lines = np.concatenate([[first], inner, [last]])
@@ -136,7 +136,7 @@ class OffsetSurface(Differentiable):
         return lines[place], lines[place + 1]
 
     def _beside(self, u: Array, v: Array) -> Array:
-        """Return points (k, 3) where the other surface has no normal."""
+        """Return points (k, 3) where the basis has no normal."""
         (u0, u1), (v0, v1) = self.domain
         u_in, v_in = u + BESIDE * ((u0 + u1) / 2 - u), v + BESIDE * ((v0 + v1) / 2 - v)
         moved = self._points(u_in, v_in) - self.basis.jets(u_in, v_in)[:, 0]

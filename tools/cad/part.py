@@ -1,4 +1,4 @@
-"""A part: its faces, solids and unit, as a CAD file or several surfaces give them."""
+"""A part: its faces, solids and unit, from a CAD file or from several surfaces."""
 
 from __future__ import annotations
 
@@ -31,53 +31,52 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class Part(Methods, Whole):
-    """Several faces as one thing: one count, one density, one orientation, shared edges.
+    """Several faces as one object: one count, one density, one orientation, shared edges.
 
-    `read_cad` and `read_part` return parts, and `Part([...])` makes one of surfaces. Borders of the
-    surfaces that coincide, wholly or in parts, become edges, which meshes share. Surfaces are
-    flipped where that is needed for normals on one side; those of closed sets point outward, and
-    others are as those of the first surface of each connected set. `warnings` says which are
-    flipped. `gap`, `open_edges` and `closed` say how well the surfaces fit.
+    `read_cad` and `read_part` return parts, and `Part([...])` makes one of surfaces. Boundaries of
+    the surfaces that coincide, wholly or partly, become edges, which meshes share. Surfaces are
+    flipped where a consistent orientation requires it: normals of closed sets point outward, and
+    other connected sets are oriented as their first surface. `warnings` names the flipped surfaces.
+    `gap`, `open_edges` and `closed` say how well the surfaces fit.
 
-    `sample` and `GaussMap` take a part as a surface. Lengths are in the unit L of its file. A part
-    pickles if its callables do, and needs no CAD library.
+    `sample` and `GaussMap` take a part in place of a surface. Lengths are in the unit L of its
+    file. A part can be pickled if its callables can, and needs no CAD library.
 
     Parameters
     ----------
     surfaces : sequence of Surface or str
-        The surfaces, or their names in the catalogue. Trims are taken if they are loops; of grids
-        of points, the spline is the surface.
+        The surfaces, or their names in the catalogue. Trims must be loops; a surface given by a
+        grid of points is its spline.
     tolerance : float, optional
-        Borders coincide if they are nowhere farther apart than this, in L. By default, 1e-6 of the
-        size of the part.
+        Boundaries coincide if their distance is nowhere larger than this, in L. By default, 1e-6 of
+        the size of the part.
     name : str, default "part"
-        What messages call it.
+        The name in messages.
     unit : str, optional
-        The unit L of the surfaces, "mm", "in" or another one of `read_cad`: files and summaries of
-        samples say it. Nothing is converted.
+        The unit L of the surfaces, "mm", "in" or another unit of `read_cad`, which files and
+        summaries of samples state. Nothing is converted.
 
     Attributes
     ----------
     arrays : dict of str to array
-        The numbers of all faces, in the format of the files of `save`.
+        The arrays of all faces, in the format of the files of `save`.
     about : dict
         All that is not an array, such as names.
     surfaces : dict of int to Surface
-        The surfaces of faces that are not given by numbers, by the index of the face: those of the
-        kind "surface".
+        The surfaces of faces of the kind "surface", which are not given by numbers, by face index.
 
     Raises
     ------
     InputError, UnknownNameError
-        For anything else, an unknown unit, a trim that is no single set of loops in the domain, and
-        if the surfaces cannot have normals on one side, as those of a Möbius band.
+        For invalid arguments, an unknown unit, a trim that is no single set of loops in the domain,
+        and if the surfaces cannot be oriented consistently, as those of a Möbius band.
     SurfaceError
         If a surface cannot be evaluated, or is no larger than the tolerance.
 
     Warns
     -----
     GaussmapWarning
-        If borders are farther apart than the tolerance, and nearly coincide.
+        If boundaries are farther apart than the tolerance, and nearly coincide.
 
     Examples
     --------
@@ -135,7 +134,7 @@ class Part(Methods, Whole):
         about: dict[str, Any],
         surfaces: Mapping[int, Surface] | None = None,
     ) -> Part:
-        """Return the part of arrays, and of surfaces that they do not hold."""
+        """Return a part of arrays, and of surfaces that are not in them."""
         part = cls.__new__(cls)
         vars(part).update(arrays=arrays, about=about, surfaces=dict(surfaces or {}))
         return part
@@ -150,7 +149,7 @@ class Part(Methods, Whole):
 
     @property
     def name(self) -> str:
-        """The name of the part: that of the file that it was read from, or one that was given."""
+        """The name of the part: that of its file, or the one given."""
         return str(self.about.get("name", "part"))
 
     @property
@@ -188,8 +187,8 @@ class Part(Methods, Whole):
     def bounds(self) -> Array:
         """The smallest and the largest x, y, z (2, 3) of all faces inside their trims, in L.
 
-        They are exact up to rounding and to the polygons that stand for the borders of faces (see
-        `Face.loops`). SurfaceError if no face can be used.
+        They are exact up to rounding and to the polygons that approximate the boundaries of faces
+        (see `Face.loops`). Raises SurfaceError if no face can be used.
 
         Examples
         --------
@@ -203,16 +202,16 @@ class Part(Methods, Whole):
 
     @cached_property
     def volume(self) -> float:
-        """The volume of the solids, in L³; hollows are left out.
+        """The volume of the solids, in L³, without their cavities.
 
         It is a third of the sum of area · (mean of x · n) over the faces. The means are integrals
-        along the borders of the faces, by Gauss's rule, exact for planes and faces without a trim.
-        Else the polygons that stand for the borders count (see `Face.loops`): where they deviate by
-        1e-4 of the size of a face, the most in parts that `read_cad` reads, the volume of a
-        cylinder with a slanted end is off by 3e-5 of it. Where solids overlap, both count.
+        along the boundaries of the faces, by Gauss's rule, exact for planes and faces without a
+        trim. Other boundaries are approximated by polygons (see `Face.loops`): where these deviate
+        by 1e-4 of the size of a face, the most in parts that `read_cad` reads, the relative error
+        of the volume of a cylinder with a slanted end is 3e-5. Where solids overlap, both count.
 
-        SurfaceError unless all faces enclose solids (`oriented`) and none has failed: open shells
-        have no volume.
+        Raises SurfaceError unless all faces enclose solids (`oriented`) and none has failed: open
+        shells have no volume.
 
         Examples
         --------
@@ -227,7 +226,7 @@ class Part(Methods, Whole):
     def gap(self) -> float:
         """The largest distance between two faces, or ends of one face, along a shared edge, in L.
 
-        It is measured at all places of edges that the part holds; 0 if no edge is shared.
+        It is measured at all points of edges that the part holds; it is 0 if no edge is shared.
 
         Examples
         --------
@@ -253,7 +252,7 @@ class Part(Methods, Whole):
 
     @cached_property
     def closed(self) -> bool:
-        """Whether each edge has faces on both sides, two and no more.
+        """Whether each edge has exactly two adjacent faces.
 
         Examples
         --------
@@ -267,7 +266,7 @@ class Part(Methods, Whole):
 
     @property
     def _sides_of_edges(self) -> NDArray[np.int64]:
-        """The numbers of sides of the edges that are no points."""
+        """The numbers of sides of all non-degenerate edges."""
         return np.diff(self.arrays["edge_side_starts"])[~self.arrays["edge_degenerate"]]
 
     @cached_property
@@ -284,7 +283,7 @@ class Part(Methods, Whole):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What was noticed when the part was read or made, in sentences."""
+        """Sentences about problems in reading or making the part."""
         return tuple(map(str, self.about.get("warnings", ())))
 
     @cached_property
@@ -306,7 +305,7 @@ class Part(Methods, Whole):
         FileError
             If the file cannot be written.
         InputError
-            If a face is a surface that no numbers give, see `surfaces`.
+            If a face is a surface that is not given by numbers, see `surfaces`.
 
         Examples
         --------
@@ -326,7 +325,7 @@ class Part(Methods, Whole):
         write_arrays(self.arrays, path)
 
     def __getstate__(self) -> dict[str, object]:
-        """Return what is pickled: the fields, without what is made of them."""
+        """Return the pickled state: the fields, without cached values."""
         return {"arrays": self.arrays, "about": self.about, "surfaces": self.surfaces}
 
 
@@ -339,7 +338,7 @@ class Face:
     part : Part
         The part.
     index : int
-        The place in `part.faces`.
+        The index in `part.faces`.
 
     """
 
@@ -355,14 +354,14 @@ class Face:
         """One of plane, cylinder, cone, sphere, torus, nurbs, revolution, extrusion, offset.
 
         Planes, cylinders, cones, spheres and tori of the catalogue and NURBS, moved or not, have
-        their kind; any other surface of `Part([...])` is a "surface". "unknown" is that of a face
-        that failed before its kind was found out.
+        their kind; any other surface of `Part([...])` is a "surface". A face that failed before its
+        kind was determined is "unknown".
         """
         return self.geometry.kind
 
     @property
     def area(self) -> float:
-        """The area inside the trim, in L², as the CAD library integrates it."""
+        """The area inside the trim, in L², computed by the CAD library."""
         return float(self._row("area"))
 
     @property
@@ -378,13 +377,13 @@ class Face:
 
     @property
     def source_index(self) -> int:
-        """The place in the faces of the part that was read; `index` unless that was selected."""
+        """The index in the faces of the part that was read; `index` unless that was selected."""
         places = self.part.about.get("source_indices")
         return int(places[self.index]) if places else self.index
 
     @property
     def solid_index(self) -> int:
-        """The place in `part.solids` of the solid that it belongs to; −1 for none."""
+        """The index in `part.solids` of the solid that the face belongs to; −1 for none."""
         return int(self._row("solid_index"))
 
     @property
@@ -394,33 +393,33 @@ class Face:
 
     @property
     def reason(self) -> str:
-        """Why the face failed; "" if it did not."""
+        """The reason why the face failed; "" if it did not."""
         return self.part._reasons.get(str(self.index), "")
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """The bounds of the loops: ((u0, u1), (v0, v1))."""
+        """The bounding box of the loops: ((u0, u1), (v0, v1))."""
         (u0, u1), (v0, v1) = self._row("domain").tolist()
         return (u0, u1), (v0, v1)
 
     @property
     def periods(self) -> tuple[float, float]:
-        """The periods of the geometry in u and v, 0 where it has none."""
+        """The periods of the geometry in u and v, 0 where not periodic."""
         along_u, along_v = self._row("periods").tolist()
         return along_u, along_v
 
     @property
     def geometry(self) -> Geometry:
-        """The surface without its trim, as numbers: views of the arrays of the part."""
+        """The surface without its trim, as arrays: views of the arrays of the part."""
         found, held = geometry_of(self.part.arrays, self.index), self.part.surfaces.get(self.index)
         return found if held is None else replace(found, surface=held)
 
     @cached_property
     def dimensions(self) -> dict[str, Any]:
-        """What planes, cylinders, cones, spheres and tori are given by; empty for other faces.
+        """The dimensions of a plane, cylinder, cone, sphere or torus; empty for other faces.
 
         plane: `point`, `normal`. cylinder: `point` on its `axis`, `radius`. cone: `apex`, `axis`
-        (the way in which it widens), `half_angle` in degrees. sphere: `centre`, `radius`. torus:
+        (towards its wide end), `half_angle` in degrees. sphere: `centre`, `radius`. torus:
         `centre`, `axis`, `major_radius`, `minor_radius`. Directions have unit length, lengths are
         in L. `hollow` says whether normals point inward, to the axis or centre, as in a hole.
 
@@ -443,10 +442,10 @@ class Face:
 
     @property
     def wires(self) -> tuple[tuple[tuple[int, bool], ...], ...]:
-        """The edges along each loop, in turn: a number, and whether the edge is passed backwards.
+        """The edges along each loop, in order: an index, and whether it is traversed backwards.
 
-        The number is that of its side in `part.arrays`. The face lies at the left of the loop, seen
-        from where x_u × x_v points; () if the file of the part has no wires.
+        The index is that of the edge's side in `part.arrays`. The face lies to the left of the
+        loop, seen from where x_u × x_v points; () if the file of the part has no wires.
         """
         arrays = self.part.arrays
         first, last = arrays["face_wires"][self.index : self.index + 2].tolist()
@@ -461,8 +460,8 @@ class Face:
     def surface(self) -> Surface:
         """The surface with its trim. Its parameters are those of the file.
 
-        Its normals point outward: if the face is reversed, u is, too. SurfaceError for a face that
-        failed.
+        Its normals point outward: if the face is reversed, u is, too. Raises SurfaceError for a
+        face that failed.
         """
         if self.reason:
             raise SurfaceError(f"{self.label} cannot be used: {self.reason}.")
@@ -474,7 +473,7 @@ class Face:
 
     @property
     def label(self) -> str:
-        """What messages call it."""
+        """The name of the face in messages."""
         name = f" ({self.name!r})" if self.name else ""
         return f"face {self.index}{name} of {self.part.name!r}"
 
@@ -482,7 +481,7 @@ class Face:
         return self.part.arrays[name][self.index]
 
     def __getstate__(self) -> dict[str, object]:
-        """Return what is pickled: the fields, without what is made of them."""
+        """Return the pickled state: the fields, without cached values."""
         return {"part": self.part, "index": self.index}
 
 
@@ -495,7 +494,7 @@ class Solid:
     part : Part
         The part.
     index : int
-        The place in `part.solids`.
+        The index in `part.solids`.
     name : str
         The name in the file, or "".
     faces : (k,) int64 array
@@ -529,7 +528,7 @@ def part_of(record: PartRecord) -> Part:
 def read_part(path: PathLike) -> Part:
     """Read a part from a `.npz` file that `Part.save` wrote; no CAD library is needed.
 
-    Nothing is ever unpickled.
+    Nothing in the file is unpickled.
 
     Parameters
     ----------

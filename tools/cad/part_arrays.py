@@ -1,7 +1,7 @@
-"""A part as few long arrays: packed from records, and a surface of one face unpacked again.
+"""A part as few long arrays: packing records, and unpacking the surface of one face.
 
-Numbers of all faces are one after another in one array, with the places where each begins, so that
-a part of 100,000 faces is some 20 arrays. `saving` describes them.
+The numbers of all faces are concatenated in one array, beside an array of start indices, so that a
+part of 100,000 faces is some 20 arrays. `saving` describes them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .records import KINDS, FaceRecord, Geometry, Net, PartRecord
 __all__ = ["FORMAT", "VERSION", "differences", "geometry_of", "packed"]
 
 FORMAT = "gaussmap part"
-# Raised when the arrays change such that older versions of gaussmap would misread them.
+# # To be raised when the arrays change such that older versions of gaussmap would misread them.
 VERSION = 2
 
 Arrays = dict[str, NDArray[Any]]
@@ -47,7 +47,7 @@ def packed(part: PartRecord) -> Arrays:
 
 
 def geometry_of(arrays: Mapping[str, NDArray[Any]], k: int) -> Geometry:
-    """Return surface k of packed arrays: that of face k, or one that an offset is made from."""
+    """Return surface k of packed arrays: that of face k, or a basis of an offset."""
     starts, basis, net = arrays["number_starts"], int(arrays["basis"][k]), int(arrays["net"][k])
     return Geometry(
         NAMES[arrays["kind"][k]],
@@ -71,7 +71,7 @@ def _net_of(arrays: Mapping[str, NDArray[Any]], k: int) -> Net:
 
 
 def _about(part: PartRecord) -> dict[str, Any]:
-    """Return what is no array."""
+    """Return the entries that are no arrays."""
     names = {k: x.name for k, x in enumerate(part.faces) if x.name}
     reasons = {k: x.reason for k, x in enumerate(part.faces) if x.reason}
     return {
@@ -90,7 +90,7 @@ def _about(part: PartRecord) -> dict[str, Any]:
 
 
 def _table(faces: Sequence[FaceRecord]) -> Arrays:
-    """Return what is one row for each face."""
+    """Return the arrays with one row for each face."""
     unknown = (np.nan, np.nan, np.nan)
     colors = [unknown if x.color is None else tuple(x.color) for x in faces]
     return {
@@ -104,9 +104,9 @@ def _table(faces: Sequence[FaceRecord]) -> Arrays:
 
 
 def _basis(geometries: list[Geometry]) -> list[int]:
-    """Append the surfaces that others are offsets of, and return the place of each one's."""
+    """Append the surfaces that others are offsets of; return the index of each basis, or −1."""
     places: list[int] = []
-    for geometry in geometries:  # it grows, and these are looked at, too
+    for geometry in geometries:  # grows in the loop, which also visits the appended ones
         if geometry.basis is None:
             places.append(-1)
         else:
@@ -116,7 +116,7 @@ def _basis(geometries: list[Geometry]) -> list[int]:
 
 
 def _nets(nets: Sequence[Net]) -> Arrays:
-    """Return all NURBS; a curve has the degree 0 and one row of control points along v."""
+    """Return all NURBS; a curve has degree 0 and one column of control points along v."""
     points = []
     for net in nets:
         weights = np.ones(net.points.shape[:-1]) if net.weights is None else net.weights
@@ -131,14 +131,14 @@ def _nets(nets: Sequence[Net]) -> Arrays:
 
 
 def _loops(faces: Sequence[FaceRecord]) -> Arrays:
-    """Return the loops of all faces, and which of them belong to each."""
+    """Return the loops of all faces, and the start of each face's."""
     counts = np.cumsum([0, *(len(x.loops) for x in faces)])
     loops = [loop for x in faces for loop in x.loops]
     return {"face_loops": counts.astype(np.int64), **_rows("loop_point", loops, (2,))}
 
 
 def _edges(part: PartRecord) -> Arrays:
-    """Return all vertices and edges, and where these lie on faces."""
+    """Return all vertices and edges, and the parameters of edges on faces."""
     edges, sides = part.edges, []
     for edge in edges:
         places = np.asarray(edge.parameters, dtype=np.float64)
@@ -158,12 +158,12 @@ def _edges(part: PartRecord) -> Arrays:
 
 
 def differences(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the derivatives (k, …) of points at equal steps from 0 to 1, by differences."""
+    """Return the derivatives (k, …) of points at equal steps from 0 to 1, by finite differences."""
     return np.gradient(points, axis=0) * (len(points) - 1) if len(points) > 1 else 0.0 * points
 
 
 def _wires(part: PartRecord) -> Arrays:
-    """Return which sides of edges follow one another along the loops of all faces."""
+    """Return the sides of edges along the loops of all faces, in order."""
     starts = np.cumsum([0, *(len(x.faces) for x in part.edges)]).tolist()
     wires = [wire for x in part.faces for wire in x.wires]
     steps = [step for wire in wires for step in wire]
@@ -176,7 +176,7 @@ def _wires(part: PartRecord) -> Arrays:
 
 
 def _rows(name: str, parts: Iterable[NDArray[Any]], shape: tuple[int, ...]) -> Arrays:
-    """Return arrays one after another, and where each begins and the last ends."""
+    """Return arrays concatenated, and the start of each, with the total length last."""
     rows = [np.empty((0, *shape)), *(np.asarray(x, np.float64).reshape(-1, *shape) for x in parts)]
     starts = np.cumsum([len(x) for x in rows], dtype=np.int64)
     return {f"{name}s": np.concatenate(rows), f"{name}_starts": starts}

@@ -1,4 +1,4 @@
-"""A mesh of a part: its vertices are shared by all faces around, its normals belong to corners."""
+"""A mesh of a part: adjacent faces share its vertices, and normals belong to corners."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ __all__ = ["PartMesh"]
 class PartMesh(CreasedMesh):
     """A mesh of a CAD part; made by `Samples.mesh` from samples of a part.
 
-    It has all that a `CreasedMesh` has.
+    It has all attributes and methods of a `CreasedMesh`.
 
     Attributes
     ----------
     lines : tuple of int64 arrays
-        The vertices along each edge of the part, in its direction; none for one that is not there.
+        The vertices along each edge of the part, in its direction; empty for an edge not meshed.
     failed : dict of int to str
-        The faces that are missing, and why.
+        The missing faces, with reasons.
 
     Examples
     --------
@@ -51,11 +51,11 @@ class PartMesh(CreasedMesh):
 
     @cached_property
     def closed(self) -> bool:
-        """As `CreasedMesh.closed`; never if a face is missing."""
+        """As `CreasedMesh.closed`; False if a face is missing."""
         return not self.failed and super().closed
 
     def summary(self) -> str:
-        """Return one line: vertices, triangles, their quality, and what is missing.
+        """Return one line: vertices, triangles, their quality, and missing faces.
 
         Examples
         --------

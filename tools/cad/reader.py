@@ -1,6 +1,6 @@
-"""`read_cad`: parts of STEP, IGES and BREP files, read by a process of its own.
+"""`read_cad`: parts from STEP, IGES and BREP files, read by a separate process.
 
-Open CASCADE hangs on some files and crashes on others; its process is ended at a limit of time.
+Open CASCADE hangs on some files and crashes on others; its process is ended after a time limit.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .worker import ERROR, PART
 
 __all__ = ["read_cad"]
 
-# Open CASCADE itself takes about a quarter of this, in GiB.
+# # Open CASCADE itself takes about a quarter of this memory, in GiB.
 LEAST_MEMORY = 1.0
 MOST_SECONDS = 1e6
 # The largest number of failed faces that a warning names.
@@ -45,25 +45,24 @@ def read_cad(
 ) -> Part:
     """Read a part from a STEP, IGES or BREP file.
 
-    Open CASCADE reads it, in a process of its own; `Part.save` keeps what it finds, so that this
-    is needed once for each file. Faces of solids, shells and loose faces are read, those of
-    assemblies in their places. Loose faces are sewn, so that the normals of those that enclose a
-    solid point out of it. A face that cannot be used is listed in `failed`, and the others are
-    read.
+    Open CASCADE reads it, in a separate process; `Part.save` stores the result, so that this is
+    needed once for each file. Faces of solids, shells and loose faces are read, those of assemblies
+    with their placements. Loose faces are sewn, so that the normals of those that enclose a solid
+    point out of it. A face that cannot be used is listed in `failed`, and the others are read.
 
     Parameters
     ----------
     path : str or os.PathLike
-        Name of the file. Its content, not its suffix, decides which of these it is.
+        Name of the file. Its content, not its suffix, decides which format it has.
     unit : str, optional
-        The unit L of all lengths of the part: "mm", "cm", "m", "in", "ft", … By default that of
-        the file. BREP files have none, and are in mm.
+        The unit L of all lengths of the part: "mm", "cm", "m", "in", "ft", … By default that of the
+        file. BREP files state none, and are in mm.
     time_limit : float
-        The longest time for reading, in seconds.
+        The time limit for reading, in seconds.
     memory_limit : float
-        The most memory for reading, in GiB.
+        The memory limit for reading, in GiB.
     progress : bool, default False
-        Show on a terminal what is done, after the first second.
+        Show the progress on a terminal, after the first second.
 
     Returns
     -------
@@ -73,17 +72,17 @@ def read_cad(
     Raises
     ------
     FileError
-        If the file is missing, empty, truncated, damaged, of another kind, has no faces, or cannot
-        be read within the limits.
+        If the file is missing, empty, truncated, damaged, or of another format, has no faces, or
+        cannot be read within the limits.
     InputError
         For an unknown unit and limits that are not positive.
     MissingExtraError
-        If Open CASCADE is not installed; the extra `cad` brings it.
+        If Open CASCADE is not installed; the extra `cad` installs it.
 
     Warns
     -----
     GaussmapWarning
-        If faces cannot be used, and if lengths are in a unit that the file does not say.
+        If faces cannot be used, and if the unit of lengths is not known from the file.
 
     See Also
     --------
@@ -141,7 +140,7 @@ def _check_file(path: Path) -> None:
 
 
 def _plain(path: Path, folder: Path) -> Path:
-    """Return a path to the same file whose name Open CASCADE can read: it is in UTF-8."""
+    """Return a path to the same file whose name Open CASCADE can read: it is valid UTF-8."""
     try:
         str(path).encode("utf-8")
     except UnicodeEncodeError:
@@ -155,7 +154,7 @@ def _plain(path: Path, folder: Path) -> Path:
 
 
 def _run(request: dict[str, object], seconds: float) -> int | None:
-    """Run the process; return how it ended, or None if it was at the limit."""
+    """Run the process; return its exit code, or None if it reached the time limit."""
     try:
         process = subprocess.Popen(
             command_of_reader(request),
@@ -182,7 +181,7 @@ def command_of_reader(request: dict[str, object]) -> list[str]:
 
 
 def _end(process: subprocess.Popen[bytes]) -> None:
-    """End a process with all that it has started, and wait until it is gone."""
+    """End a process and all its child processes, and wait until it has ended."""
     if process.poll() is None:
         with suppress(OSError, AttributeError):
             os.killpg(process.pid, signal.SIGKILL)
@@ -202,7 +201,7 @@ def _environment() -> dict[str, str]:
 
 
 def _why(end: int | None, seconds: float, gib: float) -> str:
-    """Return why a process wrote nothing."""
+    """Return the reason why a process wrote no result."""
     if end is None:
         return (
             f"was not read within {seconds:g} s: Open CASCADE may hang on it, or needs more time; "

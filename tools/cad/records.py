@@ -1,4 +1,4 @@
-"""What is known of a part, a face and an edge: numbers and arrays, before they are packed.
+"""A part, a face and an edge as numbers and arrays, before they are packed.
 
 The process that reads CAD files imports this module and `layout`: nothing here needs Numba.
 """
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 __all__ = ["KINDS", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord", "Wire"]
 
 Array = NDArray[np.float64]
-# The edges along a loop, in turn: (edge, which of its sides, whether it is passed backwards).
+# # The edges along a loop, in order: (edge, index among its sides, whether traversed backwards).
 Wire = list[tuple[int, int, bool]]
 
-# The kinds of faces, with the lengths of their numbers (see `saving`). Append only: files hold
-# places in this list. "unknown" is that of failed faces whose kind is not known, "surface" that of
-# faces that hold a `Surface` in memory, which no file has.
+# # The kinds of faces, with the lengths of their numbers (see `saving`). Append only: files hold
+# indices of this list. "unknown" is for failed faces whose kind is not known, "surface" for faces
+# that hold a `Surface` in memory, which no file has.
 KINDS: dict[str, int] = {
     "plane": 12,
     "cylinder": 13,
@@ -55,10 +55,10 @@ class Net:
 
 @dataclass(frozen=True, eq=False)
 class Geometry:
-    """A surface without its trim: its kind and what that needs.
+    """A surface without its trim: its kind and the data of that kind.
 
     `net` is the NURBS, or the curve of a revolution or an extrusion; `basis` is the surface that an
-    offset has its distance from. A face of the kind "surface" has a `surface` in place of numbers.
+    offset is taken from. A face of the kind "surface" has a `surface` in place of numbers.
     """
 
     kind: str
@@ -72,10 +72,11 @@ class Geometry:
 class FaceRecord:
     """A face; `reason` says why it failed, and is empty if it did not.
 
-    `domain` is ((u0, u1), (v0, v1)), the bounds of the loops; `periods` are those of the surface in
-    u and v, 0 where it has none. `loops` are closed polygons (k, 2), the first point not repeated.
-    `wires` are the edges along each loop, in turn: (edge, which of its sides, whether it is passed
-    from its end to its beginning). The face lies at their left where x_u × x_v points up.
+    `domain` is ((u0, u1), (v0, v1)), the bounding box of the loops; `periods` are those of the
+    surface in u and v, 0 where not periodic. `loops` are closed polygons (k, 2), the first point
+    not repeated. `wires` are the edges along each loop, in order: (edge, index among its sides,
+    whether traversed from its end to its beginning). The face lies to their left where x_u × x_v
+    points up.
     """
 
     geometry: Geometry
@@ -93,13 +94,13 @@ class FaceRecord:
 
 @dataclass(frozen=True, eq=False)
 class EdgeRecord:
-    """An edge: where it lies on the faces at its sides, and the vertices at its ends.
+    """An edge: its parameters on the adjacent faces, and its end vertices.
 
-    `faces` are those of its m sides: two as a rule, one at a border, the same one twice at a seam.
+    `faces` are those of its m sides: usually two, one on a boundary, the same one twice at a seam.
     `parameters` (k, 2 m) are u and v on each of them at equal steps of a parameter of the edge, NaN
-    where they are not known, and `slopes` (k, 2 m) their derivatives by this parameter, which goes
-    from 0 to 1; by default differences of the parameters. `vertices` are the places of those at its
-    beginning and its end; −1 if they are not known. It is `degenerate` if it is a point, as a pole.
+    where unknown, and `slopes` (k, 2 m) their derivatives by this parameter, which goes from 0 to
+    1; by default finite differences. `vertices` are the indices of its first and last vertex; −1 if
+    unknown. An edge that is a point, as at a pole, is `degenerate`.
     """
 
     faces: tuple[int, ...]
@@ -113,7 +114,7 @@ class EdgeRecord:
 class PartRecord:
     """A part; `metres` is the length of its unit, `oriented` whether all normals point outward.
 
-    `vertices` (V, 3) are the points at the ends of edges. `source_indices` are the places of the
+    `vertices` (V, 3) are the points at the ends of edges. `source_indices` are the indices of the
     faces in the part that they were selected from.
     """
 

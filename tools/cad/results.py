@@ -24,13 +24,13 @@ __all__ = ["PartSpace", "space_of", "weights_of"]
 
 Array = NDArray[np.float64]
 
-# Cells for each sample, whose areas are divided among the samples.
+# # The number of cells per sample; their areas are distributed to the samples.
 CELLS_A_SAMPLE = 16
 
 
 @dataclass(frozen=True, eq=False)
 class PartSpace(Space):
-    """The faces of a part that can be sampled, and by their index why others cannot."""
+    """The faces of a part that can be sampled, and for others the reason, by face index."""
 
     pieces: tuple[FacePiece, ...]
     failed: Mapping[int, str] = field(default_factory=dict)
@@ -39,10 +39,10 @@ class PartSpace(Space):
 def space_of(
     part: Part, threads: int | None, target: TargetDensity | None = None, reach: Cap | None = None
 ) -> PartSpace:
-    """Return the space of a part, or of what is in a `reach`; SurfaceError if that is nothing.
+    """Return the space of a part, or of its normals in a `reach`; SurfaceError if it is empty.
 
-    Of whole parts the first cells are kept, but for powers of K, which are many, and what pieces
-    are made of, but for rasters of their borders, which are large.
+    For whole parts, the first cells are cached, except for powers of K, which are many, and so are
+    the attributes of pieces, except rasters of their boundaries, which are large.
     """
     target = target or TargetDensity(floor=1.0)
     if reach is None:
@@ -63,10 +63,10 @@ def space_of(
 
 
 def weights_of(part: Part, samples: Samples) -> Array:
-    """Return what `Samples.weights` returns: the areas (N,) nearest to each on its own face.
+    """Return the weights of samples: the areas (N,) nearest to each on its own face.
 
-    They add up to the area of the face, or of its part in the reach of the samples. Of faces
-    without samples, the area is left out; samples on edges have none.
+    They add up to the area of each face, or of its part in the reach of the samples. Faces without
+    samples are left out, and samples on edges have weight 0.
     """
     found, faces = np.zeros(len(samples)), samples.face_index
     if faces is None:

@@ -1,10 +1,10 @@
 """All points with given normals on planes, cylinders, cones, spheres and tori, in closed form.
 
 Normals of the map x → M x + p are M⁻ᵀ m, up to their length, so that n becomes m = Mᵀ n in the
-frame of the face, whatever M is. There, x_u × x_v is q (cos u cos w, sin u cos w, sin w): w = v on
-spheres and tori, and minus the half angle on cylinders and cones. The formulas `torus_normal` and
-`cone_normal` are q. So u and w are the longitude and the latitude of m or of −m, as q has the sign
-+ or −: by definition angles of `arctan2`, of which nothing is left to derive.
+frame of the face, for any M. There, x_u × x_v is q (cos u cos w, sin u cos w, sin w), with w = v on
+spheres and tori, and w = minus the half angle on cylinders and cones. The formulas `torus_normal`
+and `cone_normal` are q. So u and w are the longitude and the latitude of m where q > 0, and of −m
+where q < 0: angles by definition of `arctan2`, without further derivation.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ Indices = NDArray[np.int64]
 ROUND = ("plane", "cylinder", "cone", "sphere", "torus")
 TURN = 2.0 * math.pi
 EPS = 2.0**-52
-# Angles of Mᵀ n have at most this error, times the condition of M: products of three terms, roots
-# and inverse functions of the C library have a few roundings each.
+# # The error of angles of Mᵀ n is at most this times the condition number of M: products of three
+# terms, roots and inverse functions of the C library have a few roundings each.
 ANGLE_ERROR = 16.0 * EPS
-# Normals that are farther than this from those of a plane, a cylinder or a cone are left out first.
+# # Normals farther than this from those of a plane, a cylinder or a cone are rejected first.
 NEAR = 1e-6
 CONTINUUM, SINGULAR = KINDS.index("continuum"), KINDS.index("singular")
 
 
 class Angles(NamedTuple):
-    """Places u, v (k,) of the normals with some numbers (k,), and their radii (k,)."""
+    """Parameters u, v (k,) for the normals with indices (k,), and radii (k,) of u and of v."""
 
     numbers: Indices
     u: Array
@@ -50,11 +50,11 @@ class Angles(NamedTuple):
     of_v: Array
 
     def at(self, rows: NDArray[np.bool_]) -> Angles:
-        """Return some of them."""
+        """Return a selection of rows."""
         return Angles._make(x[rows] for x in self)
 
     def within(self, interval: Interval, axis: int) -> Angles:
-        """Return those of u (axis 0) or v that are in an interval, whole turns away or not."""
+        """Return the rows whose u (axis 0) or v (axis 1) is in an interval, up to whole turns."""
         (low, high), values, radius = interval, self[1 + axis], self[3 + axis]
         found = []
         for turn in range(1 + int((high - low) / TURN)):
@@ -68,17 +68,17 @@ class Angles(NamedTuple):
 
     @classmethod
     def on_lines(cls, numbers: Indices, domain: Domain) -> Angles:
-        """Return whole domains for the normals with some numbers."""
+        """Return the whole domain for each of the normals with the given indices."""
         (u, of_u), (v, of_v) = (whole(x, len(numbers)) for x in domain)
         return cls(numbers, u, v, of_u, of_v)
 
     def places(self, sign: float) -> FacePlaces:
-        """Return them as points whose curvature has a sign."""
+        """Return the rows as points whose Gaussian curvature has a sign."""
         uv, radius = np.stack([self.u, self.v], axis=1), np.stack([self.of_u, self.of_v], axis=1)
         return FacePlaces(self.numbers, uv, radius, np.full(len(uv), sign), NOTHING.undecided)
 
     def boxes(self, kind: int, domain: Domain) -> FacePlaces:
-        """Return them as boxes in a domain that are not decided."""
+        """Return the rows as undecided boxes in a domain."""
         (u0, u1), (v0, v1) = domain
         sides = self.u - self.of_u, self.u + self.of_u, self.v - self.of_v, self.v + self.of_v
         ends = np.array([u0, u0, v0, v0]), np.array([u1, u1, v1, v1])
@@ -94,9 +94,9 @@ def whole(interval: Interval, count: int) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class RoundFace:
-    """A plane, cylinder, cone, sphere or torus over a domain; if `is_reversed`, u is, too.
+    """A plane, cylinder, cone, sphere or torus over a domain; with `is_reversed`, u is reversed.
 
-    `frame` is M, or −M if normals are opposite to M⁻ᵀ m; `error` is that of angles of Mᵀ n.
+    `frame` is M, or −M if normals are opposite to M⁻ᵀ m; `error` is the error of angles of Mᵀ n.
     """
 
     kind: str
@@ -139,7 +139,7 @@ class RoundFace:
         return Angles.on_lines(near, self.domain).boxes(CONTINUUM, self.domain)
 
     def _on_rulings(self, normals: Array) -> FacePlaces:
-        """Return rulings for the normals of a cylinder or a cone, on both sides of an apex."""
+        """Return the rulings of a cylinder or cone with normals (S, 3), beyond an apex, too."""
         radius, angle = self.sizes
         quotient, found = python_function(cone_normal), [NOTHING]
         ends = quotient(radius, math.sin(angle), np.array(self.domain[1]))
@@ -161,7 +161,7 @@ class RoundFace:
         return joined(found)
 
     def _on_circles(self, normals: Array) -> FacePlaces:
-        """Return the points of a sphere, whose first radius is 0, or of a torus."""
+        """Return the points of a torus, or of a sphere, as a torus with the first radius 0."""
         (major, minor), own, found = self.sizes, normals @ self.frame, list[FacePlaces]()
         if self.kind == "sphere":
             return self._at_angles(own, 1.0).places(1.0)
@@ -182,9 +182,9 @@ class RoundFace:
         return joined(found)
 
     def _at_angles(self, own: Array, sign: float) -> Angles:
-        """Return the places of normals in the frame of the face where cos v has a sign.
+        """Return the parameters of normals in the frame of the face where cos v has a sign.
 
-        Near the axis u is not known, and its radius is a turn.
+        Near the axis u is unknown, and its radius is a whole turn.
         """
         across = np.hypot(own[:, 0], own[:, 1])
         u, v = np.arctan2(sign * own[:, 1], sign * own[:, 0]), np.arctan2(own[:, 2], sign * across)

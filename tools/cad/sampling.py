@@ -41,7 +41,7 @@ def sample_part(
     progress: bool,
     edges: bool = False,
 ) -> tuple[Samples, Array]:
-    """Return samples of a part, and the normals that were searched. Raises what `sample` raises."""
+    """Return samples of a part, and the requested normals. Raises the exceptions of `sample`."""
     _check(request)
     if request.count is not None:
         check_memory("part", request.count)
@@ -63,7 +63,7 @@ def sample_part(
 
 
 def _check(request: Request) -> None:
-    """Raise InputError for densities that parts do not have."""
+    """Raise InputError for densities that are not available for parts."""
     if isinstance(request.density, str) and request.density not in DENSITIES:
         raise InputError(
             f'density="{request.density}" is for surfaces; of a part use "balanced" or "uniform".'
@@ -104,14 +104,14 @@ def _report(
 
 
 def _density(request: Request) -> str | None:
-    """Return the density as it is reported, None for "balanced"."""
+    """Return the density for the report, None for "balanced"."""
     if not isinstance(request.density, str):
         return "power"
     return None if request.density == "balanced" else request.density
 
 
 def _proof(space: PartSpace, cover: Cover) -> dict[str, Any]:
-    """Return what is proved of points at prescribed normals: of how many normals, and where not."""
+    """Return the report of the proof at prescribed normals: proved normals, undecided boxes."""
     given = cover.at_normals
     if not given.same_normals or not len(given.normals):
         return {}
@@ -127,7 +127,7 @@ def _proof(space: PartSpace, cover: Cover) -> dict[str, Any]:
 
 
 def _warn(part: Part, report: SamplingReport, failed: int, angle: float | None) -> None:
-    """Warn of faces that failed, and of an angle that was not reached."""
+    """Warn of faces that failed, and of a requested angle that was not reached."""
     reasons = []
     if failed:
         reasons.append(

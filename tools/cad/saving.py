@@ -1,20 +1,18 @@
-"""Parts in files: NumPy archives of some 30 arrays, which need no CAD library to be read again.
+"""Parts in files: NumPy archives of some 30 arrays, readable without a CAD library.
 
 Nothing is pickled. For F faces, and S ≥ F surfaces of which the first F are those of the faces:
 
 about (uint8)
     UTF-8 text, JSON: format, version, name, unit ("mm", "in", ...), metres (the length of the
-    unit), oriented, solid_names (a list), face_names and reasons (by the index of the face, as
     text; a face with a reason has failed), warnings (a list of sentences), source_indices (the
-    places of the faces in the part that they were selected from, or an empty list).
+    indices of the faces in the part that they were selected from, or an empty list).
 reversed (F,) bool, area (F,), solid_index (F,) int64, color (F, 3)
     Whether normals point along −(x_u × x_v); the area inside the trim, in L²; the solid, −1 for
     none; red, green and blue from 0 to 1, NaN for none.
 domain (F, 2, 2), periods (F, 2)
     ((u0, u1), (v0, v1)), the bounds of the loops; the periods of the surface in u and v, or 0.
 kind (S,) int8, basis (S,) int64, net (S,) int64
-    The place in `records.KINDS`; of an offset the surface it has its distance from, else −1; the
-    NURBS, or −1.
+    The index in `records.KINDS`; the basis of an offset, else −1; the NURBS, or −1.
 numbers (k,), number_starts (S + 1,) int64
     Those of surface i are numbers[number_starts[i]:number_starts[i + 1]], see below.
 net_degrees (N, 2) int64, net_shapes (N, 2) int64
@@ -28,19 +26,19 @@ loop_points (k, 2), loop_point_starts (L + 1,) int64, face_loops (F + 1,) int64
     first point is not repeated. A point is inside by the even-odd rule over all loops of a face, in
     any turn; loops run along seams, so that u and v are not taken modulo the periods.
 vertices (V, 3), edge_vertices (E, 2) int64, edge_degenerate (E,) bool
-    The points at the ends of edges; of each edge those at its beginning and its end, −1 if they are
-    not known; whether it is a point, as a pole is.
+    The points at the ends of edges; for each edge, the indices of its first and last vertex, −1 if
+    unknown; whether it is a point, as a pole is.
 edge_side_starts (E + 1,) int64, side_faces (U,) int64, side_points (k, 4), side_point_starts
     (U + 1,) int64. The sides of edge i are edge_side_starts[i] to edge_side_starts[i + 1] − 1: one
-    at a border, two between faces and at seams, which are twice on the same face. Of each the face,
-    and u, v and their derivatives at equal steps of a parameter of the edge that goes from 0 to 1;
-    NaN where they are not known. All sides of an edge have as many points.
+    on a boundary, two between faces and at seams, which are twice on the same face. For each side,
+    the face, and u, v and their derivatives at equal steps of a parameter of the edge that goes
+    from 0 to 1; NaN where unknown. All sides of an edge have equally many points.
 wire_sides (k,) int64, wire_reversed (k,) bool, wire_side_starts (W + 1,) int64, face_wires (F + 1,)
     The wires of face i are face_wires[i] to face_wires[i + 1] − 1 (int64): the sides of edges along
-    each of its loops, in turn, and whether they are passed from the end of the edge to its
-    beginning. The face lies at their left where x_u × x_v points up.
+    each of its loops, in order, and whether they are traversed from the end of the edge to its
+    beginning. The face lies to their left where x_u × x_v points up.
 
-Version 1 has had only the edges between two faces, without vertices and wires: `earlier` reads it.
+Version 1 had only the edges between two faces, without vertices and wires: `earlier` converts it.
 
 A placement is the origin o and three orthonormal axes X, Y, Z, 12 numbers; Y may be −Z × X. With
 c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,
@@ -79,12 +77,12 @@ from .records import KINDS, PartRecord
 __all__ = ["about_of", "checked_arrays", "dtypes", "read_arrays", "write_arrays", "write_record"]
 
 SUFFIXES = (".npz",)
-# A part of 100,000 faces takes about 1 GB.
+# # A part of 100,000 faces takes about 1 GB.
 MOST_BYTES = 4 << 30
 Arrays = dict[str, NDArray[Any]]
 
-# Of each array the letter of its type and its shape: letters are lengths that arrays share, "*" is
-# any length.
+# # For each array, the letter of its type and its shape: arrays share lengths with the same letter,
+# "*" is any length.
 SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "about": ("B", ("*",)),
     "reversed": ("?", ("F",)),
@@ -120,7 +118,7 @@ SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "face_wires": ("q", ("F+1",)),
 }
 MOST_DEGREE = 25
-# Of faces that are not usable, with the others of the part left as they are.
+# # The reason of faces that are not usable, while the others of the part are.
 NOT_FINITE = "its numbers are not finite"
 
 
@@ -138,9 +136,9 @@ def write_arrays(arrays: Mapping[str, NDArray[Any]], path: PathLike) -> None:
 
 
 def read_arrays(path: PathLike) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
-    """Return the arrays of a part, checked, and what is in `about`.
+    """Return the checked arrays of a part, and the entries of `about`.
 
-    Raises FileError, in one sentence, for what is no such file.
+    Raises FileError, in one sentence, for any other file.
     """
     path = checked_path(path)
     known_suffix(path, SUFFIXES)
@@ -166,14 +164,14 @@ def dtypes() -> tuple[str, ...]:
 
 
 def about_of(arrays: Arrays) -> dict[str, Any]:
-    """Return what the array `about` says."""
+    """Return the contents of the array `about`."""
     return json.loads(arrays["about"].tobytes().decode())
 
 
 def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
-    """Return arrays and `about`, UnusableError unless they are those of a part.
+    """Return arrays and `about`; UnusableError unless they are those of a part.
 
-    A face whose numbers are not finite gets a reason: it has failed, and the others have not.
+    A face whose numbers are not finite has failed, and gets a reason; the other faces are kept.
     """
     about = about_of(arrays)
     if not isinstance(about, dict) or about.get("format") != FORMAT:
@@ -226,7 +224,7 @@ def _check_lengths(arrays: Arrays) -> None:
 
 
 def _check_surfaces(arrays: Arrays) -> None:
-    """Each surface has the numbers, the net and the basis that its kind needs."""
+    """Check that each surface has the numbers, the net and the basis that its kind needs."""
     kind, net, basis = arrays["kind"], arrays["net"], arrays["basis"]
     names, sizes = list(KINDS), np.array(list(KINDS.values()))
     _require(_within(kind, 0, len(names)), "kind")
@@ -237,7 +235,7 @@ def _check_surfaces(arrays: Arrays) -> None:
     _require(_within(net, -1, len(arrays["net_shapes"])), "net")
     _require((~with_net | (net >= 0)).all(), "net")
     places = np.arange(len(kind))
-    # A basis comes later in the list than what needs it, so that none needs itself.
+    # # A basis comes after the surfaces that use it, so that there are no cycles.
     _require(((basis == -1) | ((basis > places) & (basis < len(kind)))).all(), "basis")
     _require(((kind != names.index("offset")) | (basis >= 0)).all(), "basis")
     curves = arrays["net_degrees"][:, 1] == 0
@@ -246,7 +244,7 @@ def _check_surfaces(arrays: Arrays) -> None:
 
 
 def _check_nets(arrays: Arrays) -> None:
-    """Each NURBS has as many knots and control points as its degrees and shape say."""
+    """Check that each NURBS has the knots and control points of its degrees and shape."""
     degrees, shapes = arrays["net_degrees"], arrays["net_shapes"]
     curves = degrees[:, 1] == 0
     _require(_within(degrees[:, 0], 1, MOST_DEGREE + 1), "net_degrees")
@@ -259,7 +257,7 @@ def _check_nets(arrays: Arrays) -> None:
 
 
 def _check_edges(arrays: Arrays) -> None:
-    """Sides of edges are on faces, and wires are made of sides on their face."""
+    """Check that sides of edges are on faces, and wires consist of sides on their face."""
     faces, sides = len(arrays["area"]), arrays["side_faces"]
     _require(_within(sides, 0, faces), "side_faces")
     _require(_within(arrays["edge_vertices"], -1, len(arrays["vertices"])), "edge_vertices")
@@ -298,7 +296,7 @@ def _bad_rows(rows: NDArray[Any]) -> NDArray[np.bool_]:
 
 
 def _any_between(flags: NDArray[np.bool_], starts: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return for each run starts[i]:starts[i + 1] of flags whether one of them is set."""
+    """Return for each run starts[i]:starts[i + 1] whether any of its flags is set."""
     counts = np.concatenate([[0], np.cumsum(flags)])
     return counts[starts[1:]] > counts[starts[:-1]]
 
@@ -310,7 +308,7 @@ def _texts(about: dict[str, Any], name: str) -> dict[str, str]:
 
 
 def _are_indices(values: object, count: int) -> bool:
-    """Return whether values are none, or as many whole numbers."""
+    """Return whether `values` is empty, or a list of `count` whole numbers."""
     if not isinstance(values, list) or len(values) not in (0, count):
         return False
     return all(type(x) is int for x in values)

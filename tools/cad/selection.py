@@ -1,4 +1,4 @@
-"""Some faces of a part as a part."""
+"""Selecting faces of a part as a new part."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ __all__ = ["select"]
 
 Axis = tuple[ArrayLike, SupportsFloat]
 
-# Colours may be rounded to 8 bits, by whoever wrote them down.
+# # Colours may be rounded to 8 bits.
 SAME_COLOUR = 0.75 / 255.0
 
 
@@ -44,7 +44,7 @@ def select(
     index: ArrayLike | None = None,
     normal: Axis | None = None,
 ) -> Part:
-    """Return the faces that fulfil all of some conditions, as a part.
+    """Return the faces that satisfy all conditions, as a part.
 
     Parameters
     ----------
@@ -55,21 +55,21 @@ def select(
     color : str or (3,) array_like, optional
         The colour: "#ff8000", or red, green and blue from 0 to 1.
     index : array_like of int, optional
-        Places in `faces`, each of them once, in any order.
+        Indices in `faces`, each of them once, in any order.
     normal : ((3,) array_like, float), optional
-        A direction of any length but 0, and an angle in degrees: all normals of the face, looked at
-        on a grid in it and along its border, are within this angle of the direction.
+        A direction (not 0), and an angle in degrees: all normals of the face, checked on a grid in
+        it and along its boundary, are within this angle of the direction.
 
     Returns
     -------
     Part
         The faces, in their order, with their solids and the edges between them. `Face.source_index`
-        says where each of them is in this part.
+        is the index of each face in this part.
 
     Raises
     ------
     InputError, UnknownNameError
-        If no face fulfils all conditions, or one of these cannot be used.
+        If no face satisfies all conditions, or one of these is invalid.
 
     Examples
     --------
@@ -102,7 +102,7 @@ def _conditions(
     color: str | ArrayLike | None,
     index: ArrayLike | None,
 ) -> list[Flags]:
-    """Return which faces (F,) fulfil each condition that is given, but for that of normals."""
+    """Return masks of the faces (F,) for all given conditions, except that of normals."""
     found = []
     if kind is not None:
         kinds = [kind] if isinstance(kind, str) else listed(kind)
@@ -133,7 +133,7 @@ def _colour(color: str | ArrayLike) -> Array:
 
 
 def _at(index: ArrayLike, count: int) -> Flags:
-    """Return which of so many faces are at some places; InputError for others."""
+    """Return a mask of `count` faces at some indices; InputError for invalid indices."""
     places = np.atleast_1d(real_values(index, "index"))
     chosen = np.zeros(count, dtype=np.bool_)
     if places.dtype.kind not in "iu" or places.ndim != 1:
@@ -146,7 +146,7 @@ def _at(index: ArrayLike, count: int) -> Flags:
 
 
 def _facing(part: Part, normal: Axis, asked: Flags) -> Flags:
-    """Return which of the faces that are asked for have all normals within an angle of an axis."""
+    """Return a mask of the requested faces whose normals are all within an angle of an axis."""
     pair = listed(normal)
     if pair is None or len(pair) != 2:
         raise InputError(f"normal must be (direction, angle in degrees), not {shown(normal)}.")
@@ -159,7 +159,7 @@ def _facing(part: Part, normal: Axis, asked: Flags) -> Flags:
 
 
 def _normals(piece: FacePiece) -> Array:
-    """Return unit normals (k, 3) of a face: at corners and middles of its boxes, and its border."""
+    """Return unit normals (k, 3) of a face: in its boxes and on its boundary."""
     u0, v0, u1, v1 = piece.boxes.T
     middle = np.stack([u0 + u1, v0 + v1], axis=1) / 2.0
     corners = [np.stack(x, axis=1) for x in ((u0, v0), (u1, v0), (u0, v1), (u1, v1))]
@@ -177,7 +177,7 @@ def _normals(piece: FacePiece) -> Array:
 
 
 def _part(part: Part, chosen: list[int]) -> Part:
-    """Return the part of some of the faces, in this order."""
+    """Return the part of the chosen faces, in this order."""
     faces = [part.faces[k] for k in chosen]
     solids = sorted({x.solid_index for x in faces} - {-1})
     new = {old: k for k, old in enumerate(solids)}
@@ -199,7 +199,7 @@ def _part(part: Part, chosen: list[int]) -> Part:
 
 
 def _record(face: Face, solid: int, places: dict[int, tuple[int, int]]) -> FaceRecord:
-    """Return the record of a face, with its solid, and the new places of sides of edges."""
+    """Return the record of a face, with its solid, and with new indices of sides of edges."""
     wires = [[(*places[x], backwards) for x, backwards in wire] for wire in face.wires]
     return FaceRecord(
         face.geometry, face.domain, face.periods, face.loops, face.reversed, face.area,
@@ -208,7 +208,7 @@ def _record(face: Face, solid: int, places: dict[int, tuple[int, int]]) -> FaceR
 
 
 def _edges(part: Part, chosen: list[int]) -> tuple[list[EdgeRecord], dict[int, tuple[int, int]]]:
-    """Return the edges of some faces, which are numbered anew, and of each side the new place."""
+    """Return the edges of the chosen faces, renumbered, and the new index of each side."""
     new = np.full(len(part), -1)
     new[chosen] = np.arange(len(chosen))
     arrays, found, places = part.arrays, list[EdgeRecord](), dict[int, tuple[int, int]]()

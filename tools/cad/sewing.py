@@ -1,7 +1,7 @@
-"""Borders of surfaces that coincide, wholly or in parts, as shared edges.
+"""Boundaries of surfaces that coincide, wholly or partly, as shared edges.
 
-Borders are cut at their corners, and where corners of others lie on them. Parts between the same
-two vertices are one edge if they are nowhere farther from one another than a tolerance.
+Boundaries are split at their corners, and where corners of others lie on them. Parts between the
+same two vertices are one edge if their distance is nowhere larger than a tolerance.
 """
 
 from __future__ import annotations
@@ -23,24 +23,24 @@ from .records import EdgeRecord, Wire
 
 __all__ = ["Border", "Sewn", "sewn"]
 
-# A border has a corner where it turns by more than this, in degrees.
+# # A boundary has a corner where it turns by more than this, in degrees.
 CORNER = 30.0
-# Sides are known at both ends of this number of steps. From the nearest of these places, Newton's
-# method finds the nearest place of all in so many rounds.
+# # The number of steps between which points of a side are tabulated, and of iterations of Newton's
+# method, which finds the nearest point of the side from the nearest of these.
 STEPS, ROUNDS = 64, 8
-# Edges nearly are one if their distance is less than this part of their length.
+# # Edges nearly coincide if their distance is less than this, relative to their length.
 NEARLY = 0.01
-# Edges hold their places at both ends of this number of steps, or of twice as many, and so on up to
-# the largest number, until cubics between them are as exact as this part of the length.
+# # The parameters of an edge are tabulated at this number of steps, doubled up to the largest
+# number until cubics between them have this error, relative to the length.
 STEPS_OF_EDGE, MOST_STEPS, EXACT = 32, 512, 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Border:
-    """A closed polygon (k, 2) in the domain of the surface of a face, which lies at its left.
+    """A closed polygon (k, 2) in the domain of the surface of a face, which lies to its left.
 
-    The first point is not repeated. It has corners at all points, as a rectangle has, or where it
-    turns on the surface.
+    The first point is not repeated. The corners are all points, for a rectangle, or the points
+    where the polygon turns on the surface.
     """
 
     face: int
@@ -50,7 +50,7 @@ class Border:
 
     @property
     def sides(self) -> list[Side]:
-        """What is between corners, in turn; a border without corners is one side."""
+        """The sides between corners, in order; a boundary without corners is one side."""
         corners = np.flatnonzero(self._is_corner)
         first = int(corners[0]) if len(corners) else 0
         places = np.roll(self.polygon, -first, axis=0)
@@ -75,7 +75,7 @@ class Border:
 
 @dataclass(frozen=True, eq=False)
 class Side:
-    """A part of a border without corners: a polyline (k, 2) of parameters, at t from 0 to 1."""
+    """A part of a boundary without corners: a polyline (k, 2) of parameters, at t from 0 to 1."""
 
     face: int
     surface: Surface
@@ -83,7 +83,7 @@ class Side:
 
     @cached_property
     def t(self) -> Array:
-        """The places (k,) of the points: their shares of the length, relative to the domain."""
+        """The values (k,) of t at the points: shares of the length, relative to the domain."""
         low, high = np.array(self.surface.domain).T
         lengths = np.hypot(*(np.diff(self.uv, axis=0) / (high - low)).T)
         found = np.concatenate([[0.0], np.cumsum(lengths) / lengths.sum()])
@@ -91,7 +91,7 @@ class Side:
         return found
 
     def at(self, t: Array) -> tuple[Array, Array]:
-        """Return parameters (M, 2) at places (M,), and their derivatives by t."""
+        """Return parameters (M, 2) at t (M,), and their derivatives by t."""
         k = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, len(self.t) - 2)
         slopes = np.diff(self.uv, axis=0)[k] / np.diff(self.t)[k, None]
         uv = self.uv[k] + (t - self.t[k])[:, None] * slopes
@@ -99,7 +99,7 @@ class Side:
         return uv, slopes
 
     def points(self, t: Array) -> tuple[Array, Array]:
-        """Return points (M, 3) at places (M,), and their derivatives by t."""
+        """Return points (M, 3) at t (M,), and their derivatives by t."""
         uv, slopes = self.at(t)
         jets = self.surface.jets(*uv.T.copy())
         return jets[:, 0], np.einsum("ka,kax->kx", slopes, jets[:, 1:3])
@@ -113,13 +113,14 @@ class Side:
         return found
 
     def nearest(self, points: Array, low: float = 0.0, high: float = 1.0) -> tuple[Array, Array]:
-        """Return the places (M,) from `low` to `high` that are nearest to points, and distances."""
+        """Return the values (M,) of t in [low, high] nearest to points, and the distances."""
         even = np.linspace(0.0, 1.0, STEPS + 1)
         inside = (even >= low) & (even <= high)
         starts = np.concatenate([even[inside], [low, high]])
         places = np.concatenate([self.known[inside], self.points(np.array([low, high]))[0]])
         squares = ((points[:, None] - places) ** 2).sum(axis=2)
-        # From two: both ends may be one point, and the way from it is into one direction.
+        # # Two starts: both ends may be the same point, from which Newton's method goes one way
+        # only.
         t = starts[np.argsort(squares, axis=1)[:, :2]].T.ravel()
         points = np.concatenate([points, points])
         best, least = t, np.full(len(points), np.inf)
@@ -141,7 +142,7 @@ class Side:
 
 @dataclass(frozen=True, eq=False)
 class Span:
-    """A side from `low` to `high`, between two vertices; it may be a point."""
+    """A side from t = `low` to `high`, between two vertices; it may be a point."""
 
     side: Side
     low: float
@@ -151,7 +152,7 @@ class Span:
     is_point: bool = False
 
     def t(self, steps: int) -> Array:
-        """Return the ends (steps + 1,) of equal steps."""
+        """Return the values (steps + 1,) of t at the ends of equal steps."""
         return np.linspace(self.low, self.high, steps + 1)
 
     def inner(self, steps: int) -> Array:
@@ -159,7 +160,7 @@ class Span:
         return self.side.points(self.t(steps)[1:-1])[0]
 
     def same(self, other: Span, tolerance: float) -> bool | None:
-        """Return whether the same line is passed backwards; None for another, by a tolerance."""
+        """Return whether `other` runs backwards on the same line; None if it is another line."""
         t, apart = self.side.nearest(other.inner(STEPS_OF_EDGE), self.low, self.high)
         if apart.max() > tolerance:
             return None
@@ -167,22 +168,22 @@ class Span:
         return None if back.max() > tolerance else bool(t[0] > t[-1])
 
     def along(self, leader: Span, steps: int, backwards: bool) -> Array:
-        """Return the places (steps + 1,) nearest to those at equal steps of the same line."""
+        """Return the values (steps + 1,) of t nearest to equal steps of the same line."""
         if self is leader:
             return self.t(steps)
         t = self.side.nearest(leader.inner(steps), self.low, self.high)[0]
         ends = [self.high, self.low] if backwards else [self.low, self.high]
         t = np.concatenate([ends[:1], t, ends[1:]])
-        # Where both are nearly the same point, they may not be in turn.
+        # # Where both are nearly the same point, they may be out of order.
         return np.minimum.accumulate(t) if backwards else np.maximum.accumulate(t)
 
 
 @dataclass(frozen=True, eq=False)
 class Sewn:
-    """Edges between vertices (V, 3), and the wire along each border, as in `PartRecord`.
+    """Edges between vertices (V, 3), and the wire along each boundary, as in `PartRecord`.
 
-    `apart` is the largest distance of edges with one face that nearly are one, see `NEARLY`; None
-    if there are no such edges.
+    `apart` is the largest distance of edges with one face that nearly coincide, see `NEARLY`; None
+    if there are none.
     """
 
     vertices: Array
@@ -192,9 +193,9 @@ class Sewn:
 
 
 def sewn(borders: Sequence[Border], tolerance: float) -> Sewn:
-    """Return the edges that borders have in common up to a tolerance, and others.
+    """Return the edges of boundaries, shared where they coincide within a tolerance.
 
-    Raises SurfaceError if all sides of a border are points, up to the tolerance.
+    Raises SurfaceError if all sides of a boundary are points, within the tolerance.
     """
     vertices, spans = _spans([x.sides for x in borders], tolerance)
     for border, own in zip(borders, spans, strict=True):
@@ -219,7 +220,7 @@ def sewn(borders: Sequence[Border], tolerance: float) -> Sewn:
 
 
 def _spans(sides: Sequence[Sequence[Side]], tolerance: float) -> tuple[Array, list[list[Span]]]:
-    """Return the vertices (V, 3), and the spans between them along each border, in turn."""
+    """Return the vertices (V, 3), and the spans between them along each boundary, in order."""
     ends = np.concatenate([x.known[[0, -1]] for border in sides for x in border])
     vertices, numbers = _vertices(ends, tolerance)
     own = iter(numbers.reshape(-1, 2))
@@ -231,7 +232,7 @@ def _spans(sides: Sequence[Sequence[Side]], tolerance: float) -> tuple[Array, li
 
 
 def _vertices(ends: Array, tolerance: float) -> tuple[Array, Indices]:
-    """Return one point (V, 3) for all ends (k, 3) that are one, and the number of each end's."""
+    """Return merged vertices (V, 3) for all ends (k, 3), and the vertex index of each end."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -245,7 +246,7 @@ def _vertices(ends: Array, tolerance: float) -> tuple[Array, Indices]:
 def _cut(
     side: Side, own: Indices, corners: Array, numbers: Indices, tolerance: float
 ) -> list[Span]:
-    """Return the spans of a side between its ends and corners (k, 3) that lie on it."""
+    """Return the spans of a side, split at the corners (k, 3) that lie on it."""
     first, last = own.tolist()
     if np.linalg.norm(side.known - side.known[0], axis=1).max() <= tolerance:
         return [Span(side, 0.0, 1.0, first, last, is_point=True)]
@@ -267,10 +268,10 @@ def _cut(
 
 
 def _lines(spans: Sequence[Span], tolerance: float) -> list[dict[Span, bool]]:
-    """Return the spans that are one line, and whether they pass it backwards to the first."""
+    """Return groups of spans on one line; the values say which run backwards to the first."""
     lines, between = list[dict[Span, bool]](), defaultdict[Any, list[dict[Span, bool]]](list)
     for span in spans:
-        # Points are shared by vertices only.
+        # # Spans that are points share vertices only.
         known = [] if span.is_point else between[frozenset((span.first, span.last))]
         for line in known:
             backwards = span.same(next(iter(line)), tolerance)
@@ -284,7 +285,7 @@ def _lines(spans: Sequence[Span], tolerance: float) -> list[dict[Span, bool]]:
 
 
 def _apart(spans: Sequence[Span]) -> float | None:
-    """Return the largest distance of spans that nearly are one; None if there are none."""
+    """Return the largest distance of spans that nearly coincide; None if there are none."""
     if len(spans) < 2:
         return None
     points = np.stack([x.inner(STEPS_OF_EDGE) for x in spans])
@@ -301,7 +302,7 @@ def _apart(spans: Sequence[Span]) -> float | None:
 
 
 def _exact_edge(spans: dict[Span, bool]) -> EdgeRecord:
-    """Return the edge along spans, in so many steps that it is exact."""
+    """Return the edge along spans, with as many steps as accuracy needs."""
     steps = STEPS_OF_EDGE
     while True:
         edge, error = _edge(spans, steps)
@@ -311,9 +312,9 @@ def _exact_edge(spans: dict[Span, bool]) -> EdgeRecord:
 
 
 def _edge(spans: dict[Span, bool], steps: int) -> tuple[EdgeRecord, float]:
-    """Return the edge along spans, and the error of cubics in the middle of steps.
+    """Return the edge along spans, and the error of cubic interpolation midway in steps.
 
-    It is relative to the length, and without the distance that spans have at the ends of steps.
+    The error is relative to the length, without the distance between spans at the ends of steps.
     """
     leader, parameters, slopes, errors = next(iter(spans)), [], [], []
     points, along = leader.side.points(leader.t(steps))
@@ -323,7 +324,7 @@ def _edge(spans: dict[Span, bool], steps: int) -> tuple[EdgeRecord, float]:
         uv, by_t = span.side.at(t)
         there, own = span.side.points(t)
         rates = np.gradient(t) * steps
-        with np.errstate(divide="ignore", invalid="ignore"):  # where the point stands still
+        with np.errstate(divide="ignore", invalid="ignore"):  # where the derivative by t is 0
             exact = np.einsum("kx,kx->k", along, own) / np.einsum("kx,kx->k", own, own)
         rates = np.where(np.isfinite(exact), exact * (leader.high - leader.low), rates)
         by_edge = rates[:, None] * by_t

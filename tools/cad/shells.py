@@ -1,4 +1,4 @@
-"""Faces that hang together: their normals are on one side, out of solids and into hollows."""
+"""Connected faces with consistent normals, pointing out of solids and into cavities."""
 
 from __future__ import annotations
 
@@ -22,15 +22,17 @@ if TYPE_CHECKING:
 
 __all__ = ["Shell", "shells_of"]
 
-# A shell lies inside another one if of about PROBES of its points at least the share INSIDE does.
+# # A shell lies inside another one if, of about PROBES of its points, at least the share INSIDE
+# does.
 PROBES, INSIDE = 100, 0.9
 
 
 @dataclass(frozen=True)
 class Shell:
-    """Faces that hang together, with 1 or −1 for those that are flipped; whether it is closed.
+    """Connected faces, each with −1 if it is flipped, else 1; and whether they are closed.
 
-    `solid` is the number of the solid that it encloses, or that it is a hollow of; −1 for none.
+    `solid` is the index of the solid that the shell encloses, or of which it is a cavity; −1 for
+    none.
     """
 
     signs: dict[int, int]
@@ -39,22 +41,22 @@ class Shell:
 
     @property
     def flipped(self) -> Shell:
-        """The same with opposite normals."""
+        """Return the shell with opposite normals."""
         return replace(self, signs={k: -sign for k, sign in self.signs.items()})
 
 
 def shells_of(
     pieces: Sequence[FacePiece], found: Sewn, borders: Sequence[Border], heights: Sequence[float]
 ) -> list[Shell]:
-    """Return the sets of faces that hang together, each with normals on one side.
+    """Return the connected sets of faces, each with consistent normals.
 
-    Of closed ones these point out of solids, and so into hollows; of open ones, to the side of the
-    first face. `heights` are the integrals of (x − c)·n over the faces. Raises InputError if there
-    is a set that has one side only.
+    Normals of closed sets point out of solids, and so into cavities; open sets are oriented as
+    their first face. `heights` are the integrals of (x − c)·n over the faces. Raises InputError for
+    a set that cannot be oriented.
     """
     shells = [_outward(x, heights) for x in _connected(pieces, found, borders)]
     closed = [k for k, x in enumerate(shells) if x.closed]
-    # A shell is inside larger ones only.
+    # # A shell can only be inside a larger one.
     closed.sort(key=lambda k: -sum(sign * heights[f] for f, sign in shells[k].signs.items()))
     points = {k: _Points.of(shells[k], pieces) for k in closed} if len(closed) > 1 else {}
     solid_of_hollow = dict[int, int]()
@@ -72,14 +74,14 @@ def shells_of(
 
 
 def _outward(shell: Shell, heights: Sequence[float]) -> Shell:
-    """Return a shell with normals that point out of it, if it is closed."""
+    """Return a shell, flipped if it is closed and its normals point into it."""
     volume = sum(sign * heights[face] for face, sign in shell.signs.items())
     return shell.flipped if shell.closed and volume < 0.0 else shell
 
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """Points (k, 3) all over a closed shell, and normals (k, 3) there, which point out of it."""
+    """Points (k, 3) spread over a closed shell, and its outward normals (k, 3) there."""
 
     points: Array
     normals: Array
@@ -96,7 +98,7 @@ class _Points:
         return tree_of(self.points)
 
     def hold(self, other: _Points) -> bool:
-        """Return whether another shell is inside this one: behind the nearest points of it."""
+        """Return whether another shell is inside this one: behind its nearest points."""
         probes = other.points[:: 1 + len(other.points) // PROBES]
         if not len(probes) or not len(self.points):
             return False
@@ -106,7 +108,7 @@ class _Points:
 
 
 def _connected(pieces: Sequence[FacePiece], found: Sewn, borders: Sequence[Border]) -> list[Shell]:
-    """Return the sets of faces that hang together, each with normals on one side."""
+    """Return the connected sets of faces, each with consistent normals."""
     passed = defaultdict[int, list[tuple[int, bool]]](list)
     for border, wire in zip(borders, found.wires, strict=True):
         for edge, _, backwards in wire:
@@ -134,9 +136,9 @@ def _connected(pieces: Sequence[FacePiece], found: Sewn, borders: Sequence[Borde
 def _signs(
     pieces: Sequence[FacePiece], start: int, links: dict[int, list[tuple[int, int]]]
 ) -> dict[int, int]:
-    """Return the faces that hang together with one, and the signs of their normals."""
+    """Return the faces connected to one, and the signs of their normals."""
     signs, waiting = {start: 1}, [start]
-    for face in waiting:  # it grows
+    for face in waiting:  # grows in the loop
         for other, sign in links.get(face, ()):
             if other not in signs:
                 signs[other] = sign * signs[face]

@@ -1,1 +1,1 @@
-"""What runs in the process of its own that reads CAD files: Open CASCADE and NumPy only."""
+"""Code of the process that reads CAD files, with Open CASCADE and NumPy only."""

@@ -19,22 +19,22 @@ __all__ = ["UnusableError", "curve_net", "knots_of"]
 
 Array = NDArray[np.float64]
 
-# Other curves than NURBS, such as circles, are polynomials of this degree between the knots of a
-# spline that interpolates it. The number of spans is doubled until the error, relative to the size
-# of the curve, is that of rounding. Third derivatives of shorter spans would have larger errors,
-# and offsets need them: the circle has four spans.
+# # Curves other than NURBS, such as circles, become splines of this degree that interpolate them.
+# The number of spans is doubled until the error, relative to the size of the curve, is that of
+# rounding. Third derivatives of shorter spans would have larger errors, and offsets need them: the
+# circle has four spans.
 DEGREE, MOST_SPANS = 13, 1024
 ROUNDING = 4e-15
-# A line goes on beyond its domain by this part of it.
+# # The length of the extension of a line beyond its domain, relative to the domain.
 BEYOND = 0.1
 
 
 class UnusableError(Exception):
-    """A face cannot be written as numbers; the text says why, without a full stop."""
+    """A face cannot be converted to arrays; the text is the reason, without a full stop."""
 
 
 def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
-    """Return a curve as NURBS: the whole of a periodic one, and others at least over a domain."""
+    """Return a curve as NURBS: a periodic one as a whole, others at least over a domain."""
     period = float(curve.Period()) if curve.IsPeriodic() else 0.0
     trimmed = curve
     while direct_class(curve) == "Geom_TrimmedCurve":
@@ -56,7 +56,7 @@ def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
 
 
 def knots_of(knots: Sequence[float], multiplicities: Sequence[int]) -> Array:
-    """Return knots repeated as often as they are multiple."""
+    """Return knots, repeated by their multiplicities."""
     return np.repeat(np.array(knots, dtype=np.float64), np.array(multiplicities, dtype=np.int64))
 
 
@@ -85,7 +85,7 @@ def _values(curve: Any, parameters: Array) -> Array:  # noqa: ANN401
 
 
 def _interpolated(curve: Any, first: float, last: float) -> Net:  # noqa: ANN401
-    """Return a curve as polynomials between knots, at which they meet."""
+    """Return a curve as polynomials between knots, continuous at the knots."""
     spans = 1
     while spans <= MOST_SPANS:
         ends = np.linspace(first, last, spans + 1)
@@ -108,7 +108,7 @@ def _control_points(curve: Any, ends: Array) -> Array:  # noqa: ANN401
 
 
 def _misfit(curve: Any, ends: Array, points: Array) -> float:  # noqa: ANN401
-    """Return the error between the points of interpolation, relative to the size of the curve."""
+    """Return the error midway between the points of interpolation, relative to the curve's size."""
     places = np.linspace(0.1, 0.7, 3)
     parameters = ends[:-1, None] + np.diff(ends)[:, None] * places
     values = _values(curve, parameters.ravel()).reshape(-1, len(places), 3)
@@ -117,7 +117,7 @@ def _misfit(curve: Any, ends: Array, points: Array) -> float:  # noqa: ANN401
 
 
 def _bernstein(places: Array) -> Array:
-    """Return the Bernstein polynomials of `DEGREE` at places from 0 to 1, a row for each place."""
+    """Return the Bernstein polynomials of `DEGREE`, a row for each of the values in [0, 1]."""
     k = np.arange(DEGREE + 1)
     binomials = np.array([comb(DEGREE, int(x)) for x in k], dtype=np.float64)
     return binomials * places[:, None] ** k * (1.0 - places[:, None]) ** (DEGREE - k)

@@ -1,4 +1,4 @@
-"""What a CAD file holds: shapes with their placements, names and colours."""
+"""The contents of a CAD file: shapes with their placements, names and colours."""
 
 # pyright: reportMissingImports=false
 
@@ -41,7 +41,7 @@ class Style:
 
 @dataclass(frozen=True)
 class PlacedShape:
-    """A shape in its place, the names of the assemblies that it is in, and its colour."""
+    """A placed shape, the names of the assemblies that contain it, and its colour."""
 
     shape: Any
     name: str = ""
@@ -50,7 +50,7 @@ class PlacedShape:
 
 @dataclass
 class Document:
-    """What a file holds; `styles` are those of parts of the pieces, wherever they are placed."""
+    """The shapes of a file; `styles` are those of their subshapes, in all placements."""
 
     pieces: list[PlacedShape]
     styles: dict[Key, Style] = field(default_factory=dict)
@@ -66,7 +66,7 @@ def new_document() -> Any:  # noqa: ANN401
 
 
 def pieces_of(document: Any) -> Document:  # noqa: ANN401
-    """Return what a reader has put into a document."""
+    """Return the shapes, names and colours that a reader has put into a document."""
     found = Document([])
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     labels = _labels()
@@ -83,7 +83,7 @@ def _walked(
     color: Color | None,
     styles: dict[Key, Style],
 ) -> Iterator[PlacedShape]:
-    """Yield the shapes of a label: itself, or those of its components."""
+    """Yield the shapes of a label: its own, or those of its components."""
     own_color = _color(label)
     if XCAFDoc_ShapeTool.IsReference_s(label):
         referred = TDF_Label()
@@ -118,7 +118,7 @@ def _each(labels: Any) -> Iterator[Any]:  # noqa: ANN401
 
 
 def _name(label: Any) -> str:  # noqa: ANN401
-    if not label.IsAttribute(TDataStd_Name.GetID_s()):  # or else FindAttribute crashes
+    if not label.IsAttribute(TDataStd_Name.GetID_s()):  # otherwise FindAttribute crashes
         return ""
     attribute = TDataStd_Name()
     label.FindAttribute(TDataStd_Name.GetID_s(), attribute)
@@ -130,7 +130,7 @@ def _color(label: Any) -> Color | None:  # noqa: ANN401
     color = Quantity_Color()
     for kind in (XCAFDoc_ColorType.XCAFDoc_ColorSurf, XCAFDoc_ColorType.XCAFDoc_ColorGen):
         if XCAFDoc_ColorTool.GetColor_s(label, kind, color):
-            # As files have it: Open CASCADE itself holds linear values, in single precision.
+            # # Values as in files: Open CASCADE itself holds linear values, in single precision.
             red, green, blue = color.Values(Quantity_TypeOfColor.Quantity_TOC_sRGB)
             return round(red, DIGITS), round(green, DIGITS), round(blue, DIGITS)
     return None

@@ -1,4 +1,4 @@
-"""The edges of all faces, as parameters on each of them, and the loops that they make."""
+"""The edges of all faces, as parameters on each face, and the wires that they make."""
 
 # pyright: reportMissingImports=false
 
@@ -31,8 +31,8 @@ __all__ = ["Topology", "topology_of"]
 Array = NDArray[np.float64]
 Wires = list[Wire]
 
-# The points of a p-curve that is not straight: an angle between those of circles, a number for each
-# piece of others, and the least and the largest number.
+# # The number of points on a p-curve that is not straight: one for each angle on circles, a number
+# for each piece of others, and the least and the largest number.
 ANGLE, POINTS_A_PIECE, LEAST, MOST = 0.15, 4, 9, 1025
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
 EDGE = TopAbs_ShapeEnum.TopAbs_EDGE
@@ -49,7 +49,7 @@ class Topology:
 
 @dataclass
 class Known:
-    """An edge: the faces at its sides, and the p-curves there."""
+    """An edge: the adjacent faces, and the p-curves on them."""
 
     edge: Any
     faces: list[int] = field(default_factory=list)
@@ -59,11 +59,11 @@ class Known:
 def topology_of(
     placed: Sequence[PlacedFace], faces: Sequence[FaceRecord], factor: float, reader: FaceReader
 ) -> Topology:
-    """Return all edges of faces, and how they follow one another around each.
+    """Return all edges of faces, and their order around each face.
 
-    What the file says of their smoothness is often wrong, and is not asked. Faces that failed, and
-    those of whose edges one has no p-curve, have no wires. Parameters that are lengths are
-    multiplied by `factor`, as those of the faces will be.
+    The smoothness that a file claims is often wrong, and is ignored. Faces that failed, and those
+    with an edge without p-curve, have no wires. Parameters that are lengths are multiplied by
+    `factor`, as those of the faces will be.
     """
     numbers, known, wires = indexed_shapes(), list[Known](), list[Wires]()
     for k, (face, record) in enumerate(zip(placed, faces, strict=True)):
@@ -90,15 +90,15 @@ def topology_of(
 
 
 def _ordered(face: Any, reader: FaceReader) -> EdgeCurves:  # noqa: ANN401
-    """Return the edges of each wire of a face, in turn, with their p-curves."""
+    """Return the edges of each wire of a face, in order, with their p-curves."""
     try:
         return reader.wires(face)
-    except Exception:  # of Open CASCADE: without p-curves there is nothing to say
+    except Exception:  # of Open CASCADE: without p-curves there are no wires
         return []
 
 
 def _record(known: Known, scales: list[Array], vertices: _Vertices) -> EdgeRecord:
-    """Return an edge; places on a side are NaN where there is no p-curve."""
+    """Return an edge; parameters on a side are NaN without a p-curve."""
     shares = _shares(max((_points(x) for x in known.curves if x), default=2))
     sides = np.full((len(shares), len(known.faces), 4), np.nan)
     for k, (face, curve) in enumerate(zip(known.faces, known.curves, strict=True)):
@@ -115,7 +115,7 @@ def _record(known: Known, scales: list[Array], vertices: _Vertices) -> EdgeRecor
 
 
 class _Vertices:
-    """The vertices that edges have, each once."""
+    """The vertices of all edges, each once."""
 
     def __init__(self) -> None:
         self._numbers = indexed_shapes()
@@ -126,7 +126,7 @@ class _Vertices:
         return np.array(self._points, dtype=np.float64).reshape(-1, 3)
 
     def place(self, vertex: Any) -> int:  # noqa: ANN401
-        """Return the place of a vertex; −1 for none."""
+        """Return the index of a vertex, appending it if it is new; −1 for a null vertex."""
         if vertex.IsNull():
             return -1
         place = self._numbers.Add(vertex) - 1
@@ -141,7 +141,7 @@ def _shares(number: int) -> Array:
 
 
 def _points(curve: PCurve) -> int:
-    """Return how many points stand for a curve."""
+    """Return the number of points that represent a curve."""
     if not curve.pieces:
         return 2
     if curve.radius:
@@ -152,7 +152,7 @@ def _points(curve: PCurve) -> int:
 
 
 def _uv(curve: PCurve, shares: Array) -> Array:
-    """Return u, v and their derivatives (k, 4) by shares (k,) of a curve, 0 to 1 in its range."""
+    """Return u, v and their derivatives (k, 4) at shares (k,) of the range of a curve, 0 to 1."""
     first, last = curve.ends[0], curve.ends[-1]
     if curve.pieces:
         found = curve.evaluate(first + (last - first) * shares)

@@ -24,19 +24,20 @@ __all__ = ["FaceReader", "area_of"]
 
 Array = NDArray[np.float64]
 
-# The smallest area, in mm², that is not zero: Open CASCADE's points are the same within 1e-7 mm.
+# # The smallest area, in mm², that counts as positive: points within 1e-7 mm are equal to Open
+# CASCADE.
 LEAST_AREA = 1e-12
 
 
 class FaceReader:
-    """Faces to records; of a face that occurs in several places, trim and area are found once."""
+    """Converts faces to records; trim and area of copies of a face are computed once."""
 
     def __init__(self) -> None:
         self._known: dict[Key, tuple[list[Array], float]] = {}
         self._wires: dict[Key, EdgeCurves] = {}
 
     def wires(self, face: Any) -> EdgeCurves:  # noqa: ANN401
-        """Return the edges of each wire of a face, which is taken as forward, with p-curves."""
+        """Return the edges of each wire of a face, oriented forward, with p-curves."""
         key = Key(face)
         if key not in self._wires:
             self._wires[key] = wires_of(_forward(face))
@@ -50,7 +51,7 @@ class FaceReader:
             reason = str(error)
         except MemoryError:
             raise
-        except Exception as error:  # Open CASCADE has hundreds of kinds
+        except Exception as error:  # Open CASCADE raises hundreds of types
             text = " ".join(str(error).split())[:80].rstrip(".")
             reason = f"Open CASCADE fails on it ({text or type(error).__name__})"
         return FaceRecord(Geometry("unknown"), reason=reason)

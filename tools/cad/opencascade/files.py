@@ -23,15 +23,15 @@ from .shapes import sequence
 
 __all__ = ["read_file"]
 
-# Of what Open CASCADE says of the entities of a file, in small letters, what makes a face unusable.
+# # The texts in Open CASCADE's checks, in lower case, that make an entity unusable.
 UNRESOLVED = "unresolved"
 DAMAGE = ("not a real", UNRESOLVED)
 
 
 def read_file(source: Source) -> tuple[Document, tuple[LostFace, ...]]:
-    """Return what a file holds, in millimetres, and the faces that were left out.
+    """Return the document in a file, in millimetres, and the faces that were left out.
 
-    BadFileError says why a file cannot be read.
+    Raises BadFileError with the reason if the file cannot be read.
     """
     if source.format == "STEP":
         return _step(source)
@@ -84,7 +84,7 @@ def _damaged(reader: Any, content: bytes) -> Mapping[int, str] | None:  # noqa: 
         return None
     numbers = numbers_of_entities(content)
     if len(numbers) != reader.ChangeReader().StepModel().NbEntities():
-        return {}  # those that are missing are found without
+        return {}  # missing entities are found without Open CASCADE
     return {
         numbers[k - 1]: f"its #{numbers[k - 1]} is damaged ({text})"
         for k, text in found.items()
@@ -93,7 +93,7 @@ def _damaged(reader: Any, content: bytes) -> Mapping[int, str] | None:  # noqa: 
 
 
 def _set_unit(document: Document, reader: Any) -> None:  # noqa: ANN401
-    """Find the unit of a STEP file: it may have several."""
+    """Set the unit of a STEP file, which may have several."""
     names = [sequence("TColStd.TColStd_SequenceOfAsciiString", "Sequence_TCollection_AsciiString")]
     names += [type(names[0])(), type(names[0])()]
     reader.FileUnits(*names)

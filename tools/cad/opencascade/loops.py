@@ -23,23 +23,23 @@ Array = NDArray[np.float64]
 # The edges of each wire of a face and their p-curves, one after another.
 EdgeCurves = list[list[tuple[Any, PCurve]]]
 
-# Polygons leave the curves by no more than this part of the (u, v) box of the face, and this part
-# of its mean width in it, but not less than the last.
+# # The largest distance of polygons from the curves, relative to the (u, v) box of the face and to
+# its mean width in it, but not less than the last.
 OF_BOX, OF_WIDTH, LEAST = 1e-4, 1e-3, 1e-7
-# Curves begin where the one before ends, up to this part of the box.
+# # The largest gap between consecutive curves, relative to the box.
 GAP = 1e-2
-# Points are the same up to this part of the box.
+# # Points are equal up to this distance, relative to the box.
 SAME = 1e-12
-# Open CASCADE has such numbers for infinity.
+# # Numbers from here on stand for infinity in Open CASCADE.
 INFINITE = 1e50
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
 EDGE, WIRE = TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_WIRE
 
 
 def loops_of(face: Any, wires_of: Callable[[Any], EdgeCurves]) -> list[Array]:  # noqa: ANN401
-    """Return the closed polygons of a face; UnusableError says why there are none.
+    """Return the closed polygons of a face; UnusableError with the reason if there are none.
 
-    The face is forward, so that it lies left of its curves.
+    The face is oriented forward, so that it lies to the left of its curves.
     """
     u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
     bounds = np.array([(u0, v0), (u1, v1)])
@@ -76,7 +76,7 @@ def _polygons(wires: list[list[PCurve]], size: Array, tolerance: float) -> list[
 
 
 def _mean_width(loops: list[Array], size: Array) -> float:
-    """Return twice the area by the length of polygons, in units of the box."""
+    """Return twice the area over the length of polygons, in units of the box."""
     area = length = 0.0
     for loop in loops:
         scaled = (loop - loop[0]) / size
@@ -87,12 +87,12 @@ def _mean_width(loops: list[Array], size: Array) -> float:
 
 
 def wires_of(face: Any) -> EdgeCurves:  # noqa: ANN401
-    """Return the edges of each wire of a face that is forward, with their p-curves."""
+    """Return the edges of each wire of a face, oriented forward, with their p-curves."""
     return [_edges_of(TopoDS.Wire(x), face) for x in parts_of(face, WIRE)]
 
 
 def _edges_of(wire: Any, face: Any) -> list[tuple[Any, PCurve]]:  # noqa: ANN401
-    """Return the edges of a wire and their p-curves, one after another."""
+    """Return the edges of a wire and their p-curves, in order."""
     explorer, edges = BRepTools_WireExplorer(wire, face), []
     while explorer.More():
         edges.append(explorer.Current())

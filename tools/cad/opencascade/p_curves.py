@@ -34,9 +34,9 @@ FIRST_PIECES, PIECES_A_SPAN, MOST_PIECES = 4, 2, 256
 class PCurve:
     """A p-curve: points and derivatives (k, 4) at parameters, and its direction in the wire.
 
-    `ends` are its ends and the parameters between them where it may have corners; `pieces` is the
-    number of pieces of each part that a polyline begins with, 0 for a straight line. `radius` is
-    that of a circle, or 0.
+    `ends` are its ends and the parameters of possible corners between them; `pieces` is the number
+    of pieces that a polyline initially has in each interval between these, 0 for a straight line.
+    `radius` is that of a circle, or 0.
     """
 
     evaluate: Callable[[Array], Array]
@@ -51,7 +51,7 @@ class PCurve:
         return self.evaluate(np.array([self.ends[0], self.ends[-1]]))[:, :2]
 
     def polyline(self, tolerance: Array) -> Array:
-        """Return points (k, 2) in the direction of the wire, the kept side at its left."""
+        """Return points (k, 2) in the direction of the wire, with the kept side on the left."""
         if self.pieces == 0:
             points = self.chord
         else:
@@ -66,13 +66,14 @@ class PCurve:
     def _pieces(self, tolerance: Array) -> int:
         if not self.radius:
             return self.pieces
-        # The tip of the tangents of an arc of angle a is r a² / 4 away from its chord, or so.
+        # # The tangents at the ends of an arc of angle a meet at a distance of about r a² / 4 from
+        # its chord.
         angle = 2.0 * math.sqrt(float(tolerance.min()) / self.radius)
         return int(min(max((self.ends[-1] - self.ends[0]) / angle + 1.0, self.pieces), MOST_PIECES))
 
 
 def curve_of(edge: Any, face: Any) -> PCurve:  # noqa: ANN401
-    """Return the curve of an oriented edge on a face that is forward."""
+    """Return the curve of an oriented edge on a face that is oriented forward."""
     curve = _adaptor(edge, face)
     backwards = edge.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
     ends = float(curve.FirstParameter()), float(curve.LastParameter())
@@ -92,7 +93,7 @@ def curve_of(edge: Any, face: Any) -> PCurve:  # noqa: ANN401
 def _adaptor(edge: Any, face: Any) -> Any:  # noqa: ANN401
     try:
         return BRepAdaptor_Curve2d(edge, face)
-    except Exception:  # it has none on this face
+    except Exception:  # the edge has no p-curve on this face
         ShapeFix_Edge().FixAddPCurve(edge, face, BRep_Tool.IsClosed_s(edge, face), CONFUSION)
         return BRepAdaptor_Curve2d(edge, face)
 
@@ -104,8 +105,8 @@ def _corners(spline: Any, ends: tuple[float, float]) -> tuple[tuple[float, ...],
     return (ends[0], *(spline.Knot(k) for k in multiple), ends[1]), len(inside) + 1
 
 
-# A point of Open CASCADE takes a microsecond and more, and most curves are lines and circles: their
-# points are computed here, as Open CASCADE does it.
+# # A call of Open CASCADE for a point takes a microsecond and more, and most curves are lines and
+# circles: their points are computed here, by the formulas of Open CASCADE.
 
 
 def _line(line: Any) -> Callable[[Array], Array]:  # noqa: ANN401
@@ -138,7 +139,7 @@ def _circle(circle: Any) -> Callable[[Array], Array]:  # noqa: ANN401
 
 @lru_cache(maxsize=64)
 def _cosines_and_sines(angles: bytes) -> tuple[Array, Array]:
-    """Return those of angles, which are the same for many circles, (k, 1) each."""
+    """Return the cosines and sines of angles, (k, 1) each; many circles share the same angles."""
     values = np.frombuffer(angles).tolist()
     cosines, sines = (np.array([*map(f, values)])[:, None] for f in (math.cos, math.sin))
     return cosines, sines

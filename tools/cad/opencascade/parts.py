@@ -26,7 +26,7 @@ __all__ = ["part_record"]
 
 
 def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
-    """Return the part in a file, in a unit or its own; BadFileError says why it cannot be read."""
+    """Return the part in a file, in a unit or its own; BadFileError with a reason if not."""
     document, lost = read_file(source)
     found = gathered(document)
     said = faces_said(source.content, source.format)
@@ -66,7 +66,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
 
 
 def _others(document: Document) -> str:
-    """Return what a file without faces has: edges, and points that are at no edge."""
+    """Return the contents of a file without faces: edges, and points on no edge."""
     every = [x.shape for x in document.pieces]
     edges = {Key(x) for y in every for x in parts_of(y, Kinds.TopAbs_EDGE)}
     points = {Key(x) for y in every for x in parts_of(y, Kinds.TopAbs_VERTEX, Kinds.TopAbs_EDGE)}
@@ -81,7 +81,7 @@ def _face(face: PlacedFace, reader: FaceReader) -> FaceRecord:
 
 
 def _different(faces: list[PlacedFace]) -> int:
-    """Return the number of faces, without copies in other places."""
+    """Return the number of faces, counting copies in other placements once."""
     return len({Key(x.shape, placed=False) for x in faces})
 
 

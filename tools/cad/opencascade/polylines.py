@@ -1,4 +1,4 @@
-"""Curves in the parameter plane as polylines that leave them to one side only."""
+"""Curves in the parameter plane as polylines that deviate to one side only."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ Array = NDArray[np.float64]
 Evaluator = Callable[[Array], Array]
 
 MOST_ROUNDS, MOST_PARTS = 14, 32
-# A piece that leaves its chord by less than this part of the tolerance is straight.
+# # A piece that deviates from its chord by less than this fraction of the tolerance is straight.
 STRAIGHT = 1e-3
-# Derivatives at the ends are taken inside, by this part of the length: beyond may be a corner.
+# # The distance of tangents from the ends, relative to the length: beyond an end may be a corner.
 INSIDE = 1e-9
-# The curve turns by less than 60° from the ends of a piece to its chord.
+# # The curve must turn by less than 60° from the ends of a piece to its chord.
 LEAST_COSINE = 0.5
 
 
@@ -32,10 +32,10 @@ def one_sided(
 ) -> Array:
     """Return points (k, 2) of a polyline from one end of a smooth curve to the other.
 
-    On the side that is kept, left or right in the direction of the parameter, the polyline leaves
-    the curve, by no more than `tolerance` (2,) in u and v; on the other side it does not, but for
-    1e-3 of that: it follows tangents where the curve is convex towards the kept side, and chords
-    elsewhere. So a point inside a polygon of such polylines is inside of its curves.
+    On the kept side, left or right in the direction of the parameter, the polyline deviates from
+    the curve by at most `tolerance` (2,) in u and v; on the other side by at most 1e-3 of that: it
+    follows tangents where the curve is convex towards the kept side, and chords elsewhere. So a
+    point inside a polygon of such polylines is inside the curves.
     """
     side = 1.0 if keep_left else -1.0
     scale = np.tile(tolerance, 2)
@@ -70,7 +70,7 @@ def one_sided(
 def _divided(
     ends: Array, parts: NDArray[np.int64]
 ) -> tuple[Array, NDArray[np.bool_], NDArray[np.int64]]:
-    """Return the ends of the parts of intervals, which are new, and where each interval begins."""
+    """Return the ends of parts of intervals, a mask of new ends, and the start of each interval."""
     counts = parts + 1
     first_ones = np.cumsum(counts) - counts
     owner = np.repeat(np.arange(len(parts)), counts)
@@ -82,13 +82,14 @@ def _divided(
 def _judged(
     left: Array, right: Array, side: float
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], Array]:
-    """Return in how many parts to divide pieces, which need a corner, and where its tip is."""
+    """Return the number of parts of each piece, a mask of pieces with a corner, and its tip."""
     along, start, end = right[:, :2] - left[:, :2], left[:, 2:], right[:, 2:]
     chord = np.hypot(along[:, 0], along[:, 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         start = start / np.hypot(start[:, 0], start[:, 1])[:, None]
         end = end / np.hypot(end[:, 0], end[:, 1])[:, None]
-        # The chord times the sines and cosines of the angles to the tangents at its ends.
+        # # Cross products: the chord length times the sines of its angles to the tangents at its
+        # ends.
         rise, fall = _cross(along, start), _cross(along, end)
         ahead = np.minimum((along * start).sum(axis=1), (along * end).sum(axis=1))
         forward = ahead > LEAST_COSINE * chord

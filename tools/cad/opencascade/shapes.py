@@ -1,6 +1,6 @@
-"""Shapes of Open CASCADE: going through their parts, and dictionaries that have them as keys.
+"""Shapes of Open CASCADE: iteration over subshapes, and shapes as keys of dictionaries.
 
-Only names that its versions 7.9 and 8.0 share are used.
+The code uses only names that versions 7.9 and 8.0 share.
 """
 
 # pyright: reportMissingImports=false
@@ -18,7 +18,7 @@ __all__ = ["Key", "direct_class", "indexed_shapes", "parts_of", "sequence"]
 
 
 def parts_of(shape: Any, kind: Any, avoided: Any = None) -> Iterator[Any]:  # noqa: ANN401
-    """Yield the parts of one kind of a shape, but for those inside of parts of another kind."""
+    """Yield the subshapes of one kind, except those inside subshapes of the kind `avoided`."""
     explorer = TopExp_Explorer(shape, kind) if avoided is None else TopExp_Explorer(
         shape, kind, avoided
     )  # fmt: skip
@@ -28,7 +28,7 @@ def parts_of(shape: Any, kind: Any, avoided: Any = None) -> Iterator[Any]:  # no
 
 
 class Key:
-    """A shape as a key of dictionaries: its reverse is the same, and placements count or do not."""
+    """A shape as a dictionary key, equal for its reverse; `placed` distinguishes placements."""
 
     __slots__ = ("_shape",)
 
@@ -43,12 +43,12 @@ class Key:
 
 
 def sequence(old: str, new: str) -> Any:  # noqa: ANN401
-    """Return an empty collection, whose class version 7.9 calls `module.name` and 8.0 `new`."""
+    """Return an empty collection, whose class is `module.name` in version 7.9 and `new` in 8.0."""
     return _collection(old, new)()
 
 
 def indexed_shapes() -> Any:  # noqa: ANN401
-    """Return an empty map that numbers shapes from 1 on; the reverse of one has its number."""
+    """Return an empty map that numbers shapes from 1; a shape and its reverse share a number."""
     return sequence(
         "TopTools.TopTools_IndexedMapOfShape", "IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher"
     )

@@ -1,4 +1,4 @@
-"""The faces of solids and loose ones, oriented: normals point out of what they enclose."""
+"""The faces of solids and loose faces, oriented: normals point out of the enclosed solid."""
 
 # pyright: reportMissingImports=false
 
@@ -24,16 +24,16 @@ from .shapes import Key, parts_of
 
 __all__ = ["Gathered", "PlacedFace", "gathered"]
 
-# Loose faces are sewn where their borders are closer than this, in mm; if holes are left, than this
-# part of the size of all.
+# # Loose faces are sewn where their boundaries are closer than this, in mm; if holes remain, with a
+# distance relative to the size of all faces.
 CLOSE, CLOSE_OF_SIZE = 1e-3, 1e-4
-# More loose faces are not sewn: it would take minutes.
+# # The largest number of loose faces that are sewn: more would take minutes.
 MOST_LOOSE = 20_000
 
 
 @dataclass(frozen=True)
 class PlacedFace:
-    """A face in its place, oriented; `sewn` is its copy that shares edges with its neighbours."""
+    """A placed, oriented face; `sewn` is its copy that shares edges with its neighbours."""
 
     shape: Any
     sewn: Any
@@ -44,7 +44,7 @@ class PlacedFace:
 
 @dataclass
 class Gathered:
-    """All faces; `closed` says whether all of them enclose solids."""
+    """All faces; `closed` says whether they enclose solids."""
 
     faces: list[PlacedFace] = field(default_factory=list)
     solid_names: list[str] = field(default_factory=list)
@@ -104,7 +104,7 @@ def _add_loose(found: Gathered, loose: list[tuple[Any, Style]]) -> None:
                 oriented.setdefault(Key(face), (face, number))
         found.solid_names.extend([""] * len(closed))
         for face in parts_of(sewing.SewedShape(), Kinds.TopAbs_FACE):
-            oriented.setdefault(Key(face), (face, -1))  # unless it is of a solid
+            oriented.setdefault(Key(face), (face, -1))  # unless the face is part of a solid
     for face, style in loose:
         known = None
         if sewing is not None:
@@ -116,7 +116,7 @@ def _add_loose(found: Gathered, loose: list[tuple[Any, Style]]) -> None:
 
 
 def _sewn(faces: list[Any]) -> Any:  # noqa: ANN401
-    """Return the sewing of faces, with a wide tolerance if a narrow one leaves holes."""
+    """Return the sewing of faces, with a wide tolerance if the narrow one leaves holes."""
     compound, builder = TopoDS_Compound(), BRep_Builder()
     builder.MakeCompound(compound)
     for face in faces:
@@ -139,7 +139,7 @@ def _size(shape: Any) -> float:  # noqa: ANN401
 
 
 def _closed_solids(sewn: Any) -> list[Any]:  # noqa: ANN401
-    """Return the closed shells as solids, turned such that their normals point outward."""
+    """Return the closed shells as solids, oriented such that their normals point outward."""
     shells = [TopoDS.Shell(x) for x in parts_of(sewn, Kinds.TopAbs_SHELL)]
     solids = []
     for shell in shells:
@@ -151,7 +151,7 @@ def _closed_solids(sewn: Any) -> list[Any]:  # noqa: ANN401
 
 
 def _is_hollow(solid: Any, solids: list[Any]) -> bool:  # noqa: ANN401
-    """Return whether a shell is the wall of a hollow: it lies inside an odd number of others."""
+    """Return whether a shell bounds a cavity: it lies inside an odd number of other shells."""
     vertex = next(parts_of(solid, Kinds.TopAbs_VERTEX), None)
     if vertex is None or len(solids) == 1:
         return False

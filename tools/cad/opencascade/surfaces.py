@@ -1,4 +1,4 @@
-"""Surfaces of Open CASCADE as numbers: all kinds that STEP, IGES and BREP files have."""
+"""Surfaces of Open CASCADE as arrays, for all kinds in STEP, IGES and BREP files."""
 
 # pyright: reportMissingImports=false
 
@@ -29,8 +29,8 @@ ELEMENTARY: dict[str, tuple[str, tuple[str, ...]]] = {
     "Geom_ToroidalSurface": ("torus", ("MajorRadius", "MinorRadius")),
 }
 
-# The bytes before the control points in what Open CASCADE writes of a single surface: the title,
-# its kind, whether it is rational and, if it may be, periodic; its degrees, and numbers of control
+# # The header of a surface that Open CASCADE writes, before the control points: the title, its
+# kind, whether it is rational and, if it may be, periodic; its degrees, and numbers of control
 # points and of knots.
 TITLE = len(b"Surfaces 1\n")
 BEFORE_POLES = {
@@ -40,22 +40,22 @@ BEFORE_POLES = {
 
 
 def basis_of(surface: Any) -> Any:  # noqa: ANN401
-    """Return what a surface is trimmed from: its own trim is that of the face."""
+    """Return the untrimmed surface: its own trim is replaced by that of the face."""
     while direct_class(surface) == "Geom_RectangularTrimmedSurface":
         surface = surface.BasisSurface()
     return surface
 
 
 def periods_of(surface: Any) -> tuple[float, float]:  # noqa: ANN401
-    """Return the periods in u and v, 0 where there is none."""
+    """Return the periods in u and v, 0 where not periodic."""
     along_u = float(surface.UPeriod()) if surface.IsUPeriodic() else 0.0
     return along_u, float(surface.VPeriod()) if surface.IsVPeriodic() else 0.0
 
 
 def geometry_of(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
-    """Return a surface as numbers, with the same parameters; UnusableError says why not.
+    """Return a surface as arrays, with the same parameters; UnusableError with the reason if not.
 
-    Lines and other curves that have no end are kept over the domain.
+    Lines and other unbounded curves are restricted to the domain.
     """
     surface = basis_of(surface)
     name = direct_class(surface)
@@ -103,7 +103,8 @@ def _net(surface: Any) -> tuple[Array, Array | None]:  # noqa: ANN401
     m, n = surface.NbUPoles(), surface.NbVPoles()
     rational = surface.IsURational() or surface.IsVRational()
     numbers = 4 if rational else 3
-    # A call for each control point would take longer than all the rest: they are written at once.
+    # # Calls for each control point would take longer than all the rest: writing returns all at
+    # once.
     written, buffer = BinTools_SurfaceSet(), io.BytesIO()
     written.Add(surface)
     written.Write(buffer)
