@@ -1,4 +1,4 @@
-"""Points with given normals on edges where faces meet smoothly: one of the faces has them."""
+"""Points with given normals on edges where faces meet smoothly: one face keeps each of them."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ from .results import PartSpace
 
 __all__ = ["each_once"]
 
-# Points with the same normal that are closer than this part of the size of the part are one, if
-# their faces hang together. Near a smooth edge there are no two with curvatures of the same sign.
+# # Points with the same normal on connected faces are equal if closer than this, relative to the
+# size of the part. Near a smooth edge no two points have the same normal and curvatures of the same
+# sign.
 SAME = 1e-8
-# Places along this direction sort points; symmetric parts have few with equal ones.
+# # Coordinates along this direction sort points; on symmetric parts, few are equal.
 DIRECTION = np.array([0.52, 0.47, 0.71])
 
 
 def each_once(space: PartSpace, given: Given) -> Given:
-    """Return points at normals without those that a face of a lower number has, too.
+    """Return points at normals without those that a face of lower index has, too.
 
-    Where K changes its sign at the edge both stay: one point there has two near it or none.
+    Where K changes its sign at the edge both are kept: nearby normals have two points or none.
     """
     part = space.pieces[0].face.part
     if len(space.pieces) < 2 or len(given) < 2 or not given.same_normals:
@@ -58,7 +59,7 @@ def each_once(space: PartSpace, given: Given) -> Given:
 
 
 def _connected(part: Part) -> Indices:
-    """Return numbers (F,) that are equal for faces that hang together."""
+    """Return numbers (F,) that are equal for connected faces."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 

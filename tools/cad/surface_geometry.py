@@ -1,7 +1,7 @@
-"""Surfaces as the numbers of faces: those of NURBS, planes, cylinders, cones, spheres and tori.
+"""Surfaces as geometries of faces: NURBS, planes, cylinders, cones, spheres and tori.
 
-These are the ones of the catalogue and of faces, which may be moved and flipped. The numbers are
-those that a CAD file has, described in `saving`.
+The surfaces are those of the catalogue and of faces, possibly moved and flipped. The numbers are
+those of CAD files, described in `saving`.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from .records import Geometry, Net
 
 __all__ = ["geometry_of_surface"]
 
-# Axes are perpendicular, and scales are equal, up to this; else a circle has become an ellipse.
+# # Axes are perpendicular, and scales are equal, up to this; otherwise circles become ellipses.
 SAME = 1e-9
 
 
 def geometry_of_surface(surface: Surface) -> tuple[Geometry, Array]:
-    """Return the geometry of a face, of its kind in CAD files; "surface" for any other surface.
+    """Return the geometry of a face of the same kind as in CAD files; "surface" if there is none.
 
     The matrix (2, 2) maps the parameters of the surface to those of the geometry, some of
     which are lengths. Both have the same normals.
@@ -65,9 +65,9 @@ def _plane(slopes: Sequence[float], moved: Moved) -> tuple[Geometry, Array]:
 
 
 def _profile(function: object) -> tuple[str, tuple[float, ...]] | None:
-    """Return the kind of what is turned about the z axis, and its sizes; None for other functions.
+    """Return the kind and sizes of a profile turned about the z axis; None for other functions.
 
-    Sizes of a "line" are r, dr/dv, z and dz/dv at v = 0, those of a "circle" its radii.
+    The sizes of a "line" are r, dr/dv, z and dz/dv at v = 0, those of a "circle" its two radii.
     """
     match function:
         case CatalogueFunction("cylinder", (radius, height)):
@@ -92,7 +92,7 @@ def _profile(function: object) -> tuple[str, tuple[float, ...]] | None:
 def _round(kind: str, sizes: Sequence[float], moved: Moved) -> tuple[Geometry, Array] | None:
     """Return a cylinder, cone, sphere or torus after its motion; None if it is no longer one."""
     map_ = moved.map
-    if moved.turned:  # from the angle u to the sum of its ends, minus u
+    if moved.turned:  # u is mapped to the sum of the ends of its interval, minus u
         cosine, sine = math.cos(sum(moved.ends)), math.sin(sum(moved.ends))
         mirror = np.array([(cosine, sine, 0.0), (sine, -cosine, 0.0), (0.0, 0.0, 1.0)])
         map_ = map_.after(AffineMap(mirror, np.zeros(3)))

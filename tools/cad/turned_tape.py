@@ -1,4 +1,4 @@
-"""The tape of a surface of revolution: the polynomials of a NURBS curve, and the turn."""
+"""The tape of a surface of revolution: the polynomials of a NURBS curve, then the rotation."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from ...runtime.surface.traced import Traced
 
 __all__ = ["turned_tape"]
 
-# A curve does not depend on u: there is one span, whose ends are beyond all angles of faces.
+# # The curve does not depend on u: there is one span in u, which holds all angles of faces.
 ALL_ANGLES = np.array([-64.0, 64.0])
 
 
 def turned_tape(curve: Nurbs) -> Tape | None:
-    """Return the tape of the curve v = 0 of a NURBS, whose u is v here, turned by u about z."""
+    """Return the tape of the curve v = 0 of a NURBS, whose u is v here, rotated by u about z."""
     along = replace(
         curve,
         degrees=(0, curve.degrees[0]),

@@ -1,4 +1,4 @@
-"""Records of faces in another unit of length."""
+"""Converting records of faces to another unit of length."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .records import FaceRecord, Geometry
 
 __all__ = ["scaled_parameters", "with_unit"]
 
-# Where the numbers of a kind are lengths, and which parameters.
+# # The indices of the numbers of each kind that are lengths, and whether u and v are.
 LENGTHS: dict[str, tuple[tuple[int, ...], tuple[bool, bool]]] = {
     "plane": ((0, 1, 2), (True, True)),
     "cylinder": ((0, 1, 2, 12), (False, True)),
@@ -27,7 +27,7 @@ LENGTHS: dict[str, tuple[tuple[int, ...], tuple[bool, bool]]] = {
 
 
 def with_unit(face: FaceRecord, factor: float) -> FaceRecord:
-    """Return a face whose lengths are multiplied, and its parameters where they are lengths."""
+    """Return a face with all lengths multiplied, including parameters that are lengths."""
     if factor == 1.0:
         return face
     scale = scaled_parameters(face.geometry, factor)
@@ -42,7 +42,7 @@ def with_unit(face: FaceRecord, factor: float) -> FaceRecord:
 
 
 def scaled_parameters(geometry: Geometry, factor: float) -> NDArray[np.float64]:
-    """Return what u and v of a surface are multiplied with if lengths are with a factor."""
+    """Return the factors of u and v of a surface if lengths are multiplied by a factor."""
     while geometry.basis is not None:
         geometry = geometry.basis
     return np.where(LENGTHS[geometry.kind][1], factor, 1.0)

@@ -1,8 +1,8 @@
 """The process that reads a CAD file: `python -m gaussmap.tools.cad.worker`.
 
 It imports Open CASCADE and NumPy, and never Numba. Its standard output is closed, for readers print
-to it; what it has to say is in files of the folder that it is given: `part.npz`, or a sentence
-in `error.txt`, that continues "'path' …".
+to it; the results are files in the given folder: `part.npz`, or `error.txt` with a sentence that
+continues "'path' …".
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ PART, ERROR = "part.npz", "error.txt"
 
 
 def main(text: str) -> None:
-    """Read a file into a part: what to read, and the limits, are a JSON object."""
+    """Read a file into a part; the request is a JSON object with the file and the limits."""
     request = json.loads(text)
     folder = Path(request["folder"])
     end_with_parent("SIGTERM")
-    # Of processor time, for the case that nobody waits any more.
+    # # A limit of processor time, in case the parent process has ended.
     limit(RLIMIT_AS=int(request["memory"]), RLIMIT_CPU=int(request["seconds"]) + 5)
     try:
         message = _read(request, folder)
@@ -35,7 +35,7 @@ def main(text: str) -> None:
 
 
 def _read(request: dict[str, str], folder: Path) -> str:
-    """Write the part; return why it cannot be read, or nothing."""
+    """Write the part; return the reason if it cannot be read, else ""."""
     from .damaged_step import prepared
     from .inspection import BadFileError
 
@@ -58,7 +58,7 @@ def _read(request: dict[str, str], folder: Path) -> str:
         return str(error)
     except MemoryError:
         raise
-    except Exception as error:  # of Open CASCADE
+    except Exception as error:  # raised by Open CASCADE
         reason = " ".join(f"{type(error).__name__}: {error}".split())[:200].rstrip(".")
         return f"cannot be read: Open CASCADE fails on it ({reason})."
     return ""
@@ -66,4 +66,4 @@ def _read(request: dict[str, str], folder: Path) -> str:
 
 if __name__ == "__main__":
     main(sys.argv[1])
-    os._exit(0)  # all is written, and Open CASCADE takes a third of a second to be unloaded
+    os._exit(0)  # everything is written, and unloading Open CASCADE takes a third of a second

@@ -1,1 +1,1 @@
-"""The commands: `parser` declares them without heavy imports, a module each does their work."""
+"""The commands: `parser` declares them without heavy imports; a module for each does the work."""

@@ -66,7 +66,7 @@ def run(options: SimpleNamespace) -> None:
 
 
 def _parts_of(options: SimpleNamespace) -> tuple[list[Source], Named]:
-    """Return the parts, files by their names, and the options with which workers read these."""
+    """Return the parts, with files by name, and the options with which workers read these."""
     own = {"formula": None, "domain": None, "time_limit": None, "memory_limit": None}
     named = Named.of(SimpleNamespace(**vars(options) | own))
     of_formulas = [
@@ -74,7 +74,7 @@ def _parts_of(options: SimpleNamespace) -> tuple[list[Source], Named]:
         for formula in options.formula
     ]
     if not of_formulas:
-        replace(named, domain=options.domain)  # which refuses one
+        replace(named, domain=options.domain)  # raises an error for a domain
     parts: list[Source] = [
         surface_of(replace(named, surface=text)) if text in CATALOGUE else text
         for text in listed(options.parts, options.list)
@@ -100,7 +100,7 @@ def _as_json(options: SimpleNamespace, tally: Tally, seconds: float) -> dict[str
 
 
 def _rows(options: SimpleNamespace, tally: Tally, seconds: float) -> list[tuple[str, str]]:
-    """Return names and sentences of the summary."""
+    """Return the rows of the summary: names and sentences."""
     rows = [
         (
             "data set",

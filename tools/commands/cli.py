@@ -1,7 +1,7 @@
-"""The program `gaussmap`: runs a command, and turns what goes wrong into a line and an exit code.
+"""The program `gaussmap`: runs a command, and reports errors as one line and an exit code.
 
 Results go to standard output; progress, warnings and errors go to standard error. Every error is
-one line and the exit code 2; Ctrl-C gives 130, and a reader that went away 141.
+one line, with exit code 2; Ctrl-C exits with 130, and a closed pipe on the output with 141.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def main(arguments: Sequence[str] | None = None, ready: Callable[[], object] = b
         console.fail(str(error))
     except MemoryError:
         console.fail("there is not enough memory for this; use fewer samples or cells.")
-    except OSError as error:  # all other files are handled where they are read or written
+    except OSError as error:  # other files handle this where they are read or written
         console.give_up_output()
         console.fail(f"standard output cannot be written: {error.strerror or error}.")
     except KeyboardInterrupt:
@@ -61,13 +61,13 @@ def _run(arguments: list[str], ready: Callable[[], object]) -> int:
     try:
         with program.make_context(PROGRAM, arguments or ["--help"], obj=ready) as context:
             program.invoke(context)
-    except click.exceptions.Exit as done:  # of --help and --version
+    except click.exceptions.Exit as done:  # raised by --help and --version
         return done.exit_code
     return 0
 
 
 def _usage(error: click.UsageError) -> str:
-    """Say what is wrong with the arguments, and where help is."""
+    """Return what is wrong with the arguments, and where help is."""
     text = error.format_message()
     if isinstance(error, click.BadParameter) and not isinstance(error, click.MissingParameter):
         option = "/".join(error.param.opts) if error.param else ""

@@ -1,4 +1,4 @@
-"""`gaussmap completion`, and what shells complete; neither needs NumPy or Numba."""
+"""`gaussmap completion`, and the completions of shells; neither needs NumPy or Numba."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ __all__ = [
 
 PROGRAM = "gaussmap"
 SHELLS = ("bash", "zsh", "fish")
-# A shell that wants completions sets this variable to what it wants.
+# # A shell that requests completions sets this variable to an instruction for Click.
 VARIABLE = "_GAUSSMAP_COMPLETE"
 
 
 def run(options: SimpleNamespace) -> None:
-    """Print what a shell has to run in order to complete commands."""
+    """Print the script that a shell runs to enable completion."""
     from .console import say
 
     shell = get_completion_class(options.shell)
@@ -44,7 +44,7 @@ def run(options: SimpleNamespace) -> None:
 
 
 def completed(program: click.Command) -> int | None:
-    """Answer a shell that wants completions, and return the exit code; None if none does."""
+    """Answer a shell that requests completions, and return the exit code; None if none does."""
     if VARIABLE not in os.environ:
         return None
     return shell_complete(program, {}, PROGRAM, VARIABLE, os.environ[VARIABLE])
@@ -63,23 +63,23 @@ def surface_names(_: click.Context, __: click.Parameter, begun: str) -> list[Com
 def surfaces_and_files(
     context: click.Context, parameter: click.Parameter, begun: str
 ) -> list[CompletionItem]:
-    """Complete the name of a surface, or let the shell complete that of a file."""
+    """Complete the name of a surface, or let the shell complete a file name."""
     names = surface_names(context, parameter, begun)
     return [*names, CompletionItem(begun, type="file")]
 
 
 def settings(context: click.Context, _: click.Parameter, begun: str) -> list[str]:
-    """Complete the name of a parameter of the surface that stands before."""
-    # Click leaves words in `args` if an option, this one, has no value yet.
+    """Complete the name of a parameter of the surface named earlier on the line."""
+    # # Click leaves words in `args` while an option, as this one, has no value yet.
     words = [context.params.get("surface"), *context.args]
     surfaces = [x for word in words if (x := _catalogue().get(word or "")) is not None]
     return _begun([f"{name}=" for x in surfaces[:1] for name in x["parameters"]], begun)
 
 
 def formula_names(context: click.Context, _: click.Parameter, begun: str) -> list[str]:
-    """Complete the name of a formula: from the page of all, as SymPy takes its time.
+    """Complete the name of a formula, from the formulas page, because loading SymPy is slow.
 
-    With --tape, that of a surface.
+    With --tape, the name of a surface.
     """
     if context.params.get("tape"):
         return _begun(_catalogue(), begun)
@@ -89,7 +89,7 @@ def formula_names(context: click.Context, _: click.Parameter, begun: str) -> lis
 
 
 def is_source(word: str) -> bool:
-    """Say whether a word names a surface of the catalogue, or, by its suffix, a file."""
+    """Return whether a word names a surface of the catalogue, or, by its suffix, a file."""
     return word in _catalogue() or bool(PurePath(word).suffix)
 
 

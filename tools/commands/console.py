@@ -37,13 +37,13 @@ def say(text: str) -> None:
 
 
 def summarize(result: Samples | Mesh, options: SimpleNamespace) -> None:
-    """Print what was written, unless the command is to be quiet."""
+    """Print the summary of what was written, unless --quiet is set."""
     if not options.quiet:
         say(f"{options.output}: {result.summary()}")
 
 
 def table(rows: Iterable[tuple[str, str]]) -> None:
-    """Print one line a row, for people wrapped under its own column."""
+    """Print a line for each row; on a terminal, the text is wrapped in its own column."""
     pairs = list(rows)
     width = max(len(name) for name, _ in pairs) + 2
     for name, sentence in pairs:
@@ -55,7 +55,7 @@ def table(rows: Iterable[tuple[str, str]]) -> None:
 
 
 def complain(text: str) -> None:
-    """Print one line to standard error; if nobody hears it, go on."""
+    """Print one line to standard error; ignore errors if it is closed."""
     with suppress(OSError, ValueError):
         write(f"gaussmap: {' '.join(text.split())}", sys.stderr)
 
@@ -66,26 +66,26 @@ def fail(message: str) -> None:
 
 
 def show_warning(message: Warning | str, *_: object, **__: object) -> None:
-    """Print a warning; stands in for `warnings.showwarning`."""
+    """Print a warning; replaces `warnings.showwarning`."""
     complain(f"warning: {message}")
 
 
 def write(text: str, stream: TextIO | None) -> None:
-    """Print a text, with `?` for what the stream's encoding lacks; Python has no closed streams."""
+    """Print a text, with `?` for characters that the encoding lacks, unless the stream is None."""
     if stream is not None:
         encoding = stream.encoding or "utf-8"
         print(text.encode(encoding, "replace").decode(encoding), file=stream)
 
 
 def flush() -> None:
-    """Let errors of standard output be known now."""
+    """Flush standard output, so that its errors are raised now."""
     if sys.stdout is not None:
         sys.stdout.flush()
 
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Let Ctrl-C work during compilation too: a callback from LLVM would swallow it."""
+    """Let Ctrl-C work during compilation: a callback from LLVM would swallow it."""
     previous = sys.unraisablehook
     again: list[threading.Timer] = []
 
@@ -100,7 +100,7 @@ def interruptible() -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        if again:  # the compiler may have stumbled over it
+        if again:  # the interrupt may have caused an error of the compiler
             raise KeyboardInterrupt from error
         raise
     finally:
@@ -110,7 +110,7 @@ def interruptible() -> Iterator[None]:
 
 
 def give_up_output() -> None:
-    """Let what is left in standard output go nowhere, or Python complains at its end."""
+    """Discard the rest of standard output, about which Python would complain at exit."""
     with suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())

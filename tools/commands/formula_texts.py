@@ -1,4 +1,4 @@
-"""All formulas by their names; for an unknown name, the error has the similar ones."""
+"""All formulas by name; the error for an unknown name lists similar ones."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ __all__ = ["Formulas", "formulas"]
 
 
 class Formulas(Mapping[str, "Formula"]):
-    """The formulas of `gaussmap.symbolic` by their names; SymPy is loaded at the first use.
+    """The formulas of `gaussmap.symbolic` by name; SymPy is loaded at first use.
 
-    `formulas[name]` raises UnknownNameError, with similar names, if there is none.
+    `formulas[name]` raises UnknownNameError, with similar names, if the name is unknown.
     """
 
     @cached_property
@@ -26,11 +26,11 @@ class Formulas(Mapping[str, "Formula"]):
         return bridge.formulas()
 
     def __getitem__(self, name: str) -> Formula:
-        """Return a formula; UnknownNameError if there is none of that name."""
+        """Return a formula; UnknownNameError if the name is unknown."""
         return self._formulas[known_name(name, tuple(self), "formula", "gaussmap formulas")]
 
     def __contains__(self, name: object) -> bool:
-        """Say whether there is a formula of that name."""
+        """Return whether there is a formula of that name."""
         return isinstance(name, str) and name in self._formulas
 
     def get(self, name: str, default: Any = None) -> Any:  # noqa: ANN401 - as in Mapping

@@ -41,5 +41,5 @@ def _show_tape(options: SimpleNamespace) -> None:
     else:
         found = Surface.from_sympy(options.formula, ("u", "v"), ANYWHERE)
     if found.tape is None:
-        raise InputError("this formula has no tape: it holds what no operation of a tape computes.")
+        raise InputError("this formula has no tape: its functions are no operations of tapes.")
     say(tape_text(found.tape))

@@ -1,4 +1,4 @@
-"""What the commands that sample share: surfaces and normals that are named or in files."""
+"""Inputs of the commands that sample: surfaces and normals, by name or from files."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def sampled(
     default_count: int,
     **how: Any,  # noqa: ANN401
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return the samples that a command asks for, and the unit normals that were searched."""
+    """Return the samples that a command requests, and the requested unit normals."""
     NOTICE.quiet = options.quiet
     progress = not options.quiet
     _spare_inputs(options)
@@ -46,7 +46,7 @@ def sampled(
 
 
 def request_of(options: SimpleNamespace, default_count: int) -> Request:
-    """Return what is asked for; without any number and normals, the default count."""
+    """Return the request of the options; without any number or normals, the default count."""
     normals = _named_normals(options)
     asked = normals, options.count, options.angle, options.coverage
     count = default_count if all(x is None for x in asked) else options.count
@@ -56,7 +56,7 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
 
 
 def _named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
-    """Return the normals that are named or in a file; None if a number says how many samples."""
+    """Return the normals given by name or in a file; None if a number of samples is given."""
     if options.seed is not None and options.random is None:
         raise InputError("--seed goes with --random COUNT only.")
     if options.frequency is not None:
@@ -69,10 +69,10 @@ def _named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
 
 
 def _spare_inputs(options: SimpleNamespace) -> None:
-    """Refuse to write over a file that is read."""
+    """Raise InputError if the output file is one of the input files."""
     for source in (options.surface, options.normals):
         if source is not None and (is_array_file(source) or is_raster_file(source)):
-            # If one of the two is not there, that is said where it is opened.
+            # # A missing file is reported where it is opened.
             with suppress(OSError):
                 if os.path.samefile(array_file(source), options.output):
                     raise InputError(f"'{options.output}' is read; write to another file.")

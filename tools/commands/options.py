@@ -1,4 +1,4 @@
-"""What commands are made of: work that is imported late, options in groups, kinds of values."""
+"""Building blocks of commands: work imported late, options in groups, types of values."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = [
 class Option(click.Option):
     """An option written as in its help, such as "--spacing DX DY"; without values it is a flag.
 
-    The help shows it in its group. No two options that are `exclusive` may be given together.
+    The help lists it in its group. At most one of several `exclusive` options may be given.
     """
 
     def __init__(
@@ -48,10 +48,10 @@ class Option(click.Option):
 
 
 class Command(click.Command):
-    """A command whose work is `run` in the module of its name, imported when it is called.
+    """A command that calls `run` of the module of its name, which is imported when it is called.
 
-    So help, errors of usage and completion need neither NumPy nor Numba. `ctx.obj` is called when
-    the imports are done.
+    So help, errors of usage and completion need neither NumPy nor Numba. `ctx.obj` is called after
+    the imports.
     """
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -73,7 +73,7 @@ class Command(click.Command):
         return rest
 
     def invoke(self, ctx: click.Context) -> None:
-        """Import the module that does the work, and have it done."""
+        """Import the module that does the work, and run it."""
         module = import_module(f".{self.name}", __package__)
         ctx.obj()
         module.run(SimpleNamespace(**ctx.params))
@@ -100,7 +100,7 @@ class Program(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the command; UsageError with a hint for a surface in its place."""
+        """Return the command; for the name of a surface, UsageError with a hint."""
         if args[0] not in self.commands and not ctx.resilient_parsing and is_source(args[0]):
             raise click.UsageError(
                 f"no such command '{args[0]}'; did you mean `gaussmap sample {args[0]}`?", ctx
@@ -109,7 +109,7 @@ class Program(click.Group):
 
 
 def number(text: str) -> float:
-    """Return a number of any size: what is sensible is known where it is used."""
+    """Return a number of any size: its range is checked where it is used."""
     try:
         return float(text)
     except ValueError:
@@ -117,7 +117,7 @@ def number(text: str) -> float:
 
 
 def whole(most: int, least: int = 1) -> Callable[[str], int]:
-    """Return what reads whole numbers within bounds."""
+    """Return a parser of whole numbers within bounds."""
 
     def read(text: str) -> int:
         try:
@@ -141,7 +141,7 @@ def setting(text: str) -> tuple[str, float]:
 
 
 def density(text: str) -> str | float:
-    """Return the power of |K| if it is a number, else a name."""
+    """Return a number, the power of |K|, or else the name of a density."""
     try:
         return float(text)
     except ValueError:

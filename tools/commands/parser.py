@@ -1,7 +1,7 @@
-"""What the command line understands: commands and their options, shared ones declared once.
+"""The command line: commands and their options; shared options are declared once.
 
-Nothing here needs NumPy or Numba, so that help and completion are quick. The work of a command is
-done by `run` in the module of its name, see `options.Command`.
+Nothing here needs NumPy or Numba, so that help and completion are quick. The function `run` in the
+module named like the command does its work, see `options.Command`.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ def parser() -> click.Group:
 
 
 def _command(name: str, text: str, *parameters: click.Parameter, epilog: str = "") -> Command:
-    """Return a command; the list of all shows its text up to the first colon or full stop."""
+    """Return a command; the list of commands shows its text up to the first colon or full stop."""
     short = f"{re.split('[.:]', text)[0]}."
     return Command(
         name, params=[*parameters], short_help=short, help=text, epilog=epilog,
@@ -188,7 +188,7 @@ def _mesh() -> Command:
     return _command(
         "mesh",
         "Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
-        "points on open borders and at poles; of a CAD part, as many points of its own.",
+        "points on open boundaries and at poles; a CAD part gets as many vertices of its own.",
         *_sampling(default_count=10_000),
         _output(".ply, .obj, .stl, .3mf, .vtk, .vtu, .vtp or .glb"),
         Option("--deviation DEGREES", deviation, number),
@@ -230,12 +230,12 @@ def _batch() -> Command:
         "see the folder by the same path. Needs pip install 'gaussmap[cluster]'."
     )
     parts = "A file with a part in each line, a name or a path; - for standard input."
-    files = "Write a file for each part, too, of this suffix, such as .ply."
+    files = "Also write a file for each part, with this suffix, such as .ply."
     measure = "Measure coverage and normal deviation of each part, which may take ten times longer."
-    again = "Try parts again that failed in an earlier run."
+    again = "Sample again the parts that failed in an earlier run."
     codecs = "zstd (default), snappy, gzip, lz4 or none."
-    seconds = "The longest time for a part, in seconds (default: 600)."
-    memory = "The most memory of a process, in GiB (default: its share of nine tenths of all)."
+    seconds = "The time limit of a part, in seconds (default: 600)."
+    memory = "The memory limit of a process, in GiB (default: its share of 0.9 of all memory)."
     return _command(
         "batch",
         "Sample many parts into a data set: by several processes, into a folder of Parquet files, "
@@ -254,7 +254,7 @@ def _batch() -> Command:
         Option("--compression CODEC", codecs, group=data, default="zstd"),
         Option("--files SUFFIX", files, group=data),
         Option("--measure", measure, group=data),
-        Option("--overwrite", "Remove the data set that is in the folder first.", group=data),
+        Option("--overwrite", "First remove the data set in the folder, if any.", group=data),
         Option("--workers N", workers, whole(MOST), group=run, exclusive=False),
         Option("--scheduler ADDRESS", scheduler, group=run),
         Option("--time-limit SECONDS", seconds, number, group=run),
@@ -291,7 +291,7 @@ def _faces() -> Command:
 def _formulas() -> Command:
     tape = (
         "Show the operations that compute the surface NAME, or --formula, each on results of "
-        "earlier rows: what samples at given normals are proved with."
+        "earlier rows. Proofs about samples at given normals evaluate these operations."
     )
     return _command(
         "formulas",
@@ -329,7 +329,7 @@ def _output(suffixes: str) -> Option:
 
 
 def _contents(group: str, default: str) -> list[Option]:
-    """Return the options on what is written of each sample."""
+    """Return the options that select the contents of the output."""
     names = (
         f"Write these arrays only. They are {', '.join(ARRAY_NAMES_ON_SURFACE)}; of CAD parts "
         f"{' and '.join(PART_NAMES)}, too (default: {default})."

@@ -14,17 +14,17 @@ from ..files.paths import reason_of
 
 __all__ = ["listed"]
 
-# What is taken out of folders.
+# # The suffixes of the files that are taken from folders.
 SUFFIXES = (*CAD_SUFFIXES, ".npz", ".npy", *RASTER_SUFFIXES)
 
 
 def listed(named: Iterable[str], list_file: str | None) -> list[str]:
-    """Return the parts that are named, and those of a list with a line for each; - is the input.
+    """Return the parts named, and those in a list, one a line; "-" is standard input.
 
-    A folder stands for the files of known suffixes in it and in its folders, a pattern for all that
-    it matches, each in the order of names.
+    A folder stands for the files of known suffixes in it and in its subfolders, a pattern for all
+    files that it matches, each sorted by name.
 
-    Raises InputError for one that stands for nothing, FileError if a list cannot be read.
+    Raises InputError for a name without files, FileError if a list cannot be read.
     """
     return [part for text in [*named, *_lines(list_file)] for part in _expanded(text)]
 

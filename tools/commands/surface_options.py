@@ -1,4 +1,4 @@
-"""The options that say which surface it is, and how it is read and approximated."""
+"""The options that select a surface, and how it is read and approximated."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ GROUP, FILES = "the surface", "reading CAD files"
 
 
 def surface_argument() -> click.Argument:
-    """Return the argument SURFACE, which --formula may stand for."""
+    """Return the argument SURFACE, which --formula may replace."""
     return click.Argument(
         ["surface"], required=False, callback=_checked_source, shell_complete=surfaces_and_files
     )
 
 
 def _checked_source(ctx: click.Context, _: click.Parameter, surface: str | None) -> str | None:
-    """Return SURFACE; UsageError unless there is either that or --formula."""
-    formula = ctx.params.get("formula")  # options that are given are read before arguments
+    """Return SURFACE; UsageError unless exactly one of SURFACE and --formula is given."""
+    formula = ctx.params.get("formula")  # options are processed before arguments
     if surface is None and formula is None:
         raise click.UsageError("missing argument 'SURFACE', or --formula X Y Z", ctx)
     if surface is not None and formula is not None:
@@ -31,12 +31,12 @@ def _checked_source(ctx: click.Context, _: click.Parameter, surface: str | None)
 
 
 def surface_options() -> list[Option]:
-    """Return the options of everything that takes a surface."""
+    """Return the options of all commands that take a surface."""
     return [*made_options(), *_limits()]
 
 
 def made_options(several: bool = False) -> list[Option]:
-    """Return the options that say how a surface is made, or several ones."""
+    """Return the options that define a surface, or several surfaces."""
     place = "A further surface; may be repeated" if several else "In place of SURFACE"
     formula = (
         f'{place}: its coordinates, three texts such as "cos(u)" in u and v. They are read as '
@@ -82,8 +82,8 @@ def _terrain_options() -> list[Option]:
         "The coordinate reference system of the points, in lengths, such as EPSG:32617 (default: "
         "that of the file or, if it has degrees, the zone of UTM)."
     )
-    source_crs = "That of the file, if it says none: EPSG:4326 for degrees."
-    origin = "What is subtracted from x and y; the file that is written says so."
+    source_crs = "The reference system of a file that states none, such as EPSG:4326 for degrees."
+    origin = "The coordinates subtracted from x and y; the output file records them."
     group = "coordinates of elevations"
     return [
         Option("--band N", band, whole(MOST), group=group),
@@ -106,8 +106,8 @@ def _unit() -> Option:
 
 
 def _limits() -> list[Option]:
-    seconds = "The longest time for reading, in seconds (default: 120)."
-    memory = "The most memory for reading, in GiB (default: 4)."
+    seconds = "The time limit for reading, in seconds (default: 120)."
+    memory = "The memory limit for reading, in GiB (default: 4)."
     return [
         Option("--time-limit SECONDS", seconds, number, group=FILES),
         Option("--memory-limit GIB", memory, number, group=FILES),

@@ -13,7 +13,7 @@ NUMBERED = (codes.CONSTANT, *NEUTRAL)  # the operations that have a number
 
 
 def tape_text(tape: Tape) -> str:
-    """Return the rows of a tape, each with its operation, rows of arguments and number."""
+    """Return the rows of a tape as text: operation, rows of its arguments, and number."""
     width = len(str(len(tape.operations)))
     lines = []
     for row, (code, a, b, _) in enumerate(tape.operations.tolist()):

@@ -1,4 +1,4 @@
-"""`gaussmap warm`: all kernels on the list of signatures are compiled ahead, without being run."""
+"""`gaussmap warm`: ahead-of-time compilation of all listed kernels, without running them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["run"]
 
 
 class _Counter(event.Listener):
-    """Counts the kernels that are compiled, without the functions that they call."""
+    """Counts compiled kernels, but not the functions that they call."""
 
     def __init__(self) -> None:
         self.depth = self.count = 0
@@ -33,7 +33,7 @@ class _Counter(event.Listener):
 
 
 def run(options: SimpleNamespace) -> None:
-    """Compile all kernels that come neither with the package nor from an earlier run.
+    """Compile all kernels that neither the package nor an earlier run has compiled.
 
     Raises InputError if NUMBA_DISABLE_JIT is set, FileError if there is no writable folder.
     """

@@ -1,10 +1,10 @@
-"""The curve itself in arcs on which its normal turns one way, with a proof: no spline.
+"""A curve itself, without a spline, divided into arcs on which its normal turns one way, proved.
 
 Bounds of x′ and x″ over intervals of the parameter come from the tape of the curve. An arc is
 certain if x′ stays within 90° of one direction and x′ × x″ has one sign: the angle of the normal is
-then monotone, and the arc has each normal between those at its ends exactly once. Intervals where
-neither is certain are halved, until the normal turns there by less than `SMALLEST_TURN`: around
-inflections, and where the curve is straight. Those where x′ may vanish are cusps or singular.
+monotone, and the arc has each normal between those at its ends exactly once. Intervals where
+neither is certain are halved until the normal turns by less than `SMALLEST_TURN` there: around
+inflections, and where the curve is straight. Intervals where x′ may vanish are cusps or singular.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 FIRST_ARCS, MOST_ARCS = 64, 1 << 14
-# An interval in which the normal turns by less than this (radians) is not halved any more, nor one
-# that is shorter than this part of the domain, where the curve is singular.
+# # An interval is not halved further if the normal turns by less than this (radians) in it, or if
+# it is shorter than this, relative to the domain, where the curve is singular.
 SMALLEST_TURN, SHORTEST = 1e-12, 2.0**-36
 # Steps of Newton's method and of bisection: more than a float has digits.
 STEPS = 80
@@ -43,7 +43,7 @@ CERTAIN, UNCERTAIN, SINGULAR = range(3)
 class CurveArcs(Turning):
     """The arcs of a curve: P + 1 parameters of joints, and the kinds (P,) of arcs.
 
-    What the search asks is named as in `CurveSpline`.
+    The attributes that the search needs are named as in `CurveSpline`.
     """
 
     curve: Curve
@@ -69,18 +69,18 @@ class CurveArcs(Turning):
 
     @property
     def straight(self) -> Flags:
-        """Which arcs (P,) are straight or singular: the sense of turning is uncertain."""
+        """A mask of arcs (P,) that are straight or singular: the sense of turning is uncertain."""
         return self.kinds != CERTAIN
 
     @property
     def reversing(self) -> Flags:
-        """Which arcs (P,) reverse, at a cusp."""
+        """A mask of the arcs (P,) that reverse, at a cusp."""
         before, after = self.joint_normals[:-1], self.joint_normals[1:]
         return (self.kinds == SINGULAR) & (np.einsum("kx,kx->k", before, after) <= 0.0)
 
     @cached_property
     def joint_normals(self) -> Array:
-        """Unit normals (P + 1, 2) at the joints: the tangent turned clockwise."""
+        """Unit normals (P + 1, 2) at the joints: the tangent rotated clockwise by 90°."""
         tangents = self.jets(self.joints)[1]
         normals = np.stack([tangents[:, 1], -tangents[:, 0]], axis=1)
         lengths = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -88,7 +88,7 @@ class CurveArcs(Turning):
 
     @property
     def noise(self) -> float:
-        """A bound of the rounding of `joint_normals`."""
+        """A bound of the rounding errors of `joint_normals`."""
         return 4.0 * float(np.finfo(np.float64).eps)
 
     @cached_property
@@ -105,7 +105,7 @@ class CurveArcs(Turning):
 
     @property
     def scale(self) -> float:
-        """A power of two that brings distances of neighbouring joints to about 1."""
+        """A power of two that scales distances of neighbouring joints to about 1."""
         return scale_to_one(float(np.abs(np.diff(self.jets(self.joints)[0], axis=0)).max()))
 
     def evaluate(self, t: Array) -> Array:
@@ -118,9 +118,9 @@ class CurveArcs(Turning):
         return jets[:, 0], jets[:, 1], jets[:, 3]
 
     def undecided(self, normals: Array) -> Flags:
-        """Return which unit normals (S, 2) may have other points than those that are found.
+        """Return a mask of unit normals (S, 2) that may have points other than those found.
 
-        Those that the uncertain arcs may have; all, if the curve is singular somewhere.
+        These are normals that uncertain arcs may have, or all if the curve is singular somewhere.
         """
         if (self.kinds == SINGULAR).any():
             return np.ones(len(normals), dtype=bool)
@@ -159,7 +159,7 @@ class CurveArcs(Turning):
 
 
 def arcs_of(curve: Curve) -> CurveArcs | None:
-    """Return the arcs of a curve, kept with it; None if it has no bounds of its derivatives."""
+    """Return the arcs of a curve, cached with it; None if its derivatives cannot be bounded."""
     return kept(curve, CurveArcs, lambda: _arcs_of(curve))
 
 
@@ -203,7 +203,7 @@ def _kinds(tape: Tape, intervals: Array) -> NDArray[np.int8]:
     bounds = bounds_over_boxes(
         tape, np.column_stack([centres, zero]), np.column_stack([half, zero])
     )
-    # Taylor coefficients: x″ is twice that of u².
+    # # Taylor coefficients: x″ is twice the coefficient of u².
     first, second = bounds[:, :, 1, :2], 2.0 * bounds[:, :, 3, :2]
     low, high = first[:, 0] - first[:, 1], first[:, 0] + first[:, 1]
     towards = first[:, 0]
@@ -219,7 +219,7 @@ def _kinds(tape: Tape, intervals: Array) -> NDArray[np.int8]:
     radius *= 1.0 + 1e-12
     kinds = np.full(len(intervals), SINGULAR + 4, dtype=np.int8)
     with np.errstate(divide="ignore", invalid="ignore"):
-        least = along / length  # a bound of the length of x′ from below
+        least = along / length  # a lower bound of the length of x′
         turn = 2.0 * half * (np.abs(middle) + radius) / least**2
     kinds[regular] = UNCERTAIN + 4
     kinds[regular & (turn < SMALLEST_TURN)] = UNCERTAIN

@@ -16,18 +16,18 @@ from .curve_spline import CurveSpline
 __all__ = ["checked_points", "spline_of_points", "spline_of_values"]
 
 Array = NDArray[np.float64]
-# A last point nearer to the first than this, relative to the first step, repeats it.
+# # A last point nearer to the first than this, relative to the first step, repeats it.
 REPEATED = 1e-3
 
 
 def spline_of_values(values: Array, domain: Interval, closed: bool, name: str) -> CurveSpline:
-    """Return the spline of values (2 P + 1, 2) at the joints and the middles of pieces, in turn."""
+    """Return the spline of values (2 P + 1, 2) at joints and midpoints of pieces, alternating."""
     inner = python_function(edge_formulas.edge_point)(values[1::2], values[:-1:2], values[2::2])
     return CurveSpline(_with_ends(inner, values[[0, -1]], closed), domain, closed, name)
 
 
 def spline_of_points(points: Array, domain: Interval, closed: bool, name: str) -> CurveSpline:
-    """Return the spline with one piece between any two neighbouring points."""
+    """Return the spline with one piece between neighbouring points."""
     not_too_large(points, name)
     if closed:
         values = np.concatenate([points[-1:], points, points[:2]])

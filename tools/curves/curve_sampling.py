@@ -7,7 +7,7 @@ or doubled there, whatever the rounding of the position. On a closed curve the s
 the preimages of a normal is the turning number, for every normal. A normal that is exactly that of
 an inflection has two preimages there or none, as has one close to it.
 
-Where the normals of neighbouring joints differ by the rounding of the coordinates only, the curve
+Where the normals of neighbouring joints differ only by the rounding of the coordinates, the curve
 is straight, and the joints get one position.
 """
 
@@ -40,9 +40,10 @@ Array = NDArray[np.float64]
 
 # The largest number of attempts to meet `count` by changing the number of normals.
 TRIES = 6
-# Arcs that this many uniform normals would sample are not straight, even with fewer normals.
+# # Arcs that this many uniform normals would sample are not straight, even if fewer normals are
+# used.
 LEAST_NORMALS = 1_000
-# Where samples lie.
+# # The curves on which samples may lie.
 PLACES = ("curve", "spline")
 
 
@@ -67,14 +68,14 @@ class CurveReport:
     turning_number : int or None
         The turning number of a closed curve; None for an open one.
     on : {"curve", "spline"}
-        Where the samples lie.
+        The curve on which the samples lie.
     proved : int or None
         The number of prescribed normals of which all points are known, with a proof; None on
+        The number of prescribed normals for which all points are proved to be found; None on
         splines.
-    undecided : tuple of int
         Rows of the other normals: those of inflections and straight parts, up to rounding, and all
+        Rows of the other normals: those of inflections and straight parts, up to rounding, or all
         if the curve has singular points.
-
     Examples
     --------
     >>> import gaussmap as gm
@@ -113,14 +114,14 @@ class CurveSamples:
         Points of the curve, in L.
     normals : (N, 2) float64 array
         Unit normals at the points: the tangent turned clockwise.
-    parameters : (N,) float64 array
+    Unit normals at the points: the tangent rotated clockwise by 90°.
         The parameters of the points.
     support : (N,) float64 array
         Support function h = n·x, in L.
     curvature : (N,) float64 array
         In 1/L, positive on a circle with outward normals. Its sign bit is the sense in which the
-        normal turns, also where the curvature is rounded to 0.
-    normal_index : (N,) int64 array
+        In 1/L, positive on a circle with outward normals. Its sign bit is the sense in which the
+        normal turns, even where the curvature is rounded to 0.
         Rows of the prescribed normals.
     piece_index : (N,) int64 array
         Arcs of the spline that contain the points, or arcs of the curve on which the normal turns
@@ -162,7 +163,7 @@ class CurveSamples:
 
     @property
     def polygon(self) -> NDArray[np.float64]:
-        """(M, 2) float64 array: the vertices of the polygon through all samples in turn.
+        """(M, 2) float64 array: the vertices of the polygon through all samples, in order.
 
         That of an open curve begins and ends with the ends of the curve; that of a closed curve
         repeats its first point at its end.
@@ -208,7 +209,7 @@ class CurveSamples:
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """Pairs of an arc and a normal that it has, along the curve, with the sign of κ."""
+    """Pairs of an arc and one of its normals, along the curve, with the sign of κ."""
 
     piece_index: NDArray[np.int64]
     normal_index: NDArray[np.int64]
@@ -230,8 +231,8 @@ def sample(
     """Return every point of a planar curve that has one of the given normals, each exactly once.
 
     Uniform normals give samples with the density |κ| (paper, Sect. 4.1). On the curve, all points
-    are found with a proof, by bounds of its derivatives: these are known of SymPy expressions and
-    of callables made of NumPy functions. The report lists normals that are `undecided`.
+    are found with a proof, by bounds of its derivatives, which are available for SymPy expressions
+    and for callables made of NumPy functions. The report lists normals that are `undecided`.
 
     Parameters
     ----------
@@ -244,8 +245,8 @@ def sample(
     pieces : int, optional
         The number of arcs of the spline, see `fit`; samples then lie on the spline.
     on : {"curve", "spline"}, optional
-        Where samples are to lie. By default on the curve, if its derivatives can be bounded, and on
-        the spline of others, of points, and with `pieces`.
+        The curve on which samples lie. By default the curve itself, if its derivatives can be
+        bounded, and else the spline, as for curves given by points and with `pieces`.
 
     Returns
     -------
@@ -255,9 +256,9 @@ def sample(
     Raises
     ------
     InputError
-        For unusable arguments, and with ``on="curve"`` if its derivatives cannot be bounded.
+        For invalid arguments, and with ``on="curve"`` if the derivatives cannot be bounded.
     UnknownNameError
-        For another place.
+        For another value of `on`.
     SurfaceError
         For a curve that cannot be evaluated.
 
@@ -299,7 +300,7 @@ def sample(
 def _searched(
     curve: Curve | CurveSpline, pieces: int | None, on: str | None
 ) -> CurveSpline | CurveArcs:
-    """Return what is searched: the arcs of a curve, or a spline."""
+    """Return the object to search: the arcs of a curve, or a spline."""
     place = None if on is None else known_name(on, PLACES, "place of samples of curves")
     if place == "curve" and pieces is not None:
         raise InputError('pieces=... is for on="spline"; on the curve itself there is no spline.')
@@ -333,10 +334,10 @@ def find(spline: CurveSpline | CurveArcs, normals: Array) -> Hits:
 
 
 def _places(spline: CurveSpline | CurveArcs, angles: Array) -> NDArray[np.int64]:
-    """Return the number of sorted angles before each joint, full turns included.
+    """Return the number of sorted angles before each joint, counting full turns.
 
-    Along straight arcs the normal is constant. The ends of an open curve belong to it: they are
-    moved outwards by the rounding of their normal.
+    Along straight arcs the normal is constant. The ends of an open curve belong to it: their angles
+    are moved outwards by the rounding of the normal.
     """
     ends, turns = spline.angles[0].copy(), spline.angles[1].copy()
     curved = np.flatnonzero(~spline.straight)
@@ -375,7 +376,7 @@ def _merge_joints(angles: Array, turns: NDArray[np.int64], errors: Array, start:
 
 
 def _by_count(spline: CurveSpline | CurveArcs, count: int) -> tuple[Array, Hits]:
-    """Return uniform normals with about `count` samples, and these."""
+    """Return uniform normals with about `count` samples, and their hits."""
     curved = np.flatnonzero(~spline.straight)
     total = float(np.abs(spline.turning_angles[curved]).sum())
     if total == 0.0:
@@ -405,7 +406,7 @@ def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
     n, arcs = plane_vector(mine), spline._arcs(piece)
     A = mine[:, 0] * arcs.a.x + mine[:, 1] * arcs.a.y
     with np.errstate(all="ignore"):  # where κ ≈ 0
-        # If the turn of an arc is within rounding, so is the parameter of the normal.
+        # # If the turning angle of an arc is within rounding, the parameter is arbitrary on it.
         inside = np.clip(python_function(formulas.arc_parameter)(arcs, n), 0.0, 1.0)
         t: Array = np.where(A != 0.0, inside, 0.5)
         x, curvature = python_function(formulas.arc_sample)(arcs, t, A)
@@ -415,7 +416,7 @@ def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
 
 
 def filled_on_curve(arcs: CurveArcs, normals: Array, hits: Hits) -> CurveSamples:
-    """Return the same on the curve itself."""
+    """Return the samples at hits of unit normals (S, 2), on the curve itself."""
     mine = normals[hits.normal_index]
     t = arcs.parameters(hits.piece_index, mine)
     samples = _samples(arcs, normals, hits, t, *arcs.at(t, mine))
@@ -461,7 +462,7 @@ def _samples(
 def _straight_share(spline: CurveSpline | CurveArcs, normals: int) -> float:
     """Return the share of the length where κ ≈ 0, so that it has no samples.
 
-    An arc is straight if a curve with its curvature and the length of this one gets no sample.
+    An arc is straight if an arc of constant curvature, equally long, would get no sample.
     """
     joints = spline.scale * spline.evaluate(spline.joints)
     lengths = np.hypot(*np.diff(joints, axis=0).T)
@@ -475,7 +476,7 @@ def _straight_share(spline: CurveSpline | CurveArcs, normals: int) -> float:
 
 
 def _warn(report: CurveReport, count: int | None) -> None:
-    """Warn of straight parts, and of a count that is not met."""
+    """Warn of straight parts, and of a count that is not reached."""
     reasons = []
     if report.straight_share > WORTH_A_WARNING:
         share = 100 * report.straight_share

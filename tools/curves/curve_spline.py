@@ -26,15 +26,15 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CurveSpline(Turning):
-    """A planar C¹ quadratic spline with P equal pieces of the parameter; made by `fit`.
+    """A planar C¹ quadratic spline with P pieces of equal parameter length; made by `fit`.
 
     Joint k is the beginning of piece k.
 
     Attributes
     ----------
     coefficients : (P + 2, 2) float64 array
-        One vector for each piece, and a ghost coefficient at each end, which is a copy on closed
-        curves.
+        One vector for each piece, and a ghost coefficient at each end, a copy if the curve is
+        closed.
     domain : (float, float)
         The interval of the parameter.
     periodic : bool
@@ -97,7 +97,7 @@ class CurveSpline(Turning):
 
     @cached_property
     def control_points(self) -> Array:
-        """(P, 3, 2) float64 array: the control points of the arcs, from first to last."""
+        """(P, 3, 2) float64 array: the control points of the arcs, in order."""
         mu = self.coefficients
         points = python_function(formulas.arc_control_points)(
             *map(plane_vector, (mu[:-2], mu[1:-1], mu[2:]))
@@ -106,7 +106,7 @@ class CurveSpline(Turning):
 
     @cached_property
     def scale(self) -> float:
-        """A power of two that brings the differences of neighbouring coefficients to about 1."""
+        """A power of two that scales differences of neighbouring coefficients to about 1."""
         return scale_to_one(float(np.abs(np.diff(self.coefficients, axis=0)).max()))
 
     def evaluate(self, t: ArrayLike) -> Array:
@@ -115,7 +115,7 @@ class CurveSpline(Turning):
         Parameters
         ----------
         t : array_like
-            Parameters. Those of a closed curve are taken modulo the period.
+            Parameters; on a closed curve modulo the period.
 
         Returns
         -------
@@ -138,7 +138,7 @@ class CurveSpline(Turning):
         return self._evaluate(t)[0]
 
     def normals(self, t: ArrayLike) -> Array:
-        """Return unit normals at parameters: the tangent turned clockwise by 90°.
+        """Return unit normals at parameters: the tangent rotated clockwise by 90°.
 
         Parameters
         ----------
@@ -179,8 +179,8 @@ class CurveSpline(Turning):
         Returns
         -------
         (...) float64 array
-            The curvatures, in 1/L. They jump at joints, where they are those of the following arc.
-            NaN or infinite at singular points.
+            The curvatures, in 1/L. They jump at joints, where the value of the following arc is
+            returned. NaN or infinite at singular points.
 
         Raises
         ------
@@ -215,7 +215,7 @@ class CurveSpline(Turning):
 
     @cached_property
     def noise(self) -> float:
-        """A bound of the rounding of the coordinates in a vector of `joint_normals`."""
+        """A bound of the rounding error in a vector of `joint_normals`."""
         return DIFFERENCE_ERROR * float(np.spacing(np.abs(self.coefficients).max())) * self.scale
 
     @cached_property
@@ -235,7 +235,8 @@ class CurveSpline(Turning):
     def inflections(self) -> Array:
         """(k,) float64 array: the parameters where the curvature changes its sign, ascending.
 
-        An arc is a parabola and has none: they are joints, or the middles of straight stretches.
+        An arc is a parabola without inflections: they are joints, or midpoints of straight
+        stretches.
         """
         curved = np.flatnonzero(~self.straight)
         ends = np.roll(curved, -1)
@@ -276,7 +277,7 @@ class CurveSpline(Turning):
         )
 
     def _places(self, t: Array) -> Array:
-        """Return parameters in pieces; InputError if one lies outside."""
+        """Return the piece of each parameter plus the share of it; InputError if outside."""
         places = (t - self.domain[0]) / self.step
         if self.periodic:
             with np.errstate(invalid="ignore"):

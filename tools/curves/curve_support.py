@@ -26,14 +26,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class CurveBranches:
-    """The k branches of the support function of a planar curve at S normals, by normal.
+    """The k branches of the support function of a planar curve at S normals, sorted by normal.
 
     Attributes
     ----------
     normal_index : (k,) int64 array
         Rows of the prescribed normals.
     normals : (k, 2) float64 array
-        These normals, of unit length.
+        The unit normals of the branches.
     support : (k,) float64 array
         The support function h(n) = n·x, in the unit L of the curve.
     points : (k, 2) float64 array
@@ -72,7 +72,7 @@ class CurveBranches:
             return 1.0 / self.radius
 
     def __len__(self) -> int:
-        """Return the number of branches, of all normals together."""
+        """Return the total number of branches of all normals."""
         return len(self.support)
 
     def __repr__(self) -> str:
@@ -83,10 +83,9 @@ class SupportFunction(ABC):
     """The support function h(n) of a planar curve (paper, Sect. 4.1); made by `of_spline`.
 
     It is the signed distance of the tangent with the normal n from the origin. Several points may
-    have one normal, each on a branch of h. Operations on curves are simple ones on their support
-    functions: `+` (convolution), `offset`, `translated`, `rotated`, `scaled`, `reversed`. They
-    return new objects, which are computed when they are evaluated. Straight parts of a curve have
-    no branch.
+    have one normal, each on a branch of h. Operations on curves are simple operations on their
+    support functions: `+` (convolution), `offset`, `translated`, `rotated`, `scaled`, `reversed`.
+    They return new objects, which are evaluated lazily. Straight parts of a curve have no branch.
 
     Examples
     --------
@@ -104,14 +103,14 @@ class SupportFunction(ABC):
     @property
     @abstractmethod
     def _label(self) -> str:
-        """What the function is of."""
+        """The name of the curve and of the operations on it."""
 
     def __repr__(self) -> str:
         return f"SupportFunction({self._label})"
 
     @staticmethod
     def of_spline(curve: CurveSpline | Curve, pieces: int | None = None) -> SupportFunction:
-        """Return the support function of a spline: every point with a normal is one branch.
+        """Return the support function of a spline: each point with a normal is on one branch.
 
         Parameters
         ----------
@@ -198,7 +197,7 @@ class SupportFunction(ABC):
         Returns
         -------
         SupportFunction
-            That of the offset.
+            The support function of the offset.
 
         Raises
         ------
@@ -227,7 +226,7 @@ class SupportFunction(ABC):
         Returns
         -------
         SupportFunction
-            That of the translated curve.
+            The support function of the translated curve.
 
         Raises
         ------
@@ -246,7 +245,7 @@ class SupportFunction(ABC):
         return Moved(self, shift=finite_array(shift, (2,), "shift"))
 
     def rotated(self, angle: float) -> SupportFunction:
-        """Return h(R⁻¹n): the curve of the points R x, turned counter-clockwise by an angle.
+        """Return h(R⁻¹n): the curve of the points R x, rotated counter-clockwise by an angle.
 
         Parameters
         ----------
@@ -256,7 +255,7 @@ class SupportFunction(ABC):
         Returns
         -------
         SupportFunction
-            That of the rotated curve.
+            The support function of the rotated curve.
 
         Raises
         ------
@@ -287,7 +286,7 @@ class SupportFunction(ABC):
         Returns
         -------
         SupportFunction
-            That of the scaled curve.
+            The support function of the scaled curve.
 
         Raises
         ------
@@ -313,7 +312,7 @@ class SupportFunction(ABC):
         Returns
         -------
         SupportFunction
-            That of the curve with the opposite orientation.
+            The support function of the curve with the opposite orientation.
 
         Examples
         --------
@@ -373,9 +372,9 @@ class Sum(SupportFunction):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Moved(SupportFunction):
-    """That of the points M x + t + d n, with the normals of x after `turn`.
+    """The support function of the points M x + t + d n, whose normals are those of x after `turn`.
 
-    Radii of curvature become `growth` times themselves, plus d.
+    Radii of curvature are multiplied by `growth`, then d is added.
     """
 
     of: SupportFunction

@@ -1,4 +1,4 @@
-"""From a planar curve to the spline that approximates it."""
+"""Fitting a spline to a planar curve."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def fit(curve: Curve, pieces: int | None = None) -> CurveSpline:
     curve : Curve
         The curve.
     pieces : int, optional
-        The number of arcs, at least 3 for a closed curve. By default 64, or one between any two
-        neighbouring points of a curve that was given by points.
+        The number of arcs, at least 3 for a closed curve. By default 64, or one between
+        neighbouring points of a curve that is given by points.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def fit(curve: Curve, pieces: int | None = None) -> CurveSpline:
     Raises
     ------
     InputError
-        For unusable `pieces`, and more of them than a narrow domain can hold.
+        For invalid `pieces`, and more of them than a narrow domain can hold.
     SurfaceError
         If the curve cannot be evaluated, or does not close although it is periodic.
 

@@ -26,7 +26,7 @@ def polygon_distance(points: ArrayLike, polygon: ArrayLike) -> NDArray[np.float6
     points : (k, 2) array_like
         The points.
     polygon : (m, 2) array_like
-        The vertices in turn; a closed polygon repeats its first vertex at its end.
+        The vertices in order; a closed polygon repeats its first vertex at its end.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def polygon_distance(points: ArrayLike, polygon: ArrayLike) -> NDArray[np.float6
     if len(vertices) == 0:
         raise InputError("a polygon needs at least one vertex.")
     largest = max(float(np.abs(x).max(initial=0.0)) for x in (places, vertices))
-    exponent = math.frexp(largest)[1]  # so that squares neither overflow nor underflow
+    exponent = math.frexp(largest)[1]  # scaling keeps squares from overflow and underflow
     places, vertices = np.ldexp(places, -exponent), np.ldexp(vertices, -exponent)
     starts = vertices[:-1] if len(vertices) > 1 else vertices
     edges = vertices[1:] - starts if len(vertices) > 1 else np.zeros_like(vertices)

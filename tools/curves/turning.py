@@ -1,4 +1,4 @@
-"""How the normal of a planar curve turns, from its normals at the joints of arcs."""
+"""The turning of the normal of a planar curve, from its normals at the joints of arcs."""
 
 from __future__ import annotations
 

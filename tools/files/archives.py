@@ -1,6 +1,6 @@
-"""NumPy's .npz archives from anywhere: nothing is unpickled, and a small file stays small.
+"""NumPy's .npz archives from untrusted sources: nothing is unpickled, and sizes are limited.
 
-An archive may unpack to a thousand times its size, and the headers of its arrays may say anything.
+An archive may unpack to a thousand times its size, and headers of its arrays may be false.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from .reading import UnusableError
 
 __all__ = ["Archive", "archive_of"]
 
-# An archive may unpack to so many bytes, or to so many times its own size. Arrays of numbers seldom
-# shrink to a tenth; those that are not compressed do not at all.
+# # An archive may unpack to this many bytes, or to this many times its own size. Numeric arrays
+# seldom compress to a tenth; uncompressed archives have no ratio.
 HARMLESS, MOST_TIMES = 256 << 20, 100
 
 
@@ -31,7 +31,7 @@ class Archive:
     names : tuple of str
         The names of the arrays.
     unpacked : int
-        The bytes of all of them. None is read beyond what its entry says.
+        The total size of the arrays in bytes. No array is read beyond the size of its entry.
 
     """
 
@@ -43,10 +43,10 @@ class Archive:
         self.unpacked = sum(x.file_size for x in entries)
 
     def read(self, name: str) -> NDArray[Any]:
-        """Return an array; UnusableError if it holds no numbers, or not as many as it says."""
+        """Return an array; UnusableError if it is not numeric, or shorter than its header says."""
         try:
             found = self._archive[f"{name}.npy"]
-        except (ValueError, MemoryError):  # of objects, and of shapes that are too large
+        except (ValueError, MemoryError):  # raised for objects, and for shapes that are too large
             found = None
         if not isinstance(found, np.ndarray):
             raise UnusableError(f"is damaged: '{name}.npy' is no array of numbers.")
@@ -56,7 +56,7 @@ class Archive:
 @contextmanager
 def archive_of(file: BufferedReader) -> Iterator[Archive]:
     """Yield the archive in a file; UnusableError if it is none, or would unpack to too much."""
-    # NumPy would take what is no archive for a pickle.
+    # # NumPy would take any other file for a pickle.
     if not zipfile.is_zipfile(file):
         raise UnusableError("is damaged or is no .npz file; write it again.")
     packed = file.seek(0, 2)

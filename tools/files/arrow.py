@@ -1,4 +1,4 @@
-"""Arrow's tables: .parquet files, and .arrow files, also called Feather."""
+"""Arrow tables: .parquet files, and .arrow files, also called Feather."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ __all__ = ["write_arrow", "write_parquet"]
 
 
 def write_parquet(samples: Samples, path: Path) -> None:
-    """Write a column for each number of a sample, and the report in the metadata of the schema."""
+    """Write a column for each component of a field, and the report in the schema's metadata."""
     table = _table(samples, path)
-    # Not dictionaries: numbers of samples seldom repeat, and trying takes half of the time.
+    # # No dictionary encoding: values seldom repeat, and trying it takes half of the time.
     from_extra("pyarrow.parquet", "tables", "a .parquet file").write_table(
         table, path, use_dictionary=False
     )
 
 
 def write_arrow(samples: Samples, path: Path) -> None:
-    """Write the same as `write_parquet` in Arrow's own format, uncompressed: it can be mapped."""
+    """Write the same table in Arrow's own format, uncompressed, so that it can be memory-mapped."""
     table = _table(samples, path)
     arrow = from_extra("pyarrow", "tables", "this")
     with arrow.OSFile(str(path), "wb") as file, arrow.ipc.new_file(file, table.schema) as writer:

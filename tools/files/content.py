@@ -1,4 +1,4 @@
-"""The metadata of samples in files: the report, and which fields there are."""
+"""The metadata of samples in files: the report, and the names of the fields."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from .reading import UnusableError
 
 __all__ = ["known_fields", "lacks", "report_from_json", "report_to_json"]
 
-# The entries `density` that version 0.1 wrote beside "aligned", and what they are now: none, or
-# some of the pieces of a surface, on a grid.
+# # Values of `density` that version 0.1 wrote beside "aligned", and their present values: None, or
+# "aligned" for a grid on some of the pieces of a surface.
 OF_0_1 = {"isotropic": None, "mixed": "aligned"}
 
 
@@ -23,7 +23,7 @@ def report_to_json(report: SamplingReport) -> str:
 
 
 def report_from_json(text: str) -> SamplingReport:
-    """Return the report that `report_to_json` was given."""
+    """Return the report from the text of `report_to_json`."""
     found = json.loads(text)
     if found.get("density") in OF_0_1:
         found["density"] = OF_0_1[found["density"]]
@@ -31,7 +31,7 @@ def report_from_json(text: str) -> SamplingReport:
 
 
 def known_fields(names: Iterable[str]) -> tuple[str, ...]:
-    """Return the fields that a file says to hold, in the order of `COLUMNS`."""
+    """Return the fields that a file declares, in the order of `COLUMNS`."""
     held = set(names)
     if not held or not held <= set(COLUMNS):
         raise UnusableError("holds fields that gaussmap does not know; update gaussmap.")
@@ -39,5 +39,5 @@ def known_fields(names: Iterable[str]) -> tuple[str, ...]:
 
 
 def lacks(what: str, missing: Sequence[str]) -> UnusableError:
-    """Return the error for a file without some arrays or columns."""
+    """Return the error for a file that lacks some arrays or columns."""
     return UnusableError(f"lacks the {what} {', '.join(missing)}; read a file that gaussmap wrote.")

@@ -1,4 +1,4 @@
-"""The formats of files: which there are, by their suffixes, and what writes and reads them."""
+"""The formats of files by their suffixes, with their writers and readers."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ __all__ = [
 
 
 class Format(NamedTuple):
-    """What writes files of a suffix, the fields that these need, and the extra that brings it."""
+    """The writer of files of a suffix, the fields that it needs, and the extra it requires."""
 
     write: Callable[[Any, Path], None]
     needs: tuple[str, ...] = ()
@@ -96,13 +96,13 @@ def write_mesh(mesh: Mesh, path: PathLike) -> None:
 
 
 def check_samples_target(path: PathLike) -> None:
-    """Raise now what writing samples to `path` would raise later, see `check_target`."""
+    """Raise now the errors that writing samples to `path` would raise later, see `check_target`."""
     suffix = _suffix_of_samples(path)
     _check_target(path, suffix, OF_SAMPLES)
 
 
 def check_mesh_target(path: PathLike) -> None:
-    """Raise now what writing a mesh to `path` would raise later, see `check_target`."""
+    """Raise now the errors that writing a mesh to `path` would raise later, see `check_target`."""
     _check_target(path, known_suffix(path, MESH_SUFFIXES), OF_MESHES)
 
 
@@ -112,13 +112,13 @@ def _check_target(path: PathLike, suffix: str, formats: Mapping[str, Format]) ->
 
 
 def _check_library(suffix: str, formats: Mapping[str, Format]) -> None:
-    """Raise MissingExtraError without the library that a format needs."""
+    """Raise MissingExtraError if the library that a format needs is missing."""
     if library := formats[suffix].library:
         check_extra(library, formats[suffix].extra, purpose=f"a {suffix} file")
 
 
 def _suffix_of_samples(path: PathLike) -> str:
-    """Return the suffix; UnknownNameError if it is none, with a hint if it is one of meshes."""
+    """Return the suffix; UnknownNameError if unknown, with a hint if it is one of meshes."""
     suffix = checked_path(path).suffix.lower()
     if suffix in MESH_SUFFIXES and suffix not in SUFFIXES:
         raise UnknownNameError(
@@ -129,7 +129,7 @@ def _suffix_of_samples(path: PathLike) -> str:
 
 
 def check_fields(path: PathLike, fields: Sequence[str]) -> None:
-    """Raise InputError if the format of a file, told by its suffix, needs other fields too."""
+    """Raise InputError if the format, known by the suffix, needs fields that are missing."""
     suffix = _suffix_of_samples(path)
     lacking = [repr(name) for name in OF_SAMPLES[suffix].needs if name not in fields]
     if lacking:
@@ -142,9 +142,9 @@ def check_fields(path: PathLike, fields: Sequence[str]) -> None:
 def read_samples(path: PathLike) -> Samples:
     """Read samples from a `.npz` or `.ply` file that `write_samples` wrote.
 
-    A `.ply` file that another program rewrote is read if it is binary and has all the columns. If
-    it has lost the comments that hold the report, the report's numbers are None. A file of fewer
-    fields says in a comment which these are. Nothing is ever unpickled.
+    A `.ply` file that another program rewrote can be read if it is binary and has all the columns.
+    If the comments that hold the report are lost, the report's numbers are None. A file with fewer
+    fields lists them in a comment. Nothing in the file is unpickled.
 
     Parameters
     ----------

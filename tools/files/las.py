@@ -1,4 +1,4 @@
-"""Point clouds of surveyors: .las files and .laz, compressed, by laspy."""
+"""Point clouds for surveying: .las files and compressed .laz files, by laspy."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from .reference_systems import wkt_of
 
 __all__ = ["write_las"]
 
-# Coordinates are whole numbers of steps, 32 bits each. Steps are this part of the extent, rounded
-# down to a power of ten: far below the distances of samples, and what is left of 32 bits suffices.
+# # Coordinates are stored as 32-bit multiples of a step. The step is this fraction of the extent,
+# rounded down to a power of ten: far below the distances of samples, and without overflow.
 STEP = 2.0**-27
 LARGEST = 2**31 - 1
 # A point format of LAS 1.4 without times and colours.
 FORMAT, VERSION = 6, "1.4"
-# Where the date of a file is, which laspy writes; 0 says that it is unknown.
+# # The offset of the date in a file, which laspy writes; 0 says that it is unknown.
 DATE = 90
 # The user and the number of the record that holds the report.
 USER, RECORD = "gaussmap", 1
@@ -54,7 +54,7 @@ def write_las(samples: Samples, path: Path) -> None:
     for name, column in arrays.items():
         cloud[name] = column.astype(_kept(column), copy=False)
     cloud.write(str(path))
-    with open(path, "r+b") as file:  # equal samples make equal files
+    with open(path, "r+b") as file:  # without the date, equal samples make equal files
         file.seek(DATE)
         file.write(bytes(4))
 
@@ -76,5 +76,5 @@ def _steps(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
 
 
 def _kept(column: NDArray[np.generic]) -> np.dtype[np.generic]:
-    """Return the type of an extra dimension: there are no booleans."""
+    """Return the type of an extra dimension; LAS has no booleans."""
     return np.dtype(np.uint8) if column.dtype == np.bool_ else column.dtype

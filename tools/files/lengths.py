@@ -54,12 +54,12 @@ NAMES = {**{x: x for x in METRES}, **{x: unit for unit, every in SYNONYMS.items(
 
 
 def unit_named(name: str) -> str | None:
-    """Return the unit that a file or a user calls so; None if there is no such unit."""
+    """Return the unit with a name used by files or users; None if the name is unknown."""
     return NAMES.get(name.strip().lower())
 
 
 def checked_unit(unit: object) -> str:
-    """Return the unit that a user calls so; InputError if there is no such unit."""
+    """Return the unit with a name; InputError if the name is unknown."""
     known = unit_named(unit) if isinstance(unit, str) else None
     if known is None:
         raise InputError(f"unit must be one of {', '.join(METRES)}, not {shown(unit)}.")
@@ -67,16 +67,16 @@ def checked_unit(unit: object) -> str:
 
 
 def whole_of(samples: Samples) -> Whole | None:
-    """Return the part on which samples are, or from which they were moved; None without one."""
+    """Return the part that the samples are on, or were moved from; None without one."""
     base = samples.offset_of
     surface = samples.surface if base is None else base.surface
     return surface if isinstance(surface, Whole) else None
 
 
 def unit_of(samples: Samples) -> str | None:
-    """Return the unit of length of samples: that of their report, or of their reference system.
+    """Return the unit of length of samples, from their report or their reference system.
 
-    None if it is not known. Reference systems are read by rasterio, if it is installed.
+    Returns None if it is unknown. Reference systems are read by rasterio, if it is installed.
     """
     if samples.report.unit is not None:
         return samples.report.unit
@@ -91,13 +91,13 @@ def unit_of(samples: Samples) -> str | None:
 
 
 def units_of(samples: Samples) -> dict[str, str]:
-    """Return the units of fields; L is replaced by the unit of length if that is known."""
+    """Return the units of fields; L is replaced by the unit of length if known."""
     unit = unit_of(samples)
     return {name: x if unit is None else x.replace("L", unit) for name, x in UNITS.items()}
 
 
 def names_with_units(samples: Samples) -> list[str]:
-    """Return the columns of samples, of lengths and curvatures with their unit if it is known."""
+    """Return the names of columns; lengths and curvatures have their unit if known."""
     units, known = units_of(samples), unit_of(samples) is not None
     return [
         f"{column} [{units[name]}]" if known and "L" in UNITS.get(name, "") else column

@@ -1,4 +1,4 @@
-"""NumPy's archives: all fields and the report, read again bit for bit."""
+"""NumPy archives of samples: all fields and the report, restored bit for bit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .reading import UnusableError
 
 __all__ = ["read_npz", "write_npz"]
 
-# Raised when the files change such that older versions of gaussmap would misread them.
+# # To be raised when the files change such that older versions of gaussmap would misread them.
 _VERSION = 1
 
 
@@ -26,14 +26,14 @@ def write_npz(samples: Samples, path: Path) -> None:
     if samples.fields != ARRAY_NAMES:
         arrays["fields"] = np.array(samples.fields)
     report = np.array(report_to_json(samples.report))
-    # Given a path, savez appends .npz to names that end in .NPZ. Not savez_compressed: it takes
-    # forty times as long, and saves a sixth.
+    # # savez appends .npz to paths that end in .NPZ, hence an open file. Not savez_compressed: it
+    # takes forty times as long, and saves a sixth.
     with open(path, "wb") as file:
         np.savez(file, format_version=np.int64(_VERSION), report=report, **arrays)
 
 
 def read_npz(file: BufferedReader) -> Samples:
-    """Read what `write_npz` wrote; nothing is unpickled."""
+    """Read an archive of `write_npz`; nothing is unpickled."""
     with archive_of(file) as archive:
         names = archive.names
         if "format_version" in names and int(archive.read("format_version")) > _VERSION:

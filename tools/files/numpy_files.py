@@ -1,4 +1,4 @@
-"""Arrays in files: FILE.npy, FILE.npz, or FILE.npz:NAME. Nothing is ever unpickled."""
+"""Arrays in files: FILE.npy, FILE.npz, or FILE.npz:NAME. Nothing is unpickled."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["array_file", "is_array_file", "read_array"]
 
 
 def is_array_file(source: str) -> bool:
-    """Say whether a text names an array in a file, which may not be there."""
+    """Return whether a text names an array in a file; the file need not exist."""
     return array_file(source).suffix.lower() in (".npy", ".npz")
 
 
@@ -47,7 +47,7 @@ def read_array(source: str) -> NDArray[Any]:
         raise FileError(f"'{file_name}' {error}") from error
     except OSError as error:
         raise FileError(f"'{file_name}' cannot be read: {error.strerror or error}.") from error
-    except Exception as error:  # NumPy and zipfile raise a dozen kinds on bad bytes
+    except Exception as error:  # NumPy and zipfile raise a dozen types of exceptions on bad bytes
         raise FileError(
             f"'{file_name}' is damaged, or holds objects instead of numbers "
             f"({type(error).__name__}: {error}); write it again with numpy.save or numpy.savez."

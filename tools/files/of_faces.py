@@ -1,4 +1,4 @@
-"""Columns of tables that say on which face of a part a sample lies."""
+"""Columns of tables that describe the face of a part on which a sample lies."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["columns_of_faces", "texts_of"]
 
 
 def columns_of_faces(samples: Samples) -> list[FaceColumn]:
-    """Return the columns, with their units; none unless samples know their part and faces."""
+    """Return the columns, with units; none unless the samples have a part and faces."""
     part = whole_of(samples)
     if part is None or samples.face_index is None:
         return []
@@ -25,7 +25,7 @@ def columns_of_faces(samples: Samples) -> list[FaceColumn]:
 
 
 def texts_of(column: FaceColumn, samples: Samples) -> NDArray[Any]:
-    """Return what a .csv file has in a column, for samples (N,)."""
+    """Return the values of a column in a .csv file, for samples (N,)."""
     return np.array([_text(x) for x in column.values], dtype=object)[samples.face_index]
 
 
