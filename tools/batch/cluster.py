@@ -27,13 +27,13 @@ from .workers import Tally, Worker, sampled
 
 __all__ = ["connected", "run_on_cluster"]
 
-# # The number of times a task may lose its worker and be given to another one.
+# The number of times a task may lose its worker and be given to another one.
 LOST = 10
-# # Seconds that a scheduler, or its first worker, may take to answer.
+# Seconds that a scheduler, or its first worker, may take to answer.
 PATIENCE = 30
-# # Waiting tasks for each worker: the scheduler knows of no others.
+# Waiting tasks for each worker: the scheduler knows of no others.
 AHEAD = 2
-# # The largest number of parts of a task, and the least number of tasks for each worker if there
+# The largest number of parts of a task, and the least number of tasks for each worker if there
 # are enough parts.
 MOST_PARTS, LEAST_TASKS = 64, 8
 
@@ -103,7 +103,7 @@ def run_on_cluster(
 
 def work(plan: Plan, parts: Sequence[Input]) -> Tally:
     """Sample parts by a process of this thread of a worker of Dask."""
-    # # Dask's nanny starts workers that may have no child processes, lest they are left behind. The
+    # Dask's nanny starts workers that may have no child processes, lest they are left behind. The
     # processes of a task end with it.
     multiprocessing.current_process().daemon = False
     worker = getattr(_HERE, "worker", None)
@@ -111,7 +111,7 @@ def work(plan: Plan, parts: Sequence[Input]) -> Tally:
         if worker is not None:
             worker.end()
         worker = _HERE.worker = Worker(plan)
-    # # A task whose run was given up may start after another run has begun.
+    # A task whose run was given up may start after another run has begun.
     if read_settings(plan.folder).to_json() != plan.settings.to_json():
         raise FileError(f"'{plan.folder}' holds another data set by now.")
     return sum(sampled(parts, [worker]), Tally())

@@ -413,7 +413,7 @@ class Dataset:
 
 
 def _samples(arrays: dict[str, NDArray[Any]], row: ManifestRow) -> Samples:
-    # # Imported here because these modules load Numba, which reading batches does not need.
+    # Imported here because these modules load Numba, which reading batches does not need.
     from ...runtime.samples.report import SamplingReport
     from ...runtime.samples.samples import Samples
 

@@ -102,7 +102,7 @@ class Settings:
     ) -> Settings:
         """Return settings of samples computed by this version of the package."""
         how = fields, dtype, compression, files
-        # # As they are read from JSON: tuples become lists.
+        # As they are read from JSON: tuples become lists.
         return cls.from_json(cls(asked, *how, __version__, digest(), FORMAT).to_json())
 
     def to_json(self) -> str:
@@ -240,7 +240,7 @@ def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Ite
         _refuse_links(path)
         path.mkdir(parents=True, exist_ok=True)
         if not (path / SETTINGS).exists() and any(
-            # # Left by a run that was killed while it wrote the settings.
+            # Left by a run that was killed while it wrote the settings.
             entry.name != LOCK and not entry.name.startswith(BEGUN)
             for entry in path.iterdir()
         ):

@@ -25,7 +25,7 @@ from .manifest import as_text
 __all__ = ["Input", "Source", "content_of", "inputs_of", "parameters_of"]
 
 Source = Surface | Spline | Part | str | os.PathLike[str]
-# # The fingerprint of a surface is its points at this number of parameters along u and along v:
+# The fingerprint of a surface is its points at this number of parameters along u and along v:
 # more than one cell has, so that small changes are seen, and fewer than sampling takes.
 LATTICE = 17
 
@@ -68,7 +68,7 @@ def inputs_of(sources: Iterable[Source]) -> Iterator[Input]:
 
 
 def _of_surface(part: int, surface: Surface | Spline | Part) -> Input:
-    # # Functions defined in the user's program or notebook can be unpickled only if they are
+    # Functions defined in the user's program or notebook can be unpickled only if they are
     # pickled by value.
     pickle = from_extra("cloudpickle", "batch", "a data set of surfaces")
     try:

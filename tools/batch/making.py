@@ -27,10 +27,10 @@ from .workers import Tally, run_locally
 
 __all__ = ["limits_of", "make", "progress", "watched"]
 
-# # The share of this machine's memory that all workers together may use.
+# The share of this machine's memory that all workers together may use.
 SHARE = 0.9
 
-# # Seconds between two lines of a log.
+# Seconds between two lines of a log.
 INTERVAL = 10.0
 
 
@@ -44,7 +44,7 @@ def watched(
     if dashboard is not None and not how.get("disable"):
         _Lines().write(f"Dask's dashboard: {dashboard}")
     failed = 0
-    # # The first parts take longer, and parts of an earlier run no time: the rate is a moving mean.
+    # The first parts take longer, and parts of an earlier run no time: the rate is a moving mean.
     with tqdm(total=parts, desc="sampling", unit="part", smoothing=0.1, **how) as bar:
         for tally in tallies:
             failed += tally.failed

@@ -139,9 +139,10 @@ def sample_many(
 
     Parameters
     ----------
-    The surfaces; an iterator may make them one by one. With `out` also CAD parts and paths: CAD
-    files, saved parts, GeoTIFFs, and points (m, n, 3) in .npy and .npz files (FILE.npz:NAME if the
-    file holds several arrays).
+    surfaces : iterable of Surface, Spline or str
+        The surfaces; an iterator may make them one by one. With `out` also CAD parts and paths: CAD
+        files, saved parts, GeoTIFFs, and points (m, n, 3) in .npy and .npz files (FILE.npz:NAME if
+        the file holds several arrays).
     count, normals, angle, coverage, density, cells, on, fields, dtype, threads : optional
         As in `sample`. With `out`, the default fields are all but indices, and each process has one
         thread.

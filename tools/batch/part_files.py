@@ -51,7 +51,7 @@ __all__ = [
 
 LONGEST_REASON = 100
 REMEDY = "remove it, and run the same sampling again"
-# # The fields that all samples have if requested, of surfaces and of CAD parts.
+# The fields that all samples have if requested, of surfaces and of CAD parts.
 ALWAYS = tuple(name for name in ARRAY_NAMES if name in ARRAY_NAMES_OF_PART)
 ROW, SETTINGS = b"row", b"settings"  # in the metadata of a part's schema
 ROWS_AT_ONCE = 1 << 16  # of the manifest

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["KEPT", "STOPPED", "Task", "serve"]
 
 GIB = 2**30
-# # The statuses beside "ok" and "failed": the part is unchanged; its samples cannot be written.
+# The statuses beside "ok" and "failed": the part is unchanged; its samples cannot be written.
 KEPT, STOPPED = "kept", "stopped"
 
 
@@ -38,8 +38,8 @@ class Task:
     ----------
     input : Input
         The part.
-    The plan of the run.
-        What to sample, and where the data set is.
+    plan : Plan
+        The plan of the run.
     before : ManifestRow or None
         The existing row of the part, which is kept if its content has not changed.
     again : bool
@@ -94,7 +94,7 @@ def _answers(task: Task) -> Iterator[dict[str, Any]]:
         warnings.simplefilter("always")
         try:
             surface, known = _source(task)
-            # # Sent first: the parent then knows it even if sampling kills this process.
+            # Sent first: the parent then knows it even if sampling kills this process.
             yield known
             if task.before is not None and known["content"] == task.before.content:
                 yield {"status": KEPT}

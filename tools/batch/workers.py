@@ -25,9 +25,9 @@ from .sampling import KEPT, STOPPED, Task, serve
 
 __all__ = ["Tally", "Worker", "run_locally", "sampled"]
 
-# # The number of failures that are shown when a run ends; the manifest has all.
+# The number of failures that are shown when a run ends; the manifest has all.
 SHOWN = 10
-# # A process has one thread, as one process runs on each core. Modules of users are found after
+# A process has one thread, as one process runs on each core. Modules of users are found after
 # those of Python and of packages, so that they hide none of these.
 ENVIRONMENT = dict.fromkeys(
     ("NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS",
@@ -131,7 +131,7 @@ class Worker:
             self._process, self.deadline = None, math.inf
 
     def _start(self) -> None:
-        # # Unlike the processes of multiprocessing, those of loky do not run the user's program
+        # Unlike the processes of multiprocessing, those of loky do not run the user's program
         # again.
         loky = from_extra("loky.backend", "batch", "a data set").get_context("loky")
         self.pipe, theirs = loky.Pipe()

@@ -22,7 +22,7 @@ __all__ = ["Apex", "apexes_of"]
 Array = NDArray[np.float64]
 
 SINGULAR = KINDS.index("singular")
-# # A side of the domain is mapped to one point if the points at PLACES parameters along it differ
+# A side of the domain is mapped to one point if the points at PLACES parameters along it differ
 # by at most ROUNDINGS units in the last place of the largest coordinate of all sides. The
 # coordinates of the point itself are no measure: near the origin they are small, but their rounding
 # errors are not.
@@ -41,7 +41,7 @@ class Apex:
     def decided(self, open_: Undecided, normals: Array) -> Undecided:
         """Return the boxes that may hold a point with their normal, one of normals (S, 3)."""
         low, high = 2 * self.axis, 2 * self.axis + 1
-        # # The boxes that touch the side.
+        # The boxes that touch the side.
         (rows,) = np.nonzero(
             (open_.kinds == SINGULAR)
             & (open_.boxes[:, low] <= self.end)

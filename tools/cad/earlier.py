@@ -16,7 +16,7 @@ __all__ = ["OF_SECOND", "is_of_first", "names_of_first", "of_second"]
 
 Arrays = dict[str, NDArray[Any]]
 
-# # The arrays that only version 1 has.
+# The arrays that only version 1 has.
 OF_FIRST = ("edge_faces", "edge_points", "edge_point_starts")
 OF_SECOND = (
     "vertices", "edge_vertices", "edge_degenerate", "edge_side_starts", "side_faces",

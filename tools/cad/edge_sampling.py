@@ -19,14 +19,14 @@ from .results import PartSpace
 
 __all__ = ["step_of", "with_edges"]
 
-# # The spacing is measured between at least this many positions on an edge.
+# The spacing is measured between at least this many positions on an edge.
 PLACES = 32
-# # The least number of steps between two ends: near corners, an edge may lose samples to its
+# The least number of steps between two ends: near corners, an edge may lose samples to its
 # neighbours.
 FEWEST = 2
-# # Ends of edges within this distance, relative to the size of the part, are one corner.
+# Ends of edges within this distance, relative to the size of the part, are one corner.
 SAME_CORNER = 1e-5
-# # A remainder smaller than this part of a step gets no sample of its own.
+# A remainder smaller than this part of a step gets no sample of its own.
 SLACK = 1e-6
 
 

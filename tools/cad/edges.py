@@ -26,17 +26,17 @@ __all__ = [
     "sides_at",
 ]
 
-# # Edges are sharp where the normals of the two faces differ by more than this, in degrees.
+# Edges are sharp where the normals of the two faces differ by more than this, in degrees.
 SHARP = 1.0
-# # Newton's method stops when the points on both faces are closer than SAME, relative to the size
+# Newton's method stops when the points on both faces are closer than SAME, relative to the size
 # of the part, and has succeeded if they are closer than FOUND times that.
 SAME, FOUND, MOST_ROUNDS = 1e-14, 1e3, 12
-# # The largest distance that Newton's method may move a point: this factor times the distance of
+# The largest distance that Newton's method may move a point: this factor times the distance of
 # the faces, over the sine of their angle.
 TIMES_APART = 3.0
-# # Points of a file where the two faces are farther apart, relative to the size, are on no edge.
+# Points of a file where the two faces are farther apart, relative to the size, are on no edge.
 APART = 1e-4
-# # A surface collapses where one of |x_u|, |x_v| is this many times the other; parameters that
+# A surface collapses where one of |x_u|, |x_v| is this many times the other; parameters that
 # exceed the domain by less than this part of it are moved to its end.
 COLLAPSED, BEYOND = 1e10, 1e-12
 

@@ -29,13 +29,13 @@ __all__ = ["face_index"]
 
 Array = NDArray[np.float64]
 
-# # The cells of an index before bisection: faces are simple, and there are many.
+# The cells of an index before bisection: faces are simple, and there are many.
 CELLS = (4, 4)
-# # A side of the domain may be one point if the distance of its ends is less than this part of the
+# A side of the domain may be one point if the distance of its ends is less than this part of the
 # largest such distance.
 CLOSE = 1e-3
 SINGULAR = KINDS.index("singular")
-# # The indices of Taylor coefficients in bounds.
+# The indices of Taylor coefficients in bounds.
 U1, V1, U2, U1V1, V2 = range(1, 6)
 
 

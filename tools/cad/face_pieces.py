@@ -42,23 +42,23 @@ Array = NDArray[np.float64]
 
 # Angles are divided into parts of at most this, in radians.
 ANGLE = 0.25
-# # The least number of parts between two knots, for polynomials of higher degrees may turn there,
+# The least number of parts between two knots, for polynomials of higher degrees may turn there,
 # unless there would be more than MOST_PARTS parts along a parameter.
 PARTS_OF_SPAN, MOST_PARTS = 2, 64
 # Lines that are closer to one another than this part of the domain are one.
 SAME_LINE = 1e-9
-# # The number of parts along each parameter of a surface whose function is not known.
+# The number of parts along each parameter of a surface whose function is not known.
 PARTS_OF_SURFACE = 16
-# # Curvatures at a pole are those at this distance from it, relative to the domain.
+# Curvatures at a pole are those at this distance from it, relative to the domain.
 BESIDE = 1e-6
 CURVATURES = ("gaussian_curvature", "mean_curvature")
-# # Where no proof is possible, and for normals of lattices, points are searched on a spline: the
+# Where no proof is possible, and for normals of lattices, points are searched on a spline: the
 # number of its cells for each part of a span, and the least and largest number of cells. Near the
 # boundary, the error of the spline loses points.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
-# # Measurements on a raster of a face use about this number of positions, squared.
+# Measurements on a raster of a face use about this number of positions, squared.
 RASTER = 64
-# # The parameters that are angles, for each kind of face.
+# The parameters that are angles, for each kind of face.
 ANGLES = {
     "cylinder": (True, False),
     "cone": (True, False),

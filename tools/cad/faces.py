@@ -37,7 +37,7 @@ TURN = 2.0 * math.pi
 QUARTER = math.pi / 2.0
 OPEN: BoundaryPair = ("open", "open")
 PERIODIC: BoundaryPair = ("periodic", "periodic")
-# # A loop is the boundary of the domain if it is within this distance of it, relative to the
+# A loop is the boundary of the domain if it is within this distance of it, relative to the
 # domain.
 ON_BORDER = 1e-9
 
@@ -81,7 +81,7 @@ def face_surface(
     if shape.placement is None:
         surface = Surface(name, function, *ends, trim=trim, assumed_open=assumed)
         return surface.flipped() if is_reversed else surface
-    # # Placed and reversed in one step, for such faces are many. Both ends of u have the same
+    # Placed and reversed in one step, for such faces are many. Both ends of u have the same
     # boundary condition.
     moved = Moved(Surface(name, function, *ends), shape.placement, is_reversed, shape.domain[0])
     if is_reversed and trim is not None:

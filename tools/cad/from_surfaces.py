@@ -30,7 +30,7 @@ from .surface_geometry import geometry_of_surface
 
 __all__ = ["part_of_surfaces"]
 
-# # Boundaries coincide within this distance, relative to the size of all surfaces.
+# Boundaries coincide within this distance, relative to the size of all surfaces.
 TOLERANCE = 1e-6
 
 
@@ -45,7 +45,7 @@ def part_of_surfaces(
     held, known = _checked(surfaces), None if unit is None else checked_unit(unit)
     most = None if tolerance is None else positive_number(tolerance, "tolerance")
     faces = [_face(x) for x in held]
-    # # The areas are not known yet, and faces without an area are not made into pieces.
+    # The areas are not known yet, and faces without an area are not made into pieces.
     bare = part_of(
         PartRecord(text(name, "name"), known or "", METRES.get(known or "", 1.0), False, faces)
     )

@@ -28,11 +28,11 @@ HEAD = 4096
 START_OF_STEP = re.compile(rb"(?<!END-)ISO-10303-21\s*;")
 END_OF_STEP = b"END-ISO-10303-21"
 BREP = (b"DBRep_DrawableShape", b"CASCADE Topology V")
-# # Decimal exponents that are too large: greater than 307.
+# Decimal exponents that are too large: greater than 307.
 TOO_LARGE = rb"e\+?0*(?:30[89]|3[1-9]\d|[4-9]\d\d|\d{4,})"
 SUSPICIOUS = re.compile(rb"nan|inf|" + TOO_LARGE)
 NUMBER = rb"[-+]?(?:nan|inf(?:inity)?|\d*\.?\d*" + TOO_LARGE + rb")"
-# # A number that is not finite, in the aggregates of STEP, the lists of IGES and the lines of BREP.
+# A number that is not finite, in the aggregates of STEP, the lists of IGES and the lines of BREP.
 NOT_FINITE = {
     "STEP": re.compile(rb"[(,]\s*" + NUMBER + rb"\s*(?=[,)])", re.IGNORECASE),
     "IGES": re.compile(rb"[,;]\s*" + NUMBER + rb"\s*(?=[,;])", re.IGNORECASE),
@@ -47,7 +47,7 @@ SHELL = re.compile(
 REFERENCE = re.compile(rb"#\d+")
 # The types of entities of IGES that are faces: bounded and trimmed surfaces, and faces of shells.
 IGES_FACES = (b"143", b"144", b"510")
-# # Names of arrays that every part saved by gaussmap has.
+# Names of arrays that every part saved by gaussmap has.
 NAMES = {"about.npy", "face_loops.npy"}
 
 

@@ -16,13 +16,13 @@ from .results import space_of
 
 __all__ = ["bounds_of", "gap_of", "integrals_of", "signs_of", "volume_of"]
 
-# # Nodes and weights of Gauss's rule on [0, 1], for each span of a surface and each segment of a
+# Nodes and weights of Gauss's rule on [0, 1], for each span of a surface and each segment of a
 # boundary.
 NODES, WEIGHTS = (x / 2.0 for x in np.polynomial.legendre.leggauss(5))
 NODES = NODES + 0.5
-# # The number of steps of Newton's method.
+# The number of steps of Newton's method.
 STEPS = 8
-# # A point this far to the left of a boundary, relative to the domain, decides on which side the
+# A point this far to the left of a boundary, relative to the domain, decides on which side the
 # face is.
 BESIDE = 1e-6
 
@@ -62,7 +62,7 @@ def integrals_of(piece: FacePiece, centre: Array) -> tuple[float, float]:
     total = np.zeros(2)
     for polygon, sign in zip(piece.polygons, signs_of(piece), strict=True):
         places, steps = _divided(polygon, lines)
-        # # Segments of constant v have dv = 0.
+        # Segments of constant v have dv = 0.
         places, steps = (x[steps[:, 1] != 0.0] for x in (places, steps))
         ends = (places[:, None] + NODES[:, None] * steps[:, None]).reshape(-1, 2)
         weights = sign * (WEIGHTS * steps[:, 1:]).ravel()
@@ -140,7 +140,7 @@ def bounds_of(part: Part) -> Array:
         for polygon in piece.polygons:
             starts, steps = _divided(polygon, lines)
             points, ends = _points(piece, starts), _points(piece, starts + steps)
-            # # A segment that turns by less than half a turn stays within this radius of its start.
+            # A segment that turns by less than half a turn stays within this radius of its start.
             reach = np.linalg.norm(ends - points, axis=1)
             found.append((piece, starts, steps, points, reach))
     directions = np.concatenate([-np.eye(3), np.eye(3)])

@@ -18,11 +18,11 @@ from .results import PartSpace
 
 __all__ = ["MeshEdges", "SampledEdges"]
 
-# # The spacing along an edge is measured at this many steps of equal parameters.
+# The spacing along an edge is measured at this many steps of equal parameters.
 PLACES = 64
-# # The least number of steps of a closed edge.
+# The least number of steps of a closed edge.
 CLOSED = 3
-# # Ends of an edge without vertices are one if closer than this, relative to the size.
+# Ends of an edge without vertices are one if closer than this, relative to the size.
 SAME = 1e-7
 
 

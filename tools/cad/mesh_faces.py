@@ -13,10 +13,10 @@ from .mesh_edges import SampledEdges
 
 __all__ = ["EXTRA", "Crossing", "FaceBorder", "triangles_of"]
 
-# # Shapely's constrained triangulations have no interior points; SciPy's have no constraints; the
+# Shapely's constrained triangulations have no interior points; SciPy's have no constraints; the
 # library `triangle` is not free for all uses. The predicates of pythoncdt are exact.
 EXTRA = "pythoncdt", "mesh", "a mesh of a CAD part"
-# # Parameter pairs are equal if they are as close as this, relative to the face.
+# Parameter pairs are equal if they are as close as this, relative to the face.
 SAME = 1e-11
 
 
@@ -68,7 +68,7 @@ def triangles_of(border: FaceBorder, places: Array) -> tuple[Indices, Indices]:
     low = places.min(axis=0)
     size = float(np.ptp(places, axis=0).max())
     keys = np.round((places - low) / (SAME * size))
-    # # Complex numbers are sorted much faster than rows.
+    # Complex numbers are sorted much faster than rows.
     _, firsts, same = np.unique(keys @ [1.0, 1.0j], return_index=True, return_inverse=True)
     order = np.argsort(firsts)  # vertices in the order of their first positions
     firsts, rank = firsts[order], np.argsort(order)

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 __all__ = ["graded"]
 
-# # The size grows by at most this much for each unit of distance from an edge.
+# The size grows by at most this much for each unit of distance from an edge.
 GROWTH = 0.55
-# # Cells are halved until the sizes in each differ by about this fraction of the smallest.
+# Cells are halved until the sizes in each differ by about this fraction of the smallest.
 UNEVEN = 0.5
 
 

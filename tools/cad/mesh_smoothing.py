@@ -16,7 +16,7 @@ __all__ = ["smoothed"]
 
 # Vertices of triangles with an angle below SMALL degrees move, at most ROUNDS times.
 SMALL, ROUNDS = 30.0, 6
-# # The ratio of height and side of an equilateral triangle.
+# The ratio of height and side of an equilateral triangle.
 EVEN = math.sqrt(0.75)
 
 
@@ -34,12 +34,12 @@ def smoothed(
         thin[triangles[tangents < math.tan(math.radians(SMALL))]] = True
         chosen = np.flatnonzero(thin & free)
         rows, corners = np.nonzero((thin & free)[triangles])
-        # # The triangles around the chosen vertices, rotated so that these are first corners.
+        # The triangles around the chosen vertices, rotated so that these are first corners.
         around = triangles[rows[:, None], (corners[:, None] + np.arange(3)) % 3]
         owner = np.searchsorted(chosen, around[:, 0])
         steps = _steps(points[around], tangents[rows], owner, len(chosen))
         moved = _moved(space, pieces[chosen], known, chosen, steps)
-        # # At the ends of its domain a surface may be undefined.
+        # At the ends of its domain a surface may be undefined.
         lost = ~np.isfinite(moved.vectors[:, 0]).all(axis=1)
         for mine, others in zip(moved, known, strict=True):
             mine[lost] = others[chosen[lost]]

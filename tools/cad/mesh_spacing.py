@@ -29,18 +29,18 @@ from .results import PartSpace
 
 __all__ = ["ByNormals", "Spacing", "TurnedPiece", "least_enough"]
 
-# # Normals are compared at this number of values of each parameter, and at all knots.
+# Normals are compared at this number of values of each parameter, and at all knots.
 PLACES = 33
-# # A face whose normals turn by less than this along a parameter, in radians, is ruled; a straight
+# A face whose normals turn by less than this along a parameter, in radians, is ruled; a straight
 # edge as long as the part counts as this angle.
 RULED = 1e-6
-# # The least weight of one parameter relative to the other.
+# The least weight of one parameter relative to the other.
 LEAST = 1e-3
-# # The weight of the turning of an edge relative to that of normals.
+# The weight of the turning of an edge relative to that of normals.
 CURVED = 0.5
-# # The largest step, relative to the mean step.
+# The largest step, relative to the mean step.
 LONGEST = 3.0
-# # The distance of the planes of different faces, in radians.
+# The distance of the planes of different faces, in radians.
 APART = 100.0
 
 
@@ -50,9 +50,9 @@ class Spacing:
 
     space: PartSpace
     count: int
-    # # Whether triangles are to be well shaped, rather than close to the normals.
+    # Whether triangles are to be well shaped, rather than close to the normals.
     by_shape: ClassVar[bool] = True
-    # # The density is κ^(2 · exponent): triangles of size h are κ h²/8 from the surface, which is
+    # The density is κ^(2 · exponent): triangles of size h are κ h²/8 from the surface, which is
     # constant if 1/h² is proportional to κ.
     exponent: ClassVar[float] = 0.5
 

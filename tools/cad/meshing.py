@@ -45,12 +45,12 @@ from .results import PartSpace, space_of
 
 __all__ = ["mesh_of_part", "mesh_of_samples"]
 
-# # Where a face has no normal, the normal at this fraction of the way into the triangle is taken.
+# Where a face has no normal, the normal at this fraction of the way into the triangle is taken.
 INSIDE = 1e-6
-# # The number of times that edges are divided further, until triangles are valid; and the number of
+# The number of times that edges are divided further, until triangles are valid; and the number of
 # times that samples outside of the polygons around faces are replaced.
 ROUNDS, REFILLS = 15, 8
-# # If a mesh has faults, larger counts are tried, each MORE times the one before, up to MANY times
+# If a mesh has faults, larger counts are tried, each MORE times the one before, up to MANY times
 # the least count of the edges. The error names the first count whose mesh has no faults.
 MORE, MANY = 1.2, 16
 # The densities of samples that meshes follow.

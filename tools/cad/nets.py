@@ -19,7 +19,7 @@ __all__ = ["SAME_END", "curve_of_net", "line_of", "nurbs_of_curve", "nurbs_of_ne
 
 Array = NDArray[np.float64]
 
-# # Ends of domains that differ by less than this, relative to the period or the length, are equal:
+# Ends of domains that differ by less than this, relative to the period or the length, are equal:
 # CAD systems compare parameters to 1e-9, and faces leave larger gaps along their seams.
 SAME_END = 1e-7
 

@@ -33,10 +33,10 @@ __all__ = ["OffsetSurface", "Turned"]
 
 Array = NDArray[np.float64]
 
-# # A step is the largest power of two up to this fraction of a knot span.
+# A step is the largest power of two up to this fraction of a knot span.
 STEP = 1 / 128
 NODES = np.arange(9)[:, None] - 4
-# # Where the basis has no normal, at a pole or an apex, it is taken at this distance from there,
+# Where the basis has no normal, at a pole or an apex, it is taken at this distance from there,
 # relative to the domain.
 BESIDE = 1e-7
 

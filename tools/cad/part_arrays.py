@@ -18,7 +18,7 @@ from .records import KINDS, FaceRecord, Geometry, Net, PartRecord
 __all__ = ["FORMAT", "VERSION", "differences", "geometry_of", "packed"]
 
 FORMAT = "gaussmap part"
-# # To be raised when the arrays change such that older versions of gaussmap would misread them.
+# To be raised when the arrays change such that older versions of gaussmap would misread them.
 VERSION = 2
 
 Arrays = dict[str, NDArray[Any]]

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 __all__ = ["KINDS", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord", "Wire"]
 
 Array = NDArray[np.float64]
-# # The edges along a loop, in order: (edge, index among its sides, whether traversed backwards).
+# The edges along a loop, in order: (edge, index among its sides, whether traversed backwards).
 Wire = list[tuple[int, int, bool]]
 
-# # The kinds of faces, with the lengths of their numbers (see `saving`). Append only: files hold
+# The kinds of faces, with the lengths of their numbers (see `saving`). Append only: files hold
 # indices of this list. "unknown" is for failed faces whose kind is not known, "surface" for faces
 # that hold a `Surface` in memory, which no file has.
 KINDS: dict[str, int] = {

@@ -24,7 +24,7 @@ __all__ = ["PartSpace", "space_of", "weights_of"]
 
 Array = NDArray[np.float64]
 
-# # The number of cells per sample; their areas are distributed to the samples.
+# The number of cells per sample; their areas are distributed to the samples.
 CELLS_A_SAMPLE = 16
 
 

@@ -32,10 +32,10 @@ Indices = NDArray[np.int64]
 ROUND = ("plane", "cylinder", "cone", "sphere", "torus")
 TURN = 2.0 * math.pi
 EPS = 2.0**-52
-# # The error of angles of Mᵀ n is at most this times the condition number of M: products of three
+# The error of angles of Mᵀ n is at most this times the condition number of M: products of three
 # terms, roots and inverse functions of the C library have a few roundings each.
 ANGLE_ERROR = 16.0 * EPS
-# # Normals farther than this from those of a plane, a cylinder or a cone are rejected first.
+# Normals farther than this from those of a plane, a cylinder or a cone are rejected first.
 NEAR = 1e-6
 CONTINUUM, SINGULAR = KINDS.index("continuum"), KINDS.index("singular")
 

@@ -77,11 +77,11 @@ from .records import KINDS, PartRecord
 __all__ = ["about_of", "checked_arrays", "dtypes", "read_arrays", "write_arrays", "write_record"]
 
 SUFFIXES = (".npz",)
-# # A part of 100,000 faces takes about 1 GB.
+# A part of 100,000 faces takes about 1 GB.
 MOST_BYTES = 4 << 30
 Arrays = dict[str, NDArray[Any]]
 
-# # For each array, the letter of its type and its shape: arrays share lengths with the same letter,
+# For each array, the letter of its type and its shape: arrays share lengths with the same letter,
 # "*" is any length.
 SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "about": ("B", ("*",)),
@@ -118,7 +118,7 @@ SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "face_wires": ("q", ("F+1",)),
 }
 MOST_DEGREE = 25
-# # The reason of faces that are not usable, while the others of the part are.
+# The reason of faces that are not usable, while the others of the part are.
 NOT_FINITE = "its numbers are not finite"
 
 
@@ -235,7 +235,7 @@ def _check_surfaces(arrays: Arrays) -> None:
     _require(_within(net, -1, len(arrays["net_shapes"])), "net")
     _require((~with_net | (net >= 0)).all(), "net")
     places = np.arange(len(kind))
-    # # A basis comes after the surfaces that use it, so that there are no cycles.
+    # A basis comes after the surfaces that use it, so that there are no cycles.
     _require(((basis == -1) | ((basis > places) & (basis < len(kind)))).all(), "basis")
     _require(((kind != names.index("offset")) | (basis >= 0)).all(), "basis")
     curves = arrays["net_degrees"][:, 1] == 0

@@ -31,7 +31,7 @@ __all__ = ["select"]
 
 Axis = tuple[ArrayLike, SupportsFloat]
 
-# # Colours may be rounded to 8 bits.
+# Colours may be rounded to 8 bits.
 SAME_COLOUR = 0.75 / 255.0
 
 

@@ -23,14 +23,14 @@ from .records import EdgeRecord, Wire
 
 __all__ = ["Border", "Sewn", "sewn"]
 
-# # A boundary has a corner where it turns by more than this, in degrees.
+# A boundary has a corner where it turns by more than this, in degrees.
 CORNER = 30.0
-# # The number of steps between which points of a side are tabulated, and of iterations of Newton's
+# The number of steps between which points of a side are tabulated, and of iterations of Newton's
 # method, which finds the nearest point of the side from the nearest of these.
 STEPS, ROUNDS = 64, 8
-# # Edges nearly coincide if their distance is less than this, relative to their length.
+# Edges nearly coincide if their distance is less than this, relative to their length.
 NEARLY = 0.01
-# # The parameters of an edge are tabulated at this number of steps, doubled up to the largest
+# The parameters of an edge are tabulated at this number of steps, doubled up to the largest
 # number until cubics between them have this error, relative to the length.
 STEPS_OF_EDGE, MOST_STEPS, EXACT = 32, 512, 1e-6
 
@@ -119,7 +119,7 @@ class Side:
         starts = np.concatenate([even[inside], [low, high]])
         places = np.concatenate([self.known[inside], self.points(np.array([low, high]))[0]])
         squares = ((points[:, None] - places) ** 2).sum(axis=2)
-        # # Two starts: both ends may be the same point, from which Newton's method goes one way
+        # Two starts: both ends may be the same point, from which Newton's method goes one way
         # only.
         t = starts[np.argsort(squares, axis=1)[:, :2]].T.ravel()
         points = np.concatenate([points, points])
@@ -174,7 +174,7 @@ class Span:
         t = self.side.nearest(leader.inner(steps), self.low, self.high)[0]
         ends = [self.high, self.low] if backwards else [self.low, self.high]
         t = np.concatenate([ends[:1], t, ends[1:]])
-        # # Where both are nearly the same point, they may be out of order.
+        # Where both are nearly the same point, they may be out of order.
         return np.minimum.accumulate(t) if backwards else np.maximum.accumulate(t)
 
 
@@ -271,7 +271,7 @@ def _lines(spans: Sequence[Span], tolerance: float) -> list[dict[Span, bool]]:
     """Return groups of spans on one line; the values say which run backwards to the first."""
     lines, between = list[dict[Span, bool]](), defaultdict[Any, list[dict[Span, bool]]](list)
     for span in spans:
-        # # Spans that are points share vertices only.
+        # Spans that are points share vertices only.
         known = [] if span.is_point else between[frozenset((span.first, span.last))]
         for line in known:
             backwards = span.same(next(iter(line)), tolerance)

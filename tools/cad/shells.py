@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Shell", "shells_of"]
 
-# # A shell lies inside another one if, of about PROBES of its points, at least the share INSIDE
+# A shell lies inside another one if, of about PROBES of its points, at least the share INSIDE
 # does.
 PROBES, INSIDE = 100, 0.9
 
@@ -56,7 +56,7 @@ def shells_of(
     """
     shells = [_outward(x, heights) for x in _connected(pieces, found, borders)]
     closed = [k for k, x in enumerate(shells) if x.closed]
-    # # A shell can only be inside a larger one.
+    # A shell can only be inside a larger one.
     closed.sort(key=lambda k: -sum(sign * heights[f] for f, sign in shells[k].signs.items()))
     points = {k: _Points.of(shells[k], pieces) for k in closed} if len(closed) > 1 else {}
     solid_of_hollow = dict[int, int]()

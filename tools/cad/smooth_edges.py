@@ -14,11 +14,11 @@ from .results import PartSpace
 
 __all__ = ["each_once"]
 
-# # Points with the same normal on connected faces are equal if closer than this, relative to the
+# Points with the same normal on connected faces are equal if closer than this, relative to the
 # size of the part. Near a smooth edge no two points have the same normal and curvatures of the same
 # sign.
 SAME = 1e-8
-# # Coordinates along this direction sort points; on symmetric parts, few are equal.
+# Coordinates along this direction sort points; on symmetric parts, few are equal.
 DIRECTION = np.array([0.52, 0.47, 0.71])
 
 

@@ -21,7 +21,7 @@ from .records import Geometry, Net
 
 __all__ = ["geometry_of_surface"]
 
-# # Axes are perpendicular, and scales are equal, up to this; otherwise circles become ellipses.
+# Axes are perpendicular, and scales are equal, up to this; otherwise circles become ellipses.
 SAME = 1e-9
 
 

@@ -16,7 +16,7 @@ from ...runtime.surface.traced import Traced
 
 __all__ = ["turned_tape"]
 
-# # The curve does not depend on u: there is one span in u, which holds all angles of faces.
+# The curve does not depend on u: there is one span in u, which holds all angles of faces.
 ALL_ANGLES = np.array([-64.0, 64.0])
 
 

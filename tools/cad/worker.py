@@ -24,7 +24,7 @@ def main(text: str) -> None:
     request = json.loads(text)
     folder = Path(request["folder"])
     end_with_parent("SIGTERM")
-    # # A limit of processor time, in case the parent process has ended.
+    # A limit of processor time, in case the parent process has ended.
     limit(RLIMIT_AS=int(request["memory"]), RLIMIT_CPU=int(request["seconds"]) + 5)
     try:
         message = _read(request, folder)

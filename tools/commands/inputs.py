@@ -72,7 +72,7 @@ def _spare_inputs(options: SimpleNamespace) -> None:
     """Raise InputError if the output file is one of the input files."""
     for source in (options.surface, options.normals):
         if source is not None and (is_array_file(source) or is_raster_file(source)):
-            # # A missing file is reported where it is opened.
+            # A missing file is reported where it is opened.
             with suppress(OSError):
                 if os.path.samefile(array_file(source), options.output):
                     raise InputError(f"'{options.output}' is read; write to another file.")

@@ -14,7 +14,7 @@ from ..files.paths import reason_of
 
 __all__ = ["listed"]
 
-# # The suffixes of the files that are taken from folders.
+# The suffixes of the files that are taken from folders.
 SUFFIXES = (*CAD_SUFFIXES, ".npz", ".npy", *RASTER_SUFFIXES)
 
 

@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 FIRST_ARCS, MOST_ARCS = 64, 1 << 14
-# # An interval is not halved further if the normal turns by less than this (radians) in it, or if
+# An interval is not halved further if the normal turns by less than this (radians) in it, or if
 # it is shorter than this, relative to the domain, where the curve is singular.
 SMALLEST_TURN, SHORTEST = 1e-12, 2.0**-36
 # Steps of Newton's method and of bisection: more than a float has digits.
@@ -203,7 +203,7 @@ def _kinds(tape: Tape, intervals: Array) -> NDArray[np.int8]:
     bounds = bounds_over_boxes(
         tape, np.column_stack([centres, zero]), np.column_stack([half, zero])
     )
-    # # Taylor coefficients: x″ is twice the coefficient of u².
+    # Taylor coefficients: x″ is twice the coefficient of u².
     first, second = bounds[:, :, 1, :2], 2.0 * bounds[:, :, 3, :2]
     low, high = first[:, 0] - first[:, 1], first[:, 0] + first[:, 1]
     towards = first[:, 0]

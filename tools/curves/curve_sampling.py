@@ -40,10 +40,10 @@ Array = NDArray[np.float64]
 
 # The largest number of attempts to meet `count` by changing the number of normals.
 TRIES = 6
-# # Arcs that this many uniform normals would sample are not straight, even if fewer normals are
+# Arcs that this many uniform normals would sample are not straight, even if fewer normals are
 # used.
 LEAST_NORMALS = 1_000
-# # The curves on which samples may lie.
+# The curves on which samples may lie.
 PLACES = ("curve", "spline")
 
 
@@ -70,12 +70,12 @@ class CurveReport:
     on : {"curve", "spline"}
         The curve on which the samples lie.
     proved : int or None
-        The number of prescribed normals of which all points are known, with a proof; None on
         The number of prescribed normals for which all points are proved to be found; None on
         splines.
-        Rows of the other normals: those of inflections and straight parts, up to rounding, and all
+    undecided : tuple of int
         Rows of the other normals: those of inflections and straight parts, up to rounding, or all
         if the curve has singular points.
+
     Examples
     --------
     >>> import gaussmap as gm
@@ -113,15 +113,15 @@ class CurveSamples:
     points : (N, 2) float64 array
         Points of the curve, in L.
     normals : (N, 2) float64 array
-        Unit normals at the points: the tangent turned clockwise.
-    Unit normals at the points: the tangent rotated clockwise by 90°.
+        Unit normals at the points: the tangent rotated clockwise by 90°.
+    parameters : (N,) float64 array
         The parameters of the points.
     support : (N,) float64 array
         Support function h = n·x, in L.
     curvature : (N,) float64 array
         In 1/L, positive on a circle with outward normals. Its sign bit is the sense in which the
-        In 1/L, positive on a circle with outward normals. Its sign bit is the sense in which the
         normal turns, even where the curvature is rounded to 0.
+    normal_index : (N,) int64 array
         Rows of the prescribed normals.
     piece_index : (N,) int64 array
         Arcs of the spline that contain the points, or arcs of the curve on which the normal turns
@@ -406,7 +406,7 @@ def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
     n, arcs = plane_vector(mine), spline._arcs(piece)
     A = mine[:, 0] * arcs.a.x + mine[:, 1] * arcs.a.y
     with np.errstate(all="ignore"):  # where κ ≈ 0
-        # # If the turning angle of an arc is within rounding, the parameter is arbitrary on it.
+        # If the turning angle of an arc is within rounding, the parameter is arbitrary on it.
         inside = np.clip(python_function(formulas.arc_parameter)(arcs, n), 0.0, 1.0)
         t: Array = np.where(A != 0.0, inside, 0.5)
         x, curvature = python_function(formulas.arc_sample)(arcs, t, A)

@@ -21,7 +21,7 @@ __all__ = ["write_arrow", "write_parquet"]
 def write_parquet(samples: Samples, path: Path) -> None:
     """Write a column for each component of a field, and the report in the schema's metadata."""
     table = _table(samples, path)
-    # # No dictionary encoding: values seldom repeat, and trying it takes half of the time.
+    # No dictionary encoding: values seldom repeat, and trying it takes half of the time.
     from_extra("pyarrow.parquet", "tables", "a .parquet file").write_table(
         table, path, use_dictionary=False
     )

@@ -17,13 +17,13 @@ from .reference_systems import wkt_of
 
 __all__ = ["write_las"]
 
-# # Coordinates are stored as 32-bit multiples of a step. The step is this fraction of the extent,
+# Coordinates are stored as 32-bit multiples of a step. The step is this fraction of the extent,
 # rounded down to a power of ten: far below the distances of samples, and without overflow.
 STEP = 2.0**-27
 LARGEST = 2**31 - 1
 # A point format of LAS 1.4 without times and colours.
 FORMAT, VERSION = 6, "1.4"
-# # The offset of the date in a file, which laspy writes; 0 says that it is unknown.
+# The offset of the date in a file, which laspy writes; 0 says that it is unknown.
 DATE = 90
 # The user and the number of the record that holds the report.
 USER, RECORD = "gaussmap", 1

@@ -19,13 +19,13 @@ __all__ = ["UnusableError", "curve_net", "knots_of"]
 
 Array = NDArray[np.float64]
 
-# # Curves other than NURBS, such as circles, become splines of this degree that interpolate them.
+# Curves other than NURBS, such as circles, become splines of this degree that interpolate them.
 # The number of spans is doubled until the error, relative to the size of the curve, is that of
 # rounding. Third derivatives of shorter spans would have larger errors, and offsets need them: the
 # circle has four spans.
 DEGREE, MOST_SPANS = 13, 1024
 ROUNDING = 4e-15
-# # The length of the extension of a line beyond its domain, relative to the domain.
+# The length of the extension of a line beyond its domain, relative to the domain.
 BEYOND = 0.1
 
 

@@ -130,7 +130,7 @@ def _color(label: Any) -> Color | None:  # noqa: ANN401
     color = Quantity_Color()
     for kind in (XCAFDoc_ColorType.XCAFDoc_ColorSurf, XCAFDoc_ColorType.XCAFDoc_ColorGen):
         if XCAFDoc_ColorTool.GetColor_s(label, kind, color):
-            # # Values as in files: Open CASCADE itself holds linear values, in single precision.
+            # Values as in files: Open CASCADE itself holds linear values, in single precision.
             red, green, blue = color.Values(Quantity_TypeOfColor.Quantity_TOC_sRGB)
             return round(red, DIGITS), round(green, DIGITS), round(blue, DIGITS)
     return None

@@ -31,7 +31,7 @@ __all__ = ["Topology", "topology_of"]
 Array = NDArray[np.float64]
 Wires = list[Wire]
 
-# # The number of points on a p-curve that is not straight: one for each angle on circles, a number
+# The number of points on a p-curve that is not straight: one for each angle on circles, a number
 # for each piece of others, and the least and the largest number.
 ANGLE, POINTS_A_PIECE, LEAST, MOST = 0.15, 4, 9, 1025
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED

@@ -24,7 +24,7 @@ __all__ = ["FaceReader", "area_of"]
 
 Array = NDArray[np.float64]
 
-# # The smallest area, in mm², that counts as positive: points within 1e-7 mm are equal to Open
+# The smallest area, in mm², that counts as positive: points within 1e-7 mm are equal to Open
 # CASCADE.
 LEAST_AREA = 1e-12
 

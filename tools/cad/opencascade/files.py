@@ -23,7 +23,7 @@ from .shapes import sequence
 
 __all__ = ["read_file"]
 
-# # The texts in Open CASCADE's checks, in lower case, that make an entity unusable.
+# The texts in Open CASCADE's checks, in lower case, that make an entity unusable.
 UNRESOLVED = "unresolved"
 DAMAGE = ("not a real", UNRESOLVED)
 

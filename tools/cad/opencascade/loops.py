@@ -23,14 +23,14 @@ Array = NDArray[np.float64]
 # The edges of each wire of a face and their p-curves, one after another.
 EdgeCurves = list[list[tuple[Any, PCurve]]]
 
-# # The largest distance of polygons from the curves, relative to the (u, v) box of the face and to
+# The largest distance of polygons from the curves, relative to the (u, v) box of the face and to
 # its mean width in it, but not less than the last.
 OF_BOX, OF_WIDTH, LEAST = 1e-4, 1e-3, 1e-7
-# # The largest gap between consecutive curves, relative to the box.
+# The largest gap between consecutive curves, relative to the box.
 GAP = 1e-2
-# # Points are equal up to this distance, relative to the box.
+# Points are equal up to this distance, relative to the box.
 SAME = 1e-12
-# # Numbers from here on stand for infinity in Open CASCADE.
+# Numbers from here on stand for infinity in Open CASCADE.
 INFINITE = 1e50
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
 EDGE, WIRE = TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_WIRE

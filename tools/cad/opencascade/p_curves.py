@@ -66,7 +66,7 @@ class PCurve:
     def _pieces(self, tolerance: Array) -> int:
         if not self.radius:
             return self.pieces
-        # # The tangents at the ends of an arc of angle a meet at a distance of about r a² / 4 from
+        # The tangents at the ends of an arc of angle a meet at a distance of about r a² / 4 from
         # its chord.
         angle = 2.0 * math.sqrt(float(tolerance.min()) / self.radius)
         return int(min(max((self.ends[-1] - self.ends[0]) / angle + 1.0, self.pieces), MOST_PIECES))
@@ -105,7 +105,7 @@ def _corners(spline: Any, ends: tuple[float, float]) -> tuple[tuple[float, ...],
     return (ends[0], *(spline.Knot(k) for k in multiple), ends[1]), len(inside) + 1
 
 
-# # A call of Open CASCADE for a point takes a microsecond and more, and most curves are lines and
+# A call of Open CASCADE for a point takes a microsecond and more, and most curves are lines and
 # circles: their points are computed here, by the formulas of Open CASCADE.
 
 

@@ -14,11 +14,11 @@ Array = NDArray[np.float64]
 Evaluator = Callable[[Array], Array]
 
 MOST_ROUNDS, MOST_PARTS = 14, 32
-# # A piece that deviates from its chord by less than this fraction of the tolerance is straight.
+# A piece that deviates from its chord by less than this fraction of the tolerance is straight.
 STRAIGHT = 1e-3
-# # The distance of tangents from the ends, relative to the length: beyond an end may be a corner.
+# The distance of tangents from the ends, relative to the length: beyond an end may be a corner.
 INSIDE = 1e-9
-# # The curve must turn by less than 60° from the ends of a piece to its chord.
+# The curve must turn by less than 60° from the ends of a piece to its chord.
 LEAST_COSINE = 0.5
 
 
@@ -88,7 +88,7 @@ def _judged(
     with np.errstate(divide="ignore", invalid="ignore"):
         start = start / np.hypot(start[:, 0], start[:, 1])[:, None]
         end = end / np.hypot(end[:, 0], end[:, 1])[:, None]
-        # # Cross products: the chord length times the sines of its angles to the tangents at its
+        # Cross products: the chord length times the sines of its angles to the tangents at its
         # ends.
         rise, fall = _cross(along, start), _cross(along, end)
         ahead = np.minimum((along * start).sum(axis=1), (along * end).sum(axis=1))

@@ -24,10 +24,10 @@ from .shapes import Key, parts_of
 
 __all__ = ["Gathered", "PlacedFace", "gathered"]
 
-# # Loose faces are sewn where their boundaries are closer than this, in mm; if holes remain, with a
+# Loose faces are sewn where their boundaries are closer than this, in mm; if holes remain, with a
 # distance relative to the size of all faces.
 CLOSE, CLOSE_OF_SIZE = 1e-3, 1e-4
-# # The largest number of loose faces that are sewn: more would take minutes.
+# The largest number of loose faces that are sewn: more would take minutes.
 MOST_LOOSE = 20_000
 
 

@@ -29,7 +29,7 @@ ELEMENTARY: dict[str, tuple[str, tuple[str, ...]]] = {
     "Geom_ToroidalSurface": ("torus", ("MajorRadius", "MinorRadius")),
 }
 
-# # The header of a surface that Open CASCADE writes, before the control points: the title, its
+# The header of a surface that Open CASCADE writes, before the control points: the title, its
 # kind, whether it is rational and, if it may be, periodic; its degrees, and numbers of control
 # points and of knots.
 TITLE = len(b"Surfaces 1\n")
@@ -103,7 +103,7 @@ def _net(surface: Any) -> tuple[Array, Array | None]:  # noqa: ANN401
     m, n = surface.NbUPoles(), surface.NbVPoles()
     rational = surface.IsURational() or surface.IsVRational()
     numbers = 4 if rational else 3
-    # # Calls for each control point would take longer than all the rest: writing returns all at
+    # Calls for each control point would take longer than all the rest: writing returns all at
     # once.
     written, buffer = BinTools_SurfaceSet(), io.BytesIO()
     written.Add(surface)
