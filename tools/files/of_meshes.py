@@ -1,4 +1,4 @@
-"""The methods of `Mesh` that write it, and that make the objects of other libraries."""
+"""The methods of `Mesh` that write files or make objects of other libraries."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
         Name of the file. The suffix is one of
 
         - `.ply`: binary; vertices with normals and u, v.
-        - `.obj`: text of all digits; vertices with normals, and texture coordinates, see
+        - `.obj`: text in full precision; vertices with normals, and texture coordinates, see
           `Mesh.corner_uv`.
         - `.stl`: binary, float32; triangles alone.
-        - `.3mf`: vertices and triangles, for 3-D printers, with the unit of length; one that is not
-          known counts as a millimetre.
+        - `.3mf`: vertices and triangles, for 3-D printers, with the unit of length, or millimetres
+          if it is unknown.
         - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`; these and
           `.vtp` need the extra `vtk`.
         - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
         - `.glb`: binary glTF with normals, and u and v as the attribute `_UV`, float32; needs the
           extra `trimesh`. It is closed where the mesh is; but a vertex on a sharp edge of a CAD
-          part is there once for each normal. Coordinates stay as they are, while viewers show y
-          upwards.
+          part is repeated for each of its normals. Coordinates are unchanged, while viewers show
+          y upwards.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def to_pyvista(self: Mesh) -> pyvista.PolyData:
     Returns
     -------
     pyvista.PolyData
-        A copy, as of the other conversions.
+        A copy, as with the other conversions.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The methods of `Samples` that make the objects of other libraries, each loaded when asked for."""
+"""The methods of `Samples` that make objects of other libraries, imported when called."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def to_dataframe(self: Samples) -> pandas.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        A copy, as of the other conversions.
+        A copy, as with the other conversions.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def to_pyvista(self: Samples) -> pyvista.PolyData:
     Returns
     -------
     pyvista.PolyData
-        The normals are its normals.
+        The points; their normals are the active normals.
 
     Raises
     ------
@@ -137,9 +137,9 @@ def to_open3d(self: Samples) -> open3d.geometry.PointCloud:
 
 
 def polydata(pv: Any, data: Any, arrays: dict[str, NDArray[Any]]) -> Any:  # noqa: ANN401
-    """Give points their arrays, with the normals as such."""
+    """Attach arrays to the points of a PolyData, with the normals as active normals."""
     for name, array in arrays.items():
-        # By way of VTK: pyvista refuses arrays without elements.
+        # VTK's own conversion: pyvista refuses arrays without elements.
         numbers = array.view(np.uint8) if array.dtype == np.bool_ else array
         data.GetPointData().AddArray(pv.convert_array(numbers, name=name, deep=True))
     if "normals" in arrays:
@@ -148,5 +148,5 @@ def polydata(pv: Any, data: Any, arrays: dict[str, NDArray[Any]]) -> Any:  # noq
 
 
 def vectors(library: Any, rows: NDArray[Any]) -> Any:  # noqa: ANN401
-    """Return rows (N, 3) as Open3D has them."""
+    """Return rows (N, 3) as a vector of Open3D."""
     return library.utility.Vector3dVector(rows.astype(np.float64))

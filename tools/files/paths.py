@@ -1,7 +1,7 @@
-"""Where files are written: a file is complete or it is not there.
+"""Writing files: a file at its path is complete, or absent.
 
-Everything is written to a temporary file in the same folder, which then takes the target's place in
-one step.
+Everything is written to a temporary file in the same folder, which then replaces the target in one
+step.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ __all__ = [
 
 PathLike = str | os.PathLike[str]
 
-# How the names of temporary files begin.
+# The prefix of the names of temporary files.
 BEGUN = ".gaussmap-"
 
 
@@ -43,10 +43,10 @@ def known_suffix(path: PathLike, known: Sequence[str]) -> str:
 
 
 def check_target(path: PathLike, suffixes: Sequence[str]) -> None:
-    """Raise now what writing `path` would raise later; for use ahead of long work.
+    """Raise now the errors that writing to `path` would raise later; for use ahead of long work.
 
-    The suffix must be one of `suffixes`, which are in lower case with their dots. To know that the
-    folder can be written to, an empty file is created in it and removed.
+    The suffix must be one of `suffixes`, which are in lower case with their dots. To test that the
+    folder is writable, an empty file is created in it and removed.
 
     Raises UnknownNameError if the suffix is none of `suffixes`, and FileError if the folder is
     missing or read-only or `path` is a folder or protected.
@@ -69,8 +69,8 @@ def atomic_path(path: PathLike) -> Iterator[Path]:
 
     The temporary file lies in the same folder and has the same suffix. If the block raises,
     KeyboardInterrupt included, the temporary file is removed and an existing file at `path` stays
-    as it was. A new file gets the permissions that the umask gives; one that replaces another
-    keeps that one's. A symbolic link is followed, not replaced.
+    as it was. A new file gets the permissions of the umask; a replacement keeps those of the
+    replaced file. A symbolic link is followed, not replaced.
 
     Raises FileError if the folder is missing, if `path` is a folder, protected or not a regular
     file, or if the block raises an OSError, for example because the disk is full.
@@ -80,7 +80,7 @@ def atomic_path(path: PathLike) -> Iterator[Path]:
     temporary = _temporary(target)
     try:
         yield temporary
-        # There may be no older file, and some file systems know no permissions.
+        # There may be no older file, and some file systems have no permissions.
         with suppress(OSError):
             temporary.chmod(stat.S_IMODE(target.stat().st_mode))
         os.replace(temporary, target)
@@ -94,7 +94,7 @@ def atomic_path(path: PathLike) -> Iterator[Path]:
 
 
 def checked_path(path: PathLike) -> Path:
-    """Return a path; InputError if it is none."""
+    """Return a path; InputError if the argument is none."""
     try:
         result = Path(path)
     except TypeError:
@@ -113,7 +113,7 @@ def checked_path(path: PathLike) -> Path:
 
 
 def _target(path: Path) -> Path:
-    """Return the real path of a file that may be written, without symbolic links."""
+    """Return the real path of a writable file, with symbolic links resolved."""
     target = Path(os.path.realpath(path))
     try:
         folder, mode = _mode(target.parent), _mode(target)
@@ -137,7 +137,7 @@ def _target(path: Path) -> Path:
 
 
 def _mode(path: Path) -> int | None:
-    """Return the type and permissions of what is at `path`, or None if nothing is there."""
+    """Return the type and permissions of the file at `path`, or None if there is none."""
     try:
         return path.stat().st_mode
     except (FileNotFoundError, NotADirectoryError):
@@ -145,13 +145,13 @@ def _mode(path: Path) -> int | None:
 
 
 def _temporary(target: Path) -> Path:
-    # Not tempfile: its files are private to the user (mode 0600) whatever the umask says. Not the
+    # Not tempfile: its files are private to the user (mode 0600) whatever the umask. Not the
     # target's stem: with an addition it could become too long.
     return target.with_name(f"{BEGUN}{secrets.token_hex(8)}{target.suffix}")
 
 
 def reason_of(error: OSError) -> str:
-    """Return what the system says of an error."""
+    """Return the text of the system for an error."""
     return error.strerror or str(error) or type(error).__name__
 
 

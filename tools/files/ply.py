@@ -1,7 +1,7 @@
 """PLY: binary files of vertices with named columns, and of triangles.
 
-This is written and read here because no maintained library with a permissive licence keeps the
-numbers: trimesh and VTK write coordinates in single precision, and VTK leaves most columns out.
+This module exists because no maintained library with a permissive licence keeps all numbers:
+trimesh and VTK write coordinates in single precision, and VTK leaves most columns out.
 """
 
 from __future__ import annotations
@@ -37,25 +37,25 @@ if TYPE_CHECKING:
 
 __all__ = ["read_ply", "write_mesh_ply", "write_ply"]
 
-# The names of types in the standard, the younger ones that some programs write, and two that are
-# in neither.
+# The names of types in the standard, the newer names that some programs write, and two names that
+# are in neither.
 _TYPES = {
     **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
     **{"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4"},
     **{"float": "f4", "double": "f8", "float32": "f4", "float64": "f8"},
     **{"int64": "i8", "uint64": "u8"},
 }
-# The first name of a type is the standard's; not every reader knows the others.
+# The first name of a type is the standard's; some readers know only this.
 _NAMES = {kind: name for name, kind in reversed(_TYPES.items())}
 
 _REPORT = "gaussmap report "
-# Only in a file of fewer fields.
+# Only in a file that lacks some of the fields.
 _FIELDS = "gaussmap fields "
 # Some readers hold a header line in a buffer of 256 or 1,024 bytes.
 _CHUNK = 200
 _LARGEST_HEADER = 1 << 20
 _LARGEST_INTEGER = 2**31 - 1
-# Rows that are packed and unpacked at once: they fit into a cache.
+# The number of rows packed or unpacked at once, so that they fit into the cache.
 ROWS = 4096
 
 
@@ -98,14 +98,14 @@ def write_mesh_ply(mesh: Mesh, path: Path) -> None:
 
 
 def read_ply(file: BufferedReader) -> Samples:
-    """Read what `write_ply` wrote, or what another program made of it."""
+    """Read a file of `write_ply`, possibly rewritten by another program."""
     header = _read_header(file)
     vertices, *others = header.elements
     said = [line for line in header.comments if line.startswith(_FIELDS)]
     fields = known_fields(said[-1].removeprefix(_FIELDS).split() if said else ARRAY_NAMES)
     row = np.dtype(list(vertices.columns.items()))
     size, end = file.seek(0, os.SEEK_END), header.size + vertices.rows * row.itemsize
-    if size < end:  # before memory is allocated for the rows
+    if size < end:  # checked before memory is allocated for the rows
         raise UnusableError("ends early; write it again.")
     arrays: dict[str, Any] = _empty_arrays(fields, vertices)
     if size > end and not others:
@@ -148,7 +148,7 @@ def _check_narrow(name: str, column: NDArray[Any]) -> None:
 
 
 def _read_header(file: BufferedReader) -> _Header:
-    """Read the header, whose first element is the vertices."""
+    """Read the header, whose first element must be the vertices."""
     start = file.read(_LARGEST_HEADER)
     if not re.match(rb"ply\r?\n", start):
         raise UnusableError("is no .ply file; read one that gaussmap wrote.")
@@ -184,7 +184,7 @@ def _read_header(file: BufferedReader) -> _Header:
 
 
 def _empty_arrays(fields: Sequence[str], vertices: _Element) -> dict[str, NDArray[Any]]:
-    """Return arrays for the fields: float32 only if all their columns are."""
+    """Return arrays for the fields, in float32 only if all their columns are."""
     kinds = vertices.columns
     missing = [column for name in fields for column in COLUMNS[name] if column not in kinds]
     if missing:
@@ -221,7 +221,7 @@ def _report(text: str, samples: int) -> SamplingReport:
 
 
 def _kept(array: NDArray[Any]) -> str:
-    """Return the type that numbers have in a file: there are no booleans, no 64-bit integers."""
+    """Return the type of numbers in a file, which has no booleans and no 64-bit integers."""
     return {"i8": "i4", "b1": "u1"}.get(array.dtype.str[1:], array.dtype.str[1:])
 
 

@@ -1,4 +1,4 @@
-"""Processes that do what may hang or crash: they end with the one that waits, within limits."""
+"""Processes whose work may hang or crash: they have limits, and end with their parent."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from contextlib import suppress
 
 __all__ = ["end_with_parent", "limit"]
 
-# Of Linux: the signal that a process gets when its parent ends.
+# The option of Linux's prctl that sets the signal sent when the parent ends.
 PR_SET_PDEATHSIG = 1
 
 
 def end_with_parent(by: str, parent: int | None = None) -> None:
-    """Let the system end this process by a signal when its parent is killed, if it can.
+    """Let the system send this process a signal when its parent is killed, where it can.
 
-    With the number of the parent, it ends at once if that is gone already.
+    With the process id of the parent, the process ends at once if the parent has ended already.
     """
     with suppress(AttributeError, OSError, TypeError):
         import ctypes
@@ -26,8 +26,8 @@ def end_with_parent(by: str, parent: int | None = None) -> None:
 
 
 def limit(**most: int) -> None:
-    """Set limits of the system, such as RLIMIT_CPU, where it has them; there are no core files."""
-    with suppress(ImportError):  # some systems have none
+    """Set limits of the system, such as RLIMIT_CPU, where they exist; no core files are written."""
+    with suppress(ImportError):  # some systems have no limits
         import resource
 
         for name, wanted in {**most, "RLIMIT_CORE": 0}.items():

@@ -1,4 +1,4 @@
-"""Opening files to read them: one sentence for each thing that can be wrong with a file."""
+"""Opening files for reading, with one sentence for each kind of error."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ __all__ = ["UnusableError", "opened", "readable"]
 
 
 class UnusableError(Exception):
-    """A file's content is not what it should be; the text continues "'path' …"."""
+    """The content of a file is invalid; the text continues "'path' …"."""
 
 
 @contextmanager
 def opened(path: Path, kind: str, content: str) -> Iterator[BufferedReader]:
-    """Yield an open file; whatever reading it raises becomes a FileError that names the path.
+    """Yield an open file; any error while reading it becomes a FileError that names the path.
 
     `kind` continues "is no", and `content` says what the file holds, for the sentences.
     """
@@ -33,14 +33,14 @@ def opened(path: Path, kind: str, content: str) -> Iterator[BufferedReader]:
 
 @contextmanager
 def readable(path: Path | str, kind: str, content: str) -> Iterator[None]:
-    """Make a FileError of whatever reading raises; see `opened`."""
+    """Turn any error while reading into a FileError; see `opened`."""
     try:
         yield
     except UnusableError as error:
         raise FileError(f"'{path}' {error}") from error
     except InputError as error:
         raise FileError(f"'{path}' holds unusable {content}: {error}") from error
-    except Exception as error:  # NumPy, zipfile and json raise a dozen kinds on bad bytes
+    except Exception as error:  # NumPy, zipfile and json raise a dozen types on bad bytes
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         raise FileError(
             f"'{path}' is damaged or is no {kind} ({reason}); write it again."

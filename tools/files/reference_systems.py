@@ -1,4 +1,4 @@
-"""Coordinate reference systems: which one points are in, and projections, by rasterio."""
+"""Coordinate reference systems: identification and projection, by rasterio."""
 
 from __future__ import annotations
 
@@ -14,11 +14,12 @@ __all__ = ["checked_crs", "crs_text", "projected", "target_crs", "wkt_of"]
 
 Array = NDArray[np.float64]
 
-# Beyond this latitude there is no UTM, but UPS; north and south.
+# Beyond this latitude UPS replaces UTM; the codes of its northern and southern zone.
 LAST_LATITUDE, POLAR = 84.0, (32661, 32761)
-# More degrees of longitude than this fit into no zone of UTM: the scale is wrong by a percent.
+# The largest range of longitude, in degrees, for one zone of UTM: beyond, the scale is wrong by a
+# percent.
 WIDEST_ZONE = 12.0
-# Points that are projected at a time.
+# The number of points that are projected at a time.
 AT_A_TIME = 1 << 17
 
 
@@ -32,17 +33,17 @@ def checked_crs(crs: str | int | None, name: str) -> Any:  # noqa: ANN401
             found = rasterio.CRS.from_user_input(crs)
             found.to_wkt()
             return found
-    except Exception:  # it calls whatever methods the object has
+    except Exception:  # any method of the object may be called, and raise
         raise InputError(
             f"{name} must be a coordinate reference system, such as EPSG:32617, not {shown(crs)}."
         ) from None
 
 
 def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any:  # noqa: ANN401
-    """Return the CRS, in lengths, that points are to be in: the one asked for, the source, or UTM.
+    """Return the CRS of points, in lengths: the requested one, the source, or else UTM.
 
-    x and y are coordinates in the source. Raises InputError for a system of degrees, and if none is
-    known.
+    x and y are coordinates in the source. Raises InputError for a system in degrees, and if no
+    system is known.
     """
     if target is not None and target.is_geographic:
         raise InputError(
@@ -68,7 +69,7 @@ def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any: 
 
 
 def projected(source: Any, target: Any, x: Array, y: Array, name: str) -> tuple[Array, Array]:  # noqa: ANN401
-    """Return coordinates of one shape in another system; InputError if some have none there."""
+    """Return coordinates of one shape in another system; InputError if it is undefined for some."""
     warp = from_extra("rasterio.warp", "gis", "a projection")
     flat_x, flat_y = x.ravel(), y.ravel()
     found = np.empty((2, x.size))
@@ -91,5 +92,5 @@ def crs_text(crs: Any) -> str:  # noqa: ANN401
 
 
 def wkt_of(crs: str) -> str:
-    """Return the WKT (version 1, as LAS has it) of what `crs_text` returned."""
+    """Return the WKT (version 1, as in LAS) of a text of `crs_text`."""
     return checked_crs(crs, "crs").to_wkt()

@@ -19,15 +19,15 @@ from .of_faces import columns_of_faces, texts_of
 
 __all__ = ["write_csv", "write_rows", "write_xyz"]
 
-# As many digits as it takes to read the same numbers again.
+# As many digits as reading the same number again requires.
 _DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%r", "O": "%s"}
 _ROWS = 4096
-# Fewer rows are written before Polars is imported; more at once take memory and save no time.
+# The least number of rows worth importing Polars, and the number of rows it writes at once.
 WORTH_AN_IMPORT, ROWS_OF_POLARS = 20_000, 1 << 18
 
 
 def write_csv(samples: Samples, path: Path) -> None:
-    """Write a line of names, with units of length where these are known; one for each sample."""
+    """Write a line of names, with known units of length, then a line for each sample."""
     columns, names = [*columns_of(samples.arrays()).values()], names_with_units(samples)
     for x in columns_of_faces(samples):
         columns.append(texts_of(x, samples))
@@ -44,10 +44,10 @@ def write_xyz(samples: Samples, path: Path) -> None:
 
 
 def write_rows(file: BinaryIO, line: str, columns: Sequence[NDArray[Any]]) -> None:
-    """Write columns as lines, in which their numbers and texts take the places of the braces.
+    """Write columns as lines, whose braces are replaced by the numbers and texts of a row.
 
-    Words are separated by spaces or by commas. Polars writes many rows ten times as fast as Python,
-    in as few digits as it takes to read the same numbers again, if it is installed.
+    Words are separated by spaces or by commas. If Polars is installed, it writes many rows, ten
+    times as fast as Python, with as few digits as reading the same numbers again requires.
     """
     columns = [column.view(np.uint8) if column.dtype == np.bool_ else column for column in columns]
     polars = if_installed("polars") if len(columns[0]) >= WORTH_AN_IMPORT else None

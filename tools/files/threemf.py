@@ -29,19 +29,19 @@ RELATIONS = f"""{HEAD}<Relationships xmlns="{PACKAGE}/relationships">
 Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
 </Relationships>
 """
-# The units that the format has, by their names here. Lengths in others are written in millimetres.
+# The units of the format, by their names here. Lengths in other units are written in millimetres.
 UNITS = {
     "um": "micron", "mm": "millimeter", "cm": "centimeter", "m": "meter",
     "in": "inch", "ft": "foot",
 }  # fmt: skip
-# Zip archives hold a time, of 1980 at the earliest: the same mesh gives the same bytes.
+# Entries of a zip archive have a time, from 1980 on: a fixed one makes equal meshes equal files.
 TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write_3mf(mesh: Mesh, path: Path) -> None:
-    """Write vertices and triangles; a unit of length that is not known counts as a millimetre.
+    """Write vertices and triangles; an unknown unit of length counts as a millimetre.
 
-    The format has no triangles with a vertex twice: these are left out.
+    The format forbids triangles with a repeated vertex: these are left out.
     """
     contents = {
         "[Content_Types].xml": TYPES,

@@ -23,8 +23,8 @@ _STL_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribu
 
 def write_obj(mesh: Mesh, path: Path) -> None:
     """Write text: vertices, texture coordinates, normals, and triangles that name all three."""
-    # Not trimesh: it writes a fixed number of digits behind the point, none of small numbers.
-    split = mesh.split  # with a normal of its own for each face around
+    # Not trimesh: it writes a fixed number of decimals, which loses small numbers.
+    split = mesh.split  # a vertex for each of its normals
     texture = split_at_seams(split.uv, split.triangles, split.domain, split.boundary)
     with open(path, "wb") as file:
         file.write(b"# written by gaussmap\n")
@@ -36,10 +36,10 @@ def write_obj(mesh: Mesh, path: Path) -> None:
 
 
 def write_stl(mesh: Mesh, path: Path) -> None:
-    """Write triangles with normals of their own, in single precision."""
+    """Write triangles with their own normals, in single precision."""
     corners = mesh.vertices[mesh.triangles]
     rows = np.zeros(len(corners), _STL_ROW)
-    with np.errstate(all="ignore"):  # what single precision does not hold, triangles without area
+    with np.errstate(all="ignore"):  # values beyond single precision, triangles without area
         edges = corners[:, 1:] - corners[:, :1]
         edges *= scales_to_one(np.abs(edges).max(axis=2))[..., None]  # each: no product underflows
         across = np.cross(edges[:, 0], edges[:, 1])
@@ -55,7 +55,7 @@ def write_stl(mesh: Mesh, path: Path) -> None:
 def write_glb(mesh: Mesh, path: Path) -> None:
     """Write triangles, vertices, normals, u, v and sample indices, in single precision.
 
-    A vertex on a sharp edge of a CAD part is there once for each normal; no other one is repeated.
+    A vertex on a sharp edge of a CAD part is repeated for each normal; no other one is repeated.
     """
     trimesh = from_extra("trimesh", "trimesh", "a .glb file")
     if np.abs(mesh.vertices).max() > np.finfo(np.float32).max:

@@ -1,4 +1,4 @@
-"""Files of VTK, by VTK itself: PolyData and unstructured grids in XML, and the older format."""
+"""Files in VTK's formats, by VTK itself: PolyData and unstructured grids in XML, and legacy."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def write_vtu(mesh: Mesh, path: Path) -> None:
 
 
 def write_vtk(mesh: Mesh, path: Path) -> None:
-    """Write the grid of a .vtu file in the older format, version 5.1."""
+    """Write the grid of a .vtu file in the legacy format, version 5.1."""
     from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
 
     writer = vtkUnstructuredGridWriter()
@@ -60,7 +60,7 @@ def _write_xml(name: str, data: Any, path: Path) -> None:  # noqa: ANN401
 
 
 def _run(writer: Any, data: Any) -> Any:  # noqa: ANN401
-    """Let a writer of VTK write to memory: its errors of files are lines on the terminal."""
+    """Let a writer of VTK write to memory: its errors about files are only printed."""
     writer.SetInputData(data)
     writer.WriteToOutputStringOn()
     writer.Write()

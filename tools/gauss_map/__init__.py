@@ -1,4 +1,4 @@
-"""What the Gauss map does: images of patches, and parabolic points, where it folds."""
+"""The Gauss map: images of patches, and parabolic points, where it folds."""
 
 from .boundary import BoundaryArc
 from .classes import PatchClass, classify_patches

@@ -20,8 +20,8 @@ Array = NDArray[np.float64]
 def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Array]:
     """Return the integrals of K and of |K| (k,) over patches.
 
-    Mixed patches, and those whose normals spread widely, are cut along their parabolic lines and at
-    their singular points.
+    Mixed patches, and those with a wide range of normals, are cut along their parabolic lines and
+    at their singular points.
     """
     normals = patches.normals
     wide = is_wide(normals)
@@ -62,9 +62,9 @@ def _fans_of(patch: Patches) -> list[Array]:
 
 
 def _on_sides(patch: Patches, polygon: Array) -> list[Array]:
-    """Return the places of the singular points on the sides of a polygon.
+    """Return the parameter pairs of the singular points on the sides of a polygon.
 
-    On a double parabolic line there may be some that no other line meets.
+    On a double parabolic line there may be singular points that no other line meets.
     """
     places = []
     corners = _barycentric(polygon)
@@ -77,7 +77,7 @@ def _on_sides(patch: Patches, polygon: Array) -> list[Array]:
 
 
 def _different(places: list[Array]) -> list[Array]:
-    """Return places without those that are nearly one before them."""
+    """Return parameter pairs without those that nearly repeat an earlier one."""
     result: list[Array] = []
     for place in places:
         if all(np.abs(place - other).max() > DOUBLE_ROOT for other in result):
@@ -86,7 +86,7 @@ def _different(places: list[Array]) -> list[Array]:
 
 
 def _snapped(polygon: Array, places: list[Array]) -> Array:
-    """Move corners that are nearly singular points there: multiple lines have fewer digits."""
+    """Move corners near singular points onto these: multiple lines are less accurate."""
     polygon = polygon.copy()
     for place in places:
         polygon[np.abs(polygon - place).max(axis=1) <= DOUBLE_ROOT] = place
@@ -94,12 +94,12 @@ def _snapped(polygon: Array, places: list[Array]) -> Array:
 
 
 def _barycentric(places: Array) -> Array:
-    """Return u, v, w of places u, v along the last axis."""
+    """Return u, v, w of parameter pairs u, v along the last axis."""
     return np.concatenate([places, 1.0 - places.sum(axis=-1, keepdims=True)], axis=-1)
 
 
 def _fan(polygon: Array, places: list[Array]) -> Array:
-    """Cut a convex polygon into triangles (m, 3, 2) that have the places inside it as corners."""
+    """Cut a convex polygon into triangles (m, 3, 2) with the given inner points as corners."""
     centre = polygon.mean(axis=0)
     triangles = [np.stack([centre, polygon[k - 1], polygon[k]]) for k in range(len(polygon))]
     for place in places:

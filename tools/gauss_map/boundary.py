@@ -27,10 +27,10 @@ class BoundaryArc:
     Attributes
     ----------
     control_normals : (3, 3) float64 array
-        The control points, not of unit length: those of an edge are three of the control normals of
+        The control points, not of unit length; those of an edge are three of the control normals of
         the patch.
     noise : float
-        A bound of the error in them that is due to the rounding of the coordinates.
+        A bound of their error due to the rounding of the coordinates.
 
     Examples
     --------
@@ -58,8 +58,8 @@ class BoundaryArc:
         Returns
         -------
         (count, 3) float64 array
-            The normals. At a singular end, where the normal vanishes, it is the limit. NaN if the
-            whole arc has no normals, and at a singular point inside, where there is none: the
+            The normals. At a singular end, where N vanishes, the limit is returned. NaN if the
+            whole arc has no normals, and at a singular point inside, which has no normal: the
             `parts` end there.
 
         Raises
@@ -118,7 +118,7 @@ class BoundaryArc:
     def parts(self) -> tuple[BoundaryArc, ...]:
         """The great-circle arcs between singular points; the arc itself if there are none.
 
-        At a singular point they have the limits of the normals.
+        At singular points their normals are the limits.
         """
         if not self.singular_points:
             return (self,)
@@ -127,7 +127,7 @@ class BoundaryArc:
 
     @property
     def is_point(self) -> bool:
-        """Whether all its normals are parallel, up to rounding (the edge is a parabolic line)."""
+        """Whether all normals are parallel, up to rounding (the edge is a parabolic line)."""
         lengths = np.linalg.norm(self.control_normals, axis=1)
         longest = self.control_normals[int(lengths.argmax())]
         across = np.linalg.norm(np.cross(self.control_normals, longest), axis=1).max()
@@ -135,7 +135,7 @@ class BoundaryArc:
 
     @property
     def is_great_circle(self) -> bool:
-        """Whether it lies on a great circle, up to rounding: its normals are coplanar.
+        """Whether the arc lies on a great circle, up to rounding: its normals are coplanar.
 
         Its cone is then a pair of planes, as for an edge in a plane of symmetry.
         """
@@ -156,7 +156,7 @@ class BoundaryArc:
         return np.linalg.norm(self._at(t), axis=1)
 
     def _between(self, start: float, end: float) -> Array:
-        """Return the control normals between two parameters, set to zero where they vanish."""
+        """Return the control normals between two parameters, zero where they nearly vanish."""
         places = np.array([[1.0 - start, start], [1.0 - end, end]])
         polar = np.stack([self.control_normals[:2], self.control_normals[1:]])
         net = np.einsum("ai,bj,ijx->abx", places, places, polar)
@@ -193,8 +193,9 @@ def _turn(
 ) -> BoundaryArc:
     """Return the arc of the limits of the normals at a singular point, from one arc to the next.
 
-    It is an arc of a great circle, half of it between opposite normals; one point if the surface is
-    regular there. `where` holds the point and two directions from it, backwards and inwards.
+    It is an arc of a great circle, half of the circle between opposite normals, or one point if the
+    surface is regular there. `where` holds the point and two directions from it, backwards and
+    inwards.
     """
     start, end = first_directions(np.stack([arc.control_normals[::-1], after.control_normals]))
     middle = 0.5 * (start + end)

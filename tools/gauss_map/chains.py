@@ -16,10 +16,10 @@ Segment = tuple[Hashable, Hashable, Array]
 
 
 def chained(pieces: Sequence[Ends]) -> list[tuple[list[tuple[int, bool]], bool]]:
-    """Put pieces, given by their ends, in the order of curves, which end unless two pieces meet.
+    """Chain pieces, given by their ends, into curves, which pass only nodes of exactly two pieces.
 
-    A curve is the numbers of its pieces, each with whether it is turned; also returns whether it is
-    closed.
+    A curve is a list of indices of its pieces, each with whether it is reversed; also returns
+    whether the curve is closed.
     """
     at_node: dict[Hashable, list[int]] = {}
     for number, ends in enumerate(pieces):
@@ -51,8 +51,8 @@ def joined(segments: Sequence[Segment]) -> list[tuple[Array, bool]]:
     """Join segments at common nodes; return polylines (k, 2) and whether each is closed.
 
     Polylines end where more or fewer than two segments meet. In a periodic direction a node may
-    have several places: each segment is moved to where the one before it ends, so that a polyline
-    may run beyond the domain. A closed polyline repeats its first node at its end.
+    have several positions: each segment is shifted to the end of the previous one, so that a
+    polyline may run beyond the domain. A closed polyline repeats its first node at its end.
     """
     result = []
     for chain, closed in chained([segment[:2] for segment in segments]):
@@ -62,7 +62,7 @@ def joined(segments: Sequence[Segment]) -> list[tuple[Array, bool]]:
 
 
 def continued(parts: Sequence[Array]) -> Array:
-    """Join polylines (k, 2), each moved to where the one before it ends."""
+    """Join polylines (k, 2), each shifted to the end of the previous one."""
     line = [parts[0]]
     for part in parts[1:]:
         line.append(part[1:] + (line[-1][-1] - part[0]))

@@ -14,7 +14,7 @@ from .patches import Patches, checked_nets
 __all__ = ["PatchClass", "classes_of", "classify_patches"]
 
 
-# The cubic at a lattice of places inside: where it has both signs, no lines have to be found.
+# The cubic is sampled on a lattice of this size inside: with both signs, no lines are needed.
 LATTICE = 8
 INSIDE = cubic_bernstein(
     np.array([(i, j) for i in range(1, LATTICE) for j in range(1, LATTICE - i)]) / LATTICE
@@ -84,8 +84,8 @@ def classify_patches(patches: Spline | ArrayLike) -> NDArray[np.int8]:
     Notes
     -----
     The signs of the ten Bézier coefficients of the cubic `parabolic_cubic` decide where they agree,
-    the parabolic lines elsewhere; what is zero up to the rounding of the coordinates counts as
-    zero.
+    otherwise the parabolic lines; numbers that are zero up to the rounding of the coordinates count
+    as zero.
 
     Examples
     --------

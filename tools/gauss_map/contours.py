@@ -1,9 +1,9 @@
 """Polylines through samples of a contour generator, the curve with N·d = 0 on a spline.
 
-The signs of N·d on a grid show the curves, which are closed or end at open sides. Zero counts as
-positive, so that a curve may follow sides of the grid, and cross a pole; along an open side it has
-the other sign than inside. Samples are sorted along these curves by their feet in the parameter
-plane; where a curve leaves the trim of the spline it is cut.
+The signs of N·d on a grid locate the curves, which are closed or end at open sides. Zero counts as
+positive, so that a curve may follow sides of the grid, and cross a pole; along an open side it gets
+the sign opposite to the inside. Samples are sorted along these curves by their feet in the
+parameter plane; where a curve leaves the trim of the spline it is cut.
 """
 
 from __future__ import annotations
@@ -20,25 +20,25 @@ __all__ = ["polylines_of"]
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# A cell of the spline is divided into the largest of these numbers of parts along u and along v for
-# which there are at most as many cells as this.
+# A cell of the spline is divided into the largest of these numbers of parts along u and along v
+# that gives at most MOST_CELLS cells.
 PARTS, MOST_CELLS = (8, 4, 2), 1 << 16
 # The error of N·d relative to the length of N.
 ROUNDING = 1e-14
-# The foot of a sample is sought on this number of segments, those with the nearest midpoints.
+# The foot of a sample is searched on this number of segments, those with the nearest midpoints.
 CANDIDATES = 8
 
 
 def polylines_of(spline: Spline, axis: Array, uv: Array) -> tuple[Indices, ...]:
-    """Return samples (numbers) in their order along each curve with N·axis = 0.
+    """Return the indices of samples in their order along each curve with N·axis = 0.
 
-    `uv` are the parameters of the samples. A closed curve ends with the sample with which it
-    begins. Each sample is in one polyline.
+    `uv` are the parameters of the samples. A closed curve repeats its first sample at its end. Each
+    sample is in one polyline.
     """
     if not len(uv):
         return ()
     ends, section, closed = _segments(spline, axis)
-    if not len(ends):  # a curve in a corner of a cell that is too small to be seen
+    if not len(ends):  # a curve in a corner of a cell, too small to be found
         return (np.arange(len(uv)),)
     copies, original = _with_copies(spline, ends)
     segment, share = _feet(copies, spline.in_cells(uv.copy()))
@@ -72,7 +72,7 @@ def _segments(spline: Spline, axis: Array) -> tuple[Array, Indices, list[bool]]:
 
 
 def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
-    """Return for each place (k, 2) the nearest segment, and where its foot is on it (0 … 1)."""
+    """Return for each parameter pair (k, 2) the nearest segment, and its foot on it (0 … 1)."""
     number = min(CANDIDATES, len(ends))
     near = tree_of(ends.mean(axis=1)).query(places, k=number)[1].reshape(len(places), number)
     start, step = ends[near, 0], ends[near, 1] - ends[near, 0]
@@ -108,7 +108,7 @@ def _lines(spline: Spline, axis: Array) -> list[tuple[list[Array], bool]]:
 
 
 def _with_copies(spline: Spline, ends: Array) -> tuple[Array, Indices]:
-    """Add copies of segments next to seams, beyond them; also returns whose copies they are."""
+    """Add copies of segments next to seams, shifted beyond them; also returns their originals."""
     which = np.arange(len(ends))
     for axis, (kind, _) in enumerate(spline.boundary):
         if kind not in ("periodic", "mirrored"):

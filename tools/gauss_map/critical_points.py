@@ -11,27 +11,27 @@ from .sign_grid import SignGrid
 
 __all__ = ["CriticalZeros", "critical_zeros"]
 
-# Newton's method ends with a step of this size, relative to the domain; it is slow where K is of
-# the order four.
+# The number of steps of Newton's method, which converges slowly where K is of order four, and the
+# final step size, relative to the domain.
 NEWTON_STEPS, ARRIVED = 40, 1e-10
-# K is zero at a critical point where it would be at this distance, relative to the domain.
+# K is zero at a critical point if a zero would lie within this distance, relative to the domain.
 TOUCHING = 1e-7
-# How far a critical point may be from the node next to it, in cells: for Newton's method, and by
-# differences between nodes.
+# The largest distance of a critical point from its nearest node, in cells: for Newton's method, and
+# estimated by differences between nodes.
 FARTHEST, FARTHEST_BY_NODES = 2.0, 1.5
-# Critical points whose distance is less than this, in cells, are the same.
+# Critical points closer than this, in cells, are equal.
 SAME = 1e-2
-# Where K grows slower in one direction by this factor, it is constant there; by differences between
-# nodes, which are not close to the zeros.
+# K is constant in a direction if it grows by less than this factor of the growth in the other; the
+# second number is for differences between nodes, which are not close to the zeros.
 CONSTANT, CONSTANT_BY_NODES = 1e-5, 1e-2
 
 
 class CriticalZeros(NamedTuple):
-    """Saddles (k, 2), where curves K = 0 cross, and places (m, 2) that K touches away from curves.
+    """Saddles (k, 2), where curves K = 0 cross, and isolated points (m, 2) at which K touches zero.
 
-    A closed curve K = 0 that is smaller than a cell is a place that K touches, too; curves are not
-    farther from it than `reach` (m, 2). `unclear` says whether there are such curves, or others
-    that are closer to each other than a cell, or cross in the last cells before a border.
+    A closed curve K = 0 smaller than a cell counts as an isolated point, too; it lies within
+    `reach` (m, 2) of the point. `unclear` says whether there are such curves, or others that are
+    closer to each other than a cell, or cross in the last cells before a boundary.
     """
 
     saddles: Array
@@ -43,7 +43,7 @@ class CriticalZeros(NamedTuple):
 def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
     """Return the critical points of K where it is zero.
 
-    Curves whose distance from one, relative to the domain, is less than `size` pass through it.
+    Curves that pass it within `size`, relative to the domain, pass through it.
     """
     curvature = grid.curvature
     (low, high), extent = curvature.ends, curvature.extent
@@ -84,7 +84,7 @@ def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
 
 
 def _may_be_critical(grid: SignGrid) -> Flags:
-    """Return the nodes next to which, by differences, a critical point with K near zero may be."""
+    """Return nodes near which, by differences, a critical point with K near zero may lie."""
     from scipy.ndimage import minimum_filter
 
     K = np.where(grid.zero, 0.0, grid.values)
@@ -103,7 +103,7 @@ def _may_be_critical(grid: SignGrid) -> Flags:
 
 
 def _wrapped(grid: SignGrid, places: Array) -> Array:
-    """Return places less whole periods, between the first and the last node."""
+    """Return parameter pairs shifted by whole periods to between the first and the last node."""
     first = np.array([line[0] for line in grid.lines])
     return first + np.mod(places - first, grid.curvature.extent)
 
@@ -114,22 +114,22 @@ def _eigenvalues(hessian: Array) -> Array:
 
 
 def _half_distance_is_less(size: float | Array, K: Array, hessian: Array) -> Flags:
-    """Return around which critical points half the distance of curves K = 0 is less than `size`.
+    """Return at which critical points half the distance of the curves K = 0 is less than `size`.
 
-    At a saddle they are the branches of the hyperbola 2 K − λ x² + μ y² = 0.
+    At a saddle the curves are the branches of the hyperbola 2 K − λ x² + μ y² = 0.
     """
     low, high = _eigenvalues(hessian * np.multiply.outer(size, size))
     return 2.0 * np.abs(K) <= np.where(K > 0.0, -low, high)
 
 
 def _newton_step(gradient: Array, hessian: Array, constant: float = CONSTANT) -> Array:
-    """Return the shortest steps that best solve Newton's equations for the gradient of K."""
+    """Return the shortest least-squares solutions of Newton's equations for the gradient of K."""
     inverse = np.linalg.pinv(hessian, rcond=constant, hermitian=True)
     return np.einsum("kxy,ky->kx", inverse, gradient)
 
 
 def _different(places: Array, same: Array) -> Array:
-    """Return places without those that are the same as one before them."""
+    """Return parameter pairs without those that nearly repeat an earlier one."""
     kept = np.empty((0, 2))
     for place in places:
         if not (np.abs(kept - place) <= same).all(axis=1).any():

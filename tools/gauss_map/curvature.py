@@ -21,23 +21,23 @@ from ...runtime.surface.tapes import jets_of
 
 __all__ = ["Curvature", "Known"]
 
-# The error of a second derivative that a formula gives, relative to its length.
+# The error of a second derivative from a formula, relative to its length.
 ROUNDING = 1e-13
 # K is zero where it is less than its estimated error times this.
 SURE = 4.0
-# Places at which K is computed at once.
+# The number of parameter pairs at which K is computed at once.
 AT_A_TIME = 1 << 14
 # Steps for derivatives of K, and for its slope in Newton's method, relative to the domain.
 STEP, SLOPE_STEP = 1 / 1024, 1e-6
-# Newton's method ends with a step of the second size, relative to the domain; none is larger than
-# the third.
+# The number of steps of Newton's method, its final step size, relative to the domain, and its
+# largest step.
 NEWTON_STEPS, ARRIVED, FARTHEST = 5, 1e-13, 0.1
-# The size of a surface is taken from so many places along u and along v.
+# The size of a surface is measured on a grid with this number of points along u and along v.
 SIZES = 17
 
 
 class Known(NamedTuple):
-    """K (k,), how large its error may be (k,), and n·x_uu, n·x_uv, n·x_vv (k, 3) for n = x_u × x_v.
+    """K (k,), a bound of its error (k,), and n·x_uu, n·x_uv, n·x_vv (k, 3) for n = x_u × x_v.
 
     Lengths are relative to the size of the surface. NaN where the surface is singular.
     """
@@ -50,8 +50,8 @@ class Known(NamedTuple):
 class Curvature:
     """K of a surface at parameters (k, 2), which may lie beyond a periodic end.
 
-    Derivatives of the surface are its formulas, those of its operations, or differences; the error
-    of these is taken from others with steps that are twice as long.
+    Derivatives of the surface come from its formulas, from those of its operations, or from
+    differences, whose error is estimated by steps twice as long.
     """
 
     def __init__(self, surface: Surface) -> None:
@@ -80,7 +80,7 @@ class Curvature:
         return self._jets(*self._inside(places))
 
     def at(self, places: Array) -> Known:
-        """Return K at places (k, 2), its error, and the second form."""
+        """Return K at parameter pairs (k, 2), its error, and the second fundamental form."""
         parts = [self._known(x) for x in np.array_split(places, len(places) // AT_A_TIME + 1)]
         return Known(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
@@ -95,10 +95,10 @@ class Curvature:
         return K, gradient, hessian * np.outer(self.extent, self.extent)
 
     def onto_zeros(self, places: Array) -> Array:
-        """Move places (k, 2) close to curves K = 0 onto them, by Newton steps along the gradient.
+        """Move parameters (k, 2) near curves K = 0 onto them, by Newton steps along the gradient.
 
-        Those on the border of the domain move along it. Places without such a zero near by, as
-        crossings and singular points, stay.
+        Those on the boundary of the domain move along it. Those without a regular zero nearby, as
+        at crossings and singular points, stay.
         """
         low, high = self.ends
         forward = np.where(places < low + 0.5 * self.extent, SLOPE_STEP, -SLOPE_STEP)
@@ -138,7 +138,7 @@ class Curvature:
         return Known(K, SURE * error, np.stack(np.broadcast_arrays(*form), axis=1))
 
     def _thrice(self, u: Array, v: Array) -> Array:
-        """Return K in three columns, for differences of points."""
+        """Return K in three columns, as differences of points require."""
         return np.repeat(self.at(np.stack([u, v], axis=1)).K[:, None], 3, axis=1)
 
     def _inside(self, places: Array) -> tuple[Array, Array]:

@@ -42,7 +42,7 @@ BY_SIDES = {2: "biangle", 3: "triangle"}
 class GaussianImage:
     """The Gaussian image of one quadratic patch: the set of its unit normals on the sphere.
 
-    Make one with `of_patch`, or take one from a `GaussianImages`. Whether something vanishes
+    Make one with `of_patch`, or take one from a `GaussianImages`. Whether a quantity vanishes
     (`kind`, `patch_class`, `is_great_circle` of an arc) is decided up to the rounding of the
     coordinates.
 
@@ -142,7 +142,7 @@ class GaussianImage:
         """The normals along the edges u = 0, v = 0 and w = 0, counter-clockwise in (u, v).
 
         They run from v = 1 to w = 1, from w = 1 to u = 1 and from u = 1 to v = 1. An edge that is
-        one point has the limit of the normals nearby.
+        a point gets the limit of the normals nearby.
         """
         return edge_arcs(self._patch.normals[0], self._noise)
 
@@ -150,11 +150,11 @@ class GaussianImage:
     def boundary(self) -> tuple[BoundaryArc, ...]:
         """The sides of the image, in order: each begins where the one before ends.
 
-        They are the `arcs`, without those that are one point, split at singular points of an edge.
-        At a singular point of the border the limits of the normals form an arc of a great circle,
+        They are the `arcs` that are not a single point, split at singular points of an edge. At a
+        singular point of the boundary the limits of the normals form an arc of a great circle,
         which is a side, too: half a great circle if the normals of an edge change to their
         opposites. The chain is closed; it has gaps between opposite normals only if the image has
-        no interior, or if a curve of singular points ends there. Parts of the border of the image
+        no interior, or if a curve of singular points ends there. Parts of the boundary of the image
         that come from singular points inside the patch are not included.
         """
         return boundary_arcs(self._patch.normals[0], self._noise)
@@ -177,10 +177,10 @@ class GaussianImage:
     def contains(self, normals: ArrayLike) -> NDArray[np.bool_]:
         """Return which directions are oriented normals of the patch.
 
-        The border belongs to the image. The result is exact for the control points and directions
-        as they are: signs that rounding leaves open are decided with integers. So an image without
-        inside ("arc", "point") contains only the few directions that lie on it exactly. A singular
-        point has no normal.
+        The boundary belongs to the image. The result is exact for the given control points and
+        directions: signs that rounding leaves open are decided with integers. So an image without
+        interior ("arc", "point") contains only the few directions that lie on it exactly. A
+        singular point has no normal.
 
         Parameters
         ----------

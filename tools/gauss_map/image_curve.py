@@ -1,4 +1,4 @@
-"""Curves of a surface with their images on the sphere, at which the number of points changes."""
+"""Curves on a surface, and their images, where the number of points with a normal changes."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ __all__ = ["ImageCurve", "Traced", "followed", "jets_of_spline"]
 
 OfPlaces = Callable[[Array], Array]
 NO_CUSPS: Indices = np.empty(0, dtype=np.int64)
-# Curves whose ends are this near to each other, relative to their size, are closed.
+# Curves whose ends are closer than this, relative to their size, are closed.
 CLOSED = 1e-6
-# The nearest point of a curve is searched among this number of places, then among as many between
-# the neighbours of the nearest one, and so on; at last between these, on chords.
+# The nearest point of a curve is searched among this number of vertices, then among as many between
+# the neighbours of the nearest one, and so on; finally on the chords between these.
 PLACES, ROUNDS = 9, 5
 
 
 @dataclass(frozen=True, eq=False)
 class ImageCurve:
-    """A curve of a surface at whose image the number of points with a normal changes.
+    """A curve on a surface; at its image the number of points with a normal changes.
 
     Attributes
     ----------
@@ -40,11 +40,11 @@ class ImageCurve:
     points : (k, 3) float64 array
         The vertices in space, in L.
     normals : (k, 3) float64 array
-        The unit normals there: the image; NaN where the surface is singular.
+        The unit normals at the vertices: the image; NaN where the surface is singular.
     closed : bool
         Whether the curve is closed; its last vertex then repeats the first.
     cusps : (c,) int64 array
-        Which vertices are cusps of the image of a parabolic curve.
+        The indices of vertices that are cusps of the image of a parabolic curve.
 
     Examples
     --------
@@ -68,7 +68,7 @@ class ImageCurve:
 
 @dataclass(frozen=True, eq=False)
 class Traced:
-    """A curve of a surface or a spline.
+    """A curve on a surface or a spline.
 
     `jets` returns 2-jets (k, 6, 3) at parameters (k, 2), and `onto` moves parameters on chords of
     the curve to the curve.
@@ -79,7 +79,7 @@ class Traced:
     onto: OfPlaces
 
     def part(self, first: int, last: int) -> Traced:
-        """Return the curve through the vertices from `first` to before `last`."""
+        """Return the part of the curve through vertices [first, last)."""
         whole, rows = self.curve, slice(first, last)
         if last - first == len(whole.uv):
             return self
@@ -121,10 +121,10 @@ def followed(
     onto: OfPlaces = lambda places: places,
     with_cusps: Callable[[Array], tuple[Array, Indices]] = lambda uv: (uv, NO_CUSPS),
 ) -> Traced:
-    """Insert vertices into a polyline (k, 2) until it and its image are near a curve.
+    """Insert vertices into a polyline (k, 2) until it and its image are close to a curve.
 
     The tolerance is relative to the size of the surface, and in radians. `with_cusps` returns the
-    vertices with those that are cusps, and which these are.
+    vertices with cusps inserted, and the indices of the cusps.
     """
 
     def both(uv: Array) -> Array:

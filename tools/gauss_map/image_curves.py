@@ -1,7 +1,7 @@
-"""Folds and borders of Gauss maps: the curves at whose images the number of points changes.
+"""Folds and boundary images of Gauss maps, where the number of points with a normal changes.
 
-The Gauss map folds along the parabolic curves. Next to the image of one, a normal has two points on
-one side and none on the other; next to the image of a border it has one and none.
+The Gauss map folds along the parabolic curves. Next to the image of a fold, a normal has two points
+on one side and none on the other; next to the image of a boundary it has one and none.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from .parabolic import checked_tolerance, size_of_spline, traced_curves
 
 __all__ = ["border_image", "folds", "margin"]
 
-# The parts of a side of the domain, before it is refined.
+# The number of segments of a side of the domain, before refinement.
 PARTS_OF_SIDE = 16
-# The tolerance of the curves to which angles are measured.
+# The tolerance of the curves from which angles are measured.
 TOLERANCE = 1e-3
-# Places this near to a border, relative to the domain, are on it.
+# Parameter pairs within this distance of a boundary, relative to the domain, are on it.
 ON_BORDER = 1e-9
 
 
@@ -46,7 +46,7 @@ def folds(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:
     Returns
     -------
     tuple of ImageCurve
-        The curves, with a vertex at each cusp. On a spline they run along edges of patches.
+        The curves, with a vertex at each cusp. On a spline, folds run along edges of patches.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def folds(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:
 
     See Also
     --------
-    gaussmap.gauss_map.parabolic_points : the same of a whole surface, with places where K touches
+    gaussmap.gauss_map.parabolic_points : the same for a whole surface, with points where K touches
         zero, and flat regions.
 
     Examples
@@ -71,7 +71,7 @@ def folds(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:
 
 
 def border_image(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:
-    """Return the borders of the surface, and their images.
+    """Return the boundary curves of the surface, and their images.
 
     Parameters
     ----------
@@ -81,13 +81,13 @@ def border_image(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve
     Returns
     -------
     tuple of ImageCurve
-        The open sides of the domain, and the loops of a trim, as far as they are borders.
+        The open sides of the domain, and the loops of a trim, where they are boundaries.
 
     Raises
     ------
     InputError
-        For a tolerance out of range, for parts, and for a trim by a predicate, whose border is not
-        known.
+        For a tolerance out of range, for parts, and for a trim by a predicate, whose boundary is
+        unknown.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def border_image(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve
 
 
 def margin(self: GaussMap, normals: ArrayLike) -> Array:
-    """Return how far normals are from the next change of the number of their points.
+    """Return the angles from normals to the nearest change of the number of their points.
 
     Parameters
     ----------
@@ -111,12 +111,12 @@ def margin(self: GaussMap, normals: ArrayLike) -> Array:
     Returns
     -------
     (S,) float64 array
-        Angles, in degrees, to the nearest image of a fold or a border; infinite without any.
+        Angles, in degrees, to the nearest image of a fold or a boundary; infinite without any.
 
     Raises
     ------
     InputError
-        For unusable normals, for parts, and for a trim by a predicate.
+        For invalid normals, for parts, and for a trim by a predicate.
 
     Examples
     --------
@@ -150,14 +150,14 @@ def _geometries(gauss_map: GaussMap) -> Sequence[OnSpline]:
 
 
 def _folds(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:
-    """Yield the folds of what is sampled, those inside its trim."""
+    """Yield the folds of a geometry inside its trim."""
     for traced in traced_curves(geometry.surface or geometry.spline, tolerance):
         for ends in _inside(geometry, traced.curve.uv):
             yield traced.part(*ends)
 
 
 def _borders(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:
-    """Yield the borders of what is sampled: open sides of the domain, and the loops of a trim."""
+    """Yield the boundaries of a geometry: open sides of the domain, and the loops of a trim."""
     if geometry.surface is None:
         jets = jets_of_spline(geometry.spline)
     else:
@@ -180,7 +180,7 @@ def _sides(geometry: OnSpline) -> Iterator[Array]:
 
 
 def _loops(geometry: OnSpline) -> Iterator[Array]:
-    """Yield the loops of the trim; InputError if it has other borders."""
+    """Yield the loops of the trim; InputError if it has other boundaries."""
     trim = geometry.spline.trim
     for part in () if trim is None else trim.parts:
         if not isinstance(part, Loops):
@@ -193,9 +193,9 @@ def _loops(geometry: OnSpline) -> Iterator[Array]:
 
 
 def _inside(geometry: OnSpline, uv: Array) -> list[tuple[int, int]]:
-    """Return the parts of a polyline (k, 2), two vertices or more, that are in or on the trim.
+    """Return the parts of a polyline (k, 2) in or on the trim, each of two vertices or more.
 
-    A part has the vertices from its first number to before its second one.
+    A part (first, last) has the vertices [first, last).
     """
     trim = geometry.spline.trim
     if trim is None:

@@ -28,7 +28,7 @@ LONGEST_SQUARED = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Members:
-    """The membership of k vectors in the normals of regular points that are not parabolic.
+    """The membership of k vectors in the set of normals of regular, non-parabolic points.
 
     `inside` (k,) is true for such normals, and `uv` (k, 2) are the parameters; `signs` (k,) is the
     sign of K where it was decided exactly, else 0. Where `vanishing` (k,) is true, D, U, V, W are
@@ -43,12 +43,12 @@ class Members:
 
 @dataclass(frozen=True, eq=False)
 class PatchNormals:
-    """The oriented normals of one quadratic patch (6, 3), border included, by exact decisions."""
+    """The oriented normals of one quadratic patch (6, 3), with its boundary, decided exactly."""
 
     control_points: Array
 
     def members(self, normals: Array) -> Members:
-        """Decide which of the vectors (k, 3) are normals of points that are not parabolic."""
+        """Decide which of the vectors (k, 3) are normals of non-parabolic points."""
         count = len(normals)
         kinds, uv = np.empty(count, dtype=np.int8), np.zeros((count, 2))
         exponents = np.frexp(np.abs(normals).max(axis=1, keepdims=True))[1]
@@ -66,7 +66,7 @@ class PatchNormals:
         return result
 
     def contain(self, normals: Array) -> NDArray[np.bool_]:
-        """Return which of the vectors (k, 3) are normals of points, parabolic ones included."""
+        """Return a mask of the vectors (k, 3) that are normals of points, parabolic ones too."""
         members = self.members(normals)
         which = np.flatnonzero(members.vanishing)
         n, _ = integers_by_row(normals[which])
@@ -76,7 +76,7 @@ class PatchNormals:
 
     @cached_property
     def scale(self) -> float:
-        """A power of two that brings the differences of control points to about 1."""
+        """A power of two that scales the differences of control points to about 1."""
         largest = float(np.abs(self.control_points - self.control_points[2]).max())
         return scale_to_one(largest)
 
@@ -101,7 +101,7 @@ class PatchNormals:
 
     @cached_property
     def _bound(self) -> float:
-        """The bound of the rounding error of U, V, W, as for the patches of a spline.
+        """A bound of the rounding error of U, V, W, as for the patches of a spline.
 
         The errors come from differences of control points, which are of size 1; a, b, c may be much
         smaller.
@@ -111,11 +111,11 @@ class PatchNormals:
 
     @cached_property
     def _shortest(self) -> float:
-        """The least length of N, as a sum of moduli, at which its direction is certain."""
+        """The least length of N, as a sum of moduli, for which its direction is certain."""
         return NEAR_SINGULAR_POINT * (2.0 * self._sizes[0] + self._sizes[1]) ** 2
 
     def _decide(self, members: Members, rows: NDArray[np.intp], normals: Array) -> None:
-        """Decide normals exactly, on integers; write the decisions to `rows` of the result."""
+        """Decide normals exactly, with integers, and write the decisions to `rows` of `members`."""
         n, _ = integers_by_row(normals)
         patch, normal = self.exact_vectors, Vector(*n)
         forms = np.array(python_function(formulas.forms)(patch, normal), dtype=object)

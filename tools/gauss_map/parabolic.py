@@ -1,4 +1,4 @@
-"""`parabolic_points`: where the Gaussian curvature of a spline or of a surface vanishes."""
+"""`parabolic_points`: the points of a spline or a surface with vanishing Gaussian curvature."""
 
 from __future__ import annotations
 
@@ -38,32 +38,32 @@ __all__ = [
 ]
 
 # The numbers of cells of the grid along u and v. It is refined where curves are closer to each
-# other than a cell, or smaller, and where more than this share of its cells is on curves.
+# other than a cell, or smaller, and where more than this share of its cells contains curves.
 CELLS, MOST_CELLS, CROWDED = 128, 512, 1 / 8
-# A share of the domain that is worth a warning.
+# The least share of the domain without curvature that gets a warning.
 WORTH_A_WARNING = 1e-4
-# Places that K touches are one if their cells are this near.
+# Isolated zeros of K whose cells are this close are one.
 TOGETHER = 4
-# The change of K along the direction in which the normal does not turn, relative to its gradient,
-# below which it is zero: on curves with one normal, such as the top circle of a torus. So is the
-# gradient relative to the largest on the curve, where curves cross.
+# Derivatives of K below this bound count as zero: along the direction in which the normal is
+# constant, relative to the gradient of K (so on curves with one normal, such as the top circle of a
+# torus); and the gradient itself, relative to its maximum on the curve, where curves cross.
 NO_CHANGE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class ParabolicPoint:
-    """A place where the curvature touches zero without a change of sign.
+    """A point at which the curvature touches zero without a change of sign.
 
     Attributes
     ----------
     uv : (2,) float64 array
-        Its parameters.
+        The parameters of the point.
     point : (3,) float64 array
         The point in space.
     box : (2, 2) float64 array
-        Lowest and highest parameters of the rectangle that isolates it. A rectangle longer than the
-        tolerance contains a curve of such points, or a closed curve too small to trace, or K is
-        zero up to its error on all of it.
+        Lowest and highest parameters of the rectangle that isolates it. If the rectangle is longer
+        than the tolerance, it contains a curve of such points, or a closed curve too small to
+        trace, or K is zero up to its error on all of it.
 
     Examples
     --------
@@ -90,15 +90,15 @@ class ParabolicPoints:
     Attributes
     ----------
     curves : tuple of ImageCurve
-        Curves across which the Gaussian curvature changes its sign. They end at the border of the
-        surface, at a "mirrored" seam, and where they meet or cross; one may lie on the border.
+        Curves across which the Gaussian curvature changes its sign. They end at the boundary of the
+        surface, at a "mirrored" seam, and where they meet or cross; one may lie on the boundary.
     isolated : tuple of ParabolicPoint
-        Places where the curvature touches zero without a change of sign.
+        Points at which the curvature touches zero without a change of sign.
     flat : (k, 2, 2) float64 array
-        Rectangles of the parameter plane (lowest and highest corner) in which it vanishes up to
-        its error.
+        Rectangles of the parameter plane (lowest and highest corner) in which the curvature
+        vanishes up to its error.
     developable : bool
-        Whether it vanishes up to its error everywhere.
+        Whether the curvature vanishes up to its error everywhere.
 
     Examples
     --------
@@ -133,27 +133,27 @@ def parabolic_points(
     Parameters
     ----------
     surface : Surface, Spline or str
-        Of a `Spline`, and of a surface given by a grid of points, which is a spline, exact lines
-        inside patches and the edges across which the curvature changes its sign. Any other
-        `Surface` has to be smooth; its own curvature is used.
+        For a `Spline`, and a surface given by a grid of points, which is a spline, the result
+        consists of exact lines inside patches and the edges across which the curvature changes its
+        sign. Any other `Surface` must be smooth; its own curvature is used.
     tolerance : float, default 1e-4
         Largest distance of polylines from the curves in space, and largest size of the rectangles
         that isolate points, relative to the size of the surface and of its domain; 1e-7 to 0.1.
     cells : pair of int, optional
-        The least numbers (m, n) of cells of the grid on which the signs of K show the curves, at
-        most 512 each; there are at least 128 × 128. For a grid of points, the cells of its spline
+        The least numbers (m, n) of cells of the grid whose signs of K locate the curves, at most
+        512 each; the grid has at least 128 × 128. For a grid of points, the cells of its spline
         (see `fit`).
 
     Returns
     -------
     ParabolicPoints
-        Curves across which K changes its sign, places where it only touches zero, flat rectangles.
+        Curves across which K changes its sign, isolated zeros of K, and flat rectangles.
 
     Raises
     ------
     InputError
-        For a tolerance out of range, unusable `cells`, `cells` together with a spline, or anything
-        but a surface or a spline.
+        For a tolerance out of range, invalid `cells`, `cells` together with a spline, or any other
+        object than a surface or a spline.
     SurfaceError
         If the surface cannot be evaluated.
 
@@ -165,15 +165,15 @@ def parabolic_points(
 
     Notes
     -----
-    The signs of K at the nodes of a grid show the curves; each vertex is then moved to a zero of K.
-    Newton's method finds the critical points of K where it is zero: curves cross there, or K
+    The signs of K at the nodes of a grid locate the curves; each vertex is then moved to a zero of
+    K. Newton's method finds the critical points of K where it is zero: curves cross there, or K
     touches zero. Where curves are closer to each other than a cell, or closed and smaller, the grid
-    is refined to at most 512 × 512 cells. Those that are still smaller or closer are `isolated`, or
-    may be joined wrongly; a pair of small curves within one cell can be missed.
+    is refined to at most 512 × 512 cells. Curves that are still too small become `isolated` points,
+    and those too close may be joined wrongly; a pair of small curves within one cell can be missed.
 
-    K has the derivatives of the surface, or those of the NumPy functions that a callable is made
-    of. Other callables are differentiated by differences of points, and the error of K is
-    estimated. Where K is less than its error, its sign is not used: such places are `flat`.
+    K is computed from the derivatives of the surface, or of the NumPy functions that a callable is
+    made of. Other callables are differentiated by finite differences, with an estimate of the error
+    of K. Where K is less than its error, its sign is not used: such rectangles are `flat`.
 
     Examples
     --------
@@ -230,7 +230,7 @@ def size_of_spline(spline: Spline) -> float:
 
 
 class _Zeros:
-    """Where K of a surface is zero."""
+    """The zeros of K of a surface."""
 
     def __init__(self, surface: Surface, tolerance: float, cells: tuple[int, int]) -> None:
         self.surface, self.tolerance, self.curvature = surface, tolerance, Curvature(surface)
@@ -246,7 +246,7 @@ class _Zeros:
             cells = finer
 
     def points(self) -> ParabolicPoints:
-        """Return what `parabolic_points` does; warns of what is unknown."""
+        """Return the result of `parabolic_points`; warn if K is unknown on a part of the domain."""
         grid = self.grid
         unknown = float(grid.areas[grid.unknown].sum())
         if unknown > WORTH_A_WARNING:
@@ -270,7 +270,7 @@ class _Zeros:
         ]
 
     def _isolated(self) -> tuple[ParabolicPoint, ...]:
-        """Return places that K touches, one for those that are near each other, with boxes."""
+        """Return the isolated zeros of K, one for each cluster, with boxes."""
         from scipy.ndimage import label, maximum_filter
 
         touched, reach = self.critical.touched, self.critical.reach
@@ -290,10 +290,10 @@ class _Zeros:
         return tuple(found)
 
     def _with_cusps(self, uv: Array) -> tuple[Array, Indices]:
-        """Return a curve (k, 2) with the cusps of its image as vertices, and which these are.
+        """Return a curve (k, 2) with the cusps of its image as vertices, and the indices of these.
 
-        At a cusp, K does not change along the direction in which the normal does not turn; before
-        and behind it, it changes by values of different sign.
+        At a cusp, the derivative of K along the direction in which the normal is constant vanishes
+        and changes its sign.
         """
         change, along = self._change(uv)
         known = np.flatnonzero(np.abs(change) > NO_CHANGE)
@@ -323,10 +323,10 @@ class _Zeros:
         return place(float(brentq(value, 0.0, 1.0, xtol=1e-12)))[0]  # pyright: ignore[reportArgumentType]
 
     def _change(self, uv: Array) -> tuple[Array, Array]:
-        """Return the change (k,) of K along the direction in which the normal does not turn.
+        """Return the derivative (k,) of K along the direction in which the normal is constant.
 
-        It is relative to the length of the gradient of K. Also returns the direction (k, 2), by
-        shares of the domain.
+        It is relative to the length of the gradient of K. Also returns the direction (k, 2),
+        relative to the domain.
         """
         _, gradient, _ = self.curvature.derivatives(uv)
         u, v = self.curvature.extent

@@ -33,19 +33,19 @@ TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
 @dataclass(frozen=True, eq=False)
 class ParabolicLine:
-    """A line s u + t v + ρ = 0 of parabolic points, with s² + t² = 1; all of it has one normal.
+    """A line s u + t v + ρ = 0 of parabolic points, with s² + t² = 1; it has one normal.
 
     Attributes
     ----------
     s, t, rho : float
         The coefficients of the line in the barycentric parameters u, v of the patch.
     normal : (3,) float64 array
-        The unit normal, oriented as in the middle of the part that is nearest to the triangle.
+        The unit normal, oriented as in the middle of the part nearest to the triangle.
     multiplicity : int
         1 where the curvature changes its sign across the line, 2 where it touches zero, 3 where all
-        three lines are one.
+        three lines coincide.
     segment : (2, 2) float64 array or None
-        The ends (u, v) of the part in the triangle u, v, 1 − u − v ≥ 0; None if there is none.
+        The ends (u, v) of the part in the triangle u, v, 1 − u − v ≥ 0; None if that is empty.
 
     Examples
     --------
@@ -134,7 +134,7 @@ def split_patch(control_points: ArrayLike) -> tuple[Piece, ...]:
     Returns
     -------
     tuple of Piece
-        Pieces that are elliptic or hyperbolic as a whole; together they are the parameter triangle.
+        Pieces that are wholly elliptic or hyperbolic; together they are the parameter triangle.
 
     Raises
     ------
@@ -207,8 +207,8 @@ def _heights(places: Array, line: Array) -> Array:
 def singular_points(patch: Patches) -> Array:
     """Return the parameters (k, 2) at which N(u,v) vanishes: where two parabolic lines meet.
 
-    These may be a real point of two complex lines. A patch has at most three such points, unless
-    all its parabolic lines run together.
+    Such a point may be the real intersection of two complex lines. A patch has at most three of
+    them, unless all its parabolic lines coincide.
     """
     angle, roots = _roots(patch)
     lines = []
@@ -232,7 +232,7 @@ def singular_points(patch: Patches) -> Array:
 
 
 def _singular_point(patch: Patches, place: Array) -> Array:
-    """Improve a zero of N(u,v) by Gauss-Newton steps; NaN if it is none."""
+    """Refine a zero of N(u,v) by Gauss-Newton steps; NaN if there is none."""
     half = 0.5 * np.eye(2)
     for _ in range(3):
         # N is quadratic: these differences are its derivatives.
@@ -261,10 +261,10 @@ def _directions(patch: Patches) -> list[tuple[float, float, int]]:
 
 
 def _roots(patch: Patches) -> tuple[float, NDArray[np.complex128]]:
-    """Return the roots x of the binary cubic, with (s, t) the point (x, 1) turned by an angle.
+    """Return the roots x of the binary cubic, where (s, t) is (x, 1) rotated by an angle.
 
-    The angle is one where the cubic is large, so that no root is near infinity. There are no roots
-    where the cubic vanishes.
+    At that angle the cubic is large, so that no root is near infinity. There are no roots where the
+    cubic vanishes.
     """
     coefficients = np.array([float(x[0]) for x in patch.apply(formulas.parabolic_directions)])
     error = (
@@ -290,7 +290,7 @@ def _turned(coefficients: Array, angle: float) -> Array:
 
 
 def _merged(angles: list[float]) -> list[tuple[float, int]]:
-    """Join directions (as angles, modulo π) that are nearly the same."""
+    """Merge directions (as angles, modulo π) that are nearly equal."""
     groups: list[list[float]] = []
     for angle in angles:
         if groups and angle - groups[-1][-1] <= DOUBLE_ROOT:
@@ -301,7 +301,7 @@ def _merged(angles: list[float]) -> list[tuple[float, int]]:
 
 
 def _line(patch: Patches, s: float, t: float) -> tuple[float, Array] | None:
-    """Return ρ and the normal of the line with a direction; None if it is at infinity."""
+    """Return ρ and the normal of the line with a direction; None for a line at infinity."""
     normals = np.array(patch.apply(formulas.parabolic_normal, s, t))[..., 0]
     lengths = np.linalg.norm(normals, axis=1)
     if lengths.max() <= float(patch.normal_noise[0]):
@@ -338,7 +338,7 @@ def _oriented(
 
 
 def _sign_in(patch: Patches, polygon: Array) -> int:
-    """Return the sign of the cubic D(N(u,v)) inside a piece; a few places may be isolated zeros."""
+    """Return the sign of the cubic D(N(u,v)) inside a piece; a few samples may be zeros."""
     places = 0.5 * (polygon + polygon.mean(axis=0))
     values = cubic_bernstein(places) @ patch.cubic[0]
     return int(np.sign(values[np.abs(values).argmax()]))

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 CORNERS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
 # A point of an edge within this distance of a corner, relative to the edge, is the corner.
 AT_CORNER = 1e-9
-# How far from a segment, in cells, the sign of K is taken on both sides.
+# The distance from a segment, in cells, at which the sign of K is taken on both sides.
 ASIDE = 1e-7
 
 
@@ -58,7 +58,7 @@ def polylines_of(spline: Spline, classes: NDArray[np.int8]) -> list[Array]:
 
 
 def _places(spline: Spline, patch: NDArray[np.int64], local: Array) -> Array:
-    """Return points (k, n, 2), in cells, from their parameters (n, 2) in patches (k,)."""
+    """Return points (k, n, 2), in cells, from parameters (n, 2) relative to patches (k,)."""
     cell = np.stack(np.divmod(patch // 4, spline.cells[1]), axis=-1)
     return cell[:, None] + 0.5 + local @ grid.CORNERS[patch % 4]
 
@@ -81,7 +81,7 @@ def _edges(spline: Spline, lines: list[tuple[int, Array]]) -> Array:
                 share = float(weights[(edge + 1) % 3])
                 if abs(weights[edge - 1]) <= AT_CORNER and AT_CORNER < share < 1.0 - AT_CORNER:
                     own = 3 * patch + edge
-                    # The patch on the other side traverses the edge in reverse.
+                    # The patch on the other side runs along the edge in reverse.
                     cuts[int(number[own])].add(share if first[number[own]] == own else 1.0 - share)
     whole = np.ones(len(first), dtype=bool)
     whole[list(cuts)] = False
@@ -98,7 +98,7 @@ def _edges(spline: Spline, lines: list[tuple[int, Array]]) -> Array:
 def _signs(
     spline: Spline, patches: Patches, classes: NDArray[np.int8], places: Array
 ) -> NDArray[np.int64]:
-    """Return the signs of K (k,) at places (k, 2), in cells; 0 outside, and where K is zero."""
+    """Return the signs of K (k,) at points (k, 2), in cells; 0 outside, and where K is zero."""
     inside = np.ones(len(places), dtype=bool)
     for axis, (count, kind) in enumerate(zip(spline.cells, spline.boundary, strict=True)):
         if kind[0] == "periodic":

@@ -1,4 +1,4 @@
-"""The vectors of many quadratic patches at once, their normal fields, and how sure these are."""
+"""The vectors of many quadratic patches, their normal fields, and bounds of the errors."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ ORDER = "in the order b200, b020, b002, b110, b101, b011"
 class Patches:
     """The vectors a, b, c, d, e of eq. (8) of k patches, (k, 5, 3), in a unit near their size.
 
-    `noise` (k,) bounds the error that the rounding of the coordinates leaves in a component.
-    Gaussian images do not depend on the unit, which each patch has for itself.
+    `noise` (k,) bounds the error of a component due to the rounding of the coordinates. Gaussian
+    images do not depend on the unit, which each patch has of its own.
     """
 
     vectors: Array
@@ -71,18 +71,18 @@ class Patches:
         return len(self.vectors)
 
     def __getitem__(self, rows: NDArray[Any] | slice) -> Patches:
-        """Return some of the patches."""
+        """Return a selection of the patches."""
         return Patches(self.vectors[rows], self.noise[rows])
 
     def apply(self, formula: Callable[..., Any], *more: ArrayLike | Vector) -> Any:  # noqa: ANN401
-        """Return the outputs of a formula of patches; each number in them is an array (k,)."""
+        """Return the outputs of a formula of patches, in which each number is an array (k,)."""
         return python_function(formula)(patch(self.vectors), *more)
 
     @cached_property
     def normals(self) -> Array:
         """The polar form (k, 3, 3, 3) of N(u,v): [i, j] is the control normal of corners i and j.
 
-        What is zero up to noise is set to zero: a singular point.
+        Vectors that are zero up to noise are set to zero: singular points.
         """
         net = _stacked(self.apply(formulas.control_normals), len(self))
         net[np.linalg.norm(net, axis=2) <= self.normal_noise[:, None]] = 0.0
@@ -118,14 +118,14 @@ class Patches:
 
     @cached_property
     def flat(self) -> NDArray[np.bool_]:
-        """Which patches (k,) are flat or developable, up to noise: D(N) vanishes."""
+        """A mask of the patches (k,) that are flat or developable, up to noise: D(N) vanishes."""
         longest = np.linalg.norm(self.normals, axis=3).max(axis=(1, 2))
         error = 4.0 * self.noise * self.second * longest * (longest + self.tangent * self.second)
         return np.abs(self.cubic).max(axis=1) <= error + self.cubic_rounding
 
 
 def checked_control_points(control_points: ArrayLike) -> Array:
-    """Return the control points of one patch as (6, 3) floats; InputError if they are none."""
+    """Return the control points of one patch as (6, 3) floats; InputError if invalid."""
     array = real_array(control_points, "control_points")
     if array.shape != (6, 3):
         raise InputError(
@@ -136,7 +136,7 @@ def checked_control_points(control_points: ArrayLike) -> Array:
 
 
 def checked_nets(nets: ArrayLike) -> Array:
-    """Return the control points of k >= 1 patches as (k, 6, 3) floats; InputError if not these."""
+    """Return the control points of k >= 1 patches as (k, 6, 3) floats; InputError if invalid."""
     array = real_array(nets, "nets")
     if array.ndim != 3 or array.shape[1:] != (6, 3) or len(array) == 0:
         raise InputError(
@@ -146,7 +146,7 @@ def checked_nets(nets: ArrayLike) -> Array:
 
 
 def _computable(array: Array, name: str) -> Array:
-    """Return an array of numbers to compute with; InputError that says where others are."""
+    """Return an array of usable numbers; InputError with the row of the first other one."""
     rows = np.abs(array).reshape(len(array), -1)
     if not np.isfinite(rows).all():
         row = int(np.argmin(np.isfinite(rows).all(axis=1)))

@@ -1,4 +1,4 @@
-"""Lines between the nodes of a grid where values are positive and those where they are not."""
+"""Lines between the nodes of a grid that separate values ≥ 0 from negative values."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["sign_changes", "with_borders"]
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-# Values grow from a border if they exceed their error by this factor next to it.
+# Values grow from a boundary if, next to it, they exceed their error by this factor.
 CLEAR = 100.0
 TINY = float(np.finfo(float).tiny)
 
@@ -21,23 +21,23 @@ TINY = float(np.finfo(float).tiny)
 def sign_changes(
     values: Array, kinds: tuple[str, str], places: Callable[[Integers, Integers], Array]
 ) -> list[tuple[list[Array], bool]]:
-    """Return the lines between nodes with a value ≥ 0 and the others, and whether each is closed.
+    """Return the lines between nodes with values ≥ 0 and < 0, and whether each is closed.
 
-    There are none in cells with NaN. Of the four crossed sides of a cell those are joined that the
-    mean of its corners separates. `places` returns those (k, 2) of a line on sides between nodes
-    (k, 2) and (k, 2). A line has several parts (k, 2) if it passes seams: `kinds` are "periodic" or
-    "mirrored" for the ends along u and along v that are the same.
+    Cells with NaN have none. In a cell with four crossed sides, the mean of its corners decides
+    which sides are joined. `places` returns the points (k, 2) of a line on sides between nodes (k,
+    2) and (k, 2). A line has several parts (k, 2) if it crosses seams: `kinds` are "periodic" or
+    "mirrored" where the ends along u or along v are identified.
     """
     from contourpy import LineType, contour_generator
 
     size = np.abs(values) / (np.nanmax(np.abs(values), initial=0.0) or 1.0)
-    # So vertices are in the middle third of their sides.
+    # With these values, vertices are in the middle third of their sides.
     apart = np.where(values >= 0.0, 1.0 + size, -1.0 - size)
     # contourpy counts the second axis first.
     lines = contour_generator(z=apart.T, corner_mask=False, line_type=LineType.Separate).lines(0.0)
     if not lines:
         return []
-    # The middles of the crossed sides, in halves of a cell.
+    # The midpoints of the crossed sides, in halves of a cell.
     codes = [np.rint(2.0 * np.asarray(x)).astype(np.int64) for x in lines]
     last = 2 * np.array(values.shape) - 2
 
@@ -60,10 +60,10 @@ def sign_changes(
 
 
 def with_borders(values: Array, noise: Array, kinds: tuple[str, str]) -> Array:
-    """Return values with another sign than inside along open borders on which they are zero.
+    """Return values whose sign changes at open boundaries on which they are zero.
 
-    So the border is a line between positive values and others. Values are zero up to `noise`, and
-    have to grow linearly from the border: otherwise they only touch zero.
+    So the boundary is a line between values ≥ 0 and < 0. Values are zero up to `noise`, and must
+    grow linearly from the boundary: otherwise they only touch zero.
     """
     result = values.copy()
     for axis, kind in enumerate(kinds):

@@ -14,7 +14,7 @@ from .sign_changes import with_borders
 __all__ = ["SignGrid"]
 
 # Nodes are shifted by this share of a cell: curves of symmetric surfaces often lie on lines of
-# symmetry, where nodes should not be.
+# symmetry, and should not pass through nodes.
 OFFSET = 0.2360679774997897
 # K is known where its error is less than this, relative to K here, and where most nodes are.
 RESOLVED = 1e-2
@@ -22,13 +22,13 @@ TINY = float(np.finfo(float).tiny)
 
 
 class SignGrid:
-    """K at the nodes of a grid, and where it changes its sign.
+    """K at the nodes of a grid, and the changes of its sign.
 
-    `values` are those of K, with a sign of a neighbour where they are zero up to their error or
-    unknown, and NaN where there is none. So a curve through nodes is crossed once or not at all,
-    whatever the signs of the rounding. K is zero, up to its error, at all corners of the cells in
-    `flat`, and unknown at corners of those in `unknown`; `near_curves` are those next to a change
-    of sign, or to unknown ones. `areas` are those of cells, relative to the domain.
+    `values` are those of K, with the sign of a neighbour where they are zero up to their error or
+    unknown, and NaN without such a neighbour. So a curve through nodes is crossed once or not at
+    all, whatever the signs of the rounding. K is zero, up to its error, at all corners of the cells
+    in `flat`, and unknown at corners of those in `unknown`; `near_curves` are the cells next to a
+    change of sign, or to unknown ones. `areas` are those of cells, relative to the domain.
     """
 
     def __init__(self, curvature: Curvature, cells: tuple[int, int]) -> None:
@@ -74,7 +74,7 @@ class SignGrid:
         self.near_curves: Flags = near.astype(bool)
 
     def cells_at(self, places: Array) -> tuple[Indices, Indices]:
-        """Return the cells (i, j) that hold places (k, 2) of the domain."""
+        """Return the cells (i, j) that contain parameter pairs (k, 2) of the domain."""
         i, j = (
             np.clip(np.searchsorted(line, x, side="right") - 1, 0, len(line) - 2)
             for line, x in zip(self.lines, places.T, strict=True)
@@ -87,7 +87,7 @@ class SignGrid:
         return np.stack([self.at(cells), self.at(cells + 1)], axis=1)
 
     def at(self, nodes: Indices) -> Array:
-        """Return the places (..., 2) of nodes (..., 2)."""
+        """Return the parameter pairs (..., 2) of nodes (..., 2)."""
         return np.stack([line[nodes[..., k]] for k, line in enumerate(self.lines)], axis=-1)
 
 

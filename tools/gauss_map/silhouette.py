@@ -1,4 +1,4 @@
-"""`silhouette`: where a surface is seen edge-on, from normals on a great circle."""
+"""`silhouette`: the contour generator of a surface, from normals on a great circle."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ from .contours import polylines_of
 
 __all__ = ["Silhouette", "great_circle", "silhouette"]
 
-# Fields that say which normal a sample has, and where it was found.
+# Fields for the normal of a sample, and the patch where it was found.
 KEYS = ("normal_index", "patch_index")
-# Where x_uu, x_uv, x_vv, x_u, x_v are in jets: the vectors of the patch that osculates.
+# The indices of x_uu, x_uv, x_vv, x_u, x_v in jets: the vectors of the osculating patch.
 SECOND_JET = (3, 4, 5, 1, 2)
-# The steps of Newton's method, and how far they may lead, in cells.
+# The largest number of steps of Newton's method, and their total reach, in cells.
 MOST_STEPS, FARTHEST = 12, 2.0
-# The largest number of attempts to meet `count` by changing the number of normals.
+# The largest number of attempts to reach `count` by changing the number of normals.
 TRIES = 6
 
 
@@ -47,13 +47,13 @@ TRIES = 6
 class Silhouette(Samples):
     """Samples of a contour generator, and their order along its curves; made by `silhouette`.
 
-    Rows that are picked, parts joined by ``Samples.concatenate`` and offsets are `Samples`, without
+    Selected rows, parts joined by ``Samples.concatenate`` and offsets are `Samples`, without
     polylines.
 
     Attributes
     ----------
     polylines : tuple of (k,) int64 arrays
-        The rows along each curve; a closed one ends with the row with which it begins.
+        The rows along each curve; a closed one repeats its first row at its end.
 
     """
 
@@ -96,11 +96,11 @@ def silhouette(
 ) -> Silhouette:
     """Return points of a surface whose normals are perpendicular to a direction.
 
-    They lie on the contour generator, which a parallel projection along `direction` shows as the
-    outline: all of it, also where the surface hides it. Where K < 0 the outline is concave. They
-    are found on the spline that approximates the surface, and moved to the surface as samples are.
-    Next to parabolic points, where the surface may have no point with that normal near by, they are
-    moved to its contour generator, and have another normal than that of their `normal_index`.
+    They lie on the contour generator, whose parallel projection along `direction` is the outline,
+    hidden parts included. Where K < 0 the outline is concave. The points are found on the spline
+    that approximates the surface, and moved to the surface as samples are. Next to parabolic
+    points, where the surface may have no nearby point with the same normal, they are moved to the
+    contour generator of the surface, and their normal differs from that of their `normal_index`.
 
     Parameters
     ----------
@@ -119,9 +119,9 @@ def silhouette(
     Silhouette
         `Samples`: the points by normal, round the circle (`normal_index`) from the angle 0 to 2π,
         and then by patch, each exactly once. Their `polylines`, a tuple of (k,) int64 arrays, are
-        the rows in the order of each curve of the contour generator, across patches and parabolic
-        points. A closed curve ends with the row with which it begins; others end at open borders,
-        or at a trim.
+        the rows in order along each curve of the contour generator, across patches and parabolic
+        points. A closed curve repeats its first row at its end; others end at open boundaries, or
+        at a trim.
 
     Raises
     ------
@@ -136,9 +136,8 @@ def silhouette(
     Notes
     -----
     Parts of the contour generator along which the normal is constant, such as straight ones and the
-    circle on top of a torus in the direction of its axis, give isolated points or none. A polyline
-    crosses them in one step. Which parts of the outline are seen, its cusps and its T-junctions are
-    not computed.
+    circle on top of a torus seen along its axis, give isolated points or none. A polyline crosses
+    them in one step. The visibility of the outline, its cusps and its T-junctions are not computed.
 
     Examples
     --------
@@ -190,10 +189,10 @@ def _move_others(
     places: NDArray[np.float64],
     arrays: dict[str, NDArray[Any]],
 ) -> int | None:
-    """Move samples that are not on the surface to its contour generator; return how many are left.
+    """Move samples that are not on the surface to its contour generator; return the number left.
 
-    Newton's method for N·axis = 0, from their places (N, 2) on the spline along the gradient, leads
-    there at parabolic points, too. The samples are overwritten.
+    Newton's method for N·axis = 0, along the gradient from the parameters (N, 2) on the spline,
+    also converges at parabolic points. The samples are overwritten.
     """
     if FLAG_NAMES[0] not in arrays:
         return None
@@ -226,14 +225,14 @@ def _move_others(
 
 
 def _inside(uv: NDArray[np.float64], spline: Spline) -> NDArray[np.float64]:
-    """Return parameters (k, 2) moved into the domain, along what is not periodic."""
+    """Return parameters (k, 2) clipped to the domain in directions that are not periodic."""
     free = [ends[0] == "periodic" for ends in spline.boundary]
     low, high = np.array(spline.domain).T
     return np.where(free, uv, np.clip(uv, low, high))
 
 
 def great_circle(axis: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-    """Return unit normals (count, 3) perpendicular to a unit vector, anticlockwise round it."""
+    """Return unit normals (count, 3) perpendicular to a unit vector, anticlockwise around it."""
     return as_normals(circle(count) @ np.stack(perpendicular(axis)))
 
 
@@ -244,7 +243,7 @@ def _by_count(
     threads: int | None,
     progress: bool,
 ) -> tuple[NDArray[np.float64], Hits]:
-    """Return normals with about `count` samples, and these."""
+    """Return normals with about `count` samples, and the samples."""
     size, best, nearest = count, None, math.inf
     for _ in range(TRIES):
         normals = great_circle(axis, size)
