@@ -79,10 +79,10 @@ def write(
           `terrain`, whose `origin` is added again; coordinates are rounded to 1e-8 of the
           extent. Need `points`, and the extra "gis" (laspy).
     fields : sequence of str, optional
-        The fields that are written, such as ``("points", "normals")``; by default all that the
-        samples hold.
+        The fields to write, such as ``("points", "normals")``; by default all fields of the
+        samples.
     progress : bool, default False
-        Show on a terminal what is done, after the first second.
+        Show the progress on a terminal, after the first second.
 
     Raises
     ------
@@ -133,25 +133,24 @@ def mesh(
 ) -> Mesh:
     """Return a triangle mesh of the whole surface through the samples.
 
-    Neighbours are those of a Delaunay triangulation of the parameters: the mesh closes where
-    the surface does, has one vertex at a pole, and reaches open borders by points that are
-    added there, as far apart as the samples near them. Then edges are flipped. Samples that
-    coincide become one vertex.
+    Neighbours are those of a Delaunay triangulation of the parameters: the mesh closes where the
+    surface does, has one vertex at a pole, and reaches open boundaries by added points, as far
+    apart as the samples near them. Then edges are flipped. Samples that coincide become one vertex.
 
     Samples on a graded grid (`row` and `column`) stay vertices, however long its cells are.
 
-    Of a CAD part it is a `PartMesh` of new vertices, as many as there are samples: first the
-    vertices and edges of the part are sampled, once for the faces at both sides, then the inside
-    of faces, with the density of the samples. Their triangles meet, so that the mesh of a closed
-    part is closed. Needs the extra `mesh`.
+    For a CAD part the result is a `PartMesh` of new vertices, as many as there are samples: first
+    the vertices and edges of the part are sampled, once for both adjacent faces, then the interior
+    of faces, with the density of the samples. Adjacent faces share vertices, so that the mesh of a
+    closed part is closed. Needs the extra `mesh`.
 
     Parameters
     ----------
     spline : Spline, optional
-        The spline of the samples, if they do not hold it; for an offset that of `offset_of`.
+        The spline of the samples, if they do not hold it; for an offset, the spline of `offset_of`.
     angle : float, optional
-        In degrees. Triangles that deviate from a normal at a corner by more are left out, for
-        samples of a part of the surface only. Not for CAD parts.
+        In degrees. Triangles that deviate from a normal at a corner by more are left out; for
+        samples of only a part of the surface. Not for CAD parts.
     prefer : {"shape", "normals"}, default "shape"
         - "shape": triangles are Delaunay on the surface, and have angles as large as the
           samples allow. A sample so close to others that a smallest angle stays below 5° is
@@ -164,7 +163,7 @@ def mesh(
           planes, cylinders and cones have vertices on their edges only, other faces rows that
           are even by how far normals turn.
     progress : bool, default False
-        Show on a terminal what is done, after the first second.
+        Show the progress on a terminal, after the first second.
 
     Returns
     -------
@@ -178,19 +177,19 @@ def mesh(
         the report) need row and column, too.
     InputError
         Without samples or spline, if a sample lies outside its domain, if `angle` leaves no
-        triangle, and, without it, if there are too few samples for a mesh that closes. Of a CAD
-        part, if there are fewer than its edges need, its file has no loops of edges, or, for
-        "shape", the density is neither "balanced" nor "uniform".
+        triangle, and, without `angle`, if there are too few samples for a mesh that closes. For a
+        CAD part, if there are fewer samples than its edges need, its file has no loops of edges,
+        or, for "shape", the density is neither "balanced" nor "uniform".
     SurfaceError
         If no face of a CAD part can be meshed.
     MissingExtraError
-        Of a CAD part, without the extra `mesh`.
+        For a CAD part, without the extra `mesh`.
 
     Warns
     -----
     GaussmapWarning
         If faces of a CAD part are missing, see `PartMesh.failed`, or triangles of it point inward
-        and no larger count is known without them.
+        and no larger count is known to avoid that.
 
     Notes
     -----
@@ -237,29 +236,29 @@ def levels(
 ) -> tuple[Mesh, ...]:
     """Return nested levels of detail: meshes of prefixes of the samples in progressive order.
 
-    Every sample of a level is one of all finer levels, too.
+    Every sample of a level is also in all finer levels.
 
     Parameters
     ----------
     counts : sequence of int
-        The numbers of samples of the levels, each from 1 to that of all.
+        The numbers of samples of the levels, each from 1 to the number of all samples.
     spline : Spline, optional
         As in `mesh`.
     prefer : {"shape", "normals"}, default "shape"
         As in `mesh`.
     progress : bool, default False
-        Show on a terminal what is done, if it takes more than a second.
+        Show the progress on a terminal, after the first second.
 
     Returns
     -------
     tuple of Mesh
-        A mesh for each count. Its `sample_index` numbers the rows of ``samples.progressive()``, so
-        that a vertex has the same number in all levels.
+        A mesh for each count. Its `sample_index` refers to the rows of ``samples.progressive()``,
+        so that a vertex has the same index in all levels.
 
     Raises
     ------
     InputError
-        For other counts, and as `mesh`: the coarsest level may have too few samples.
+        For invalid counts, and as `mesh`: the coarsest level may have too few samples.
     MissingFieldError
         As `mesh`.
 
@@ -289,31 +288,31 @@ def weights(
 ) -> NDArray[np.float64]:
     """Return the area of the surface that each sample stands for.
 
-    Σ w f(points) approximates the integral of f over the surface: its area for f = 1, the
-    volume of a closed surface for f = support / 3, 2π times the Euler characteristic for f =
-    gaussian_curvature. The error falls with the square of the distance between samples, that is
-    as 1 / N; that of the area as 1 / N², down to that of the spline. The weights are taken from
-    the mesh of the samples; its triangles are curved by the normals.
+    Σ w f(points) approximates the integral of f over the surface: its area for f = 1, the volume of
+    a closed surface for f = support / 3, 2π times the Euler characteristic for f =
+    gaussian_curvature. The error falls with the square of the distance between samples, that is as
+    1 / N; the error of the area as 1 / N², down to that of the spline. The weights come from the
+    mesh of the samples, whose triangles are curved according to the normals.
 
     Parameters
     ----------
     angle : float, optional
         In degrees, as in `mesh`.
     progress : bool, default False
-        Show on a terminal what is done, after the first second.
+        Show the progress on a terminal, after the first second.
 
     Returns
     -------
     (N,) float64 array
-        Areas in L². Of samples that coincide, all but one have 0.
+        Areas in L². Of samples that coincide, one has the whole area, and the others have 0.
 
     Raises
     ------
     MissingFieldError, InputError
         As `mesh`.
     SurfaceError
-        If float64 does not hold the areas, of surfaces larger than about 1e150 or smaller than
-        1e-150.
+        If the areas are out of the range of float64, for surfaces larger than about 1e150 or
+        smaller than 1e-150.
 
     Examples
     --------
@@ -336,7 +335,7 @@ def weights(
 def offset(self: Samples, distance: float) -> Samples:
     """Return the samples moved along their normals: the offset surface x + d n.
 
-    Points, support and curvatures are those of the offset, if the samples have them; normals,
+    Points, support and curvatures become those of the offset, if the samples have them; normals,
     parameters and indices stay. `spline` and `surface` are None; `offset_of` has those of these
     samples, from which `mesh` and `weights` of the offset take the neighbours.
 
@@ -354,15 +353,15 @@ def offset(self: Samples, distance: float) -> Samples:
     Raises
     ------
     InputError
-        Unless the distance is a finite number, and for curvatures whose squares their type does
-        not hold (of surfaces smaller than 1e-154 or larger than 1e154).
+        Unless the distance is a finite number, and if squares of curvatures are out of the range of
+        their type (for surfaces smaller than 1e-154 or larger than 1e154).
     MissingFieldError
-        If points lack their normals, or one of the curvatures the other one.
+        If points lack their normals, or one curvature lacks the other.
 
     Warns
     -----
     GaussmapWarning
-        If the offset folds, because d passes a radius of curvature of that side: at how many
+        If the offset folds, because d passes a radius of curvature on that side: the number of such
         samples (if they have curvatures), and the smallest radius. Normals stay there, too.
 
     Examples
@@ -380,33 +379,33 @@ def offset(self: Samples, distance: float) -> Samples:
 def unobstructed(
     self: Samples, distance: float, *, by: Part | Mesh | trimesh.Trimesh | None = None
 ) -> NDArray[np.bool_]:
-    """Return which samples a probe reaches along their normals from a distance.
+    """Return which samples a probe can reach from a distance, along their normals.
 
-    The straight way from the sample to the point x + d n of `offset` must not run into the part,
-    or into another obstacle. A probe has a width: for a ball of radius r, take the samples
-    ``offset(r)``, which are its centres, too. Rays are tested against a mesh of the obstacle, so
-    that ways that pass it at the distance between mesh and surface may be wrong.
+    The segment from the sample to the point x + d n of `offset` must not enter the part, or another
+    obstacle. A probe has a width: for a ball of radius r, take the samples ``offset(r)``, which are
+    its centres. Rays are tested against a mesh of the obstacle, so that the result may be wrong for
+    segments that pass within the distance between mesh and surface.
 
     Parameters
     ----------
     distance : float
         The distance d, in L.
     by : Part, Mesh or trimesh.Trimesh, optional
-        The obstacle: by default the part or surface of the samples. A part becomes a mesh of
-        20,000 vertices, as ``gm.sample(part, 20_000).mesh()``, or of more if it has very many
-        edges; this is made once, and kept with the part. For samples of a `Part.select` give the
-        whole part, for a clamp or a table its mesh.
+        The obstacle: by default the part or surface of the samples. A part becomes a mesh of 20,000
+        vertices, as ``gm.sample(part, 20_000).mesh()``, or of more if it has very many edges; the
+        mesh is made once, and stored with the part. For samples of a `Part.select` give the whole
+        part, for a clamp or a table its mesh.
 
     Returns
     -------
     (N,) bool array
-        Whether the way is free.
+        Whether the segment is free.
 
     Raises
     ------
     InputError
-        Unless the distance is positive, and the mesh closed with its normals outwards; for what is
-        no obstacle; and as `mesh`.
+        Unless the distance is positive, and the mesh closed with outward normals; for an object
+        that is no obstacle; and as `mesh`.
     MissingFieldError
         Unless the samples have the fields points and normals.
     MissingExtraError
@@ -414,7 +413,7 @@ def unobstructed(
 
     See Also
     --------
-    offset : the points from which the way begins.
+    offset : the points at the other ends of the segments.
 
     Examples
     --------
@@ -460,10 +459,10 @@ def plot(
     Parameters
     ----------
     surface : Surface, Spline or Part, optional
-        What the samples are on, if they do not hold it.
+        The surface of the samples, if they do not hold it.
     color, view, axes, normals : optional
-        As in `plot`: what the colours show, elevation and azimuth in degrees, axes of your own,
-        the prescribed normals.
+        As in `plot`: the column or array shown in colour, elevation and azimuth in degrees, axes to
+        draw into, the prescribed normals.
 
     Returns
     -------
@@ -473,7 +472,7 @@ def plot(
     Raises
     ------
     MissingExtraError, MissingFieldError, UnknownNameError, InputError, SurfaceError
-        As `plot`; InputError if the surface is not known.
+        As `plot`; InputError if the surface is unknown.
 
     Examples
     --------
@@ -492,39 +491,39 @@ def view(
 ) -> None:
     """Write one page for browsers: the surface and the unit sphere, which light up together.
 
-    Click a normal on the sphere, and its preimages light up on the surface; click a place on
-    the surface, and the Gaussian image of the region around it lights up on the sphere. Of a
-    CAD part, a click on a face takes all of its samples; faces have the colours of the file. With
-    the brush, or the shift key, drag to paint. The page holds all that it needs, 5 MB and more,
-    and works without a network.
+    Click a normal on the sphere, and its preimages light up on the surface; click a point of the
+    surface, and the Gaussian image of the region around it lights up on the sphere. On a CAD part,
+    a click on a face selects all of its samples; faces have the colours of the file. With the
+    brush, or the shift key, drag to paint. The page is self-contained, of 5 MB and more, and works
+    without a network.
 
     Parameters
     ----------
     path : str or os.PathLike
-        Name of the file, with the suffix `.html` or `.htm`. It is written whole or not at all.
+        Name of the file, with the suffix `.html` or `.htm`. It is written as a whole or not at all.
     surface : Surface, Spline or Part, optional
-        What the samples are on, if they do not hold it.
+        The surface of the samples, if they do not hold it.
 
     Raises
     ------
     MissingExtraError
         Without Plotly: ``pip install "gaussmap[view]"``.
     UnknownNameError
-        If the suffix is none of these.
+        If the suffix is another one.
     FileError
         If the file cannot be written.
     MissingFieldError
         If the samples lack points, normals, Gaussian curvature or normal indices.
     InputError
-        Without samples, for more than 50,000, and if the surface is not known.
+        Without samples, for more than 50,000, and if the surface is unknown.
     SurfaceError
         If the surface cannot be drawn.
 
     Notes
     -----
-    A click next to the dot of a sample takes the normal of that sample; another one takes the
-    direction that was clicked, or, if all samples are at prescribed normals, the nearest of
-    these. The points that light up are
+    A click next to the dot of a sample selects the normal of that sample; another click selects the
+    direction at the pointer, or, if all samples are at prescribed normals, the nearest of these.
+    The points that light up are
 
     - the samples with exactly this normal, up to the rounding of float32, if it is a prescribed
       one, or if several samples have it, as on planes. Made with ``normals=icosphere(…)``,

@@ -22,7 +22,7 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-# Normals of one triangle must be this near to their mean (as a cosine); wider ones are subdivided.
+# The least cosine between the normals of one triangle and their mean; others are subdivided.
 NARROW = 0.5
 # A sum of unit normals shorter than this has no direction.
 SMALL = 1e-9
@@ -32,15 +32,16 @@ SMALL = 1e-9
 DEPTH = 26
 MOST_WIDE = 20_000
 LEFT_OUT = 2.0**-6
-# Gauss-Legendre on an arc and on its halves agree to this, or the halves are cut again; so are arcs
-# with an end that is shorter than the rest by this factor, where the direction may turn too fast to
-# be seen by either.
+# Gauss-Legendre quadrature on an arc and on its halves must agree to AGREEMENT, or the halves are
+# cut again; so are arcs with an end that is shorter than the rest by the factor SHORT, where the
+# direction may turn too fast for both.
 SHORT = 1.0 / 16.0
 NODES = 16
 AGREEMENT = 1e-15
 ARC_DEPTH = 40
 MOST_PARTS = 1_000_000
-# Poles to choose from, and how many normals of each arc have to be far from the opposite pole.
+# The candidates for poles, and the number of normals tested on each arc for their distance from the
+# opposite pole.
 POLES = np.array([x for x in product((-1.0, 0.0, 1.0), repeat=3) if any(x)])
 POLES /= np.linalg.norm(POLES, axis=1, keepdims=True)
 SAMPLES = 9
@@ -51,11 +52,11 @@ EDGES = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 def solid_angles(normals: Array) -> Array:
     """Return the solid angles (k,) of triangles, given the polar forms of their normal fields.
 
-    Singular points, where N vanishes, have to be corners (exactly zero) for the full accuracy.
+    Singular points, where N vanishes, must be corners (exactly zero) for the full accuracy.
 
     `normals` (k, 3, 3, 3) holds the control normal of each two corners. The result is the integral
-    of the Gaussian curvature over the surface: negative where that is hyperbolic; what overlaps
-    counts as often as it is covered. Exact up to rounding, about 1e-15 for each triangle.
+    of the Gaussian curvature over the surface: negative where that is hyperbolic, with overlaps
+    counted by their multiplicity. It is exact up to rounding, about 1e-15 for each triangle.
     """
     result = np.zeros(len(normals))
     owners, poles, narrow = _narrow(normals)
@@ -68,8 +69,9 @@ def solid_angles(normals: Array) -> Array:
 def by_boundary(normals: Array, about: float) -> float:
     """Return the solid angle of one triangle (3, 3, 3, 3) by the integral along its boundary alone.
 
-    That is known up to whole spheres, which `about` decides. It is as good at a singular corner,
-    where subdivision has to leave something out. `about` itself if the boundary is not closed.
+    The integral is known up to whole spheres, which `about` decides. It is accurate at a singular
+    corner, too, where subdivision has to omit something. Returns `about` if the boundary is not
+    closed.
     """
     arcs = np.concatenate(boundary_of(normals[None]))
     columns = map(vector, np.moveaxis(arcs[..., None, :], 1, 0))
@@ -84,7 +86,7 @@ def by_boundary(normals: Array, about: float) -> float:
 
 
 def is_wide(normals: Array) -> NDArray[np.bool_]:
-    """Say which triangles (k,) have normals that are not all near their mean."""
+    """Return which triangles (k,) have normals that are not all near their mean."""
     return ~_near_mean(normals)[1] & normals.any(axis=(1, 2, 3))
 
 
@@ -96,9 +98,9 @@ def triangle_of(normals: Array, corners: Array) -> Array:
 def boundary_of(normals: Array) -> list[Array]:
     """Return the arcs (k, 3, 3) that bound the images of k triangles, counter-clockwise.
 
-    Three belong to the edges, from u = 1 on. An edge without normals has its limit, which is part
-    of a great circle. Three more close the boundary at the corners that are singular points: the
-    limits of the normals there, which lie on a great circle; they are points at regular corners.
+    Three belong to the edges, from u = 1 on. An edge without normals has their limit, a part of a
+    great circle. Three more close the boundary at singular corners: the limits of the normals
+    there, which lie on a great circle; at regular corners they are points.
     """
     edges = []
     for i, j, k in EDGES:
@@ -168,8 +170,8 @@ QUARTERS = 0.5 * np.array(
 def _narrow(normals: Array) -> tuple[NDArray[np.intp], Array, Array]:
     """Subdivide triangles until each has its normals near a pole.
 
-    Returns the number of the triangle of which each is a part, the poles (m, 3) and the polar forms
-    (m, 3, 3, 3). What has no normals is left out.
+    Returns the index of the original triangle of each part, the poles (m, 3) and the polar forms
+    (m, 3, 3, 3). Parts without normals are omitted.
     """
     owners: NDArray[np.intp] = np.arange(len(normals))
     found = []
@@ -199,10 +201,10 @@ def _near_mean(normals: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def _cut(normals: Array) -> tuple[Array, NDArray[np.intp]]:
-    """Cut triangles into smaller ones; also returns the number of the triangle that each is from.
+    """Cut triangles into smaller ones; also returns the index of each one's original.
 
-    Into four, but at a singular corner where the normals turn by more than 60 degrees into two,
-    from that corner on: smaller triangles there turn as much.
+    A triangle is cut into four, or, at a singular corner where the normals turn by more than 60
+    degrees, into two from that corner: smaller triangles there turn as much.
     """
     whole = np.ones(len(normals), dtype=bool)
     parts, which = [], []
@@ -225,7 +227,7 @@ def _cut(normals: Array) -> tuple[Array, NDArray[np.intp]]:
 
 
 def _has_short_end(arcs: Array) -> NDArray[np.bool_]:
-    """Say which arcs begin or end near a singular point, but not in it."""
+    """Return which arcs begin or end near a singular point, but not in it."""
     lengths = np.linalg.norm(arcs, axis=2)
     ends = np.where(lengths[:, ::2] > 0.0, lengths[:, ::2], np.inf)
     return ends.min(axis=1) < SHORT * lengths.max(axis=1)

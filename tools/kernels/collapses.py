@@ -19,9 +19,10 @@ COSINE_LOSS = 0.1
 
 @loop
 def find_fan(triangles, neighbours, first, b, a, fan):
-    """Write the triangles around b from `first`, at the edge a b, to the other one there.
+    """Write the triangles around b, from `first` to the other one at the edge a b, to `fan`.
 
-    Returns their number, or 0 if b is on a border, or more than `fan` (n,) holds.
+    Returns their number, or 0 if b is on a boundary, or the number exceeds the length of `fan`
+    (n,).
     """
     t, over = first, corner_of(triangles, first, a)
     for k in range(fan.size):
@@ -71,9 +72,8 @@ def cosine_with(points, normals, triangles, sides, t, b, a, turn):
 def tangent_after(points, normals, triangles, sides, neighbours, least, first, b, a, fan):
     """Return the smallest tangent around b after b is moved to a, or −1 if that is not allowed.
 
-    `first` is a triangle with both corners. The smallest tangent has to rise, the smallest cosine
-    may fall to `least` or a little, b must not lie on a border, and the mesh has to remain a
-    surface.
+    `first` is a triangle with both corners. The smallest tangent must rise, the smallest cosine may
+    fall to `least` or a little, b must not lie on a boundary, and the mesh must remain a surface.
     """
     count = find_fan(triangles, neighbours, first, b, a, fan)
     if count == 0:
@@ -146,9 +146,9 @@ def collapse_edge(triangles, sides, neighbours, first, b, a, fan):
 def collapse_edges(points, normals, triangles, sides, neighbours, is_free, smallest, least, fan):
     """Collapse edges of triangles with small angles if these grow; return the number of collapses.
 
-    A triangle is treated if the tangent of its smallest angle is below `smallest`: of the collapses
-    of its edges that move a free vertex, the one after which the tangents are largest is done.
-    `fan` (n,) is workspace for the triangles around a vertex.
+    A triangle is treated if the tangent of its smallest angle is below `smallest`: of all collapses
+    of its edges that move a free vertex, the one with the largest smallest tangent is made. `fan`
+    (n,) is workspace for the triangles around a vertex.
     """
     collapses = 0
     for t in range(triangles.shape[0]):

@@ -1,4 +1,4 @@
-"""Flips of edges of a mesh: triangles come closer to the normals at their corners, or in shape.
+"""Flips of edges of a mesh that bring triangles closer to the normals, or improve their shape.
 
 `triangles` (k, 3) are the vertices of triangles. `sides` (k, 3) are 1 or −1: the side of the
 surface on which the triangle lies at each corner; it changes on one-sided surfaces. `neighbours`
@@ -19,8 +19,8 @@ __all__ = ["flip_edges", "smallest_cosines", "smallest_tangents"]
 def smallest_cosine(points, normals, a, b, c, side_a, side_b, side_c):
     """Return the smallest cosine between the normals of a triangle and at its corners a, b, c.
 
-    It is −2 if the triangle has no normal. The corners are sorted first: then rounding does not
-    depend on which of them comes first, and triangles without area cause no endless flips.
+    It is −2 if the triangle has no normal. The corners are sorted first, so that rounding does not
+    depend on their order, and triangles without area cause no endless flips.
     """
     side = 1.0
     if a > b:
@@ -94,7 +94,7 @@ def corner_of(triangles, t, vertex):
 def are_joined(triangles, neighbours, first, c, d):
     """Return whether an edge joins the vertices c, a corner of the triangle `first`, and d.
 
-    Visits the triangles around c from `first` on, in both directions if there is a border.
+    Visits the triangles around c from `first` on, in both directions if c is on a boundary.
     """
     for way in range(1, 3):
         t = first
@@ -137,9 +137,9 @@ def write_row(array, t, x, y, z):
 def flip_edge(points, normals, triangles, sides, neighbours, by_shape, least, t, k):
     """Flip the edge of triangle t opposite to its corner k if that improves the two triangles.
 
-    The edge a b of the triangles c a b and d b a becomes the edge c d of c a d and d b c. That
-    raises their smallest cosine or, `by_shape`, the tangent of their smallest angle. The other one
-    of both may fall, down to `least`. Returns the triangle across the edge, or −1 if there is no
+    The edge a b of the triangles c a b and d b a becomes the edge c d of c a d and d b c. The flip
+    must raise their smallest cosine or, `by_shape`, the tangent of their smallest angle; the other
+    of these two may fall, down to `least`. Returns the triangle across the edge, or −1 without a
     flip.
     """
     other = neighbours[t, k]
@@ -188,8 +188,9 @@ def flip_edge(points, normals, triangles, sides, neighbours, by_shape, least, t,
 def flip_edges(points, normals, triangles, sides, neighbours, by_shape, least, queue, is_queued):
     """Flip edges while that improves two triangles, see `flip_edge`; return the number of flips.
 
-    `triangles`, `sides` and `neighbours` (k, 3) are changed. queue (k,) holds all triangles, and
-    is_queued (k,) is True, at the beginning. No flip makes a second edge between two vertices. The
+    `triangles`, `sides` and `neighbours` (k, 3) are changed in place. Initially, queue (k,) must
+    hold all triangles, and is_queued (k,) must be True. No flip makes a second edge between two
+    vertices. The
     algorithm terminates: each flip raises the sorted cosines, or the sorted tangents, of all
     triangles lexicographically.
     """

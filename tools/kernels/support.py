@@ -1,4 +1,4 @@
-"""Support functions of patches: which normals they have, and their branches at given normals.
+"""Support functions of patches: classification of normals, and branches at given normals.
 
 A branch is one patch at one of its normals: the point, the Hessian of the support function, and the
 curvatures.
@@ -39,7 +39,7 @@ def classify(patch, bound, accurate, shortest, normals, kinds, uv):
     """Write the kinds of the normals (k, 3) relative to a patch, and u, v (k, 2) if INSIDE.
 
     `bound` is the rounding error of U, V, W. D must exceed `accurate`, and N `shortest`. Normals
-    have a length of about 1. Normals undecided because of rounding are DOUBTFUL.
+    have a length of about 1. Normals that rounding leaves undecided are DOUBTFUL.
     """
     for k in range(normals.shape[0]):
         n = row_vector(normals, k)
@@ -65,8 +65,8 @@ def classify(patch, bound, accurate, shortest, normals, kinds, uv):
 def hessians_of_patches(mu, scale, patches, normals, known, hessians):
     """Write the Hessians (k, 3, 3) of the support function at unit normals (k, 3) of patches (k,).
 
-    known (k, 2) are u, v where they are more accurate than from the normal, which is then that of
-    the patch at u, v; else NaN.
+    known (k, 2) are u, v where these are known more accurately than from the normal, which is then
+    that of the patch at u, v; else NaN.
     """
     columns = mu.shape[1] - 2
     size = SCALE * scale

@@ -1,4 +1,4 @@
-"""The border of a trimmed surface: polylines in the parameter domain, scaled to the unit square."""
+"""The boundary of a trimmed surface: polylines in the domain, scaled to the unit square."""
 
 from __future__ import annotations
 
@@ -20,12 +20,13 @@ __all__ = ["border_lines"]
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-# Polylines are cut into this number of steps for each cell.
+# The number of steps, per cell, into which polylines are cut.
 STEPS_A_CELL = 8
-# Whether a segment is a border is tested at this distance from its middle on both sides.
+# The distance from the midpoint of a segment, on both sides, at which the trim is tested.
 ASIDE = 1e-7
-# The border of a predicate is searched on a grid with this number of nodes for each cell, of these
-# numbers of nodes, and then by bisections; so are middles of its segments, several times.
+# The boundary of a predicate is searched on a grid with this number of nodes for each cell, of
+# FEWEST to MOST nodes, then by bisection; midpoints of its segments are refined likewise, in
+# several passes.
 NODES_A_CELL, FEWEST, MOST, BISECTIONS, PASSES = 4, 64, 1024, 40, 5
 MOST_POINTS = 50_000
 
@@ -33,8 +34,8 @@ MOST_POINTS = 50_000
 def border_lines(spline: Spline) -> list[Array]:
     """Return polylines (k, 2) that bound the part of a spline inside its trim.
 
-    Borders on open sides of the domain are left out. Closed polylines repeat their first point.
-    Those across seams may run beyond the unit square.
+    Boundaries on open sides of the domain are left out. Closed polylines repeat their first point.
+    Polylines across seams may run beyond the unit square.
     """
     assert spline.trim is not None
     lines = []
@@ -51,7 +52,7 @@ def _uv(positions: Array, spline: Spline) -> Array:
 
 
 def _lines(part: TrimPart, spline: Spline) -> list[Array]:
-    """Return the polylines where one condition changes, whatever the others are."""
+    """Return the polylines on which one condition changes, regardless of the others."""
     low, high = np.array(spline.domain).T
     if isinstance(part, Loops):
         closed = [np.concatenate([x, x[:1]]) for x in part.polygons]
@@ -92,7 +93,7 @@ def _with_crossings(line: Array, boundary: Boundary) -> Array:
 
 
 def _is_border(line: Array, part: TrimPart, others: list[TrimPart], spline: Spline) -> Flags:
-    """Say which segments of a polyline have the surface on just one side, inside the domain."""
+    """Return which segments of a polyline have the surface on one side only, inside the domain."""
     middles, along = (line[1:] + line[:-1]) / 2.0, np.diff(line, axis=0)
     lengths = np.linalg.norm(along, axis=1)
     aside = np.stack([-along[:, 1], along[:, 0]], axis=1)
@@ -112,11 +113,11 @@ def _is_border(line: Array, part: TrimPart, others: list[TrimPart], spline: Spli
 
 
 def _pieces(line: Array, kept: Flags) -> list[Array]:
-    """Return the parts of a polyline with consecutive segments that are kept."""
+    """Return the parts of a polyline that consist of consecutive kept segments."""
     if kept.all():
         return [line]
     if (line[0] == line[-1]).all():
-        start = int(np.argmin(kept))  # of a closed one, begin where it is open
+        start = int(np.argmin(kept))  # a closed line begins at a gap
         line = np.concatenate([line[start:-1], line[: start + 1]])
         kept = np.roll(kept, -start)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], kept, [False]]).astype(np.int8)))
@@ -127,7 +128,7 @@ def _pieces(line: Array, kept: Flags) -> list[Array]:
 
 
 def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
-    """Yield the edges between a patch that is known and one that is not."""
+    """Yield the edges between patches with and without missing points."""
     m, n = part.cells
     known = part.patches.reshape(m, n, 4)
     closes = [ends[0] == "periodic" for ends in boundary]
@@ -183,7 +184,7 @@ def _changes(part: TrimPart, spline: Spline) -> Iterator[Segment]:
 
 
 def _refined(line: Array, part: TrimPart, spline: Spline) -> Array:
-    """Insert points of the border of a condition near the middles of the segments of a polyline."""
+    """Insert points of the boundary near the midpoints of the segments of a polyline."""
     for _ in range(PASSES):
         if len(line) > MOST_POINTS:
             break

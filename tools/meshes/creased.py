@@ -1,4 +1,4 @@
-"""A mesh on which normals may jump: its vertices are shared, its normals belong to corners."""
+"""A mesh whose normals may jump: vertices are shared, and normals belong to corners."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .mesh import Mesh
 
 __all__ = ["CreasedMesh", "mean_normals", "unit"]
 
-# Decimal places to which normals at a point differ.
+# The decimal places to which equal normals at a point agree.
 DIGITS = 9
-# Fields that have defaults only because those of `Mesh` do.
+# Fields with defaults only because those of `Mesh` have some.
 _GIVEN: Any = None
 
 
@@ -24,17 +24,18 @@ _GIVEN: Any = None
 class CreasedMesh(Mesh):
     """A mesh of faces that meet at creases: those of a part, or the patches of a spline of nets.
 
-    It has all that a `Mesh` has. `normals` are the means of those of the faces around a vertex,
-    `uv` the parameters on one of these faces, and `sample_index` is −1: no vertex is a sample.
+    It has all attributes and methods of a `Mesh`. `normals` are the means over the faces around a
+    vertex, `uv` the parameters on one of these faces, and `sample_index` is −1: no vertex is a
+    sample.
 
     Attributes
     ----------
     corner_normals : (T, 3, 3) float64 array
-        The unit normals at the corners of triangles, those of the face on which they are. Where a
-        face has none, as at the tip of a cone, those inside the triangle or patch, and 0 if
-        there are none there, either.
+        The unit normals at the corners of triangles, on the face of the triangle. Where a face has
+        none, as at the apex of a cone, the normal inside the triangle or patch, or 0 if that is
+        undefined, too.
     face_index : (T,) int64 array
-        The face of each triangle: its place in `part.faces`, or the number of the patch.
+        The index of each triangle's face in `part.faces`, or of its patch.
 
     Examples
     --------
@@ -67,7 +68,7 @@ class CreasedMesh(Mesh):
 
     @cached_property
     def closed(self) -> bool:
-        """Whether each edge is in two triangles, which pass it in opposite directions."""
+        """Whether each edge is in two triangles, which traverse it in opposite directions."""
         count = max(len(self.vertices), 1)
         one, other = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
         ways = np.sort(one * count + other)
@@ -85,7 +86,7 @@ class CreasedMesh(Mesh):
 
     @cached_property
     def split(self) -> Mesh:
-        """The same triangles, with a vertex for each normal that there is at a point."""
+        """A mesh of the same triangles, with a separate vertex for each normal at a point."""
         normals = self.corner_normals.reshape(-1, 3).round(DIGITS)
         rows = np.column_stack([self.triangles.ravel(), normals])
         _, first, places = np.unique(rows, axis=0, return_index=True, return_inverse=True)

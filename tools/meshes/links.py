@@ -1,4 +1,4 @@
-"""Which triangles of a mesh share an edge."""
+"""The triangles of a mesh that share an edge."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ Indices = NDArray[np.int64]
 
 
 def edge_numbers(triangles: Indices, count: int) -> Indices:
-    """Return numbers (k, 3) of the edges opposite to the corners of triangles between vertices.
+    """Return numbers (k, 3) that identify the edges opposite to the corners of triangles.
 
-    They are first · count + second, the smaller one of the vertices first.
+    They are first · count + second, where the first vertex is the smaller one.
     """
     one, other = triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]
     return np.minimum(one, other) * count + np.maximum(one, other)
 
 
 def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:
-    """Return the triangles (k, 3) opposite to the corners, −1 for none, and whether all are there.
+    """Return the triangles (k, 3) opposite to the corners, −1 for none, and whether all exist.
 
-    All are there if each edge is in two triangles, or in one between two vertices where the surface
-    `may_end`. Triangles at an edge of three or more are no neighbours.
+    That is so if each edge is in two triangles, or in one between two vertices where the surface
+    `may_end`. Triangles at an edge of three or more are not neighbours.
     """
     numbers = edge_numbers(triangles, len(may_end)).ravel()
     order = np.argsort(numbers, kind="stable")

@@ -1,4 +1,4 @@
-"""A polyline of the border, on which vertices are as far apart as samples near it."""
+"""A polyline of the boundary, with vertices as far apart as the samples near it."""
 
 from __future__ import annotations
 
@@ -24,27 +24,28 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-# A polyline is measured in steps of at most this part of the spacing, and in at most this number.
+# The largest step for measuring a polyline, relative to the spacing, and the largest number of
+# steps.
 FINE, MOST_STEPS = 0.125, 200_000
-# A step is at least this part of the mean one, and has at least this measure.
+# The smallest step, relative to the mean one, and the smallest measure of a step.
 SHORTEST, LEAST = 1e-3, 1e-12
-# It has a corner where it turns by more than this within a spacing.
+# A polyline has a corner where it turns by more than this within a spacing.
 CORNER = math.radians(30.0)
-# A sample closer to the border than this part of the spacing there gets a vertex opposite to it: no
-# triangle of a sample and two vertices of the border must be flat.
+# A sample closer to the boundary than this, relative to the spacing there, gets a vertex opposite
+# to it: no triangle of a sample and two boundary vertices must be flat.
 CLOSE = 0.25
-# And closer in the domain than this: another part of the surface may pass there.
+# The sample must also be closer than this in the domain: another part of the surface may pass by.
 DEEPEST = 0.125
-# Measures that differ by less are those of one vertex.
+# Measures that differ by less belong to one vertex.
 EQUAL = 1e-6
 
 
 @dataclass(eq=False)
 class MeasuredLine:
-    """A polyline of the border, measured by its length relative to the spacing of its points.
+    """A polyline of the boundary, measured by its length relative to the spacing of samples.
 
-    `t` (k,) are the measures at its vertices; `fixed` (k,) says which are ends and corners;
-    `sample` (k,) are the numbers of the samples that lie there, or −1.
+    `t` (k,) are the measures at its vertices; `fixed` (k,) marks ends and corners; `sample` (k,)
+    are the indices of the samples at vertices, or −1.
     """
 
     positions: Array
@@ -80,10 +81,10 @@ class MeasuredLine:
         lengths: Array,
         on_line: float,
     ) -> None:
-        """Move vertices next to samples that are close; those within `on_line` are vertices.
+        """Move vertices to the feet of close samples; samples within `on_line` become vertices.
 
-        `samples` are the positions and the numbers of those in the tree; `lengths` (2,) of the
-        surface along u and v make feet perpendicular; `on_line` is a part of the spacing.
+        `samples` are the positions and the indices of the samples in the tree; with `lengths` (2,),
+        of the surface along u and v, feet are perpendicular; `on_line` is relative to the spacing.
         """
         reach = CLOSE * self.spacings
         distance, nearest = tree_of(self.points).query(
@@ -105,7 +106,7 @@ class MeasuredLine:
         self._take(at, numbers[near], distance <= on_line * self.spacings[found[near]])
 
     def _take(self, at: Array, numbers: Indices, is_on: Flags) -> None:
-        """Let samples that are on the line be vertices, in place of the others near them."""
+        """Make samples on the line vertices, replacing other vertices near them."""
         for t, number in zip(at[is_on].tolist(), numbers[is_on].tolist(), strict=True):
             apart = np.abs(self.t - t)
             ends = np.flatnonzero(self.fixed & (apart <= EQUAL))
@@ -119,7 +120,7 @@ class MeasuredLine:
     def _feet(
         self, points: Array, places: Array, nearest: Indices, lengths: Array
     ) -> tuple[Array, Array]:
-        """Return the measures of the feet of points (k, 3) at places (k, 2), and the distances.
+        """Return the measures of the feet of points (k, 3) at positions (k, 2), and distances.
 
         `nearest` (k,) are the vertices of the polyline that are nearest to the points.
         """
@@ -158,7 +159,7 @@ def _measured(positions: Array, spline: Spline, tree: KDTree) -> tuple[Array, Ar
 
 
 def _divided(points: Array, measure: Array, closed: bool) -> tuple[Array, Flags]:
-    """Return measures about 1 apart from corner to corner; and which are corners or ends."""
+    """Return measures spaced by about 1 between corners, and a mask of corners and ends."""
     total = float(measure[-1])
     corners = _corners(points, measure, closed)
     ends = np.unique(np.concatenate([[0.0], corners, [total]]))
@@ -173,7 +174,7 @@ def _divided(points: Array, measure: Array, closed: bool) -> tuple[Array, Flags]
 
 
 def _corners(points: Array, measure: Array, closed: bool) -> Array:
-    """Return the measures of the corners, no two of them within half a spacing."""
+    """Return the measures of the corners, at least half a spacing apart."""
     total = float(measure[-1])
 
     def at(t: Array) -> Array:

@@ -1,4 +1,4 @@
-"""A triangle mesh through samples, and how it writes itself."""
+"""A triangle mesh through samples."""
 
 from __future__ import annotations
 
@@ -36,28 +36,28 @@ class Mesh(Methods):
     vertices : (M, 3) float64 array
         Points of the surface.
     normals : (M, 3) float64 array
-        The unit normals of the surface there; at a pole the mean of those around it.
+        The unit normals of the surface at the vertices; at a pole the mean of those around it.
     uv : (M, 2) float64 array
         The parameters. They jump where a triangle crosses a seam.
     triangles : (T, 3) int64 array
-        Rows of `vertices`, counterclockwise as seen from where the normals point; on a one-sided
-        surface from where that at the first corner points.
+        Rows of `vertices`, counterclockwise as seen from the tip of the normals; on a one-sided
+        surface, of the normal at the first corner.
     sample_index : (M,) int64 array
-        The number of the sample at a vertex; −1 for points added on open borders and at poles.
+        The index of the sample at a vertex; −1 for points added on open boundaries and at poles.
     name : str
         Label of the surface.
     sides : (T, 3) int64 array
-        1, or −1 where the normal at a corner points to the other side than that at the first
-        corner: on a one-sided surface normals change sides somewhere. By default 1.
+        1, or −1 where the normal at a corner and that at the first corner are on opposite sides: on
+        a one-sided surface normals change sides somewhere. By default 1.
     left_out : int
-        The number of samples that are no vertex: too close to others or, with an `angle`, in no
-        triangle that is left.
+        The number of samples that are no vertices: too close to others or, with an `angle`, in no
+        remaining triangle.
     domain : ((u0, u1), (v0, v1)) of float or None
-        The rectangle of the parameters, if it is known.
+        The rectangle of the parameters, if known.
     boundary : pair of pairs of str or None
-        The boundary conditions there, see `Surface`; "pole" for any side that is one point.
+        The boundary conditions of the domain, see `Surface`; "pole" for any side that is one point.
     unit : str
-        The unit of length, such as "mm"; empty if it is not known.
+        The unit of length, such as "mm"; empty if unknown.
 
     Raises
     ------
@@ -140,15 +140,15 @@ class Mesh(Methods):
 
     @cached_property
     def split(self) -> Mesh:
-        """The same triangles, with a vertex for each normal that there is at a point.
+        """A mesh of the same triangles, with a separate vertex for each normal at a point.
 
-        This is another mesh only where normals jump, see `CreasedMesh`.
+        It differs from this mesh only where normals jump, see `CreasedMesh`.
         """
         return self
 
     @cached_property
     def _edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The edges (E, 2), and in how many triangles each of them is."""
+        """The edges (E, 2), and the number of triangles of each."""
         count = max(len(self.vertices), 1)
         numbers, times = np.unique(edge_numbers(self.triangles, count), return_counts=True)
         return np.stack(np.divmod(numbers, count), axis=1), times
@@ -160,7 +160,7 @@ class Mesh(Methods):
 
     @property
     def boundary_edges(self) -> NDArray[np.int64]:
-        """(B, 2) int64 array: the edges of only one triangle; none if the mesh is closed."""
+        """(B, 2) int64 array: the edges in a single triangle; empty if the mesh is closed."""
         edges, times = self._edges
         return edges[times == 1]
 
@@ -173,8 +173,8 @@ class Mesh(Methods):
     def corner_uv(self) -> NDArray[np.float64]:
         """(T, 3, 2) float64 array: texture coordinates at the corners of each triangle.
 
-        They are the parameters, the domain scaled to 1 × 1, and do not jump: across a seam they
-        are continued beyond 1, for textures that repeat. A pole has a place of its own in each
+        They are the parameters, with the domain scaled to 1 × 1, and do not jump: across a seam
+        they continue beyond 1, for textures that repeat. A pole has separate coordinates in each
         triangle. `.glb` and `.obj` files have them.
 
         Examples

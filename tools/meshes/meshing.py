@@ -34,7 +34,7 @@ WHOLE = 180.0  # degrees: no triangle deviates by more
 
 
 def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) -> Mesh:
-    """Return what `Samples.mesh` returns."""
+    """Return the mesh of `Samples.mesh`."""
     preferred = checked_prefer(prefer)
     largest = WHOLE if angle is None else _checked_angle(angle)
     check_fields(samples)
@@ -58,7 +58,7 @@ def _checked_angle(angle: object) -> float:
 
 
 def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -> Triangulated:
-    """Triangulate samples anywhere; InputError if the whole is required and that fails."""
+    """Triangulate samples; InputError if `must_be_whole` and the whole surface is not covered."""
     boundary = boundary_of(spline)
     vertices = Vertices.of(samples, spline, boundary)
     if spline.trim is None:
@@ -84,7 +84,7 @@ def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -
 
 
 def _with_points_as_poles(spline: Spline, boundary: Boundary) -> Boundary:
-    """Return boundary conditions that call every side that is one point a pole."""
+    """Return the boundary conditions, where every side that is one point is a pole."""
     ends: list[list[BoundaryCondition]] = [[*kinds] for kinds in boundary]
     for axis, place in apexes_of(spline):
         ends[axis][place] = "pole"
@@ -94,11 +94,11 @@ def _with_points_as_poles(spline: Spline, boundary: Boundary) -> Boundary:
 def _triangles(
     vertices: Vertices, spline: Spline, boundary: Boundary, must_be_whole: bool
 ) -> tuple[Indices, Indices, Indices]:
-    """Return triangles (k, 3), their sides of the surface, and their neighbours.
+    """Return triangles (k, 3), the sides of the surface at their corners, and their neighbours.
 
-    Raises InputError if there is no triangulation, or if the whole surface is required and is not
-    triangulated: each edge in two triangles or on an open side of the domain, with the Euler
-    characteristic of the surface.
+    Raises InputError if there is no triangulation, or if the whole surface is required and not
+    covered: each edge must be in two triangles or on an open side of the domain, and the Euler
+    characteristic must be that of the surface.
     """
     found = None
     lengths = _lengths(spline)
@@ -138,7 +138,7 @@ def _lengths(spline: Spline) -> Array:
 def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[Array, Array, Array]:
     """Return parameters, points and unit normals of vertices; NaN for missing normals.
 
-    Added points of an offset are those of the surface.
+    Added points of an offset are on the original surface.
     """
     uv = uv_at(spline, vertices.positions)
     points, normals = np.empty((2, len(uv), 3))
@@ -162,7 +162,7 @@ def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[A
 
 
 def _apexes(vertices: Vertices, spline: Spline) -> Iterator[Indices]:
-    """Yield the vertices on each side that is an apex, which has no normal."""
+    """Yield the vertices on each side that is an apex, where the surface has no normal."""
     for axis, place in apexes_of(spline):
         yield np.flatnonzero(vertices.positions[:, axis] == place)
 
@@ -170,7 +170,7 @@ def _apexes(vertices: Vertices, spline: Spline) -> Iterator[Indices]:
 def _at_apexes(
     vertices: Vertices, spline: Spline, triangles: Indices, sides: Indices, adjacent: Indices
 ) -> tuple[Indices, Indices, Indices]:
-    """Return triangles, sides and neighbours with one vertex for all that are at an apex."""
+    """Return triangles, sides and neighbours with a single vertex at each apex."""
     number = np.arange(len(vertices.sample))
     for apex in _apexes(vertices, spline):
         number[apex] = number[apex[:1]]
@@ -182,7 +182,7 @@ def _at_apexes(
 
 
 def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:
-    """Give vertices without a normal, such as poles, the mean of the normals around them.
+    """Set missing normals of vertices, as at poles, to the mean of the normals around them.
 
     It is 0 if these are missing, too.
     """

@@ -1,4 +1,4 @@
-"""The methods of `Mesh` that files define: `methods.pyi` says what they are."""
+"""The methods of `Mesh` defined in other modules; `methods.pyi` declares them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ FILES = "gaussmap.tools.files.of_meshes"
 
 
 class Methods:
-    """What is made of a mesh."""
+    """The methods that write a mesh or convert it."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Meshes of splines of nets: the triangles of the patches, or equal parts of them."""
+"""Meshes of splines of nets: the patches as triangles, or in equal parts."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ __all__ = ["mesh"]
 
 
 class Parts(NamedTuple):
-    """A triangle in equal parts: L places u, v (L, 2), corners (3,), edges (3, n + 1), triangles.
+    """A triangle in equal parts: L points u, v (L, 2), corners (3,), edges (3, n + 1), triangles.
 
-    These are numbers of places, counterclockwise; edges are those of `runtime.spline.joints`.
+    All but the points are indices of points, counterclockwise; edges are ordered as in
+    `runtime.spline.joints`.
     """
 
     places: Array
@@ -51,27 +52,27 @@ def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
     """Return a mesh whose triangles are those of the patches.
 
     Its vertices are the corners of the patches, each once. Neighbouring patches share the points on
-    their joint, so that the mesh is closed where the nets are, and the normals there if the joint
-    is smooth.
+    their joint, so that the mesh is closed where the nets are, and they share the normals there if
+    the joint is smooth.
 
     Parameters
     ----------
     parts : int, default 1
-        Into how many parts each edge of a patch is divided, at equal steps of the parameters; a
-        patch gives the square of this number of triangles. All vertices are points of the spline.
+        The number of parts of each edge of a patch, at equal steps of the parameters; a patch has
+        the square of this number of triangles. All vertices are points of the spline.
 
     Returns
     -------
     CreasedMesh
         The vertices, triangles, and normals: `normals` at vertices, `corner_normals` at corners of
-        triangles, which differ at creases. `face_index` are the patches of triangles. Those that
-        are an edge or a point, next to an edge that is one point, are left out.
+        triangles, which differ at creases. `face_index` are the patches of triangles. Triangles
+        that are an edge or a point, next to an edge that is one point, are left out.
 
     Raises
     ------
     InputError
-        Unless `parts` is a whole number of at least 1, and for a mesh that needs more memory than
-        is free.
+        Unless `parts` is a whole number of at least 1, and for a mesh that needs more than the free
+        memory.
 
     Examples
     --------
@@ -93,7 +94,7 @@ def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
     uv = np.tile(inside.places, (self.patches, 1))
     normals = _normals(self, patches, uv, smooth)
     rows = (inside.triangles + size * np.arange(self.patches)[:, None, None]).reshape(-1, 3)
-    a, b, c = vertex[rows].T  # next to an edge that is one point, two may be one
+    a, b, c = vertex[rows].T  # next to an edge that is one point, two corners may be one vertex
     proper = (a != b) & (b != c) & (c != a)
     rows = rows[proper]
     return CreasedMesh(
@@ -108,14 +109,14 @@ Links = tuple[Indices, Indices]
 
 
 def _links(spline: NetSpline, inside: Parts) -> tuple[Links, Links]:
-    """Return pairs of places of patches, L k + l, that have the same normal, and the same point."""
+    """Return pairs of points of patches, by index L k + l: equal normals, and equal positions."""
     topology, size = spline.topology, len(inside.places)
     first = size * np.arange(spline.patches)[:, None]
     edges = (first[:, None] + inside.edges).reshape(3 * spline.patches, -1)
     point = edges[topology.is_point]
 
     def across(pairs: Indices) -> Indices:
-        """Link edges (J, 2) in opposite directions, and all places of those that are one point."""
+        """Link edges (J, 2) in opposite directions, and all points of edges that are one point."""
         along = np.stack([edges[pairs[:, 0]], edges[pairs[:, 1], ::-1]]).reshape(2, -1)
         return np.concatenate([along, np.stack([point[:, 1:], point[:, :-1]]).reshape(2, -1)], 1)
 
@@ -128,9 +129,9 @@ def _links(spline: NetSpline, inside: Parts) -> tuple[Links, Links]:
 
 
 def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> Array:
-    """Return the unit normals (L T, 3) of patches at places; those that are linked share one.
+    """Return the unit normals (L T, 3) of patches at parameters; linked points share one.
 
-    Where all patches around are singular they share one only if theirs agree.
+    Where all patches around a point are singular they share one only if their normals agree.
     """
     N, singular = spline.normals_in_patches(patches, uv)
     own = unit(N)
@@ -146,5 +147,5 @@ def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> A
 
 
 def _any(count: int, group: Indices, flags: Flags) -> Flags:
-    """Return in which groups (count,) any of the members has a flag."""
+    """Return for each group (count,) whether any of its members has a flag."""
     return np.bincount(group[flags], minlength=count) > 0

@@ -28,16 +28,17 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-# What is closer to an open side or a pole than this part of the domain lies on it.
+# A position within this distance of an open side or a pole, relative to the domain, lies on it.
 ON_SIDE = 1e-9
-# The spacing of points on a border follows from the distance of the k-th nearest sample, this k.
+# The spacing of points on a boundary follows from the distance of the k-th nearest sample, with
+# this k.
 NEAREST = 4
 
 
 def wrapped(positions: Array, boundary: Boundary, around: Array | None = None) -> Array:
-    """Return positions (..., 2) in the unit square, across its seams.
+    """Return positions (..., 2) shifted across seams into the unit square.
 
-    Or, with positions `around`, the copies that are nearest to these.
+    With positions `around`, they are shifted to be nearest to these.
     """
     positions = positions.copy()
     for axis, (end, _) in enumerate(boundary):
@@ -63,14 +64,14 @@ def points_at(spline: Spline, positions: Array) -> Array:
 
 
 def spacings_at(tree: KDTree, points: Array) -> Array:
-    """Return spacings (k,) of vertices at points (k, 3), from the distances of samples there."""
+    """Return spacings (k,) of vertices at points (k, 3), from the distances of nearby samples."""
     nearest = min(NEAREST, tree.n)
     distances = tree.query(points, k=nearest, workers=-1)[0].reshape(len(points), -1)[:, -1]
     return distances * python_function(border_spacing)(1.0, nearest)
 
 
 def on_side(axis: int, place: float, t: Array) -> Array:
-    """Return positions (k, 2) with u (axis 0) or v (axis 1) at an end and the other at t (k,)."""
+    """Return positions (k, 2) with u (axis 0) or v (axis 1) at `place` and the other at t (k,)."""
     fixed = np.full_like(t, place)
     return np.stack([fixed, t] if axis == 0 else [t, fixed], axis=1)
 

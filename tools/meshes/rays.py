@@ -1,4 +1,4 @@
-"""Which samples have nothing in front of them: rays along normals against a closed mesh."""
+"""Unobstructed samples: rays along normals, tested against a closed mesh."""
 
 from __future__ import annotations
 
@@ -15,25 +15,27 @@ from .mesh import Mesh
 __all__ = ["check_rays", "unobstructed"]
 
 PURPOSE = "a test with rays"
-# Rays begin this far below the surface, relative to the obstacle's size: one in contact is met.
+# Rays begin this far below the surface, relative to the obstacle's size, to hit an obstacle in
+# contact.
 BELOW = 1e-9
-RAYS = 4096  # at once
+RAYS = 4096  # traced at once
 
 
 def check_rays() -> None:
-    """Raise MissingExtraError without what rays need."""
+    """Raise MissingExtraError if a library for rays is missing."""
     check_extra("trimesh", "rays", PURPOSE)
     check_extra("rtree", "rays", PURPOSE)
 
 
 def unobstructed(points: Array, normals: Array, distance: float, obstacle: object) -> Flags:
-    """Return where (N,) no ray of this length enters the obstacle, a closed mesh.
+    """Return a mask (N,) of rays of this length that do not enter the obstacle, a closed mesh.
 
-    A ray that leaves it passes the surface on which its own point is: a mesh has chords there, on
-    one side of the surface or the other.
+    A ray may leave the obstacle: through the surface on which it begins, whose mesh has chords on
+    either side of the surface.
     """
     solid = _solid(obstacle)
-    # trimesh rounds places to some decimals, and takes equal ones for one: sizes are about 1.
+    # trimesh rounds coordinates to some decimals, and merges equal points: sizes are scaled to
+    # about 1.
     middle, size = solid.bounds.mean(axis=0), float(solid.extents.max())
     scale = scale_to_one(size)
     solid.vertices = (solid.vertices - middle) * scale
@@ -54,7 +56,7 @@ def unobstructed(points: Array, normals: Array, distance: float, obstacle: objec
 
 
 def _solid(obstacle: object) -> Any:  # noqa: ANN401
-    """Return a mesh as one of trimesh that takes rays in double precision; InputError if open."""
+    """Return a mesh of trimesh that traces rays in double precision; InputError if it is open."""
     trimesh = from_extra("trimesh", "rays", PURPOSE)
     corners: Any = obstacle
     if not isinstance(obstacle, Mesh | trimesh.Trimesh):

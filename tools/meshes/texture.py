@@ -17,9 +17,9 @@ Indices = NDArray[np.int64]
 
 
 class Texture(NamedTuple):
-    """Texture coordinates (K, 2), and those of corners, by number (T, 3).
+    """Texture coordinates (K, 2), and their indices (T, 3) at corners of triangles.
 
-    The first ones are those of all vertices. Further ones are for triangles that cross a seam, or
+    The first rows are those of all vertices. Further rows are for triangles that cross a seam, or
     have a corner at a pole.
     """
 
@@ -32,8 +32,8 @@ def corner_places(
 ) -> Array:
     """Return texture coordinates (T, 3, 2) of corners: parameters, the domain scaled to 1 × 1.
 
-    Those across a seam are continued beyond 1. A pole has a coordinate in the middle of the two
-    other corners. Without a domain they are the parameters.
+    Across a seam they continue beyond 1. A pole gets the mean coordinate of the two other corners.
+    Without a domain they are the parameters.
     """
     if domain is None or boundary is None:
         return uv[triangles]
@@ -58,7 +58,7 @@ def corner_places(
 def split_at_seams(
     uv: Array, triangles: Indices, domain: Domain | None, boundary: Boundary | None
 ) -> Texture:
-    """Return the texture coordinates of a mesh, for which vertices at seams are several."""
+    """Return the texture coordinates of a mesh, several for a vertex at a seam."""
     places = uv if domain is None else _scaled(uv, domain)
     found = corner_places(uv, triangles, domain, boundary)
     moved = (found != places[triangles]).any(axis=2)

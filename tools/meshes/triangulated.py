@@ -1,4 +1,4 @@
-"""Triangles through samples and added vertices, with what they are improved by."""
+"""Triangles through samples and added vertices, with the arrays for their improvement."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ Indices = NDArray[np.int64]
 Prefer = Literal["normals", "shape"]
 KINDS = ("shape", "normals")
 
-# For better shapes a triangle may deviate by this angle (degrees) from a normal at a corner, and
-# not more, unless it did before.
+# For better shapes a triangle may deviate by at most this angle (degrees) from a normal at a
+# corner, unless it did by more before.
 LARGEST_DEVIATION = 30.0
 # Triangles with smaller angles (degrees) than these are removed, one bound after the other, until
-# the angle that this part of all triangles falls below is at least ENOUGH.
+# at most the share PART of all triangles has an angle below ENOUGH.
 SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
-# For each bound at most this number of times: a collapse may allow another one.
+# The largest number of rounds for each bound: a collapse may allow another one.
 ROUNDS = 4
 # No vertex in more triangles than this is moved.
 MOST_AROUND = 256
@@ -51,7 +51,7 @@ class Triangulated:
     """Samples and added vertices in a triangulation of the parameter domain.
 
     `sample` and `is_free` are those of `Vertices`; `triangles`, `sides` and `neighbours` (k, 3)
-    those of `kernels.flips`, which changes them in place; `is_node` says which vertices are samples
+    those of `kernels.flips`, which changes them in place; `is_node` marks vertices that are samples
     on a graded grid.
     """
 
@@ -77,11 +77,11 @@ class Triangulated:
         return tangents_of(self.points, self.triangles)
 
     def arrays(self) -> tuple[Array, Array, Indices, Indices, Indices]:
-        """Return what kernels take: points, normals, triangles, sides, and neighbours."""
+        """Return the arguments of kernels: points, normals, triangles, sides, and neighbours."""
         return scaled(self.points), self.normals, self.triangles, self.sides, self.neighbours
 
     def within(self, angle: float) -> Triangulated:
-        """Leave out the triangles that deviate by more than `angle` degrees from normals.
+        """Remove the triangles that deviate by more than `angle` degrees from normals.
 
         Raises InputError if an edge is then in more than two triangles.
         """
@@ -98,7 +98,7 @@ class Triangulated:
         return replace(self, triangles=triangles, sides=self.sides[chosen], neighbours=adjacent)
 
     def chosen(self, which: NDArray[np.bool_]) -> Triangulated:
-        """Choose triangles; the others are neighbours of none of them."""
+        """Return the chosen triangles; the others are neighbours of none of them."""
         number = np.cumsum(which) - 1
         adjacent = self.neighbours[which]
         adjacent = np.where(adjacent >= 0, number[adjacent], -1)
@@ -107,7 +107,7 @@ class Triangulated:
         )
 
     def mesh(self, samples: int) -> Mesh:
-        """Return the mesh of a number of samples."""
+        """Return the mesh, from the original number of samples."""
         triangles, sides = self.triangles, self.sides
         reverse = sides[:, :1] < 0
         triangles, sides = (
@@ -131,7 +131,7 @@ class Triangulated:
 
 
 def too_few(count: int, name: str) -> InputError:
-    """Return the error of a mesh of the whole that cannot be made."""
+    """Return the error for a mesh that cannot cover the whole surface."""
     return InputError(
         f"the vertices on {name!r}, {count:,} in all, are too few, or leave too large gaps, for "
         "a mesh of the whole; take more samples or normals in all directions, or leave out the "
@@ -140,7 +140,7 @@ def too_few(count: int, name: str) -> InputError:
 
 
 def checked_prefer(prefer: object) -> Prefer:
-    """Return what a mesh is to prefer; InputError if that is unknown."""
+    """Return the checked argument `prefer`; InputError if it is unknown."""
     if not isinstance(prefer, str) or prefer not in KINDS:
         raise InputError(f"prefer must be 'shape' or 'normals', not {shown(prefer)}.")
     return prefer  # pyright: ignore[reportReturnType]
@@ -149,9 +149,10 @@ def checked_prefer(prefer: object) -> Prefer:
 def improved(mesh: Triangulated, prefer: Prefer, angle: float) -> Triangulated:
     """Return a mesh with better triangles, by flips and, where these do not suffice, collapses.
 
-    For "normals" edges are collapsed at triangles without area only. So are those at samples on a
-    graded grid, whose cells may be long: of the others, those in angles below the smallest bound
-    are left out. No flip makes a triangle deviate from normals by more than `angle` degrees.
+    For "normals", edges are collapsed only to remove triangles without area, and so are edges at
+    samples on a graded grid, whose cells may be long: there, other vertices are removed only for
+    angles below the smallest bound. No flip makes a triangle deviate from normals by more than
+    `angle` degrees.
     """
     least = math.cos(math.radians(min(angle, LARGEST_DEVIATION)))
     flip_edges(mesh, prefer, least)
@@ -183,7 +184,7 @@ def flip_edges(mesh: Triangulated, prefer: Prefer, least: float = 1.0) -> int:
 
 
 def _has_good_shape(mesh: Triangulated) -> bool:
-    """Say whether few enough triangles, but for those on borders, have small angles."""
+    """Return whether few enough triangles away from boundaries have small angles."""
     inner = mesh.tangents()[(mesh.neighbours >= 0).all(axis=1)]
     few = math.tan(math.radians(ENOUGH))
     return bool(np.count_nonzero(inner < few) <= PART * len(inner))

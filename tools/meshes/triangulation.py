@@ -30,18 +30,19 @@ Indices = NDArray[np.int64]
 # Triangles (k, 3), and for their corners (k, 3) 1, or −1 where the corner is a mirrored copy.
 Triangulation = tuple[Indices, Indices]
 
-# The latitude of an open end: the lowest, that opposite to a pole, and the highest.
+# The latitude of an open end: the lowest, that of an end opposite to a pole, and the highest.
 LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
-# Points are displaced by these parts of their mean distance, by the next one if a triangulation
-# fails: four and more points of a lattice on one circle would be triangulated in different ways in
-# their copies. Without copies the first attempt is without displacement.
+# Random displacements of points, relative to their mean distance; the second is for a triangulation
+# that fails. Without them, four or more points of a lattice on one circle would be triangulated
+# differently in their copies. Without copies the first attempt has no displacement.
 DISPLACEMENTS = (1e-6, 1e-3)
 # Free points keep this distance from open sides.
 INSIDE = 5e-10
-# The sides of a rectangle are curved outwards by this part of it: their points become extreme.
+# The height, relative to the side, by which sides of a rectangle are curved outwards: their points
+# become extreme.
 BULGE = 0.05
 # A domain that is periodic in both parameters is continued by this number of mean distances of
-# points first, then by these parts of a period.
+# points first, then by these fractions of a period.
 STEPS, MARGINS = (10.0, 30.0), (0.25, 1.0)
 # It is cut into strips of about this number of points, for threads.
 STRIP = 25_000
@@ -50,11 +51,11 @@ STRIP = 25_000
 def triangulations(
     positions: Array, is_free: NDArray[np.bool_], boundary: Boundary, lengths: Array
 ) -> Iterator[Triangulation]:
-    """Yield triangulations of positions (k, 2) in the unit square, one after another if one fails.
+    """Yield triangulations of positions (k, 2) in the unit square: the next is for a failure.
 
     Positions that are not free lie on an open side or at a pole, and are not displaced. `boundary`
     are the boundary conditions, `lengths` those of the surface along u and v. Triangles run
-    counterclockwise where their corner of the smallest number is no copy. A position that coincides
+    counterclockwise where their corner of the smallest index is no copy. A position that coincides
     with another one may belong to no triangle.
     """
     from scipy.spatial import QhullError
@@ -68,7 +69,7 @@ def triangulations(
         for axis in {0, 1} - set(closing):
             moved[:, axis] = np.clip(moved[:, axis], INSIDE, 1.0 - INSIDE)
         moved = np.where(is_free[:, None], moved, positions)
-        with suppress(QhullError):  # fewer points than a triangulation needs, or all in line
+        with suppress(QhullError):  # fewer points than a triangulation needs, or all collinear
             if len(closing) == 2:
                 yield _by_copies(moved, boundary, lengths, margin)
             elif closing:
@@ -80,7 +81,7 @@ def triangulations(
 
 
 def _attempts(has_copies: bool, distance: float) -> list[tuple[float, float]]:
-    """Return the displacements and margins that are tried, for a mean distance of points."""
+    """Return the displacements and margins to try, for a mean distance of points."""
     if not has_copies:
         return [(x, 0.0) for x in (0.0, *DISPLACEMENTS)]
     near = [steps * distance for steps in STEPS if steps * distance < MARGINS[0]]
@@ -152,9 +153,9 @@ def _on_sphere(positions: Array, boundary: Boundary, lengths: Array, axis: int) 
 def _one_of_each(
     triangles: Indices, original: Indices, count: int, is_mirrored: NDArray[np.bool_]
 ) -> Triangulation:
-    """Return one copy of each triangle: the one whose corner of the smallest number is no copy.
+    """Return one copy of each triangle: the one whose corner of the smallest index is no copy.
 
-    `original` are the numbers of the originals of points, of which the first `count` are no copies.
+    `original` are the indices of the originals of points, of which the first `count` are no copies.
     A triangle with two copies of one point is left out.
     """
     a, b, c = (original[triangles[:, k]] for k in range(3))
@@ -195,9 +196,9 @@ def _in_strip(
     points: Array, original: Indices, is_mirrored: NDArray[np.bool_], lengths: Array,
     strip: tuple[int, int, float],
 ) -> Triangulation:  # fmt: skip
-    """Triangulate one of equal strips along u, with a margin, and choose triangles of its points.
+    """Triangulate one of equal strips along u, with a margin; return the triangles of the strip.
 
-    Those are triangles whose corner of the smallest number is in the strip, and no copy.
+    These are the triangles whose corner of the smallest index is in the strip, and no copy.
     """
     number, strips, margin = strip
     along = points[:, 0] * strips - number

@@ -1,8 +1,7 @@
-"""Meshes of trimmed surfaces: vertices on the border, and triangles inside of it.
+"""Meshes of trimmed surfaces: vertices on the boundary, and triangles inside.
 
-The whole domain is triangulated, with further points outside of the border that fill it; then the
-triangles outside are left out. Where the border is not made of edges, points of it are added, until
-it is.
+The whole domain is triangulated, with further points outside of the boundary that fill it; then the
+triangles outside are left out. Points are added to the boundary until it consists of edges.
 """
 
 from __future__ import annotations
@@ -29,24 +28,24 @@ Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Triangulate = Callable[[Vertices], tuple[Indices, Indices, Indices]]
 
-# A sample that is closer than this part of the spacing lies on the border: chords are as close to
+# A sample closer than this, relative to the spacing, lies on the boundary: chords are as close to
 # curves.
 ON_LINE = 5e-3
-# Outside there is about one point for each vertex, between these numbers; they keep this distance
-# from the border, in gaps between its vertices. Added vertices on open sides keep the other one.
+# Outside there is about one point for each vertex, between these numbers; they keep the distance
+# AWAY from the boundary, in gaps between its vertices. Added vertices on open sides keep ASIDE.
 FEWEST, MOST, AWAY, ASIDE = 400, 4000, 0.7, 0.3
-# Points are added to the border at most this number of times.
+# The largest number of times that points are added to the boundary.
 ROUNDS = 8
 
 
 def trimmed_triangles(
     vertices: Vertices, points: Array, spline: Spline, lengths: Array, triangulate: Triangulate
 ) -> tuple[Vertices, Indices, Indices, Indices, bool]:
-    """Return vertices and triangles inside the trim of a spline, sides, and neighbours.
+    """Return vertices and triangles inside the trim, sides, neighbours, and whether complete.
 
-    And whether they have no other border than that of the surface. `vertices` are those of the
-    whole domain, `points` those of the samples, `lengths` (2,) those of the surface along u and v;
-    `triangulate` returns what `_triangles` of meshing does.
+    Complete means that the triangles end only at the boundary of the surface. `vertices` are those
+    of the whole domain, `points` those of the samples, `lengths` (2,) those of the surface along u
+    and v; `triangulate` returns what `_triangles` of meshing does.
     """
     own = vertices.chosen(vertices.sample >= 0)
     tree = tree_of(points[own.sample] * spline.scale)
@@ -74,16 +73,16 @@ def trimmed_triangles(
 
 @dataclass(eq=False)
 class _Trim:
-    """The trim of a spline, with the vertices on its border."""
+    """The trim of a spline, with the vertices on its boundary."""
 
     spline: Spline
     lengths: Array
     lines: list[MeasuredLine]
 
     def cut(self, given: Vertices) -> tuple[Vertices, Vertices]:
-        """Return the given vertices inside that are not on the border, and vertices outside.
+        """Return the given vertices that are inside but not on the boundary, and vertices outside.
 
-        Those outside are on open sides, and fill the domain, away from the border.
+        Those outside are on open sides, or fill the domain, away from the boundary.
         """
         is_added = given.sample < 0
         inside = ~is_added | self._contains(given.positions)
@@ -103,7 +102,7 @@ class _Trim:
         return inner, Vertices.joined([outside, filling])
 
     def border(self) -> Vertices:
-        """Return the vertices of all lines in turn; those on open sides are not displaced."""
+        """Return the vertices of all lines, in order; those on open sides are not displaced."""
         ends = [len(x.t) - x.closed for x in self.lines]
         found = [x.at_vertices()[:end] for x, end in zip(self.lines, ends, strict=True)]
         sample = [x.sample[:end] for x, end in zip(self.lines, ends, strict=True)]
@@ -115,9 +114,9 @@ class _Trim:
         return Vertices(positions, np.concatenate([np.empty(0, dtype=np.int64), *sample]), is_free)
 
     def refine(self, triangles: Indices, first: int, count: int) -> bool:
-        """Add points of the border where it is not made of edges; say whether there are any.
+        """Add boundary points where the boundary has no edges; return True if any was added.
 
-        `first` is the number of its first vertex, `count` that of all.
+        `first` is the index of its first vertex, `count` the number of all vertices.
         """
         edges = np.unique(edge_numbers(triangles, count))
         added = False
@@ -133,9 +132,9 @@ class _Trim:
         return added
 
     def is_inside(self, whole: Vertices, triangles: Indices, possible: Flags, sure: Flags) -> Flags:
-        """Say which triangles of `possible` vertices are inside: those at `sure` ones.
+        """Return a mask of the triangles inside, of those whose vertices are all `possible`.
 
-        And others if their centroids are.
+        Triangles with a `sure` vertex are inside, and others if their centroids are.
         """
         kept = np.asarray(possible[triangles].all(axis=1))
         unsure = np.flatnonzero(kept & ~sure[triangles].any(axis=1))
@@ -145,7 +144,7 @@ class _Trim:
         return kept
 
     def _is_away(self, positions: Array, gaps: float) -> Flags:
-        """Say which positions keep a distance from the vertices of lines, in gaps between these."""
+        """Return which positions are farther from the vertices of lines than their gaps."""
         if not self.lines:
             return np.ones(len(positions), dtype=bool)
         places, around = [], []

@@ -27,21 +27,21 @@ __all__ = ["Vertices", "before_offset", "check_fields"]
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# An open side is measured in at least this number of steps per cell.
+# The least number of steps per cell in which an open side is measured.
 STEPS_A_CELL = 16
-# A sample closer to an open side than this part of the spacing lies on it.
+# A sample closer to an open side than this, relative to the spacing, lies on it.
 ON_LINE = 1e-6
-# Of samples that are closer than this part of their mean distance in the domain, only the first one
-# is a vertex: triangulations displace points by a tenth of it.
+# Of samples closer than this, relative to their mean distance in the domain, only the first one is
+# a vertex: triangulations displace points by a tenth of it.
 NEARLY_EQUAL = 1e-5
 NEEDED = ("points", "normals", "uv")
 
 
 @dataclass(frozen=True, eq=False)
 class Vertices:
-    """Vertices of a mesh, by positions (k, 2) in the unit square, the domain scaled to it.
+    """Vertices of a mesh, by positions (k, 2) in the unit square, the scaled domain.
 
-    `sample` (k,) are the numbers of their samples, or −1; `is_free` (k,) says which of them lie
+    `sample` (k,) are the indices of their samples, or −1; `is_free` (k,) marks vertices that lie
     neither on an open side nor at a pole.
     """
 
@@ -51,7 +51,7 @@ class Vertices:
 
     @classmethod
     def of(cls, samples: Samples, spline: Spline, boundary: Boundary) -> Vertices:
-        """Take the samples, the first one of those at one place; add open sides and poles."""
+        """Return the samples, one for each position, with vertices on open sides and at poles."""
         positions = np.clip(spline.in_cells(samples.uv.astype(np.float64)) / spline.cells, 0.0, 1.0)
         for axis, place in apexes_of(spline):
             positions[np.abs(positions[:, axis] - place) <= ON_SIDE, 1 - axis] = 0.0
@@ -82,7 +82,7 @@ class Vertices:
         return self.chosen(~np.isin(self.sample, sample))
 
     def chosen(self, kept: NDArray[np.bool_]) -> Vertices:
-        """Return some of these vertices."""
+        """Return a selection of the vertices."""
         return Vertices(self.positions[kept], self.sample[kept], self.is_free[kept])
 
     def apart(self, boundary: Boundary) -> Vertices:
@@ -99,7 +99,7 @@ class Vertices:
         return self.chosen(kept)
 
     def is_node(self, samples: Samples) -> NDArray[np.bool_]:
-        """Say which vertices (k,) are samples on a graded grid, whole or not."""
+        """Return a mask of the vertices (k,) that are samples on a graded grid, whole or not."""
         if samples.row is None:
             return np.zeros(len(self.sample), dtype=bool)
         return (self.sample >= 0) & (samples.row[self.sample] >= 0)
@@ -108,7 +108,7 @@ class Vertices:
 def check_fields(samples: Samples) -> None:
     """Raise MissingFieldError unless samples have the fields that a mesh needs.
 
-    Those on a graded grid need its lines: its cells may be long, and samples that are close to
+    Those on a graded grid also need its lines: its cells may be long, and samples that are close to
     others in one direction are not superfluous.
     """
     needed = NEEDED + (GRID_NAMES if samples.report.density == "aligned" else ())
@@ -117,7 +117,7 @@ def check_fields(samples: Samples) -> None:
 
 
 def before_offset(samples: Samples) -> Array:
-    """Return the points (N, 3) of samples in float64; for those of an offset, of the surface."""
+    """Return the points (N, 3) of samples in float64, of an offset those of its surface."""
     points = samples.points.astype(np.float64)
     if samples.offset_of is None:
         return points
@@ -125,7 +125,7 @@ def before_offset(samples: Samples) -> Array:
 
 
 def _unique(positions: Array, boundary: Boundary) -> Array:
-    """Return positions that are equal where points of the surface are: on seams and at poles."""
+    """Return positions made equal where points of the surface are: on seams and at poles."""
     unique = np.ascontiguousarray(positions).copy()
     for axis, place in np.ndindex(2, 2):
         if boundary[axis][place] == "pole":
@@ -134,7 +134,7 @@ def _unique(positions: Array, boundary: Boundary) -> Array:
 
 
 def _poles(inner: Vertices, tree: KDTree, spline: Spline, boundary: Boundary) -> Iterator[Vertices]:
-    """Yield the poles: a sample that is there, or a new vertex if no sample is close."""
+    """Yield the poles: a sample at the pole, or a new vertex if no sample is close."""
     for axis, kinds in enumerate(boundary):
         for place, end in enumerate(kinds):
             if end == "pole":

@@ -1,4 +1,4 @@
-"""The area of the surface that belongs to each sample."""
+"""The area of the surface assigned to each sample."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 
 def area_weights(samples: Samples, angle: float | None) -> Array:
-    """Return what `Samples.weights` returns; areas at added vertices are of the nearest sample."""
+    """Return the weights of `Samples.weights`; areas at added vertices go to the nearest sample."""
     mesh = samples.mesh(angle=angle, prefer="normals")
     parts, triangles = _areas(mesh), mesh.triangles
     owner, added = mesh.sample_index.copy(), np.flatnonzero(mesh.sample_index < 0)
@@ -35,7 +35,7 @@ def area_weights(samples: Samples, angle: float | None) -> Array:
 
 
 def _areas(mesh: Mesh) -> Array:
-    """Return the parts (T, 3) of the areas over triangles that belong to their corners."""
+    """Return the areas (T, 3) over triangles, divided among their corners."""
     points, scale = centred(mesh.vertices)
     areas = corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides)
     limits = np.finfo(np.float64)
@@ -54,12 +54,12 @@ def _areas(mesh: Mesh) -> Array:
 def corner_areas(
     points: Array, normals: Array, triangles: NDArray[np.int64], sides: NDArray[np.int64]
 ) -> Array:
-    """Return the parts (k, 3) of the areas over triangles (k, 3) that belong to their corners.
+    """Return the areas (k, 3) over triangles (k, 3), divided among their corners.
 
     The surface is a quadratic Bézier triangle, as perpendicular to the normals at the corners as
-    possible; its area belongs to the corners by barycentric coordinates. If two normals are more
-    than 90 degrees apart, the triangle is flat. `sides` (k, 3) are 1 or −1: the side of the surface
-    at a corner.
+    possible; its area is divided by barycentric coordinates. If two normals are more than 90
+    degrees apart, the triangle is flat. `sides` (k, 3) are 1 or −1: the side of the surface at a
+    corner.
     """
     n = normals[triangles] * sides[..., None]
     n[(np.einsum("kix,kix->ki", n, np.roll(n, 1, axis=1)) < 0.0).any(axis=1)] = 0.0

@@ -29,7 +29,7 @@ ROBUST = 95.0  # the percentile of sizes at the ends of a scale that is symmetri
 
 @dataclass(frozen=True)
 class Colours:
-    """What is drawn in colour: a value for each sample, its scale, and the scale's label.
+    """The values of samples shown in colour, their scale, and the scale's label.
 
     `clipped` says whether some values are beyond the ends of the scale.
     """
@@ -43,7 +43,7 @@ class Colours:
 
 
 def checked_values(samples: Samples, color: str | ArrayLike) -> tuple[NDArray[np.float64], str]:
-    """Return a value for each sample, and its name ("" of an array).
+    """Return a value for each sample, and its name ("" for an array).
 
     Raises UnknownNameError and MissingFieldError for names, InputError for arrays.
     """

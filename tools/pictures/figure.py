@@ -11,7 +11,7 @@ __all__ = ["Picture"]
 
 
 class Picture(Figure):
-    """A figure that notebooks show, and that pyplot does not keep in memory."""
+    """A figure that notebooks display, and that pyplot does not keep in memory."""
 
     def __init__(self, *arguments: object, **options: object) -> None:
         """Make a figure with the canvas of Agg."""

@@ -1,4 +1,4 @@
-"""One normal and its samples, which a picture marks in all its panels."""
+"""The normal that a picture marks in all its panels, with its samples."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ...runtime.samples.samples import Samples
 
 __all__ = ["Marked", "marked"]
 
-BETWEEN = np.array([0.6, 0.35, 0.8])  # so that the arrow of the normal is seen from the side
+BETWEEN = np.array([0.6, 0.35, 0.8])  # the arrow of the normal is then seen from the side
 
 
 class Marked(NamedTuple):
@@ -23,7 +23,7 @@ class Marked(NamedTuple):
 
     @property
     def label(self) -> str:
-        """What the legend says."""
+        """The text of the legend."""
         count, seen = (int(np.count_nonzero(x)) for x in (self.samples, self.visible))
         points = "one normal and its point" + ("" if count == 1 else f"s ({count:,}")
         return points if count == 1 else points + (")" if seen == count else f", {seen:,} visible)")

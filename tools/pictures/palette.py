@@ -20,7 +20,7 @@ __all__ = [
 # Ito). The neutral colour of the scale is zero curvature.
 ELLIPTIC, HYPERBOLIC, NO_SAMPLE = "#0072b2", "#d55e00", "#a8a8a8"
 PARABOLIC = "#555555"
-# Of the same authors: samples that fill gaps, those on a grid, and a normal that is marked.
+# From the same palette: samples that fill gaps, samples on a grid, and the marked normal.
 FILLING, GRID, MARK = "#cc79a7", "#009e73", "#f0e442"
 SCALE = ("#7a2e00", HYPERBOLIC, "#f3b183", "#f7f7f7", "#8cc4e8", ELLIPTIC, "#003c66")
 INK, PALE, FAINT, GLOBE = "#333333", "#8a8a8a", "#e4e4e4", "#eceef0"

@@ -48,12 +48,12 @@ __all__ = [
     "write_figure",
 ]
 
-COUNT = 2_000  # samples, if no number is given
+COUNT = 2_000  # the default number of samples
 DOTS_PER_INCH = 200
-LONGEST_LINE = 140  # letters of the summary
-# In inches: the size, and the heights of the middle, of titles and of legends.
+LONGEST_LINE = 140  # characters of the summary
+# In inches: the size of the figure; the heights of the middle, of titles and of legends.
 WIDTH, HEIGHT, MIDDLE, TITLES, LEGENDS = 9.0, 4.6, 2.28, 3.8, 0.48
-# The centres of the panels, with and without those of the support function.
+# The centres of the panels along x, in inches: the sphere, the support function, the surface.
 SPHERE, SUPPORT, SURFACE = 1.4, 3.6, 6.5
 WIDE_SPHERE, WIDE_SURFACE = 1.7, 6.0
 ROOM, WIDE_ROOM = (3.7, 2.75), (4.7, 2.75)  # of the surface
@@ -77,33 +77,33 @@ def plot(
     On the left is the unit sphere with the normals, seen from the same direction as the surface, or
     turned towards their mean if they are concentrated. On the right are the visible samples in
     colour; those that fill gaps are smaller, and their normals have another colour. One prescribed
-    normal and its samples are marked. Between both is the support function at the prescribed
-    normals, where it has at most two branches: one for K > 0 and one for K < 0. The heights of a
-    surface that are very small or large relative to its width are rescaled, and the label of the
-    axis gives the factor.
+    normal and its samples are marked. In the middle is the support function at the prescribed
+    normals, if it has at most two branches: one for K > 0 and one for K < 0. Heights of a surface
+    that are very small or large relative to its width are rescaled, and the label of the axis gives
+    the factor.
 
     Parameters
     ----------
     surface : Surface, Spline, Part or str
-        What is drawn, as `sample` takes it.
+        The surface to draw, as in `sample`.
     samples : Samples, optional
-        Samples of it; by default 2,000 are made.
+        Samples of the surface; by default 2,000 are made.
     color : str or (N,) array_like, default "gaussian_curvature"
-        What the colours of the samples show: the name of a column, as in tables ("support", "z",
-        "nx", "mean_curvature", "face_index" …), or a number for each sample.
+        The colours of the samples: the name of a column, as in tables ("support", "z", "nx",
+        "mean_curvature", "face_index" …), or a number for each sample.
     view : (float, float), default (28, -55)
         Elevation and azimuth of the viewer, in degrees.
     axes : Axes3D, or (Axes3D, Axes), optional
-        Axes of your own to draw into: the surface only, or the surface and the sphere. They get no
-        title, legend and scale of colours. What is hidden is left out for this view only.
+        Existing axes to draw into: the surface only, or the surface and the sphere. They get no
+        title, legend or scale of colours. Hidden parts are left out for this view only.
     normals : (S, 3) array_like, optional
         The prescribed normals of the samples: those without a sample are drawn in grey.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure. Notebooks show it; ``figure.savefig("torus.png")`` writes it. Pyplot does not
-        know it.
+        The figure. Notebooks display it; ``figure.savefig("torus.png")`` writes it. Pyplot does not
+        manage it.
 
     Raises
     ------
@@ -114,13 +114,13 @@ def plot(
     UnknownNameError
         For an unknown column.
     InputError
-        For other unusable arguments.
+        For other invalid arguments.
     SurfaceError
         If the surface cannot be evaluated.
 
     See Also
     --------
-    Samples.plot : the same, of samples that know their surface.
+    Samples.plot : the same, for samples that hold their surface.
 
     Examples
     --------
@@ -154,8 +154,8 @@ def plot_part(
     samples : Samples, optional
         Samples of the part; by default 2,000 are made.
     color, view, axes, normals : optional
-        As in `plot`: what the colours show, elevation and azimuth in degrees, axes of your own,
-        the prescribed normals.
+        As in `plot`: the column or array shown in colour, elevation and azimuth in degrees, axes to
+        draw into, the prescribed normals.
 
     Returns
     -------
@@ -185,7 +185,7 @@ def plot_samples(
     axes: Axes | Sequence[Axes] | None = None,
     normals: ArrayLike | None = None,
 ) -> Figure:
-    """Return what `plot` returns, for `Samples.plot`."""
+    """Return the figure of `plot`, for `Samples.plot`."""
     check_extra("matplotlib", "plot", "a picture")
     elevation, azimuth = finite_array(view, (2,), "view").tolist()
     panels = _checked_axes(axes)
@@ -196,7 +196,7 @@ def plot_samples(
 
 
 def _checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64]:
-    """Return the prescribed normals as unit vectors (S, 3), none if none are given.
+    """Return the prescribed normals as unit vectors (S, 3), empty if none are given.
 
     Raises InputError if there are too few of them for the samples.
     """
@@ -214,7 +214,7 @@ def _checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64
 
 
 def _checked_axes(axes: Axes | Sequence[Axes] | None) -> tuple[Any, ...]:
-    """Return no axes, those of the surface, or those of the surface and the sphere."""
+    """Return no axes, the axes of the surface, or those of the surface and the sphere."""
     if axes is None:
         return ()
     from matplotlib.axes import Axes as AnyAxes
@@ -327,19 +327,19 @@ def _box(x: float, y: float, width: float, height: float) -> tuple[float, float,
 
 
 def write_figure(figure: Figure, path: paths.PathLike) -> None:
-    """Write a figure to a .png, .pdf or .svg file, without its date: the same one, the same bytes.
+    """Write a figure to a .png, .pdf or .svg file without a date: equal figures give equal files.
 
-    Raises what `check_target` raises, and FileError if the file cannot be written.
+    Raises the errors of `check_target`, and FileError if the file cannot be written.
     """
     check_target(path)
     suffix = Path(path).suffix.lower()
     with style(), paths.atomic_path(path) as temporary:
-        # In .pdf and .svg files, quadrangles are rasterized: finer than a screen shows them.
+        # In .pdf and .svg files, quadrangles are rasterized, at a finer resolution than a screen's.
         dots = figure.dpi if suffix == ".png" else FINE
         figure.savefig(temporary, format=suffix[1:], metadata=UNDATED[suffix], dpi=dots)
 
 
 def check_target(path: paths.PathLike) -> None:
-    """Raise now what writing would raise later, for a path or if matplotlib is missing."""
+    """Raise now the errors that writing would raise later, for a path or a missing matplotlib."""
     paths.check_target(path, SUFFIXES)
     check_extra("matplotlib", "plot", "a picture")

@@ -1,4 +1,4 @@
-"""What is drawn of a surface or of a CAD part, in pictures and on pages, and what is visible of it.
+"""Surfaces and CAD parts as scenes, for pictures and pages, and the visibility of their points.
 
 Matplotlib draws in three dimensions without a depth test. Here a point is hidden if a triangle of
 a mesh of the surface lies between it and the viewer.
@@ -41,13 +41,13 @@ MESH, MOST_MESH = 112, 224  # quadrangles along u and v: the number of cells, wi
 ISOLINES = 16  # parameter lines along u and v
 # A surface hides a sample if it is nearer to the viewer by this fraction of its diameter.
 HIDING = 0.01
-# Triangles of a part are divided until their sides are this part of the diameter, and looked at
-# in so many pixels along each side, some of them at once.
+# The number of parts of the diameter, of which one is the longest side of divided triangles of a
+# part; the number of pixels along each side for visibility; and the number of triangles at a time.
 PIECES, PIXELS, AT_ONCE = 40, 400, 4096
 # A ratio of height to width below LOW or above HIGH is changed to about the second number.
 LOW, LOW_WANTED = 0.1, 0.25
 HIGH, HIGH_WANTED = 10.0, 2.0
-# Of parts: grid lines across a plane, across other faces, and across those of parts with many.
+# The number of grid lines across a plane, across other faces, and across those of parts with many.
 FLAT, CURVED, SMALL, MANY = 2, 40, 12, 60
 SLIVER = 1e-9  # a triangle without an area, relative to the rectangle of parameters
 
@@ -61,11 +61,11 @@ def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A surface as quadrangles (Q, 4, 3) and lines on it, heights are drawn times `factor`.
+    """A surface as quadrangles (Q, 4, 3) with lines on it, its heights multiplied by `factor`.
 
-    The corners of a quadrangle are in cyclic order; that of a triangle repeats the last one, as all
-    of a part do. Each line is an array (k, 3). `view` holds the rows right, up, and towards the
-    viewer. `faces` are those (Q,) of a part that quadrangles belong to.
+    The corners of a quadrangle are in cyclic order; a triangle repeats its last corner, as all
+    quadrangles of a part do. Each line is an array (k, 3). `view` holds the rows right, up, and
+    towards the viewer. `faces` (Q,) are the faces of a part to which the quadrangles belong.
     """
 
     quadrangles: Array
@@ -116,10 +116,10 @@ class Scene:
         return np.asarray(seen[:, 2] >= nearest - HIDING * self._diameter)
 
     def in_layers(self) -> list[Scene]:
-        """Return scenes that are painted one over the other, as Matplotlib sorts by mean depth.
+        """Return scenes to paint in order, because Matplotlib sorts quadrangles by mean depth.
 
-        That sorts the small quadrangles of a surface well. Those of a part differ in size: they are
-        divided, and those that are hidden come first.
+        Such sorting suits the small quadrangles of a surface. Those of a part differ in size: they
+        are divided, and the hidden ones come first.
         """
         if self.faces is None:
             return [self]
@@ -136,7 +136,7 @@ class Scene:
 def scene_of_samples(
     samples: Samples, surface: object = None, seen_from: Array | None = None
 ) -> Scene:
-    """Return the scene of what samples are on; InputError if that is unknown."""
+    """Return the scene of the surface of samples; InputError if that is unknown."""
     base = samples.offset_of
     for known in (surface, samples.spline, samples.surface):
         if known is not None:
@@ -152,12 +152,12 @@ def scene_of_samples(
 def scene_of(surface: object, seen_from: Array | None = None, distance: float = 0.0) -> Scene:
     """Return the scene of a surface, its spline, their offset, or a part, with heights rescaled.
 
-    Raises SurfaceError for a part of which no face can be used, InputError for anything else.
+    Raises SurfaceError for a part without usable faces, InputError for any other object.
     """
     if isinstance(surface, Part):
         drawn, lines, faces = _of_part(surface)
     elif isinstance(surface, Surface | Spline):
-        # Of several pieces one spline is drawn, which rounds the edges between them.
+        # For several pieces one spline is drawn, which rounds the edges between them.
         (drawn, lines), faces = _of_spline(spline_of(surface, None), distance), None
     else:
         kind = type(surface).__name__
@@ -185,7 +185,7 @@ def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...
 
 
 def _of_part(part: Part) -> tuple[Array, tuple[Array, ...], NDArray[np.int64]]:
-    """Return triangles of the faces of a part, their borders, and the face of each triangle."""
+    """Return triangles of the faces of a part, their boundaries, and the face of each triangle."""
     fine = SMALL if len(part) > MANY else CURVED
     pieces, _ = pieces_of(part.faces)
     if not pieces:
@@ -197,7 +197,7 @@ def _of_part(part: Part) -> tuple[Array, tuple[Array, ...], NDArray[np.int64]]:
 
 
 def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
-    """Return triangles (k, 3, 3) of a face, seen counterclockwise from outside, and its border."""
+    """Return triangles (k, 3, 3) of a face, counterclockwise from outside, and its boundary."""
     from scipy.spatial import Delaunay
 
     surface, trim = piece.surface, piece.surface.trim
@@ -212,7 +212,7 @@ def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
         places = np.unique(np.concatenate([inner, *(x[:-1] for x in loops)]), axis=0)
     scaled = (places - low) / size
     triangles = Delaunay(scaled, qhull_options="QJ Pp").simplices
-    # Qhull joggles points: along straight borders there are triangles without an area.
+    # Qhull joggles points, which leaves triangles without an area along straight boundaries.
     a, b, c = np.moveaxis(scaled[triangles], 1, 0)
     twice = _cross(b - a, c - a)
     triangles = np.where(twice[:, None] < 0.0, triangles[:, ::-1], triangles)
@@ -225,7 +225,7 @@ def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
 def _divided(loop: Array) -> Array:
     """Return a closed polygon in the unit square with more points; the first one is repeated.
 
-    They are about as close as lines across a face on all four sides of the square.
+    Their spacing is about that of lines across a face, on all four sides of the square.
     """
     closed = np.concatenate([loop, loop[:1]])
     lengths = np.linalg.norm(np.diff(closed, axis=0), axis=1)
@@ -235,7 +235,7 @@ def _divided(loop: Array) -> Array:
 
 
 def divided(triangles: Array, longest: float) -> Array:
-    """Return parts (k, 3, 3) of triangles (T, 3, 3), with no side longer than that."""
+    """Return parts (k, 3, 3) of triangles (T, 3, 3), with no side longer than `longest`."""
     done = []
     while len(triangles):
         sides = np.linalg.norm(triangles - np.roll(triangles, -1, axis=1), axis=2)
@@ -256,7 +256,7 @@ def quadrangles(mesh: Array) -> Array:
 
 
 def front(triangles: Array, places: Array) -> Array:
-    """Return the depth of the front one of triangles (T, 3, 3) at places (P, 2); −∞ without one."""
+    """Return the depth of the front triangle of (T, 3, 3) at points (P, 2); −∞ without one."""
     flat = triangles[..., :2]
     grid = max(1, round(math.sqrt(len(triangles)) / 2))
     lowest, highest = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
@@ -284,11 +284,11 @@ def front(triangles: Array, places: Array) -> Array:
 
 
 def in_front(triangles: Array) -> NDArray[np.bool_]:
-    """Return which triangles (T, 3, 3) are the front ones at the middle of some pixel."""
+    """Return which triangles (T, 3, 3) are the front ones at the centre of some pixel."""
     flat = triangles[..., :2]
     lowest = flat.min(axis=(0, 1))
     step = (float(np.ptp(flat, axis=(0, 1)).max()) or 1.0) / PIXELS
-    flat = (flat - lowest) / step - 0.5  # middles of pixels are whole numbers
+    flat = (flat - lowest) / step - 0.5  # centres of pixels are whole numbers
     first, last = np.ceil(flat.min(axis=1)), np.floor(flat.max(axis=1))
     sizes = np.maximum(last - first + 1, 0).astype(np.int64)
     depths, owners = np.full((PIXELS + 1) ** 2, -np.inf), np.full((PIXELS + 1) ** 2, -1)
@@ -309,7 +309,7 @@ def in_front(triangles: Array) -> NDArray[np.bool_]:
 
 
 def _depths(triangles: Array, places: Array) -> tuple[NDArray[np.bool_], Array]:
-    """Return which triangles (k, 3, 3) have their place (k, 2) inside, and their depths there."""
+    """Return which triangles (k, 3, 3) contain their point (k, 2), and their depths there."""
     a, b, c = np.moveaxis(triangles[..., :2] - places[:, None], 1, 0)
     weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
     total = weights.sum(axis=1, keepdims=True)

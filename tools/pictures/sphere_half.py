@@ -23,9 +23,9 @@ RADIUS = 1.15  # in inches
 
 
 class _Kind(NamedTuple):
-    """Unit vectors that are drawn in the same way: in a colour, with an area relative to others.
+    """Unit vectors drawn in the same way: in a colour, with an area relative to others.
 
-    There are `number` normals of the kind; equal ones are drawn once.
+    `number` is the count of normals of the kind; equal ones are drawn once.
     """
 
     label: str
@@ -46,7 +46,7 @@ def draw_sphere(
     view: NDArray[np.float64],
     marked: Marked | None = None,
 ) -> list[Line2D]:
-    """Draw the unit sphere with normals into axes; return what their legend shows.
+    """Draw the unit sphere with normals into axes; return the handles of their legend.
 
     Prescribed normals are distinguished from those of samples that fill gaps, or are on a grid.
     """
@@ -95,7 +95,7 @@ def _kinds(samples: Samples, normals: NDArray[np.float64]) -> list[_Kind]:
 
 
 def _handle(colour: str, label: str, edge: str = "none") -> Line2D:
-    """Return what a legend shows: a disc and a label."""
+    """Return a handle of a legend: a disc and a label."""
     from matplotlib.lines import Line2D
 
     return Line2D(
@@ -150,7 +150,7 @@ def view_of(
 ) -> NDArray[np.float64]:
     """Return the rows (3, 3) right, up, and towards a viewer who sees most of the normals.
 
-    That is the viewer `old`, by default of `view()`, turned towards the mean normal, the further
+    The viewer is `old`, by default that of `view()`, turned towards the mean normal, the more so
     the more the normals are concentrated.
     """
     old = view() if old is None else old

@@ -26,7 +26,7 @@ BEHIND = {"facecolor": "white", "edgecolor": "none", "pad": 1.2, "alpha": 0.85} 
 
 
 class Branch(NamedTuple):
-    """The samples of a branch of the support function, as booleans (N,), and its name."""
+    """A branch of the support function: a mask (N,) of its samples, and its name."""
 
     name: str
     samples: NDArray[np.bool_]
@@ -90,10 +90,10 @@ def values_on_globe(
     """Return h (PIXELS, PIXELS) on the front of the globe; NaN far from all normals.
 
     The points are the gradients of h at the normals, so that n·x is h(n) up to the square of the
-    angle between n and the nearest one of these.
+    angle between n and the nearest normal.
     """
     x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, PIXELS)])
-    across = np.maximum(np.hypot(x, y), 1.0)  # what is outside is clipped
+    across = np.maximum(np.hypot(x, y), 1.0)  # pixels outside are clipped
     x, y = x / across, y / across
     z = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
     directions = np.stack([x, y, z], axis=2) @ view

@@ -33,7 +33,7 @@ def draw_surface(
 ) -> None:
     """Draw the surface and its visible samples (N,) into three-dimensional axes.
 
-    The surface fills a room, if there is one. Samples that fill gaps are smaller than others.
+    The surface fills the room, if given. Samples that fill gaps are smaller than others.
     """
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
@@ -63,7 +63,7 @@ def draw_surface(
 
 
 def _mark(axes: Any, points: NDArray[Any], normal: NDArray[np.float64], scene: Scene) -> None:  # noqa: ANN401
-    """Mark points with their normal; few have arrows, which exaggerated heights would distort."""
+    """Mark points with their normal; only a few get arrows, and none if heights are rescaled."""
     few = len(points) <= ARROWS
     if few and scene.factor == 1.0:
         length = ARROW * float(np.ptp(scene.quadrangles.reshape(-1, 3), axis=0).max())
@@ -98,7 +98,7 @@ def _frame(axes: Any, scene: Scene, view: View, room: Room | None) -> None:  # n
     if scene.factor != 1.0:
         by = max(scene.factor, 1 / scene.factor)
         label = f"z ({'exaggerated' if scene.factor > 1.0 else 'reduced'} {by:g}×)"
-    low = extent[2] < 0.7 * extent.max()  # then matplotlib puts the label of z far away
+    low = extent[2] < 0.7 * extent.max()  # then matplotlib would put the label of z far away
     names = (axes.xaxis, "x", 1), (axes.yaxis, "y", 1), (axes.zaxis, label, -4 if low else 3)
     for k, (axis, name, distance) in enumerate(names):
         axis.set_label_text(name)

@@ -1,1 +1,1 @@
-"""What texts name: surfaces of the catalogue, formulas, grids, elevations and CAD parts."""
+"""Texts that name surfaces of the catalogue, formulas, grids, elevations and CAD parts."""

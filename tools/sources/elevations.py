@@ -30,12 +30,12 @@ LONGITUDES, LATITUDES = ("lon", "long", "longitude"), ("lat", "latitude")
 
 
 def is_raster_file(source: str) -> bool:
-    """Say whether a text names a GeoTIFF, by its suffix."""
+    """Return whether a text names a GeoTIFF, by its suffix."""
     return Path(source).suffix.lower() in RASTER_SUFFIXES
 
 
 def has_place(named: Named) -> bool:
-    """Say whether there is an option on coordinates."""
+    """Return whether an option on coordinates is given."""
     return not named.given().keys().isdisjoint(OF_TERRAIN)
 
 

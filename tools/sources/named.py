@@ -14,7 +14,7 @@ __all__ = ["Named"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Named:
-    """What is named, and its options: those of `gaussmap sample`, None where they are not given.
+    """The name of a surface and its options, those of `gaussmap sample`; None if not given.
 
     Raises
     ------
@@ -51,14 +51,14 @@ class Named:
 
     @classmethod
     def of(cls, options: SimpleNamespace) -> Self:
-        """Return the options of a command that it has."""
+        """Return the options of a command that are fields of this class."""
         known = vars(options)
         return cls(**{x.name: known[x.name] for x in fields(cls) if x.name in known})
 
     def refuse(self, names: Iterable[str], reason: str) -> None:
-        """Raise InputError for the first of some options that was given; {} stands for the source.
+        """Raise InputError for the first of these options that is given; {} stands for the source.
 
-        Their names come before the reason, which says why they are not for this source.
+        The message is the name of the option and the reason why it does not apply to this source.
         """
         for name in names:
             if name in self.given():
@@ -66,6 +66,6 @@ class Named:
                 raise InputError(f"--{name.replace('_', '-')} {reason}".replace("{}", source))
 
     def given(self) -> dict[str, Any]:
-        """Return the options that were given, by their names."""
+        """Return the given options, by name."""
         values = {x.name: (getattr(self, x.name), x.default) for x in fields(self)}
         return {name: value for name, (value, default) in values.items() if value != default}

@@ -17,7 +17,7 @@ LIMITS = ("unit", "time_limit", "memory_limit")
 
 
 def read_part_file(named: Named) -> Part:
-    """Read a part. Raises what `read_cad` and `read_part` raise, InputError for other files."""
+    """Read a part. Raises the errors of `read_cad` and `read_part`, InputError for other files."""
     source = named.surface or ""
     if Path(source).suffix.lower() == ".npz":
         named.refuse(LIMITS, "is for STEP, IGES and BREP files, and {} is none.")

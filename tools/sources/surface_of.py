@@ -26,9 +26,9 @@ PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv"
 
 
 def surface_of(named: Named) -> Surface | Part:
-    """Return the surface, or the CAD part, that is named.
+    """Return the surface or the CAD part that is named.
 
-    Raises InputError for options that are not for it, and what the functions for each kind raise.
+    Raises InputError for options that do not apply, and the errors of the functions for each kind.
     """
     if is_part_file(named.surface):
         named.refuse(NOT_OF_PARTS, "is for surfaces, and {} is a CAD part.")
@@ -57,7 +57,7 @@ def _of_catalogue(named: Named, source: str) -> Surface:
 
 
 def _refuse_file(source: str) -> None:
-    """Raise an error if SURFACE is a file of another kind, or the name of one that is missing."""
+    """Raise an error if SURFACE is a file of another kind, or the name of a missing file."""
     if is_mesh_file(source):
         raise InputError(f"'{source}' is a mesh; {NO_MESHES}.")
     if Path(source).is_file():
@@ -112,7 +112,7 @@ def _grid(named: Named, source: str) -> Surface:
 def with_tolerance(
     surface_: Surface | Spline, named: Named
 ) -> tuple[Surface | Spline, tuple[int, int] | None]:
-    """Return the surface, and the cells that --cells or --tolerance choose; of data the spline."""
+    """Return the surface, and the cells from --cells or --tolerance; for data, the spline."""
     if named.tolerance is None or isinstance(surface_, Spline):
         return surface_, named.cells
     spline = fit(surface_, tolerance=named.tolerance, progress=not named.quiet)

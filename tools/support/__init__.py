@@ -1,1 +1,1 @@
-"""Support functions as objects: evaluated, combined."""
+"""Support functions as objects: evaluation and operations."""

@@ -17,19 +17,19 @@ __all__ = ["Branches", "Sheets", "curvatures"]
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Branches:
-    """The k branches of a support function at S normals, by normal, then by patch.
+    """The k branches of a support function at S normals, sorted by normal, then by patch.
 
-    Lengths are in the unit L of the surface. Where a radius is 0 the surface is singular (a point
-    has two such): Gaussian curvature is infinite and mean curvature infinite or NaN. Where a radius
-    is infinite, at a parabolic point, Hessian and radii are infinite or NaN; Gaussian curvature is
-    then 0, or NaN after a sum.
+    Lengths are in the unit L of the surface. Where one of the two radii is 0 the surface is
+    singular: the Gaussian curvature is infinite, and the mean curvature infinite or NaN. Where a
+    radius is infinite, at a parabolic point, Hessian and radii are infinite or NaN; the Gaussian
+    curvature is then 0, or NaN after a sum.
 
     Attributes
     ----------
     normal_index : (k,) int64 array
         Rows of the prescribed normals.
     normals : (k, 3) float64 array
-        These normals, of unit length.
+        The unit normals of the branches.
     support : (k,) float64 array
         The support function h(n) = n·x (4), in L.
     points : (k, 3) float64 array
@@ -45,7 +45,7 @@ class Branches:
     mean_curvature : (k,) float64 array
         In 1/L, positive on a sphere with outward normals.
     patch_index : (k,) int64 array
-        Patches of the spline; −1 where there is none or more than one.
+        Patches of the spline; −1 for no or several patches.
     uv : (k, 2) float64 array
         Parameters of the points; NaN where `patch_index` is −1.
 
@@ -87,7 +87,7 @@ class Branches:
         return np.signbit(self.gaussian_curvature)
 
     def __len__(self) -> int:
-        """Return the number of branches, of all normals together."""
+        """Return the total number of branches of all normals."""
         return len(self.support)
 
     def __repr__(self) -> str:
@@ -97,7 +97,7 @@ class Branches:
 
 @dataclass(frozen=True, eq=False)
 class Sheets:
-    """What sources of support functions hand on: `Branches` without what follows from the rest."""
+    """The values that sources of support functions return: `Branches` without derived fields."""
 
     normal_index: NDArray[np.int64]
     points: NDArray[np.float64]
@@ -122,7 +122,7 @@ def curvatures(
     normals: NDArray[np.float64], hessian: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return principal radii (k, 2), Gaussian and mean curvature at unit normals (k, 3)."""
-    scale = scales_to_one(np.abs(hessian).max(axis=(1, 2)))  # whose determinants do not overflow
+    scale = scales_to_one(np.abs(hessian).max(axis=(1, 2)))  # determinants then do not overflow
     scaled = hessian * scale[:, None, None]
     entries = Hessian(*scaled[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]].T)
     with np.errstate(all="ignore"):  # infinite curvatures and radii are valid

@@ -1,4 +1,4 @@
-"""`convolve`: all sums of two points with the same normal, with what both surfaces have there."""
+"""`convolve`: all sums of two points with the same normal, with the branches of both surfaces."""
 
 from __future__ import annotations
 
@@ -28,25 +28,26 @@ from .operations import pairs
 
 __all__ = ["Convolution", "convolve"]
 
-# The number of sums that are computed at a time; there may be many more of them than branches.
+# The number of sums computed at a time; sums may be many more than branches.
 PIECE = 1 << 14
 
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Convolution:
-    """The k sums of two points with the same normal, by normal, then by branch of the first.
+    """The k sums of two points with the same normal, sorted by normal, then by branch of the first.
 
-    A boolean mask (k,), an index array or a slice picks some of them:
+    A boolean mask (k,), an index array or a slice selects some of them:
     ``sums[sums.samples.elliptic]``.
 
     Attributes
     ----------
     samples : Samples
-        Samples of the convolution surface, without `uv` and `patch_index`, of which there are two.
+        Samples of the convolution surface, without `uv` and `patch_index`: each sum has two of
+        these.
     first, second : Branches
         The branches of both surfaces at the prescribed normals.
     rows : (k, 2) int64 array
-        Rows of `first` and of `second` whose points a sample is the sum of.
+        Rows of `first` and of `second`, whose points add to the sample.
 
     Examples
     --------
@@ -120,7 +121,7 @@ def convolve(
     Raises
     ------
     InputError
-        For unusable normals, for `cells` without a `Surface`, and for objects that are no surface.
+        For invalid normals, for `cells` without a `Surface`, and for objects that are no surface.
     UnknownNameError
         If there is no surface of that name.
     SurfaceError
@@ -174,14 +175,14 @@ def convolve(
 def _sums(
     one: Branches, two: Branches, i: NDArray[np.int64], j: NDArray[np.int64]
 ) -> dict[str, Any]:
-    """Return what samples hold of the sums of the branches i of the one and j of the other."""
+    """Return the fields of the sums of branches i of one surface and j of the other."""
     names = ("points", "normals", "support", "gaussian_curvature", "mean_curvature")
     arrays: dict[str, NDArray[Any]] = {x: new_field(x, len(i), np.float64) for x in names}
 
     def work(begin: int, end: int) -> None:
         here, first, second = slice(begin, end), i[begin:end], j[begin:end]
         normals = one.normals[first]
-        with np.errstate(all="ignore"):  # infinite radii are answers, too
+        with np.errstate(all="ignore"):  # infinite radii are valid
             hessian = one.hessian[first] + two.hessian[second]
             _, K, H = curvatures(normals, hessian)
         arrays["points"][here] = one.points[first] + two.points[second]

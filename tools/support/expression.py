@@ -1,4 +1,4 @@
-"""A support function that a user writes as h(n): read, differentiated and evaluated."""
+"""A support function given as an expression h(n): parsing, derivatives and evaluation."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 __all__ = ["ExpressionSource"]
 
-# Normals that are evaluated at a time: intermediate results stay in the cache.
+# The number of normals evaluated at a time, so that intermediate results stay in the cache.
 AT_A_TIME = 1 << 13
-# Where the entries of Hessians stand that functions return.
+# The order of the entries of Hessians that functions return.
 ENTRIES = (0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)
 
 
@@ -40,7 +40,7 @@ class ExpressionSource:
 
     @classmethod
     def checked(cls, h: object, normal: Sequence[Any], domain: object) -> ExpressionSource:
-        """Make one from what a user gives; InputError if it cannot be used."""
+        """Return a source made from a user's arguments; InputError if they are invalid."""
         names = _names(normal)
         expression = _in_normal(as_expression(h, _symbols(names)), names, "h")
         condition = _condition(domain, names)
@@ -84,11 +84,11 @@ class ExpressionSource:
         )
 
     def expression(self) -> sympy.Expr:
-        """Return h as it was given."""
+        """Return h as given."""
         return self.h
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the condition that was given."""
+        """Return the condition as given."""
         return self.condition
 
     def __str__(self) -> str:
@@ -115,7 +115,7 @@ def _names(normal: Sequence[Any]) -> list[str]:
 
 
 def _symbols(names: Sequence[str]) -> dict[str, Any]:
-    """Return real symbols for what stands in a text."""
+    """Return real symbols for the names in a text."""
     import sympy as sp
 
     return {name: sp.Symbol(name, real=True) for name in names}
@@ -137,7 +137,7 @@ def _in_normal(expression: Any, names: Sequence[str], what: str) -> Any:  # noqa
 
 
 def _condition(domain: object, names: Sequence[str]) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return a Boolean of SymPy from one, a text or None; InputError if it is none."""
+    """Return a Boolean of SymPy from a Boolean, a text or None; InputError for anything else."""
     if domain is None:
         domain = True
     try:
@@ -150,7 +150,7 @@ def _condition(domain: object, names: Sequence[str]) -> Any:  # noqa: ANN401 - S
 
 
 def _culprits(*expressions: Any) -> str:  # noqa: ANN401 - SymPy has no types
-    """Say which functions, as the user wrote them, cannot be compiled or differentiated."""
+    """Return a text: the user's functions that cannot be compiled or differentiated."""
     import sympy as sp
 
     def is_unusable(part: Any) -> bool:  # noqa: ANN401

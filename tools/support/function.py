@@ -1,4 +1,4 @@
-"""The support function as an object: given in three ways, evaluated, combined (paper, Sect. 2)."""
+"""The support function as an object: sources, values, operations (paper, Sect. 2)."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ class SupportFunction:
 
     Make one with `of_spline`, `of_patch` or `from_sympy`. Several points of a surface may have one
     normal, each on a *branch* of h; `branches` returns all of them. The envelope operator (7) gives
-    the points, so that operations on surfaces are simple ones on support functions: `+`
-    (convolution), `offset`, `translated`, `rotated`, `scaled`, `reversed`. They return new objects;
-    computation is deferred until these are evaluated. A call, ``h(normals)``, returns the values of
-    a single-valued h, NaN outside the domain.
+    the points, so that operations on surfaces are simple operations on support functions: `+`
+    (convolution), `offset`, `translated`, `rotated`, `scaled`, `reversed`. They return new objects,
+    which are evaluated lazily. A call, ``h(normals)``, returns the values of a single-valued h, NaN
+    outside the domain.
 
     Examples
     --------
@@ -107,8 +107,8 @@ class SupportFunction:
         """Return the support function of a quadratic Bézier triangle (10).
 
         It is a cubic over a quadratic form on the Gaussian image of the closed triangle, and
-        single-valued there: a normal has one branch or none, which is decided exactly, on the
-        boundary too. Normals of parabolic and singular points have no branch.
+        single-valued there: a normal has one branch or none, decided exactly, also on the boundary.
+        Normals of parabolic and singular points have no branch.
 
         Parameters
         ----------
@@ -147,10 +147,10 @@ class SupportFunction:
         """Return the support function given by a SymPy expression (or text) on the unit sphere.
 
         `h` is evaluated at unit normals only, so that it may be any function of the components of
-        the normal; if it is homogeneous of degree 1, its gradient is the envelope. Otherwise that
-        is (5), with the intrinsic gradient (6). Derivatives are taken by SymPy and compiled.
-        Normals where h or its gradient is not real and finite have no branch. A kink, such as that
-        of |n_x|, is a planar region of the surface, which has no samples.
+        the normal. If it is homogeneous of degree 1, its gradient is the envelope; otherwise the
+        envelope is (5), with the intrinsic gradient (6). Derivatives are taken by SymPy and
+        compiled. Normals where h or its gradient is not real and finite have no branch. A kink,
+        such as that of |n_x|, is a planar region of the surface, which has no samples.
 
         Parameters
         ----------
@@ -309,7 +309,7 @@ class SupportFunction:
         return sheets.branches(directions), counts.astype(np.int64)
 
     def _single_valued(self, normals: ArrayLike, field: str) -> NDArray[np.float64]:
-        """Return a field of the branches, NaN without one; InputError for several of a normal."""
+        """Return a field of the branches, NaN without one; InputError if a normal has several."""
         branches, counts = self._counted(normals)
         if counts.max() > 1:
             worst = int(np.argmax(counts > 1))
@@ -326,8 +326,8 @@ class SupportFunction:
     def __add__(self, other: SupportFunction) -> SupportFunction:
         """Return the convolution of two surfaces: all sums of two points with the same normal.
 
-        A normal has every pair of branches. `patch_index` and `uv` are those of the summand that
-        has patches, −1 and NaN if both have.
+        Each normal gets every pair of branches. `patch_index` and `uv` are those of the summand
+        that has patches, or −1 and NaN if both have.
         """
         if not isinstance(other, SupportFunction):
             return NotImplemented
@@ -348,7 +348,7 @@ class SupportFunction:
         Returns
         -------
         SupportFunction
-            That of the offset.
+            The support function of the offset.
 
         Raises
         ------
@@ -376,7 +376,7 @@ class SupportFunction:
         Returns
         -------
         SupportFunction
-            That of the translated surface.
+            The support function of the translated surface.
 
         Raises
         ------
@@ -404,7 +404,7 @@ class SupportFunction:
         Returns
         -------
         SupportFunction
-            That of the rotated surface.
+            The support function of the rotated surface.
 
         Raises
         ------
@@ -432,7 +432,7 @@ class SupportFunction:
         """Return s h: the surface of the points s x.
 
         For s < 0 the points are also reflected in the origin, and keep their normals (as p_u × p_v
-        does): the radii change their sign.
+        does): the radii change sign.
 
         Parameters
         ----------
@@ -442,7 +442,7 @@ class SupportFunction:
         Returns
         -------
         SupportFunction
-            That of the scaled surface.
+            The support function of the scaled surface.
 
         Raises
         ------
@@ -467,7 +467,7 @@ class SupportFunction:
         Returns
         -------
         SupportFunction
-            That of the surface with reversed normals.
+            The support function of the surface with reversed normals.
 
         Examples
         --------
@@ -492,7 +492,8 @@ class SupportFunction:
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
         """The domain as a SymPy condition on n_x, n_y, n_z; None for splines (see `contains`).
 
-        Where an expression is not finite it has no branch either, which the condition does not say.
+        Where an expression is not finite it has no branch either, which the condition does not
+        state.
         """
         return self._source.domain()
 

@@ -50,7 +50,7 @@ def offset(samples: Samples, distance: float) -> Samples:
         surface=f"{samples.report.surface} offset by {d:g}",
         developable_share=None,  # areas change, except those of planar regions
         infinite_curvatures=count_infinite(arrays),
-        fit_distance=None,  # of the spline, which has no offset
+        fit_distance=None,  # the spline has no offset
         fit_rms=None,
         fit_angle=None,
     )
@@ -61,8 +61,8 @@ def offset(samples: Samples, distance: float) -> Samples:
 def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
     """Return K and H of the offset, and warn if it is folded.
 
-    Where a radius becomes 0, up to the rounding of the sum that says so, Gaussian curvature is
-    infinite with its old sign (NaN if it was 0) and mean curvature NaN.
+    Where a radius becomes 0, up to the rounding of 1 + 2 H d + K d², the Gaussian curvature is
+    infinite with its old sign (NaN if it was 0) and the mean curvature NaN.
     """
     K = samples.gaussian_curvature.astype(np.float64)
     H = samples.mean_curvature.astype(np.float64)
@@ -87,7 +87,7 @@ def size_of_terms(K: Array, H: Array, d: float) -> Array:
 
 
 def _check_squares(samples: Samples, H: Array) -> None:
-    """Raise InputError if K, about the square of H, is not what it should be for its range."""
+    """Raise InputError if K, about the square of H, overflows or underflows."""
     K = samples.gaussian_curvature
     too_large = have_large_squares(H, K.dtype)
     squares = np.maximum(np.abs(K), H * H)

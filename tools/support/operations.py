@@ -1,4 +1,4 @@
-"""What support functions make simple (paper, Sect. 2): convolution, offset, motions, scaling."""
+"""Operations on support functions (paper, Sect. 2): convolution, offset, motions, scaling."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ CANCELLED = math.ldexp(1.0, -20)
 
 @dataclass(frozen=True, eq=False)
 class Sum:
-    """h₁ + h₂, the convolution of two surfaces: x₁ + x₂ for any two points with one normal."""
+    """h₁ + h₂, the convolution of two surfaces: x₁ + x₂ for any two points with the same normal."""
 
     first: Source
     second: Source
@@ -57,7 +57,7 @@ class Sum:
         return None if first is None or second is None else first + second  # pyright: ignore
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return where both are defined."""
+        """Return the condition under which both are defined."""
         import sympy as sp
 
         first, second = self.first.domain(), self.second.domain()
@@ -69,9 +69,9 @@ class Sum:
 
 @dataclass(frozen=True, eq=False)
 class Moved:
-    """That of the points s R x + t + d n: h becomes s h(Rᵀn) + n·t + d |n|.
+    """The support function of the points s R x + t + d n: h becomes s h(Rᵀn) + n·t + d |n|.
 
-    If the side is −1 normals are reversed first: h is −h(−n) then. `text` says what was done.
+    If the side is −1, normals are reversed first: h is then −h(−n). `text` describes the operation.
     """
 
     of: Source
@@ -96,7 +96,7 @@ class Moved:
         return _grown(moved, normals, self.distance) if self.distance else moved
 
     def expression(self) -> sympy.Expr | None:
-        """Return the expression; None if that of the surface is none."""
+        """Return the expression; None if the surface has none."""
         given = self.of.expression()
         if given is None:
             return None
@@ -106,12 +106,12 @@ class Moved:
         return h + _exact(self.distance) * _length(n)
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the domain; None if that of the surface is none."""
+        """Return the domain; None if the surface has none."""
         given = self.of.domain()
         return None if given is None else self._at(given)
 
     def _at(self, given: Any) -> Any:  # noqa: ANN401
-        """Return what is said of the normals of the surface, for those that they become."""
+        """Return an expression in normals of the surface, rewritten in those of the result."""
         n, rows = normal_components(), self.side * np.eye(3)
         if self.rotation is not None:
             rows = rows @ self.rotation.T
@@ -129,9 +129,9 @@ def _grown(sheets: Sheets, normals: Vector, d: float) -> Sheets:
     matrices = np.stack([of_sphere[k] for k in (0, 3, 4, 3, 1, 5, 4, 5, 2)], axis=1)
     hessian = sheets.hessian + matrices.reshape(-1, 3, 3)
     s, gaussian, mean = python_function(formulas.offset_curvature)(K, H, d)
-    # Where a radius was 0, the old curvatures say nothing of the new ones; where one becomes 0,
-    # they say it with the rounding of 1 + 2 H d + K d². Of large surfaces float64 does not hold K,
-    # about the square of H.
+    # Where a radius was 0, the old curvatures do not determine the new ones; where a radius becomes
+    # 0, they do so only up to the rounding of 1 + 2 H d + K d². For large surfaces K, about the
+    # square of H, underflows.
     lost = (np.maximum(np.abs(K), H * H) < np.finfo(np.float64).tiny) & (H != 0.0)
     rows = np.flatnonzero(lost | ~(np.abs(s) > CANCELLED * size_of_terms(K, H, d)))
     radii, *own = curvatures(mine[rows], hessian[rows])
@@ -156,7 +156,7 @@ def pairs(
 
 
 def _exact(value: float) -> Any:  # noqa: ANN401
-    """Return a whole number as an integer of SymPy, and another one as a float of it."""
+    """Return a whole number as an Integer of SymPy, and any other number as a Float."""
     import sympy as sp
 
     return sp.Integer(int(value)) if value.is_integer() else sp.Float(value)

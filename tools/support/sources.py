@@ -1,4 +1,4 @@
-"""Where support functions come from: a spline, one patch, an expression."""
+"""Sources of support functions: a spline, one patch, an expression."""
 
 from __future__ import annotations
 
@@ -27,30 +27,30 @@ if TYPE_CHECKING:
 
 __all__ = ["PatchSource", "Source", "SplineSource"]
 
-# Quadratic and cubic forms in three variables that vanish here vanish everywhere.
+# Quadratic and cubic forms in three variables that vanish at these points vanish everywhere.
 FOR_QUADRATICS = [(2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
 FOR_CUBICS = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)]
 
 
 class Source(Protocol):
-    """A support function: what it has at unit normals (S, 3), and how it is written."""
+    """A support function: its values at unit normals (S, 3), and its expression."""
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
         """Return all branches, by normal."""
         ...
 
     def expression(self) -> sympy.Expr | None:
-        """Return h in n_x, n_y, n_z, on the unit sphere; None if that is no single expression."""
+        """Return h in n_x, n_y, n_z, on the unit sphere; None if there is no single expression."""
         ...
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the condition on n_x, n_y, n_z for a branch; None if no one condition says it."""
+        """Return the condition on n_x, n_y, n_z for a branch; None without a single one."""
         ...
 
 
 @dataclass(frozen=True, eq=False)
 class SplineSource:
-    """The support functions of all patches of a spline, each normal of each exactly once."""
+    """The support functions of all patches of a spline, with each point exactly once."""
 
     spline: Spline
 
@@ -93,14 +93,14 @@ class PatchSource:
     """The support function of one quadratic Bézier triangle (10) with `control_points` (6, 3).
 
     A normal belongs to it if the closed triangle has a regular point with that oriented normal.
-    What rounding leaves open is decided in exact arithmetic.
+    Signs that rounding leaves open are decided in exact arithmetic.
     """
 
     control_points: NDArray[np.float64]
 
     @classmethod
     def checked(cls, control_points: ArrayLike) -> PatchSource:
-        """Make one; InputError unless the patch has a support function."""
+        """Return a source; InputError unless the patch has a support function."""
         source = cls(checked_control_points(control_points))
         vectors = source._normals.exact_vectors
         D, *_ = python_function(formulas.forms)(vectors, vector(np.array(FOR_QUADRATICS, object)))

@@ -15,9 +15,9 @@ __all__ = ["check_degrees", "grid_of", "of_arrays", "of_spacing", "of_transform"
 
 Array = NDArray[np.float64]
 
-# Distances are equal if they differ by this part; coordinates in single precision do.
+# Distances are equal up to this relative difference, as for coordinates in single precision.
 EQUAL = 1e-3
-# Heights that vary by more than this multiple of the extent along x and y are over degrees.
+# If heights vary by more than this multiple of the extents of x and y, these are in degrees.
 TOO_STEEP = 10.0
 
 
@@ -32,7 +32,7 @@ def of_transform(transform: Sequence[float], shape: tuple[int, int]) -> tuple[Ar
 
 
 def of_spacing(spacing: Sequence[float], shape: tuple[int, int]) -> tuple[Array, Array]:
-    """Return x and y from 0 on, for distances dx > 0 and dy, negative from north to south."""
+    """Return x and y, starting at 0, for spacings dx > 0 and dy, negative from north to south."""
     dx, dy = checked_spacing(spacing, max(shape))
     rows, columns = (np.arange(count, dtype=np.float64) for count in shape)
     return dx * columns, dy * rows + 0.0
@@ -53,7 +53,7 @@ def of_arrays(x: ArrayLike, y: ArrayLike, shape: tuple[int, int]) -> tuple[Array
         if not np.isfinite(array).all():
             raise InputError(f"{name} holds NaN or infinity; only heights may be missing.")
         if array.ndim == 2 and (array == array.take([0], axis=1 - axis)).all():
-            array = array.take(0, axis=1 - axis)  # it says the same in all rows, or columns
+            array = array.take(0, axis=1 - axis)  # all its rows, or columns, are equal
         found.append(array)
     if found[0].ndim == found[1].ndim:
         return found[0], found[1]
@@ -71,7 +71,7 @@ def grid_of(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def is_even(values: Array) -> bool:
-    """Say whether numbers (k,) have equal distances, but for rounding."""
+    """Return whether numbers (k,) are equally spaced, up to rounding."""
     mean = (values[-1] - values[0]) / (len(values) - 1)
     return bool(mean != 0.0 and np.abs(np.diff(values) / mean - 1.0).max() <= EQUAL)
 

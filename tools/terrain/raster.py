@@ -21,10 +21,10 @@ Array = NDArray[np.float64]
 
 
 class Raster(NamedTuple):
-    """Heights (m, n), NaN where there are none, and how a file places them.
+    """Heights (m, n), NaN where missing, and their position according to the file.
 
-    `transform` (a, b, c, d, e, f) takes a column and a row, counted from the corner of the first
-    pixel, to x = a column + b row + c and y = d column + e row + f; None if the file says nothing.
+    `transform` (a, b, c, d, e, f) maps a column and a row, counted from the corner of the first
+    pixel, to x = a column + b row + c and y = d column + e row + f; None if the file has none.
     `unit` is that of the heights, or empty.
     """
 
@@ -37,8 +37,8 @@ class Raster(NamedTuple):
 def read_raster(path: Path, band: int, nodata: float | None) -> Raster:
     """Return a band of a GeoTIFF, with scale and offset applied.
 
-    `nodata` counts in place of the file's own, and is compared before that. Raises FileError,
-    InputError for a band that is not there, and MissingExtraError.
+    `nodata` replaces the file's own value, and is compared before scale and offset. Raises
+    FileError, InputError for a missing band, and MissingExtraError.
     """
     rasterio = from_extra("rasterio", "gis", "reading GeoTIFF files")
     quiet = warnings.catch_warnings()
@@ -52,7 +52,7 @@ def read_raster(path: Path, band: int, nodata: float | None) -> Raster:
 
 
 def raster_of(dataset: Any, band: int, nodata: float | None) -> Raster:  # noqa: ANN401
-    """Return a band of an open dataset of rasterio, and raise what `read_raster` does."""
+    """Return a band of an open dataset of rasterio; raises the errors of `read_raster`."""
     if dataset.closed:
         raise InputError(f"the dataset '{dataset.name}' is closed; open it, or name its file.")
     if band > dataset.count:

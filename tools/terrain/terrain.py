@@ -49,11 +49,11 @@ def terrain(
     origin: Sequence[float] | None = None,
     name: str | None = None,
 ) -> Surface:
-    """Make a surface of elevations, in a raster or in an array, in world coordinates.
+    """Make a surface of elevations, from a raster or an array, in world coordinates.
 
     Heights are at the centres of pixels. Degrees are projected, and the heights stay as they are:
-    the grid of points is what it was, and nothing is resampled. Samples, and files of them, know
-    the reference system (`SamplingReport.crs`).
+    the grid of points is kept, and nothing is resampled. Samples and their files record the
+    reference system (`SamplingReport.crs`).
 
     Parameters
     ----------
@@ -63,25 +63,25 @@ def terrain(
         along x. All are in the unit of x and y.
     x, y : (n,) and (m,), or (m, n) array_like, optional
         The coordinates of an array: one for each column and one for each row, or for each height.
-        Distances need not be equal.
+        They need not be equally spaced.
     spacing : (float, float), optional
-        Instead: the distances dx and dy of an array, or of a raster that says none, from (0, 0)
-        on. A negative dy means that rows run from north to south.
+        Instead: the distances dx and dy of an array, or of a raster that states none, starting at
+        (0, 0). A negative dy means that rows run from north to south.
     band : int, default 1
         The band of a raster.
     nodata : float, optional
-        The number that stands for missing heights, in place of that of the file, before scale and
-        offset. NaN and masked entries do so anyway. What depends on missing heights is left out,
+        The number that marks missing heights, in place of that of the file, before scale and
+        offset. NaN and masked entries always do. Parts that depend on missing heights are left out,
         see `Surface.from_grid`.
     crs : str or int, optional
-        The coordinate reference system that points are to have, such as "EPSG:32617" or its number,
-        in lengths. By default that of the source, or, if that has degrees, the zone of UTM in which
-        its middle is (UPS beyond 84° of latitude).
+        The coordinate reference system of the points, such as "EPSG:32617" or its number, in
+        lengths. By default that of the source or, if that has degrees, the zone of UTM that
+        contains its middle (UPS beyond 84° of latitude).
     source_crs : str or int, optional
-        The CRS of the source if it says none, or a wrong one; ``"EPSG:4326"`` for longitudes x and
-        latitudes y. Without it, `crs` counts.
+        The CRS of the source if it states none, or a wrong one; ``"EPSG:4326"`` for longitudes x
+        and latitudes y. Without it, `crs` is the CRS of the source.
     origin : (float, float) or (float, float, float), optional
-        What is subtracted from x, y and z, so that numbers are small: single precision (float32,
+        The origin subtracted from x, y and z, so that numbers are small: single precision (float32,
         .stl, .glb) rounds world coordinates to decimetres.
     name : str, optional
         Label of the surface. By default the name of the file, or "terrain".
@@ -97,8 +97,8 @@ def terrain(
     FileError
         If the file cannot be read, is damaged, no GeoTIFF, or too large for the memory.
     InputError
-        For other arguments than these; for a file or an array without coordinates, coordinates that
-        fold, degrees that are not said to be degrees, heights in another unit than x and y, and as
+        For invalid arguments; for a file or an array without coordinates, coordinates that fold,
+        degrees not declared as such, heights in another unit than x and y, and as
         `Surface.from_grid`.
     MissingExtraError
         Without Rasterio, if it is needed: for files, and for `crs`; the extra is "gis".
@@ -106,8 +106,8 @@ def terrain(
     Warns
     -----
     GaussmapWarning
-        If heights look like missing data: usual numbers such as −9999, and blocks of one height
-        where the others end abruptly.
+        If heights look like missing data: usual numbers such as −9999, and blocks of constant
+        height where the others end abruptly.
 
     Examples
     --------
@@ -191,14 +191,14 @@ def _surface(
     origin: Origin,
     name: str,
 ) -> Surface:
-    """Return the surface; `systems` are the CRS of the coordinates and the one asked for."""
+    """Return the surface; `systems` are the CRS of the coordinates and the requested one."""
     (x, y), heights, (source, asked) = coordinates, raster.heights, systems
     if min(heights.shape) < 2:
         raise InputError(f"{name} has {heights.shape[0]} x {heights.shape[1]} heights; too few.")
     if source is None:
         check_degrees(x, y, heights, name)
     if source is not None and asked is not None and source == asked and source.is_geographic:
-        asked = None  # it says what x and y are
+        asked = None  # it is the CRS of x and y
     system = target_crs(source, asked, x, y, name)
     if system is not None and source != system:
         x, y = projected(source, system, *grid_of(x, y), name)
@@ -213,7 +213,7 @@ def _surface(
 
 
 def _points(x: Array, y: Array, heights: Array, name: str) -> tuple[Array, Domain | None]:
-    """Return points (n, m, 3), columns first, such that normals point upward; and their domain."""
+    """Return points (n, m, 3), columns first, so that normals point upward; and their domain."""
     even = x.ndim == 1 and is_even(x) and is_even(y)
     if even:
         if x[0] > x[-1]:
@@ -235,7 +235,7 @@ def _points(x: Array, y: Array, heights: Array, name: str) -> tuple[Array, Domai
 
 
 def _check_unit(unit: str, system: Any, name: str) -> None:  # noqa: ANN401
-    """Raise InputError if heights are known to be in another unit than x and y."""
+    """Raise InputError if heights are known to have another unit than x and y."""
     known = unit_named(unit)
     if known is None or system is None:
         return

@@ -1,8 +1,8 @@
 """One page with the surface and its unit sphere of normals, which light up together.
 
-Plotly.js draws it: it is the library for three dimensions in browsers whose package on the registry
-holds all of it in one script, which goes into the page (k3d needs Jupyter's widgets, and
-pythreejs is bundled for notebooks only). The page needs no network.
+Plotly.js draws it: its package on the registry holds a complete library for three dimensions in
+browsers in one script, which is embedded in the page (k3d needs Jupyter's widgets, and pythreejs is
+bundled for notebooks only). The page needs no network.
 """
 
 from __future__ import annotations
@@ -38,26 +38,26 @@ SUFFIXES = (".html", ".htm")
 SCRIPTS = (
     "theme", "samples", "scene", "camera", "front", "picking", "selection", "highlights", "link",
 )  # fmt: skip
-COUNT = 5_000  # samples, if no number is given
-MOST = 50_000  # samples in a page, which stays fluid
-NEIGHBOURS = 8  # of each sample, for connected groups
-LEAST_ANGLE, MOST_ANGLE = 1.0, 20.0  # of the cap around a normal at first, in degrees
+COUNT = 5_000  # the default number of samples
+MOST = 50_000  # the most samples in a page that stays fluid
+NEIGHBOURS = 8  # for each sample, to find connected groups
+LEAST_ANGLE, MOST_ANGLE = 1.0, 20.0  # in degrees, the limits of the initial angle around a normal
 PARABOLIC_LEGEND = (
     f'<span class="legend"><span class="dot" style="background:{PARABOLIC}"></span>'
     "parabolic (K = 0)</span>"  # flat, too
 )
-# What a click on a surface does, and on a part.
+# The hints for clicks: on a surface, and on a part.
 HINTS = (
     "Click a place: its region and their normals light up.",
     "Click a face: its samples and their normals light up.",
 )
 PALE_PARABOLIC = "#b9b9b9"
-# Of faces whose file gives none; neighbours seldom have the same.
+# Colours of faces without a colour in the file; neighbours seldom have the same.
 COLOURS_OF_FACES = ("#c9d6df", "#e3d5bd", "#cfe0cf", "#dfcfdc", "#c8dcdc", "#e0d0c8", "#d3d3e3")
-# Around the surface, of its diameter: samples are drawn above it (LIFT in scene.js), and what is
-# outside of the range of an axis is not drawn.
+# The margin around the surface, relative to its diameter: samples are drawn above it (LIFT in
+# scene.js), and points outside of the range of an axis are not drawn.
 MARGIN = 0.02
-RADIUS = 10.0  # of the region around a place at first, in per cent of the diameter
+RADIUS = 10.0  # of the initial region around a point, in per cent of the diameter
 
 
 def view(
@@ -82,7 +82,7 @@ def check_count(count: int) -> None:
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
-    """Raise what `view` would raise later, for its path or if plotly is missing."""
+    """Raise now the errors that `view` would raise later, for its path or a missing plotly."""
     paths.check_target(path, SUFFIXES)
     check_extra("plotly", "view", "a page with a picture to turn")
 
@@ -101,7 +101,7 @@ def page(samples: Samples, surface: Surface | Spline | Part | None = None) -> st
         style=(here / "style.css").read_text(encoding="utf-8"),
         script="\n".join((here / f"{x}.js").read_text(encoding="utf-8") for x in SCRIPTS),
         plotly=offline.get_plotlyjs().replace("</script", "<\\/script"),
-        # A "<" in the text could end the script that it stands in.
+        # A "<" in the data could end the script element.
         data=json.dumps(data, allow_nan=False).replace("<", "\\u003c"),
         surface="Part" if data["part"] else "Surface",
         hint=HINTS[data["part"] is not None],
@@ -114,7 +114,7 @@ def page(samples: Samples, surface: Surface | Spline | Part | None = None) -> st
 def _data(
     samples: Samples, scene: Scene, surface: Surface | Spline | Part | None
 ) -> dict[str, Any]:
-    """Return what the script reads: coordinates relative to the centre, the diameter being 1."""
+    """Return the data for the script: coordinates relative to the centre, with diameter 1."""
     corners = scene.quadrangles.reshape(-1, 3)
     low, high = corners.min(axis=0), corners.max(axis=0)
     middle, diameter = low / 2 + high / 2, float(np.linalg.norm(high - low)) or 1.0
@@ -162,7 +162,7 @@ def _data(
 def _data_of_part(
     part: Part, of_triangles: NDArray[np.int64], of_samples: NDArray[np.int64], edges: Array
 ) -> dict[str, Any]:
-    """Return the faces of triangles and samples, what is said of each face, and edges."""
+    """Return the faces of triangles and samples, the text of each face, and the edges."""
     return {
         "of_triangles": _encoded(of_triangles, np.int32),
         "of_samples": _encoded(of_samples, np.int32),
@@ -173,14 +173,14 @@ def _data_of_part(
 
 
 def _colour(face: Face) -> str:
-    """Return the colour of a face in the file, or else one that differs from those before."""
+    """Return the colour of a face in the file, or else one that differs from its predecessors'."""
     if face.color is None:
         return COLOURS_OF_FACES[face.index % len(COLOURS_OF_FACES)]
     return "#" + bytes(round(255 * x) for x in face.color).hex()
 
 
 def _said(face: Face, unit: str) -> str:
-    """Return what the page says of a face that is picked."""
+    """Return the text that the page shows for a selected face."""
     name = f" {face.name!r}" if face.name else ""
     sizes = {x: y for x, y in face.dimensions.items() if x.endswith("radius")}
     said = [f"{x.replace('_', ' ')} {y:.6g} {unit}".rstrip() for x, y in sizes.items()]
@@ -188,7 +188,7 @@ def _said(face: Face, unit: str) -> str:
 
 
 def _gaps(lines: Sequence[Array], middle: Array, diameter: float) -> Array:
-    """Return lines of the page, one after the other, with NaN between them."""
+    """Return lines for the page, concatenated, with NaN between them."""
     apart = np.full((1, 3), np.nan)
     rows = [y for x in lines for y in ((x - middle) / diameter, apart)]
     return np.concatenate(rows) if rows else apart
@@ -200,7 +200,7 @@ def _encoded(array: NDArray[Any], dtype: type[np.generic]) -> str:
 
 
 def _neighbours(points: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the nearest samples of each one, as rows (N, k)."""
+    """Return the nearest neighbours of each sample, as rows (N, k)."""
     count = min(NEIGHBOURS, len(points) - 1)
     if count == 0:
         return np.zeros((1, 1), np.int64)
@@ -209,7 +209,7 @@ def _neighbours(points: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _spacing(normals: NDArray[np.float64]) -> float:
-    """Return the angle in degrees within which nearly every normal has another one beside it."""
+    """Return the angle in degrees within which nearly every normal has a neighbour."""
     distinct = np.unique(normals.round(6), axis=0)
     if len(distinct) < 2:
         return LEAST_ANGLE
