@@ -201,7 +201,7 @@ class Dataset:
         Parameters
         ----------
         part : int
-            The number of the part.
+            The index of the part.
 
         Returns
         -------

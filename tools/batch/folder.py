@@ -60,7 +60,7 @@ LONGEST_NAME = 60  # of the name of a part, in the name of its file
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What all parts of a data set have in common; `dataset.json` holds it.
+    """The settings that all parts of a data set have in common; `dataset.json` holds them.
 
     Attributes
     ----------
@@ -176,7 +176,7 @@ def file_name(part: int, name: str, suffix: str) -> str:
 
 
 def parts_in(folder: Path) -> list[int]:
-    """Return the numbers of the parts that are done, in order."""
+    """Return the indices of the parts that are done, in order."""
     return sorted(_numbers(folder / POINTS, r"([0-9]{6,})\.parquet"))
 
 
@@ -247,7 +247,7 @@ def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Ite
             raise FileError(
                 f"'{path}' holds other files and no {SETTINGS}; name a new or empty folder."
             )
-        lock = open(path / LOCK, "ab")  # noqa: SIM115 - what follows may raise OSError, too
+        lock = open(path / LOCK, "ab")  # noqa: SIM115 - the block below may raise OSError, too
     with lock:
         _lock(lock, path)
         with _writing(path):

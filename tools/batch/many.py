@@ -151,9 +151,8 @@ def sample_many(
     progress : bool, default True
         Show a bar on standard error, if that is a terminal.
     on_error : {"raise", "skip", "none", "return"}, default "raise"
-        Without `out`, what happens if a surface cannot be sampled: its error is raised; or it is
-        left out with a warning; or None is yielded in its place, with a warning; or its error is
-        yielded there.
+        Without `out`, for a surface that cannot be sampled: raise its error; leave it out, with a
+        warning; yield None in its place, with a warning; or yield its error.
     out : path, optional
         The folder of the data set. All following arguments are for data sets only.
     workers : int, optional

@@ -220,7 +220,7 @@ def _inside(space: PartSpace, owner: Indices, places: Array) -> Array:
     return np.where((places > high) & (places <= high + slack), high, places)
 
 
-# --- exact places ---------------------------------------------------------------------------------
+# --- exact positions ------------------------------------------------------------------------------
 
 
 def exact_places(edges: Edges, owner: Indices, places: Array) -> tuple[Sides, Indices]:

@@ -142,7 +142,7 @@ class FacePiece(Piece):
 
     def jets(self, u: Array, v: Array) -> Array:
         """Return 2-jets (k, 6, 3) at parameters."""
-        return self.surface.unchecked_jets(*np.array([u, v]))  # faces are many, and have few places
+        return self.surface.unchecked_jets(*np.array([u, v]))  # many faces, few points
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
         """Return the geometries to search for points; GaussmapError if there is no spline."""

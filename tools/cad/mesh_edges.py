@@ -175,7 +175,7 @@ class MeshEdges:
                 middles = (at[1:] + at[:-1])[chosen] / 2.0
                 self.more[edge] = np.concatenate([self.more.get(edge, at[:0]), middles])
 
-    # --- places -----------------------------------------------------------------------------------
+    # --- positions --------------------------------------------------------------------------------
 
     @cached_property
     def _costs(self) -> Array:

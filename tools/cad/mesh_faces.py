@@ -20,7 +20,7 @@ EXTRA = "pythoncdt", "mesh", "a mesh of a CAD part"
 SAME = 1e-11
 
 
-class Crossing(Exception):  # noqa: N818 - it says what was found
+class Crossing(Exception):  # noqa: N818 - a finding, not an error
     """The boundary of a face crosses itself, or encloses nothing; `face` is its index if known."""
 
     face = -1

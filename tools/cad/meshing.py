@@ -468,7 +468,7 @@ class Meshing:
             yield np.empty(0, dtype=np.int64) if nothing else sampled.numbers[edge]
 
 
-# --- what is wrong --------------------------------------------------------------------------------
+# --- faults ---------------------------------------------------------------------------------------
 
 
 def wrong_edges(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:

@@ -14,7 +14,7 @@ domain (F, 2, 2), periods (F, 2)
 kind (S,) int8, basis (S,) int64, net (S,) int64
     The index in `records.KINDS`; the basis of an offset, else −1; the NURBS, or −1.
 numbers (k,), number_starts (S + 1,) int64
-    Those of surface i are numbers[number_starts[i]:number_starts[i + 1]], see below.
+    The numbers of surface i are numbers[number_starts[i]:number_starts[i + 1]], see below.
 net_degrees (N, 2) int64, net_shapes (N, 2) int64
     The degrees p, q and numbers m, n of control points; q = 0 and n = 1 for a curve.
 knots (k,), knot_starts (N + 1,) int64

@@ -102,7 +102,7 @@ def _conditions(
     color: str | ArrayLike | None,
     index: ArrayLike | None,
 ) -> list[Flags]:
-    """Return masks of the faces (F,) for all given conditions, except that of normals."""
+    """Return masks of the faces (F,) for all given conditions except `normal`."""
     found = []
     if kind is not None:
         kinds = [kind] if isinstance(kind, str) else listed(kind)

@@ -165,7 +165,7 @@ class CurveSamples:
     def polygon(self) -> NDArray[np.float64]:
         """(M, 2) float64 array: the vertices of the polygon through all samples, in order.
 
-        That of an open curve begins and ends with the ends of the curve; that of a closed curve
+        The polygon of an open curve begins and ends with those of the curve; that of a closed curve
         repeats its first point at its end.
         """
         if len(self.ends):

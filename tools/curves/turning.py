@@ -40,7 +40,7 @@ class Turning:
     def turning_angles(self) -> Array:
         """(P,) float64 array: the angle by which the normal turns on each arc, in radians.
 
-        Its sign is that of κ there.
+        Its sign is the sign of κ on the arc.
         """
         angles, turns = self.angles
         return np.diff(angles) + 2 * np.pi * np.diff(turns)

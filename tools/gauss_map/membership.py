@@ -147,7 +147,7 @@ def _on_line(patch: Patch, n: Vector) -> bool:
 
 
 def _ends(row: tuple[int, int, int], corners: list[Place]) -> list[Place]:
-    """Return the intersections of a line with the border of the triangle, in order."""
+    """Return the intersections of a line with the boundary of the triangle, in order."""
     heights = [row[0] * u + row[1] * v + row[2] for u, v in corners]
     found = {corner for corner, height in zip(corners, heights, strict=True) if height == 0}
     for k in range(3):

@@ -199,7 +199,7 @@ def clipped(polygon: Array, line: Array) -> Array | None:
 
 
 def _heights(places: Array, line: Array) -> Array:
-    """Return line · (u, v, 1) at places (k, 2), zero where it is zero up to rounding."""
+    """Return line · (u, v, 1) at points (k, 2), zero where it is so up to rounding."""
     heights = places @ line[:2] + line[2]
     return np.where(np.abs(heights) <= PARAMETER_ERROR * (1.0 + abs(line[2])), 0.0, heights)
 
@@ -345,7 +345,7 @@ def _sign_in(patch: Patches, polygon: Array) -> int:
 
 
 def cubic_bernstein(places: Array) -> Array:
-    """Return the weights (…, 10) of the coefficients D300, D210, … at places u, v (…, 2)."""
+    """Return the weights (…, 10) of the coefficients D300, D210, … at points u, v (…, 2)."""
     u, v = places[..., 0], places[..., 1]
     w = 1.0 - u - v
     indices = [(i, j, 3 - i - j) for i in range(3, -1, -1) for j in range(3 - i, -1, -1)]
