@@ -78,9 +78,9 @@ class Worker:
     plan : Plan
         The plan of the run.
     pipe : Connection
-        The connection to the process; call `answer` when it is readable,
+        The connection to the process; `answer` is to be called when it is readable.
     deadline : float
-        or at this time of `time.monotonic`, whichever is first.
+        The time of `time.monotonic` at which `answer` is to be called at the latest.
 
     """
 

@@ -4,13 +4,14 @@ Nothing is pickled. For F faces, and S ≥ F surfaces of which the first F are t
 
 about (uint8)
     UTF-8 text, JSON: format, version, name, unit ("mm", "in", ...), metres (the length of the
+    unit), oriented, solid_names (a list), face_names and reasons (by the index of the face, as
     text; a face with a reason has failed), warnings (a list of sentences), source_indices (the
     indices of the faces in the part that they were selected from, or an empty list).
 reversed (F,) bool, area (F,), solid_index (F,) int64, color (F, 3)
     Whether normals point along −(x_u × x_v); the area inside the trim, in L²; the solid, −1 for
     none; red, green and blue from 0 to 1, NaN for none.
 domain (F, 2, 2), periods (F, 2)
-    ((u0, u1), (v0, v1)), the bounds of the loops; the periods of the surface in u and v, or 0.
+    ((u0, u1), (v0, v1)), the bounding box of the loops; the periods in u and v, or 0.
 kind (S,) int8, basis (S,) int64, net (S,) int64
     The index in `records.KINDS`; the basis of an offset, else −1; the NURBS, or −1.
 numbers (k,), number_starts (S + 1,) int64

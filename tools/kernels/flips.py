@@ -190,9 +190,8 @@ def flip_edges(points, normals, triangles, sides, neighbours, by_shape, least, q
 
     `triangles`, `sides` and `neighbours` (k, 3) are changed in place. Initially, queue (k,) must
     hold all triangles, and is_queued (k,) must be True. No flip makes a second edge between two
-    vertices. The
-    algorithm terminates: each flip raises the sorted cosines, or the sorted tangents, of all
-    triangles lexicographically.
+    vertices. The algorithm terminates: each flip raises the sorted cosines, or the sorted tangents,
+    of all triangles lexicographically.
     """
     count = triangles.shape[0]
     head, waiting, flips = 0, count, 0
