@@ -1,4 +1,4 @@
-"""`GaussMap`: the points of one surface at given normals, asked for often."""
+"""`GaussMap`: the points of one surface at given normals, for repeated queries."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ __all__ = ["GaussMap"]
 
 
 class GaussMap(Methods):
-    """The Gauss map of a surface, inverted: all points that have given normals, asked for often.
+    """The inverse Gauss map of a surface: all points with given normals, for repeated queries.
 
-    The surface is fitted and indexed when the map is made. After that one normal takes a fraction
-    of a millisecond. Answers do not depend on earlier ones, nor on the number of threads; several
-    threads may ask at once, and maps can be pickled. `sample` with `normals` gives the same
-    samples, and keeps the maps of the last eight surfaces.
+    The surface is fitted and indexed when the map is made. After that a query of one normal takes a
+    fraction of a millisecond. Results do not depend on earlier queries, nor on the number of
+    threads; several threads may query one map at once, and maps can be pickled. `sample` with
+    `normals` gives the same samples, and caches the maps of the last eight surfaces.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class GaussMap(Methods):
     cells : (int, int), optional
         The numbers of cells of the spline along u and v, see `fit`.
     on : {"surface", "spline"}, optional
-        Where the points are to lie, see `sample`.
+        The surface on which the points lie, see `sample`.
 
     Raises
     ------
@@ -45,7 +45,7 @@ class GaussMap(Methods):
 
     See Also
     --------
-    sample : the samples at normals in one call, and samples that fill gaps.
+    sample : samples at normals in one call, and samples that fill gaps.
 
     Examples
     --------
@@ -84,7 +84,8 @@ class GaussMap(Methods):
     def spline(self) -> Spline | None:
         """The spline of the surface, None for parts and several pieces.
 
-        `silhouette`, `SupportFunction.of_spline` and `gauss_map.GaussianImages` take it.
+        It is an argument for `silhouette`, `SupportFunction.of_spline` and
+        `gauss_map.GaussianImages`.
         """
         known = self._geometries or ()
         return known[0].spline if len(known) == 1 else None
@@ -102,7 +103,7 @@ class GaussMap(Methods):
         progress: bool = False,
         out: Samples | None = None,
     ) -> Samples:
-        """Return every point that has one of some normals, each exactly once.
+        """Return every point whose normal is one of `normals`, each exactly once.
 
         Parameters
         ----------
@@ -115,11 +116,11 @@ class GaussMap(Methods):
         threads : int, optional
             The number of threads, by default one for each core.
         progress : bool, default False
-            Show on a terminal what is done.
+            Show progress on a terminal.
         out : Samples, optional
-            Of a map of one spline: samples of an earlier call that are no longer needed. Their
-            memory is used again if it suffices, which is faster for millions of samples. What is
-            read from `out` afterwards, and from other samples with the same arrays, is not defined.
+            For a map of one spline: samples of an earlier call that are no longer needed. Their
+            memory is reused if it suffices, which is faster for millions of samples. Afterwards the
+            contents of `out`, and of other samples that share its arrays, are undefined.
 
         Returns
         -------
@@ -147,7 +148,7 @@ class GaussMap(Methods):
         return self._found(normals, fields, dtype, threads, progress, out)[0]
 
     def count(self, normals: ArrayLike, *, threads: int | None = None) -> NDArray[np.int64]:
-        """Return how many points have each of some normals.
+        """Return the number of points with each of the normals.
 
         Parameters
         ----------
@@ -177,7 +178,7 @@ class GaussMap(Methods):
         return np.bincount(found.normal_index, minlength=len(asked))
 
     def degree(self, normals: ArrayLike, *, threads: int | None = None) -> NDArray[np.int64]:
-        """Return Σ sign K over the points that have each of some normals.
+        """Return Σ sign K over the points with each of the normals.
 
         On a closed surface it is χ/2 for every normal, χ being the Euler characteristic.
 
@@ -219,7 +220,7 @@ class GaussMap(Methods):
         progress: bool = False,
         out: Samples | None = None,
     ) -> tuple[Samples, NDArray[np.float64]]:
-        """Return the points that have some normals, and these as unit vectors."""
+        """Return the points with given normals, and the normals as unit vectors."""
         return unwarned(
             self.surface,
             checked_request(normals, None, None, None, None, threads),

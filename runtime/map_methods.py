@@ -1,6 +1,6 @@
-"""The methods of `GaussMap` that rooms above define: `map_methods.pyi` says what they are.
+"""The methods of `GaussMap` that folders above define; `map_methods.pyi` has their signatures.
 
-Each is loaded when it is first asked for. Nothing here imports what stands on the map.
+Each is imported at first use, so that this module does not import modules that use the map.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ CURVES = "gaussmap.tools.gauss_map.image_curves"
 
 
 class Methods:
-    """What is made of Gauss maps."""
+    """The results derived from Gauss maps."""
 
     border_image = Later(CURVES)
     folds = Later(CURVES)

@@ -52,40 +52,40 @@ def sample(
     progress: bool = False,
     edges: bool = False,
 ) -> Samples:
-    """Return points of a surface with their normals, dense where it is curved.
+    """Return points of a surface with their normals, denser where it is more curved.
 
-    Say how many by one of `count`, `normals`, `angle` and `coverage`.
+    One of `count`, `normals`, `angle` and `coverage` determines their number.
 
     Parameters
     ----------
     surface : Surface, Spline, Part or str
-        The surface, or its name in the catalogue (see `gaussmap.surfaces`). All faces of a part, as
-        a CAD file (see `read_part`) or several surfaces (see `Part`) have them, and all smooth
+        The surface, or its name in the catalogue (see `gaussmap.surfaces`). All faces of a part,
+        read from a CAD file (see `read_part`) or made of surfaces (see `Part`), and all smooth
         pieces of a NURBS (see `Surface.pieces`), are sampled as one surface.
     count : int, optional
         The number of samples. It is met exactly; with ``density="gauss"`` within 2 % or 5 samples.
     normals : (S, 3) array_like, optional
-        Directions of any length but 0, such as ``icosphere(32)``: every point that has one of these
-        normals, each exactly once.
+        Directions of any length but 0, such as ``icosphere(32)``: the samples are all points with
+        one of these normals, each exactly once.
     angle : float, optional
         The largest angle, in degrees and at most 90, between the normal of any point of the surface
         and that of the sample nearest in normal. Not with ``density="gauss"``.
     coverage : float, optional
         The largest distance, in the unit L of the surface, from any point of it to the nearest
-        sample on its side (see Notes). Alone, or together with one of the others.
+        sample on its side (see Notes). It is given alone, or together with one of the others.
     density : {"gauss", "balanced", "aligned", "uniform"} or float, optional
-        The target density. "gauss", the default with `normals` alone, is |K|, by samples at
-        prescribed normals only; "balanced", the default otherwise, fills the gaps between these.
-        "aligned" is a grid along parameter lines, "uniform" the same density everywhere, and a
-        number α that of |K|^α; see Notes. Splines of nets (`Spline.from_nets`) have "gauss" only.
+        The target density. "gauss", the default with `normals` alone, is |K|: samples are only at
+        prescribed normals. "balanced", the default otherwise, also fills the gaps between these.
+        "aligned" is a grid along parameter lines, "uniform" is constant, and a number α means
+        |K|^α; see Notes. Splines of nets (`Spline.from_nets`) have "gauss" only.
     reach : (axis, angle), optional
-        Only points whose normal is within an angle, in degrees, of a direction (3,): a probe, a
-        camera or a printer comes from there. Count, angle and coverage hold for these points. Not
-        with ``density="aligned"``.
+        Only points whose normal is within an angle, in degrees, of a direction (3,) are sampled,
+        such as that of a probe, a camera or a printer. Count, angle and coverage refer to these
+        points. Not with ``density="aligned"``.
     cells : (int, int), optional
         The numbers of cells along u and v of the spline that approximates the surface, see `fit`.
     on : {"surface", "spline"}, optional
-        Where samples are to lie: on the surface itself, or on its spline. By default on the
+        Whether samples lie on the surface itself, or on its spline. By default they lie on the
         surface, unless it is given by points or as a spline.
     fields : sequence of str, optional
         The arrays of `Samples` that are computed and stored, such as ``("points", "normals")``; all
@@ -95,22 +95,23 @@ def sample(
     threads : int, optional
         The number of threads, by default one for each core. The samples do not depend on it.
     progress : bool, default False
-        Show on a terminal what is done, after the first second.
+        Show progress on a terminal, after the first second.
     edges : bool, default False
         Add samples on the sharp edges of a CAD part, where the normals of two faces differ by more
-        than 1°. They come last, and in addition to the others.
+        than 1°. They come last, and are not part of the count.
 
     Returns
     -------
     Samples
         The samples at normals, followed by those that fill gaps, of `kind` "filling", whose
-        `normal_index` is −1. Samples at normals are in the order of these, and then of the patches.
-        The report has the angle and the coverage that were reached, if they were asked for.
+        `normal_index` is −1. Samples at normals are in the order of the normals, then of the
+        patches. The report has the angle and the coverage that were reached, if they were
+        requested.
 
     Raises
     ------
     InputError
-        For unusable arguments, and too little memory.
+        For unusable arguments, or too little memory.
     UnknownNameError
         For an unknown surface, field or density.
     SurfaceError
@@ -125,60 +126,60 @@ def sample(
     --------
     sample_many : the samples of several surfaces.
     sample_stream : samples in chunks, in bounded memory.
-    GaussMap : the points of one surface at normals, asked for often.
+    GaussMap : the points of one surface at normals, for repeated queries.
     Samples.coverage : the coverage of any samples.
 
     Notes
     -----
     **Densities.** "gauss" is the method of the paper (Sect. 4.2): normals are uniform on the
     sphere, so that samples have the density |K|. Developable regions get none, and next to open
-    borders gaps between normals are up to half as wide again.
+    boundaries gaps between normals are up to 50 % wider.
 
-    "balanced" has fewer normals, and samples that fill the gaps: no point is farther from a sample
-    than r/κ, nor than r/√λ. κ is the larger of |κ₁| and |κ₂|, so that normals of neighbouring
-    samples differ by about r radians; with `angle`, r is twice the angle. λ is 0.8 times the mean
-    of κ², or follows from `coverage`; with a count, a coverage or an angle, κ counts up to 20 √λ,
-    for an angle in the mean of κ², too.
+    "balanced" has fewer normals, and samples that fill the gaps: the distance of any point from the
+    nearest sample is at most r/max(κ, √λ). κ is the larger of |κ₁| and |κ₂|, so that normals of
+    neighbouring samples differ by about r radians; with `angle`, r is twice the angle. λ is 0.8
+    times the mean of κ², or follows from `coverage`. With a count, a coverage or an angle, κ is
+    capped at 20 √λ; with an angle, also in the mean of κ².
 
-    "aligned" is for `count`, `angle` and `coverage`. Its lines u = const and v = const are spaced
-    by how fast the normal turns across them. That takes fewer samples for the same angles where
-    parameters run along lines of curvature, and more where they do not. Samples of the grid, of
-    `kind` "grid", come first.
+    "aligned" is for `count`, `angle` and `coverage`. The spacing of its lines u = const and v =
+    const follows the rate at which the normal turns. It takes fewer samples for the same angles if
+    parameter lines are lines of curvature, and more otherwise. Samples of the grid, of `kind`
+    "grid", come first.
 
-    "uniform" is for `count` or `coverage`, a number α, 0 < α ≤ 8, for `count`. Where the curvature
-    is below the error of the spline, |K|^α is taken to be uniform.
+    "uniform" is for `count` or `coverage`; a number α, 0 < α ≤ 8, is for `count`. Where the
+    curvature is below the error of the spline, |K|^α is replaced by a constant.
 
-    **Angles** next to singular points of the spline, such as cusps, hold as far as cells of 2⁻¹⁴ of
-    its size resolve them.
+    **Angles** next to singular points of the spline, such as cusps, are bounded down to cells of
+    2⁻¹⁴ of its size.
 
-    **On the surface.** All points with prescribed normals are found, with a proof, where the
-    derivatives of the surface can be bounded: those of the catalogue, of SymPy expressions, of
-    callables made of NumPy functions, of NURBS, of affine images of these, and of faces of parts.
-    The report says for how many normals the points are `proved` to be all, and lists the others in
-    `undecided`; see `SamplingReport`. What is found out about the last eight surfaces is kept, so
-    that the function of a surface must return the same points each time; a `GaussMap` keeps it for
-    as long as the object exists. On other surfaces, and at normals that were not prescribed, a
-    sample is moved by Newton's method from the spline to the point with its normal. Where there is
-    none near by, it stays on the spline and is marked, see `Samples.on_surface`. Samples that fill
-    gaps are evaluated at their parameters.
+    **On the surface.** All points with prescribed normals are found, with a proof, if the
+    derivatives of the surface can be bounded. This holds for the catalogue, SymPy expressions,
+    callables made of NumPy functions, NURBS, affine images of these, and faces of parts. The report
+    says for how many normals the points are `proved` to be all, and lists the others in
+    `undecided`; see `SamplingReport`. Splines and indices of the last eight surfaces are cached, so
+    that the function of a surface must return the same points each time; a `GaussMap` keeps them as
+    long as it exists. On other surfaces, and at normals that were not prescribed, Newton's method
+    moves a sample from the spline to the point with its normal. If there is no such point nearby,
+    the sample stays on the spline and is marked, see `Samples.on_surface`. Samples that fill gaps
+    are evaluated at their parameters.
 
     **Parts and pieces.** All faces of a part, and all smooth pieces of a surface, have one target
-    density, and one count; angle and coverage hold for the whole. A piece has samples at normals if
-    these are a tenth of all samples or more; if one of several has none, 5 % of a count go where
-    normals are farthest from those of all samples. Every face has a sample if there are at least
-    twice as many samples as faces. A sample represents only places whose normals are within 60° of
-    its own, that is, places on its side. Pieces share `cells` in proportion to their parameters,
-    and `spline` of the samples is None. Of parts, `density` is "balanced", "uniform", a number, or
-    "gauss" with `normals`; `cells` and `on` are not for parts.
+    density and one count; angle and coverage refer to the whole. A piece has samples at normals if
+    these are a tenth of all samples or more; if one of several has none, 5 % of a count are placed
+    where normals are farthest from those of all samples. Every face has a sample if there are at
+    least twice as many samples as faces. A sample represents only points whose normals are within
+    60° of its own, that is, points on its side. Pieces share `cells` in proportion to their
+    parameters, and `Samples.spline` is None. For parts, `density` is "balanced", "uniform", a
+    number, or "gauss" with `normals`; `cells` and `on` are not allowed.
 
     **Edges.** Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
-    `other_normals`. They are on both faces exactly, or, where the faces of the file do not meet, on
-    the first one and as near to the other as in the file. However few samples there are, each edge
-    has some at both ends and one or more in between. Between neighbours on an edge the normals of
+    `other_normals`. They are on both faces exactly, or, if the faces of the file do not meet, on
+    the first one and as close to the other as in the file. Each edge has samples at both ends and
+    at least one in between, however small the count. Between neighbours on an edge the normals of
     each face differ by about as much as between neighbours elsewhere, or less, and gaps are no
     wider than in flat regions. A corner has one sample, with the normals of the edge that is
-    sharpest there. Borders of open shells have one face only, and are no edges. `Samples.weights`
-    are 0 on edges.
+    sharpest there. Boundaries of open shells have only one face, and are not edges.
+    `Samples.weights` are 0 on edges.
 
     The samples of a spline at a normal have Σ sign K = χ/2, for every normal of every closed
     surface, those at poles included; χ is the Euler characteristic.
@@ -230,7 +231,7 @@ def sample_and_normals(
     on: str | None = None,
     edges: bool = False,
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return what `sample` returns, and the unit normals that were searched."""
+    """Return the result of `sample`, and the unit normals that were searched."""
     samples, normals = unwarned(
         surface,
         request,
@@ -265,9 +266,9 @@ def unwarned(
     out: Samples | None = None,
     geometries: Sequence[OnSpline] | None = None,
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return the same, without warnings of what is missing.
+    """Return the same, without warnings of missing samples.
 
-    `geometries` are those of the surface if they are known already, and `out` holds memory for
+    `geometries` are those of the surface if they are already known, and `out` provides memory for
     samples of a spline at normals, see `GaussMap.points`.
     """
     edges = yes_or_no(edges, "edges")
@@ -322,7 +323,7 @@ def unwarned(
 
 
 def _refuse_memory(out: Samples | None) -> None:
-    """Raise InputError if there is memory for samples that would not be used."""
+    """Raise InputError if `out` is given and would not be used."""
     if out is not None:
         raise InputError(
             "out=... holds samples of one spline; those of a surface or part need new memory: "

@@ -28,7 +28,7 @@ from .surface.surfaces import named
 
 __all__ = ["sample_stream"]
 
-# The number of normals of a block; with their samples they take about 150 MB.
+# The number of normals in a block; with their samples they take about 150 MB.
 NORMALS_AT_A_TIME = 1 << 20
 
 
@@ -47,24 +47,24 @@ def sample_stream(
 ) -> Generator[Samples, None, None]:
     """Return the samples of a surface in chunks, in bounded memory.
 
-    They are those of `sample` with ``density="gauss"``. 10⁹ samples that are reduced on the fly
-    take less than 1 GiB; with `count`, not even the normals are ever in memory all at once.
+    The samples are those of `sample` with ``density="gauss"``. 10⁹ samples that are reduced on the
+    fly take less than 1 GiB; with `count`, even the normals are made in blocks.
 
     Parameters
     ----------
     surface : Surface, Spline or str
         The surface, or its name in the catalogue.
     count, normals, cells, on, fields, dtype, threads, progress : optional
-        As in `sample`: either `count` or `normals`.
+        As in `sample`; either `count` or `normals` is given.
     chunk : int, default 1,000,000
         The largest number of samples in a chunk.
 
     Returns
     -------
     generator of Samples
-        The chunks; there is at least one, and all but the last of each block of 1,048,576
-        normals are full, unless a spline is trimmed. The report of a chunk counts its samples, and
-        no degenerate patches.
+        The chunks, at least one; all but the last one of each block of 1,048,576 normals are full,
+        unless a spline is trimmed. The report of a chunk has the number of its samples, and does
+        not count developable patches.
 
     Raises
     ------
@@ -143,7 +143,7 @@ class _Stream:
                     yield samples
                 else:
                     nothing = samples
-            del normals, hits  # before the next ones are made
+            del normals, hits  # before the next block is made
         if came == 0 and nothing is not None:
             yield nothing
         developable = developable_patches(geometry.spline, threads)
@@ -151,7 +151,7 @@ class _Stream:
         warn_of(replace(report, unrefined=unrefined), self.request.count, stacklevel=3)
 
     def _proved_chunks(self) -> Generator[Samples, None, None]:
-        """Yield the same of a proved search."""
+        """Yield the chunks of a proved search."""
         chosen = choose(self.geometry, self.request.normals_or_count, self.progress)
         total, came, report = len(chosen), 0, None
         starts = range(0, total, NORMALS_AT_A_TIME)
@@ -180,7 +180,7 @@ class _Stream:
 
 
 def _chunk(found: Samples, start: int, total: int, is_first: bool) -> Samples:
-    """Return a chunk of a block of normals from `start` on; the proof is in the first one."""
+    """Return a chunk of a block of normals from `start` on; the first chunk has the proof."""
     arrays: dict[str, Any] = found.arrays()
     report = found.report
     if start and "normal_index" in arrays:

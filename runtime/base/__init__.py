@@ -1,4 +1,4 @@
-"""What every room stands on: errors, checks of arguments, threads, tolerances, texts."""
+"""The base of all folders: errors, checks of arguments, threads, tolerances, texts."""
 
 import lazy_loader
 

@@ -1,4 +1,4 @@
-"""What to do with input that is no surface: meshes, clouds of points, names of files."""
+"""Advice for input that is not a surface: meshes, point clouds, file names."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def is_mesh_file(name: str) -> bool:
 
 
 def file_advice(name: str) -> str | None:
-    """Return what to call for a file whose name was given in place of a surface; None if none."""
+    """Return the call that reads a file whose name was given as a surface; None if none does."""
     suffix = Path(name).suffix.lower()
     if suffix in CAD_SUFFIXES:
         return f"read the CAD file first: gm.sample(gm.read_cad({name!r}), ...)"
@@ -68,7 +68,7 @@ def _has(value: object, *names: str) -> bool:
 
 
 def about_value(value: object) -> str:
-    """Return what to call for a value that was given in place of a surface."""
+    """Return the call that makes a surface of a value that is not one."""
     if is_of_geomdl(value) or is_of_splipy(value):
         return "make one by gm.Surface.from_nurbs(surface)"
     if is_raster(value):

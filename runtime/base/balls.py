@@ -1,4 +1,4 @@
-"""Arrays of balls: numbers that are known up to a radius, rounding included."""
+"""Arrays of balls: midpoints with radii that bound their errors, rounding included."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from .aliases import Array
 __all__ = ["Ball"]
 
 
-# The rounding of a midpoint, relative to it, and that of a radius, which has a few operations.
+# The relative rounding error of a midpoint, and a factor for that of a radius (a few operations).
 UNIT, WIDER = 2.0**-53, 1.0 + 2.0**-48
-TINY = 1e-290  # more than what underflows
+TINY = 1e-290  # above the error of an underflow
 
 
 @dataclass(frozen=True, eq=False)
 class Ball:
-    """Numbers between middle − radius and middle + radius; so are results of operations."""
+    """Enclosures [middle − radius, middle + radius]; operations return enclosures as well."""
 
     middle: Array
     radius: Array

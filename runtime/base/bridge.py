@@ -1,4 +1,4 @@
-"""The one bridge from the runtime to `gaussmap.symbolic`; its functions load SymPy when called.
+"""The only imports of `gaussmap.symbolic` in the runtime; its functions load SymPy when called.
 
 Nothing else in the runtime imports `gaussmap.symbolic`, so that sampling never waits for SymPy.
 """
@@ -23,7 +23,7 @@ __all__ = [
 
 
 def array_function(expression: Any, condition: Any = True) -> str:  # noqa: ANN401
-    """Return the Python source of the function of a support function; see `symbolic.expression`."""
+    """Return the Python source that evaluates a support function; see `symbolic.expression`."""
     from ...symbolic.expression import array_function
 
     return array_function(expression, condition)
@@ -67,7 +67,7 @@ def reading() -> ModuleType:
 def tape_steps(
     position: Sequence[Any], symbols: Sequence[Any]
 ) -> tuple[list[Any], list[int]] | None:
-    """Return the steps of three expressions in two symbols, see `symbolic.tape`; None without."""
+    """Return the tape of three expressions in two symbols (see `symbolic.tape`), or None."""
     from ...symbolic.tape import NoTapeError, tape_steps
 
     try:

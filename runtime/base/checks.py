@@ -38,9 +38,9 @@ __all__ = [
 
 
 def known_name(name: str, known: Sequence[str], kind: str, command: str = "") -> str:
-    """Return `name` if it is known; UnknownNameError with similar names, or with all, otherwise.
+    """Return `name` if it is known; otherwise UnknownNameError lists similar or all names.
 
-    If there are too many names to list, `command` is the command that lists them.
+    If the names are too many for a message, `command` is the shell command that lists them.
     """
     text = name if isinstance(name, str) else ""
     if text and text in known:
@@ -69,7 +69,7 @@ def whole_number(value: object, name: str, least: int = 1, most: int = MOST) -> 
 
 
 def pair_of_cells(cells: Sequence[int]) -> tuple[int, int]:
-    """Return numbers of cells (m, n); InputError unless they are two positive whole numbers."""
+    """Return the numbers of cells (m, n); InputError unless both are positive whole numbers."""
     try:
         m, n = cells
     except (TypeError, ValueError):
@@ -80,7 +80,7 @@ def pair_of_cells(cells: Sequence[int]) -> tuple[int, int]:
 
 
 def checked_count(value: object) -> int:
-    """Return a number of samples; InputError otherwise, for normals with a hint of its own."""
+    """Return a number of samples; InputError otherwise, with a hint if normals were given."""
     shape = getattr(value, "shape", None)
     if isinstance(value, list | tuple) or (isinstance(shape, tuple) and shape):
         raise InputError(
@@ -103,24 +103,24 @@ def as_float(value: SupportsFloat | str) -> float:
 
 
 def listed(values: object) -> list[Any] | None:
-    """Return the elements as a list; None for texts, and for what has no elements."""
+    """Return the elements as a list; None for texts and objects without elements."""
     if isinstance(values, str | bytes | dict):
         return None
     try:
         return list(values)  # pyright: ignore[reportArgumentType]
-    except TypeError:  # of arrays without dimension, too
+    except TypeError:  # also raised by zero-dimensional arrays
         return None
 
 
 def text(value: object, name: str) -> str:
-    """Return a plain text, of NumPy's too; InputError with its name for anything else."""
+    """Return a str, also from NumPy's str_; InputError with its name for anything else."""
     if not isinstance(value, str):
         raise InputError(f"{name} must be a text, not {shown(value)}.")
     return str(value)
 
 
 def yes_or_no(value: object, name: str) -> bool:
-    """Return the truth value; InputError with its name for values without one, as arrays."""
+    """Return the truth value; InputError with its name for values without one, such as arrays."""
     try:
         return bool(value)
     except Exception:
@@ -178,7 +178,7 @@ def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def with_gaps(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Return what `real_array` returns, with NaN in place of masked entries."""
+    """Return the array of `real_array`, with NaN in place of masked entries."""
     if not isinstance(values, np.ma.MaskedArray):
         return real_array(values, name)
     array = real_array(values.data, name)
@@ -202,7 +202,7 @@ def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
 
 
 def _are_fractions(array: NDArray[Any]) -> bool:
-    """Return whether an object array holds fractions, and nothing else but integers."""
+    """Return whether an object array holds only fractions and integers."""
     values = array.ravel().tolist() if array.dtype.kind == "O" else []
     return any(isinstance(x, Fraction) for x in values) and all(
         isinstance(x, Rational) for x in values
@@ -255,11 +255,11 @@ def _shown(shape: tuple[int | str, ...]) -> str:
 def checked_rows(key: ArrayLike, count: int) -> NDArray[Any]:
     """Return a mask (count,) or valid row numbers (M,) of samples; InputError otherwise.
 
-    One number stands for an array of it.
+    A single number counts as an array of length 1.
     """
     try:
         rows = np.asarray(key)
-    except Exception:  # of ragged lists, and of objects that raise anything
+    except Exception:  # ragged lists, and objects that raise anything
         rows = np.empty(())
     if rows.ndim == 0 and rows.dtype.kind in "iu":
         rows = rows[None]

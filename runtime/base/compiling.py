@@ -1,4 +1,4 @@
-"""The notice, on a terminal or in a notebook, while kernels are compiled at their first call.
+"""A notice on terminals and in notebooks while kernels are compiled at their first call.
 
 Importing this module installs it: modules whose kernels users call import it.
 """

@@ -142,7 +142,7 @@ class MissingFieldError(GaussmapError, AttributeError):
 
 
 class GaussmapWarning(UserWarning):
-    """A result is valid, but less than requested; the message says why.
+    """A result is valid but falls short of the request; the message gives the reason.
 
     Examples
     --------
@@ -162,7 +162,7 @@ LONGEST_MESSAGE = 300
 
 
 def _cut(message: str) -> str:
-    """Return a message; of a long one, as of a long path, the beginning and the end."""
+    """Return a message; a long one (with a long path, say) is cut in the middle."""
     if len(message) <= LONGEST_MESSAGE:
         return message
     half = LONGEST_MESSAGE // 2
@@ -179,7 +179,7 @@ def shown(value: object) -> str:
 
 
 def clipped(text: str) -> str:
-    """Return a text for a message, the beginning of a long one."""
+    """Return a text for a message, cut at its end if it is long."""
     text = text.encode("utf-8", "backslashreplace").decode()
     return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 1]}…"
 

@@ -1,4 +1,4 @@
-"""Calling the callable of a user, and looking at what it returns."""
+"""Calls of users' callables, and checks of the values that these return."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ def evaluated(
 ) -> NDArray[np.float64]:
     """Return the points (..., dimension) of a callable for parameters of one shape, by their names.
 
-    Raises SurfaceError, which calls it the callable of `label`, if it raises, returns another shape
-    or anything but real numbers, or gives NaN or infinity, and says where.
+    Raises SurfaceError, which names the callable by `label`, if the callable raises, or returns
+    another shape, anything but real numbers, or NaN or infinity; the message gives the parameters.
     """
     arrays = {name: np.atleast_1d(x) for name, x in parameters.items()}
     points = returned(function, tuple(arrays.values()), (dimension,), f"the callable of {label}")
@@ -33,7 +33,7 @@ def evaluated(
 def check_finite(
     values: NDArray[np.float64], parameters: Mapping[str, NDArray[np.float64]], label: str
 ) -> None:
-    """Raise SurfaceError if values (..., k) at parameters (...) are not finite, and say where."""
+    """Raise SurfaceError, with the parameters, if values (..., k) are not finite."""
     bad = ~np.isfinite(values).all(axis=-1)
     if bad.any():
         where = np.unravel_index(int(np.argmax(bad)), bad.shape)
@@ -47,10 +47,10 @@ def returned(
     shape: tuple[int, ...],
     label: str,
 ) -> NDArray[np.float64]:
-    """Return what a callable returns for arrays of one shape: an array of that shape + `shape`.
+    """Return the values of a callable for arrays of one shape: an array of that shape + `shape`.
 
-    Raises SurfaceError, which calls the callable `label`, if it raises, or returns another shape or
-    anything but real numbers.
+    Raises SurfaceError, which names the callable by `label`, if the callable raises, or returns
+    another shape or anything but real numbers.
     """
     values = called(function, arrays, label)
     try:
@@ -79,7 +79,7 @@ def _hint(values: ArrayLike, found: tuple[int, ...], expected: tuple[int, ...]) 
 def called(
     function: Callable[..., ArrayLike], arrays: Sequence[NDArray[np.float64]], label: str
 ) -> ArrayLike:
-    """Return what a callable returns for copies of arrays; SurfaceError if it raises."""
+    """Call a callable with copies of arrays; SurfaceError if it raises."""
     try:
         with np.errstate(all="ignore"):
             return function(*(x.copy() for x in arrays))

@@ -1,4 +1,4 @@
-"""Libraries that an extra brings: loaded when they are needed, and named when they are missing."""
+"""Optional libraries: imported on demand, with an error that names the extra if one is missing."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def from_extra(module: str, extra: str, purpose: str) -> Any:  # noqa: ANN401
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
         raise _missing(module, extra, purpose, "is not installed") from error
-    except (ImportError, OSError) as error:  # OSError: a library of the system lacks
+    except (ImportError, OSError) as error:  # OSError: a system library is missing
         raise _missing(module, extra, purpose, f"fails: {error}") from error
 
 
 def if_installed(module: str) -> Any | None:  # noqa: ANN401
-    """Import a module that only makes something faster; None if it is missing or fails."""
+    """Import a module that only saves time; None if it is missing or its import fails."""
     try:
         return importlib.import_module(module)
     except (ImportError, OSError):

@@ -14,7 +14,7 @@ __all__ = ["patch", "plane_vector", "python_function", "vector"]
 
 
 def python_function(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Return the uncompiled function; under NUMBA_DISABLE_JIT it is that already."""
+    """Return the uncompiled function of a kernel; under NUMBA_DISABLE_JIT, the argument itself."""
     return getattr(function, "py_func", function)
 
 

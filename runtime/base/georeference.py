@@ -1,4 +1,4 @@
-"""Where coordinates are on the Earth: their reference system, and what was subtracted from them."""
+"""Georeferences: the reference system of coordinates, and the origin subtracted from them."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from .errors import GaussmapWarning, InputError, shown
 
 __all__ = ["Georeference", "checked_origin", "crs_label", "warn_of_rounding"]
 
-# Single precision may move points by this part of their mean distance, unless there is a warning.
+# Rounding to single precision warns if it moves points by more than this part of their spacing.
 ROUNDING = 1e-3
-# Fewer points tell nothing about distances.
+# The least number of points from which a spacing is estimated.
 FEWEST = 3
 
 Origin = tuple[float, float, float]
@@ -25,7 +25,7 @@ Origin = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Georeference:
-    """The reference system of coordinates, as EPSG:number or WKT, and the origin of these."""
+    """A coordinate reference system (EPSG:number or WKT), and the origin that was subtracted."""
 
     crs: str | None = None
     origin: Origin = (0.0, 0.0, 0.0)
@@ -46,13 +46,13 @@ def checked_origin(origin: Sequence[float] | None) -> Origin:
 
 
 def crs_label(crs: str) -> str:
-    """Return EPSG:number, or the name in WKT."""
+    """Return the label of a reference system: EPSG:number, or the name in its WKT."""
     _, quote, rest = crs.partition('"')
     return rest.partition('"')[0] if quote else crs
 
 
 def warn_of_rounding(points: NDArray[np.floating], stacklevel: int) -> None:
-    """Warn if single precision moves points (N, 3) of a terrain by much, relative to their gaps."""
+    """Warn if single precision moves points (N, 3) by much, relative to their spacing."""
     if len(points) < FEWEST:
         return
     low, high = (x.astype(np.float64) for x in (points.min(axis=0), points.max(axis=0)))

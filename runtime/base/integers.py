@@ -1,4 +1,4 @@
-"""Floating-point numbers are binary fractions: as integers, formulas of +, − and × are exact."""
+"""Floating-point numbers as integers times a power of two: formulas of +, − and × are exact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is made of an object once, and kept as long as the object lives."""
+"""Values that are computed once for an object and cached as long as it lives."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ Value = TypeVar("Value")
 
 
 class Immutable:
-    """A frozen dataclass that is pickled as its fields, without what is made of them."""
+    """A frozen dataclass that is pickled as its fields, without the values cached for it."""
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return what is pickled."""
+        """Return the fields, which are pickled."""
         return {x.name: getattr(self, x.name) for x in fields(self)}  # type: ignore[arg-type]
 
 
 def kept(owner: object, key: Hashable, make: Callable[[], Value]) -> Value:
-    """Return what was made of an object under a key, or make it and keep it.
+    """Return the value cached for an object under a key, computing it if it is missing.
 
-    Two threads at once may make it twice, and both get the same one.
+    Two threads may compute it at the same time; both get the same object.
     """
     values = vars(owner).setdefault("_kept", {})
     if key not in values:

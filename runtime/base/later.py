@@ -1,4 +1,4 @@
-"""Methods that rooms above a class define, loaded when they are first asked for."""
+"""Methods that are defined in folders above that of the class, imported at first use."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ __all__ = ["Later"]
 
 
 class Later:
-    """A function of another module as a method of the class that has this.
+    """A descriptor: a function of another module as a method of a class.
 
-    So a class has methods of rooms that stand on it, and does not import them. The first use puts
-    the function itself into the class. It has the name of the method, unless another one is given.
+    So a class has methods that are defined in modules that import it. The first access replaces the
+    descriptor by the function. The name of the function is that of the method by default.
     """
 
     def __init__(self, module: str, function: str = "") -> None:

@@ -1,7 +1,7 @@
 """The check of requests against the memory that is free, before anything is allocated.
 
 A system that overcommits memory kills the process when the memory is used; then there is no
-MemoryError to catch. `COSTS` says what each kind of request takes.
+MemoryError to catch. `COSTS` lists the memory of each kind of request.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from .errors import InputError
 __all__ = ["COSTS", "GIB", "Cost", "check_memory", "estimate", "free_memory", "memory_limit"]
 
 GIB = 2.0**30
-# Less is not checked: to look up what is free takes as long as a small sampling.
+# Smaller requests are not checked: the query of free memory takes as long as a small sampling.
 UNCHECKED = 2.0**24
-# A request may take this part of what is free: other programs need memory meanwhile, and estimates
-# are not exact.
+# The part of the free memory that a request may take: other programs need memory as well, and
+# estimates are not exact.
 SHARE = 0.75
 PROC, CONTROL_GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
-# Where control groups of both versions are, and their files: limit, use, and the line of
-# memory.stat with files that are kept in memory and can be dropped.
+# Control groups of versions 1 and 2: folder, files of limit and use, and the line of memory.stat
+# for cached files, which can be dropped.
 VERSION_1 = ("memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
 VERSION_2 = ("", "memory.max", "memory.current", "inactive_file")
 
 
 class Cost(NamedTuple):
-    """What a request takes at its peak: bytes for each thing, and copies of what is stored of it.
+    """The peak memory of a request: bytes for each item, and copies of the row stored of it.
 
-    The last column says what to do instead.
+    The last column is advice for a request that is too large.
     """
 
     things: str
@@ -52,7 +52,7 @@ COSTS: dict[str, Cost] = {
     "circle": Cost("normals", 137.0, 0.0, "use fewer"),
     "cap": Cost("normals", 96.0, 0.0, "use fewer"),
     "polygon": Cost("normals", 24.0, 1.0, "use fewer"),
-    # Normals in bins, and one sample for each.
+    # Normals in bins, and one sample for each normal.
     "search": Cost("normals", 52.0, 0.0, FEWER),
     "stored": Cost("samples", 0.0, 1.0, 'use fewer normals, fewer fields or dtype="float32"'),
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or gm.sample_stream"),
@@ -63,7 +63,7 @@ COSTS: dict[str, Cost] = {
     "candidates": Cost("candidates for samples", 600.0, 0.0, LARGER),
     "part": Cost("samples", 6.6e3, 0.0, "use fewer"),
     "curve": Cost("samples", 420.0, 0.0, "use fewer"),
-    # 450 in arrays, and what Qhull takes.
+    # 450 bytes in arrays, the rest in Qhull.
     "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples, or parts of patches"),
     "cells": Cost("cells", 120.0, 0.0, "use fewer, or tolerance=..., which chooses them"),
     "heights": Cost(
@@ -74,7 +74,7 @@ COSTS: dict[str, Cost] = {
 
 
 def estimate(request: str, number: float, row: float = 0.0) -> float:
-    """Return how many bytes a number of things take; `row` are the bytes that are stored of one."""
+    """Return the bytes that a number of items take; `row` is the stored size of one."""
     cost = COSTS[request]
     return number * (cost.each + cost.rows * row)
 
@@ -93,17 +93,17 @@ def check_memory(request: str, number: float, row: float = 0.0) -> None:
 
 
 def memory_limit() -> float:
-    """Return the most memory of this process in bytes; infinity if it is unknown."""
+    """Return the memory limit of this process in bytes; infinity if it is unknown."""
     return min(limit for limit, _ in _limits())
 
 
 def free_memory() -> float:
-    """Return how much more memory this process can have in bytes; infinity if it is unknown."""
+    """Return the memory that this process can still allocate, in bytes; infinity if unknown."""
     return min(limit - used for limit, used in _limits())
 
 
 def _limits() -> Iterator[tuple[float, float]]:
-    """Yield limits of memory in bytes, and how much of each is used."""
+    """Yield the limits of memory that apply, with the use of each, in bytes."""
     yield float("inf"), 0.0
     with suppress(AttributeError, OSError, ValueError):  # Windows has no sysconf
         page = float(os.sysconf("SC_PAGE_SIZE"))
@@ -136,9 +136,9 @@ def _limits_of_process(page: float) -> Iterator[tuple[float, float]]:
 def _limits_of_group(
     path: str, version: tuple[str, str, str, str]
 ) -> Iterator[tuple[float, float]]:
-    """Yield the limits of a control group and of those that hold it.
+    """Yield the limits of a control group and of its ancestors.
 
-    In a container the path is that outside of it, perhaps; its own group is the root then.
+    In a container the path may be that of the host; then the root is the group of the process.
     """
     folder, limit, use, droppable = version
     root = CONTROL_GROUPS / folder
@@ -153,7 +153,7 @@ def _limits_of_group(
 
 
 def _line(path: Path, name: str, default: float) -> float:
-    """Return the number after a name in a file with a line for each; the default without one."""
+    """Return the number after a name in a file of lines "name number", or the default."""
     with suppress(OSError):
         for line in path.read_text(encoding="ascii").splitlines():
             if line.startswith(f"{name} "):

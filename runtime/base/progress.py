@@ -1,4 +1,4 @@
-"""The time that work takes, on a terminal, where the number of its steps is not known."""
+"""A clock on terminals for work whose number of steps is unknown."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from .threads import seen
 
 __all__ = ["busy"]
 
-# In seconds: when the line appears, and how often it is drawn again.
+# In seconds: the delay before the line appears, and the interval of its updates.
 PATIENCE, INTERVAL = 1.0, 0.5
 
 
 @contextmanager
 def busy(what: str, progress: bool) -> Iterator[None]:
-    """With `progress`, a terminal shows what is done for how long, after the first second."""
+    """With `progress`, show the current task and its duration on a terminal, after one second."""
     if not seen(progress):
         yield
         return

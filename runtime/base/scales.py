@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 __all__ = ["LARGEST_EXPONENT", "scale_to_one", "scales_to_one"]
 
-# Beyond this binary exponent a number cannot be multiplied by a few small ones.
+# Above this binary exponent, products with a few small integers may overflow.
 LARGEST_EXPONENT = 1000
 
 

@@ -1,4 +1,4 @@
-"""Dividing a count."""
+"""Apportionment: division of a count in proportion to weights."""
 
 from __future__ import annotations
 

@@ -41,14 +41,14 @@ def over_ranges(
     threads: int | None,
     progress: bool = False,
 ) -> Iterator[Result]:
-    """Yield work(first, last) for the consecutive ranges of `size` in 0 … total, in order.
+    """Yield work(first, last) for consecutive ranges of `size` that divide [0, total), in order.
 
     At most a few results for each thread are computed ahead; closing the iterator ends the work.
     With `progress`, a bar on standard error shows work that takes longer than a second.
     """
     starts = range(0, total, size)
     workers = min(thread_count(threads), len(starts)) if len(starts) > 1 else 1
-    # Work inside of work takes the thread that it has: all others may be waiting for it.
+    # Nested work runs on its own thread: all other threads may be waiting for it.
     if workers <= 1 or getattr(_HERE, "is_worker", False):
         results = (work(first, min(first + size, total)) for first in starts)
     else:
@@ -69,13 +69,13 @@ def _in_threads(
             yield result
             del result  # so that it is not kept alive while the next one is computed
     finally:
-        for future in ahead:  # after an error or Ctrl-C, which do not wait for all ranges
+        for future in ahead:  # after an error or Ctrl-C: remaining ranges are cancelled
             future.cancel()
 
 
 @cache
 def _pool(workers: int) -> ThreadPoolExecutor:
-    """Return threads that are kept: to start them takes as long as to search a small surface."""
+    """Return a cached pool of threads: its start takes as long as a search of a small surface."""
 
     def begin() -> None:
         _HERE.is_worker = True
@@ -84,7 +84,7 @@ def _pool(workers: int) -> ThreadPoolExecutor:
 
 
 _HERE = threading.local()
-# A child process has none of the threads.
+# A forked child process has no threads, and starts its own.
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_pool.cache_clear)
 
@@ -112,5 +112,5 @@ def counted(count: int | None, progress: bool) -> Iterator[Callable[[int], objec
 
 
 def seen(progress: bool) -> bool:
-    """Say whether progress is wanted, and somebody sees it: on a terminal."""
+    """Return whether progress is requested and standard error is a terminal."""
     return yes_or_no(progress, "progress") and sys.stderr is not None and sys.stderr.isatty()

@@ -1,4 +1,4 @@
-"""Bounds of rounding errors and what is decided by them: each with its unit and its reason.
+"""Bounds of rounding errors and thresholds derived from them, each with its unit and its reason.
 
 NumPy code and kernels read the same numbers. ε = 2⁻⁵² is the distance from 1 to the next float64.
 """
@@ -49,10 +49,11 @@ ACCURATE = 2.0**16
 # square of the tangents relative to its length.
 ANGLE_ERROR = 2.0**-40
 # A control normal shorter than this, relative to the square of the tangents, has no direction: its
-# patch has a singular point there. It is far above the rounding of a cross product.
+# patch has a singular point there. The threshold is far above the rounding error of a cross
+# product.
 SHORT_CONTROL_NORMAL = 2.0**-30
 # A point is singular where the normal is shorter than this, relative to that at the centre of its
-# patch; as far as this (in u, v) curvatures are taken from it.
+# patch; its curvatures are taken at this distance (in u, v) from it.
 SINGULAR_POINT = 2.0**-20
 # A point is near a singular point where the normal is shorter than this, relative to the square of
 # the tangents: parameters with few digits do not give its direction there.
@@ -64,21 +65,21 @@ VANISHING = 2.0**-40
 # Of a coefficient of the parabolic cubic, or of the cubic of its directions, relative to the
 # product of the lengths of the vectors in its terms: 256 ε.
 CUBIC_ERROR = 2.0**-44
-# Of parameters in the triangle u, v, 1 − u − v ≥ 0, whose sides have length 1.
+# Of parameters in the triangle u, v, 1 − u − v ≥ 0, whose legs have length 1.
 PARAMETER_ERROR = 1e-12
-# Two roots, directions (radians) or places (u, v) that differ by less than this are one that is
-# double, and an imaginary part below it is zero: rounding by ε parts a double root by √ε ≈ 1.5e-8,
-# times the condition of the cubic, for which a factor of 67 is left.
+# Two roots, directions (radians) or parameter pairs (u, v) that differ by less than this are a
+# double root, and a smaller imaginary part is zero: a rounding error ε splits a double root by √ε ≈
+# 1.5e-8, times the condition number of the cubic, for which a factor of 67 is left.
 DOUBLE_ROOT = 1e-6
-# Of the radius of a cap in degrees: one that grows by less has converged.
+# Of the radius of a cap in degrees: the iteration has converged if it grows by less.
 CAP_RADIUS_ERROR = 1e-12
 # Of the height of a circle of latitude on the unit sphere: free points are farther from it.
 CIRCLE_HEIGHT_ERROR = 1e-12
-# By this much the flip or collapse of an edge must raise a cosine, or the tangent of an angle of a
-# triangle, which is more than their rounding.
+# The flip or collapse of an edge must raise a cosine, or the tangent of an angle of a triangle, by
+# at least this, which exceeds their rounding errors.
 QUALITY_GAIN = 1e-14
-# A triangle whose smallest angle (radians) is below this counts as one without area: it has none in
-# files of single precision.
+# A triangle whose smallest angle (radians) is below this counts as one without area: its area
+# vanishes in files of single precision.
 NO_AREA = 1e-6
 # Of K, H and 1 + 2 d H + d² K relative to their terms, in units of the last place.
 CURVATURE_ERROR = 4.0
@@ -90,7 +91,7 @@ DERIVATIVE_ERROR, PATCH_ERROR = 2.0**26, 2.0**8
 # Of a difference of two coefficients of a planar spline, in units of the last place of the largest
 # coordinate.
 DIFFERENCE_ERROR = 8.0
-# Of the integral of κ² over a surface: one that is smaller is rounding.
+# Of the integral of κ² over a surface: a smaller one is rounding error.
 FLAT_SURFACE = 1e-9
 # Of distances on a surface, relative to its size.
 LENGTH_ERROR = 1e-15
@@ -104,9 +105,9 @@ SAME_PARAMETER = 1e-12
 TRIPLE_PRODUCT_ERROR = 2.0**-50
 # Of the normal of a sample on a surface, as an angle (radians).
 NORMAL_ERROR = 1e-12
-# Of the same where Newton's method does not get farther, because of the rounding of parameters and
-# derivatives, or of the error of differences: a sample with a larger one is not on the surface.
+# Of the same where Newton's method stagnates because of the rounding of parameters and derivatives,
+# or of the error of finite differences: a sample with a larger error is not on the surface.
 NORMAL_NOISE = 1e-9
-# Of points of a surface at which samples of one normal meet, relative to a cell of the spline: the
-# error of those to which numerical derivatives lead, far from the origin.
+# Of the distance at which two samples of one normal coincide on the surface, relative to a cell of
+# the spline: the error of points found with numerical derivatives, far from the origin.
 MEETING = 2.0**-13

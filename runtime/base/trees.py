@@ -1,4 +1,4 @@
-"""Finding the nearest of many points: SciPy's k-d tree, loaded when it is needed."""
+"""Nearest-neighbour searches: SciPy's k-d tree, imported on demand."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ if TYPE_CHECKING:
 
 __all__ = ["tree_of", "tree_of_directions"]
 
-# Decimal places to which directions differ in a tree.
+# Directions in a tree are distinct when rounded to this number of decimals.
 DIGITS = 9
 
 
 def tree_of(points: NDArray[np.float64], periods: NDArray[np.float64] | None = None) -> KDTree:
     """Return the k-d tree of points (N, k), whose coordinates have periods (k,) or 0 for none."""
-    from scipy.spatial import KDTree  # its import takes as long as many a sampling
+    from scipy.spatial import KDTree  # its import takes as long as a small sampling
 
     return KDTree(points, boxsize=periods)
 
 
 def tree_of_directions(directions: NDArray[np.float64]) -> KDTree:
-    """Return the k-d tree of some of unit vectors (N, 3): nearly equal ones are in it once.
+    """Return the k-d tree of unit vectors (N, 3) without near duplicates.
 
-    Searches among many of these, as among the normals of planes and cones, would be slow.
+    Duplicates, such as the normals of planes and cones, would slow searches down.
     """
     rows = np.unique(directions.round(DIGITS), axis=0, return_index=True)[1]
     return tree_of(directions[rows])

@@ -1,4 +1,4 @@
-"""Words of summaries."""
+"""Wording of summaries."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ __all__ = ["plural"]
 
 
 def plural(count: int, what: str) -> str:
-    """Return a number and what is counted, such as "1 part" and "2,000 parts"."""
+    """Return a number with its noun, such as "1 part" and "2,000 parts"."""
     return f"{count:,} {what}{'' if count == 1 else 's'}"

@@ -1,1 +1,1 @@
-"""Densities that normals alone do not give: samples that come near every point of a surface."""
+"""Target densities other than |K|: samples that cover a surface."""

@@ -1,4 +1,4 @@
-"""Graded grids: samples where lines of both parameters cross, spaced by how fast the normal turns.
+"""Graded grids: samples where parameter lines cross, spaced by the rate at which the normal turns.
 
 Where parameters run along lines of curvature, the cells of such a grid are long where the surface
 is curved in one direction only: the same angles need far fewer samples than round cells do.
@@ -23,22 +23,23 @@ from .steps import Forms, Steps, equal_steps, steps_for_count
 __all__ = ["AlignedGrid"]
 
 
-# The forms are known at about this number of places along u and v.
+# The number of points along u and v at which the fundamental forms are evaluated, about.
 PLACES = 64
-# On trimmed surfaces: the samples that are left for each sample of the grid next to the border, and
-# the part of a count that a grid reaches then, after at most TRIALS.
+# On trimmed surfaces: the samples that are reserved for each sample of the grid next to the
+# boundary, and the part of a count that a grid then has to reach, in at most TRIALS.
 BORDER, CLOSE, TRIALS = 0.5, 0.95, 4
-# Candidates for the number of lines along u, around the best one if it were no integer.
+# The range of numbers of lines along u that are tried, around the best real number, and the ratio
+# of errors up to which numbers count as equally good.
 AROUND, AS_GOOD = 0.12, 1.005
-# Gaps may be wider than asked by this factor, where the lines are no whole numbers of steps.
+# Gaps may be wider than requested by this factor, as the number of steps is not an integer.
 SLACK = 1.02
-# Decimal places of chords that count as equal.
+# Chords that are equal when rounded to this number of decimals count as equal.
 DIGITS = 9
 
 
 @dataclass(frozen=True, eq=False)
 class AlignedGrid:
-    """The forms of a piece of a space on its parameters, from which grids follow."""
+    """The fundamental forms on the parameters of a piece, from which grids follow."""
 
     space: Space
     piece: int
@@ -56,7 +57,7 @@ class AlignedGrid:
         if len(along_u) or len(along_v):
             axes = axes_with(geometry, (along_u, along_v))
             forms = forms_on(geometry, axes)
-        # From the lengths of the spline to those of the space.
+        # From the unit of length of the spline to that of the space.
         forms[:3] *= (space.unit / (SCALE * geometry.spline.scale)) ** 2
         return cls(
             space,
@@ -80,7 +81,7 @@ class AlignedGrid:
         if self.geometry.spline.trim is None:
             return grid
         for _ in range(TRIALS):
-            # Samples outside the trim do not count; at its border gaps are left for others.
+            # Samples outside the trim do not count; gaps at its boundary are filled later.
             spare = len(grid) + BORDER * grid.border
             whole *= most / max(spare, 1.0)
             grid = self.grid(self.steps_for(whole, distance), int(whole))
@@ -108,10 +109,10 @@ class AlignedGrid:
         return self._at(cells, rows, columns, (len(lines[0]), len(lines[1])))
 
     def _numbers(self, steps: Steps, lengths: list[Array], most: int) -> list[Indices]:
-        """Return the numbers of lines of each part, along u and v, for their numbers of steps.
+        """Return the numbers of lines of each part, along u and v, from their lengths in steps.
 
-        There are at most `most` crossings (if parts are not more), and the errors are about as
-        small as they can be.
+        Lines cross at most `most` times (unless there are more parts), and the errors are about
+        minimal.
         """
         total, found = float(lengths[0].sum()), []
         scale = math.sqrt(most / (total * float(lengths[1].sum())))
@@ -125,13 +126,13 @@ class AlignedGrid:
             left = most - int(numbers[0].sum()) * int(numbers[1].sum())
             found.append((self._excess(steps, scales), left, numbers))
         least = min(excess for excess, _, _ in found)
-        # Of those that are nearly as good, the one that leaves the fewest samples.
+        # Among the nearly best, the one with the fewest samples left over.
         return min((x for x in found if x[0] <= AS_GOOD * least), key=lambda x: x[1])[2]
 
     def _excess(self, steps: Steps, scales: list[Array]) -> float:
-        """Return the larger one of the errors, relative to what was asked, if steps are scaled.
+        """Return the larger of both errors, relative to the requested ones, if steps are scaled.
 
-        `scales` are those on the parts of each parameter.
+        `scales` are the factors on the parts of each parameter.
         """
         along = [
             x * np.repeat(scale, np.diff(axis.breaks))
@@ -147,10 +148,10 @@ class AlignedGrid:
         return max(angle / steps.angle, distance / (SLACK * steps.distance))
 
     def _between(self, lines: list[Array], number: int) -> Array:
-        """Return places between neighbours on the grid, where these are farthest apart in normal.
+        """Return positions midway between the neighbours on the grid with the largest angles.
 
-        The neighbours are those that are closer in space: a sample between others would be the
-        nearest one, in space, of points that belong to other rows.
+        Only neighbours along the shorter distance in space are taken: a sample between others would
+        be the nearest one, in space, of points that belong to other rows.
         """
         places, chords = [], []
         for axis in (0, 1):
@@ -164,8 +165,8 @@ class AlignedGrid:
     def _middles(self, lines: list[Array], axis: int) -> tuple[Array, Array, Array]:
         """Return the middles (k, 2) between neighbours along a parameter, in cells.
 
-        And the distances in space of these neighbours, and of those across (2, k), and the chord of
-        the first ones in normal space (k,).
+        Also return the distances in space of these neighbours and of those across (2, k), and the
+        chords of the former in normal space (k,).
         """
         steps = [np.gradient(x) if len(x) > 1 else np.full(1, np.inf) for x in lines]
         steps[axis] = np.diff(lines[axis])
@@ -187,7 +188,7 @@ class AlignedGrid:
         return cells, distances, chord.ravel()
 
     def _at(self, cells: Array, rows: Indices, columns: Indices, lines: tuple[int, int]) -> Grid:
-        """Return samples at places (N, 2) in cells, those inside the trim."""
+        """Return the samples at positions (N, 2), in cells, that are inside the trim."""
         piece, frame = self.space.pieces[self.piece], self.geometry.spline.frame
         uv = frame[:2] + frame[2:] * cells
         inside = piece.contains(uv)
@@ -196,13 +197,13 @@ class AlignedGrid:
 
 
 def axes_with(geometry: OnSpline, breaks: tuple[Array, Array]) -> tuple[Axis, Axis]:
-    """Return the two parameters, cut at breaks."""
+    """Return the axes of both parameters, cut at breaks."""
     (m, n), (along_u, along_v) = geometry.spline.cells, breaks
     return Axis.of(float(m), PLACES, along_u), Axis.of(float(n), PLACES, along_v)
 
 
 def forms_on(geometry: OnSpline, axes: tuple[Axis, Axis]) -> Array:
-    """Return the forms (7, k, l) of what is sampled at the middles of axes, in cells."""
+    """Return the fundamental forms (7, k, l) at the midpoints of axes, in cells."""
     u, v = (x.middles for x in axes)
     cells = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     return geometry.forms(cells).T.reshape(7, len(u), len(v))

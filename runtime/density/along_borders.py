@@ -1,4 +1,4 @@
-"""Places along the borders of pieces, as candidates for samples."""
+"""Candidates for samples along the boundaries of pieces."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from .trims import Trims
 
 __all__ = ["BorderLines", "places_along", "polygons_of"]
 
-# Borders are measured at places that are this part of the domain apart, or less.
+# Boundaries are measured at steps of at most this part of the domain.
 FINE = 1.0 / 48.0
-# Places of two pieces are this far apart in a search for neighbours; domains are 1 wide.
+# In a search for neighbours, domains have width 1 and pieces are this far apart.
 FAR = 16.0
 PLACES_AT_A_TIME = 1 << 17
 
 
 @dataclass(frozen=True, eq=False)
 class BorderLines:
-    """Closed polygons of the borders of `pieces` (L,): places (k, 2), the first of each repeated.
+    """Closed polygons, the boundaries of `pieces` (L,): vertices (k, 2), the first one repeated.
 
-    Those of polygon l are from starts[l] on, up to starts[l + 1]. rows (k, 8) and limits (k,) are
-    those of cells there.
+    Polygon l has the vertices [starts[l], starts[l + 1]). rows (k, 8) and limits (k,) are those of
+    cells at the vertices.
     """
 
     pieces: Indices
@@ -39,10 +39,10 @@ class BorderLines:
 
 
 def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Array, Array]:
-    """Return the closed polygons of all pieces that have a trim: the pieces (L,), and `starts`.
+    """Return the closed polygons of all trimmed pieces: the pieces (L,), and `starts`.
 
-    Places (k, 2) are `FINE` apart at most. With them come the same places less whole periods, and
-    the limits (k,) of the first cells near them.
+    Vertices (k, 2) are at most `FINE` apart. Also return the vertices modulo periods, and the
+    limits (k,) of the first cells near them.
     """
     used = np.unique(first.pieces)
     numbers, lines = list[int](), [np.empty((0, 2))]
@@ -62,7 +62,7 @@ def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Ar
 
 
 def _apart(pieces: Indices, places: Array, trims: Trims) -> Array:
-    """Return places of pieces, relative to their domains, far from those of other pieces."""
+    """Return parameters relative to the domain of their piece, shifted apart from other pieces."""
     low, high = trims.domains[pieces, :, 0], trims.domains[pieces, :, 1]
     found = np.empty((len(places), 3))
     found[:, :2], found[:, 2] = places / (high - low), FAR * pieces
@@ -76,10 +76,10 @@ def places_along(
     step: float,
     turn: float,
 ) -> tuple[Indices, Array, Array]:
-    """Return places inside, beside borders, that are about step/√w apart, w the target density.
+    """Return parameters just inside boundaries, about step/√w apart, w the target density.
 
-    And normals turn by about `turn` between them at most, in radians. The numbers of their pieces
-    (k,) come first, and their limits (k,) last. Along each line, those at its left are first.
+    Between neighbours, normals turn by about `turn` radians at most. Return the pieces (k,), the
+    parameters (k, 2), and the limits (k,). Along each line, the points on its left come first.
     """
     owner, number, share = _spaced(lines, target, step, turn)
     steps = lines.places[number + 1] - lines.places[number]
@@ -98,9 +98,9 @@ def places_along(
 def _spaced(
     lines: BorderLines, target: TargetDensity, step: float, turn: float
 ) -> tuple[Indices, Indices, Array]:
-    """Return where places are: their lines (k,), the places before them, and how far from these.
+    """Return positions along polygons: lines (k,), preceding vertices, and fractions beyond these.
 
-    The last are parts of the way to the next place of the line.
+    The fractions are those of the way to the next vertex of the line.
     """
     rates = np.sqrt(np.clip(lines.rows[:, 6], target.floor, target.ceiling))
     lengths = np.linalg.norm(np.diff(lines.rows[:, :3], axis=0), axis=1)

@@ -1,4 +1,4 @@
-"""The angle between the normals of a surface and those of its samples, and how to bound it."""
+"""Covering in normal space: a bound for the angle from any normal to that of a sample."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from .cover import STEP, Cover
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-# Normals at places are covered within an angle that is smaller by this part, which is left for
-# the normals around them: along borders, half of the steps between places.
+# Normals at candidates are covered within an angle that is smaller by this part, which is left for
+# the normals around them: along boundaries, half a step between candidates.
 MARGIN = 0.02
-# Where normals are far from all others, the radii of the choice fall from this multiple on.
+# For normals far from all others, the radii of the greedy choice fall from this multiple on.
 FIRST = 2.0
 
 __all__ = ["choose_apart", "cover_normals"]
@@ -29,10 +29,10 @@ __all__ = ["choose_apart", "cover_normals"]
 def cover_normals(cover: Cover, angle: float) -> float:
     """Add samples until every normal of the surface is within `angle` degrees of one of theirs.
 
-    If the samples are at normals as dense as that, only points at the border of the Gaussian image
-    are missing: the nearest of these normals may lie outside of it. Returns the largest angle of
-    any normal, in degrees: `angle` if there are singular points, next to which normals are known at
-    the places of cells only.
+    If the samples are at normals of that density, only points at the boundary of the Gaussian image
+    are uncovered: the nearest of these normals may lie outside of it. Return the largest angle from
+    any normal, in degrees; `angle` if there are singular points, next to which normals are known
+    only at the places of cells.
     """
     limit = 2.0 * math.sin(math.radians(angle) / 2.0)
     cover.evaluate_exactly()
@@ -57,7 +57,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
 def _distances(trees: Sequence[KDTree], rows: Array, threads: int | None) -> Array:
     """Return the chords (M,) from normals of rows to the nearest ones in trees.
 
-    They are 0 where there is no normal.
+    The chord is 0 for a row without a normal.
     """
     workers = thread_count(threads)
     chords = [x.query(rows[:, 3:6], workers=workers)[0] for x in trees]
@@ -74,8 +74,8 @@ def choose_apart(
 ) -> Indices:
     """Choose some of normals (M, 3), so that each is within the chord `near` of a chosen one.
 
-    Or `most` of them, the widest gaps first; `known` normals (N, 3), no two of them nearly equal,
-    count as chosen.
+    At most `most` are chosen, the widest gaps first; `known` normals (N, 3), no two of them nearly
+    equal, count as chosen.
     """
     rows, radius = np.arange(len(normals)), widest or FIRST * near
     if known is not None:
@@ -94,9 +94,9 @@ def choose_apart(
 def _apart(
     normals: Array, known: Array, near: float, widest: float, threads: int | None
 ) -> tuple[Indices, float]:
-    """Return which normals are farther than `near` from known ones, and the largest distance.
+    """Return the indices of normals farther than `near` from known ones, and the largest distance.
 
-    That is `widest` at most. Radii that begin with it spare most updates of distances.
+    That distance is at most `widest`. Radii that fall from it on save most updates of distances.
     """
     distances = tree_of(known).query(normals, workers=thread_count(threads))[0]
     far = (distances > near) & normals.any(axis=1)
@@ -104,7 +104,7 @@ def _apart(
 
 
 def _in_normal_space(normals: Array) -> Array:
-    """Return normals as points of candidates (M, 8), with one direction and one weight for all."""
+    """Return candidates (M, 8) whose points are the normals, with one normal and one density."""
     rows = np.zeros((len(normals), 8))
     rows[:, :3], rows[:, 3], rows[:, 6] = normals, 1.0, 1.0
     return rows

@@ -1,4 +1,4 @@
-"""Where the borders of a face run in its parameters, on a raster: which boxes they may pass."""
+"""The boundary of a trim on a raster over the parameters, to find boxes that it may intersect."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ __all__ = ["Border"]
 
 @dataclass(frozen=True, eq=False)
 class Border:
-    """The border of a trim on a raster of n × n pixels over the domain."""
+    """The boundary of a trim on a raster of n × n pixels over the domain."""
 
     trim: Trim
     domain: Domain
     n: int
 
     def passes(self, boxes: Array) -> Flags:
-        """Return which boxes (M, 4), u0, v0, u1, v1, the border may pass."""
+        """Return which boxes (M, 4), u0, v0, u1, v1, the boundary may intersect."""
         i, j, k, m = self._pixels(boxes)
         sums = self._sums
         return sums[k + 1, m + 1] - sums[i, m + 1] - sums[k + 1, j] + sums[i, j] > 0
 
     def near(self, boxes: Array, places: Array) -> Flags:
-        """Return which places (k, 2) are in pixels that some boxes (M, 4) reach into."""
+        """Return which parameters (k, 2) are in pixels that one of the boxes (M, 4) intersects."""
         marks = np.zeros((self.n + 1, self.n + 1), dtype=np.int64)
         i, j, k, m = self._pixels(boxes)
         np.add.at(marks, (i, j), 1)
@@ -42,20 +42,20 @@ class Border:
         return covered[i, j]
 
     def _pixels(self, places: Array) -> Indices:
-        """Return the pixels (2, k) of places (k, 2), or those (4, k) of corners of boxes (k, 4)."""
+        """Return the pixels (2, k) of points (k, 2), or (4, k) of the corners of boxes (k, 4)."""
         low, rates = self._frame
         found = np.floor((places.reshape(-1, 2) - low) * rates).astype(np.int64)
         return found.clip(0, self.n - 1).reshape(places.shape).T
 
     @cached_property
     def _frame(self) -> tuple[Array, Array]:
-        """The smallest parameters (2,), and the pixels by parameters (2,)."""
+        """The smallest parameters (2,), and the pixels per unit of the parameters (2,)."""
         low, high = np.array(self.domain).T
         return low, self.n / (high - low)
 
     @cached_property
     def _sums(self) -> NDArray[np.signedinteger]:
-        """(n + 1, n + 1): the number of pixels below and left that the border may pass."""
+        """(n + 1, n + 1): the number of boundary pixels below and left of each corner."""
         passed, all_known = self.trim.cells_of_border(self.domain, (self.n, self.n))
         dtype = np.int16 if self.n**2 <= np.iinfo(np.int16).max else np.int32
         sums = np.zeros((self.n + 1, self.n + 1), dtype=dtype)

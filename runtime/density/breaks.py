@@ -1,7 +1,7 @@
 """Lines u = const or v = const at which the curvature of a surface jumps, or K changes its sign.
 
-Such lines are joints of a plane and a fillet, knots, and parabolic lines that are lines of the
-parameters. The lines of a grid keep half a step away from them.
+Such lines are joints of a plane and a fillet, knots, and parabolic curves that are parameter lines.
+The lines of a grid stay half a step away from them.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ __all__ = ["breaks_along"]
 
 # Forms are compared along this number of lines.
 ACROSS = 8
-# What changes by more than JUMP between neighbouring places, relative to the largest value, may
-# jump; it does if it still changes by the part REMAINS of that after BISECTIONS.
+# A value may jump if it changes by more than JUMP between neighbouring points, relative to the
+# largest value; it does if REMAINS of this change is left after BISECTIONS.
 JUMP, REMAINS, BISECTIONS = 0.1, 0.4, 8
-# Not just a half: symmetry would make the line of K = 0 itself a place.
+# Not 1/2: by symmetry, the line K = 0 would be hit exactly.
 HALF = 0.47
 # K has to change its sign along this part of a line.
 ALONG = 0.75
 # K is 0 below this part of the largest one.
 FLAT = 1e-6
-# More of them are no joints.
+# More breaks than this are not joints, and are ignored.
 MOST = 64
 
 
 def breaks_along(geometry: OnSpline, axes: tuple[Axis, Axis], forms: Array, along: int) -> Array:
-    """Return the breaks of the parameter number `along`, in cells.
+    """Return the breaks along parameter `along` (0 or 1), in cells.
 
-    `forms` (7, k, l) are those at the middles of axes.
+    `forms` (7, k, l) are the fundamental forms at the midpoints of axes.
     """
     scales = np.array([forms[3].max(), forms[5].max(), np.abs(forms[6]).max()])
     if not scales.all():
@@ -61,14 +61,14 @@ def breaks_along(geometry: OnSpline, axes: tuple[Axis, Axis], forms: Array, alon
 
 
 def _forms_at(geometry: OnSpline, places: Array, others: Array, along: int) -> Array:
-    """Return forms (7, l, k) at places (k,) of a parameter and places (l,) of the other one."""
+    """Return forms (7, l, k) at values (k,) of one parameter and values (l,) of the other."""
     lines = np.meshgrid(others, places, indexing="ij")
     cells = np.stack(lines[::-1] if along == 0 else lines, axis=-1).reshape(-1, 2)
     return geometry.forms(cells).T.reshape(7, len(others), len(places))
 
 
 def _values(forms: Array, scales: Array) -> Array:
-    """Return what may jump (3, l, k): how fast the normal turns, by u and v, and the sign of K."""
+    """Return values that may jump (3, l, k): rates of the normal by u and v, and sign of K."""
     signs = forms[6] / (np.abs(forms[6]) + FLAT * scales[2])
     return np.stack([np.sqrt(forms[3] / scales[0]), np.sqrt(forms[5] / scales[1]), signs])
 

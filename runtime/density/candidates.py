@@ -18,7 +18,7 @@ __all__ = ["Block", "Candidates"]
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
 
-# Candidates are split into parts of about this number for threads, but into no more than MOST.
+# The size of the parts into which candidates are split for threads, about, and their maximum.
 PART, MOST = 1 << 16, 64
 # Candidates nearer to a sample than this part of a radius are left out of the next searches.
 LEFT_OUT = 0.7
@@ -27,22 +27,22 @@ LEFT_OUT = 0.7
 class Candidates:
     """Candidates for samples, each with its distance from the nearest sample.
 
-    They are rows (M, 8) of point, unit normal, density w, and one more number; candidates without a
-    normal are never chosen. All distances are multiplied by √w of the candidate. Samples count for
-    candidates on the same side of the surface only: the angle between the normals is 60 degrees at
-    most.
+    Candidates are rows (M, 8) of point, unit normal, density w, and one more number; those without
+    a normal are never chosen. All distances are multiplied by √w of the candidate. A sample counts
+    only for candidates on its side of the surface: the angle between their normals is at most 60
+    degrees.
 
-    Samples update the distances of the candidates around them. All in all, a candidate is updated
-    by a few dozens of samples.
+    Samples update the distances of the candidates around them. In total, a candidate is updated by
+    a few dozen samples.
     """
 
     def __init__(
         self, rows: Array, radius: float, threads: int | None = None, split: bool = False
     ) -> None:
-        """Sort candidates into grids for radii that are not very much larger than this one.
+        """Sort candidates into grids for searches with radii of about `radius` or less.
 
-        With `split`, many candidates are split into parts for the threads; rows that follow one
-        another should be neighbours then.
+        With `split`, many candidates are split into parts for the threads; then consecutive rows
+        should be neighbours in space.
         """
         count, self.radius, self.threads = len(rows), radius, threads
         parts = min(max(count // PART, 1), MOST) if split else 1
@@ -61,9 +61,9 @@ class Candidates:
 
     @property
     def distances(self) -> Array:
-        """The distances (M,) from the nearest samples, as far as these have updated them.
+        """The distances (M,) from the nearest samples, as of the last updates.
 
-        They are infinite where there is no normal.
+        They are infinite for candidates without a normal.
         """
         known, squares = np.empty(len(self._order)), self._sorted[:, SQUARE]
         known[self._order] = np.sqrt(np.where(squares < 0.0, np.inf, squares))
@@ -75,7 +75,7 @@ class Candidates:
         self._each(lambda k: self.parts[k].update_distances(samples, radius), len(self.parts))
 
     def update_far(self, samples: Array, radius: float) -> None:
-        """Update the distances of parts in which some are infinite."""
+        """Update the distances of all parts that contain infinite ones."""
         samples = np.ascontiguousarray(samples)
 
         def update(k: int) -> None:
@@ -91,12 +91,12 @@ class Candidates:
     def choose(self, radius: float, most: int) -> Indices:
         """Choose candidates until all others are within a radius of a sample or a chosen one.
 
-        Returns their rows. If there are more than `most`, returns that many of them from all over
-        the surface; the distances of other candidates are too small then.
+        Return their rows. If more than `most` are chosen, return `most` of them, from all over the
+        surface; then the distances of other candidates are too small.
         """
         found = dict[int, Numbers]()
-        # Every other part at a time: neighbours would choose candidates that are close to one
-        # another.
+        # First the even parts, then the odd ones: neighbouring parts at the same time would choose
+        # candidates close to one another.
         for turn in (0, 1):
             now = range(turn, len(self.parts), 2)
             rows = self._each(lambda i, now=now: self.parts[now[i]].choose(radius), len(now))
@@ -107,7 +107,7 @@ class Candidates:
         return chosen if len(chosen) <= most else chosen[np.arange(most) * len(chosen) // most]
 
     def _update_other_parts(self, chosen: Mapping[int, Numbers], radius: float) -> None:
-        """Update the distances of every part for the candidates chosen in all other parts."""
+        """Update the distances of every part by the candidates chosen in all other parts."""
         numbers = np.zeros(len(self.parts) + 1, dtype=np.int64)
         for k, rows in chosen.items():
             numbers[k + 1] = len(rows)
@@ -144,7 +144,7 @@ class Block:
         self.grids = HashGrids(candidates, nearest, starts, sizes, box, radius)
         sort_candidates(rows, finest, self.grids, np.empty(count, dtype=np.int32), order)
         self.order = order
-        # Those that are still farther than `least` from all samples.
+        # Candidates that are still farther than `least` from all samples.
         self.searched, self.least = np.empty(0, dtype=np.int32), np.inf
 
     def update_distances(self, samples: Array, radius: float) -> None:

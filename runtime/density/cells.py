@@ -1,8 +1,8 @@
-"""Cells: rectangles of the parameters of pieces, among whose places samples are chosen.
+"""Cells: rectangles of parameters, each with a place, a parameter pair that may become a sample.
 
-Each has a place inside the trim. Cells that are cut by the trim have one where a part of them is
-inside: in the middle, or at one of its subplaces. Where the inside is too narrow for that, places
-next to the border take their turn, as cells without an extent.
+The place of a cell is inside the trim: its midpoint, or one of its subplaces if the trim cuts the
+cell. Where the inside is too narrow for that, parameter pairs next to the boundary replace the
+cells; they are cells without an extent.
 """
 
 from __future__ import annotations
@@ -33,18 +33,18 @@ __all__ = [
 # The columns of `numbers`, see kernels/cells.py.
 RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)
 SIDES, NUMBERS = slice(8, 14), 14
-# The extent of cells that stand for a place, relative to the domain of their piece.
+# The size of a cell without an extent, relative to the domain of its piece.
 POINT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """M cells of `pieces` (M,), by number: boxes (M, 4), u0, v0, u1, v1, and places (M, 2).
+    """M cells: the indices of their `pieces` (M,), boxes (M, 4), u0, v0, u1, v1, places (M, 2).
 
-    `whole` (M,) says that no border passes them. `limits` (M,) are the radii of curvature below
-    which curvature does not count, 0 if they are not known. `rows` (M, 8) and `numbers` (M, 14) are
-    those of kernels/cells.py, lengths and curvatures scaled as in `Space`. Cells that are not
-    evaluated have none: (M, 0), as most of the memory is theirs.
+    `whole` (M,) is True for cells that no boundary intersects. `limits` (M,) are least radii of
+    curvature: smaller ones count as these; 0 if unknown. `rows` (M, 8) and `numbers` (M, 14) are
+    those of kernels/cells.py, lengths and curvatures scaled as in `Space`. They take most of the
+    memory, and are (M, 0) for cells that are not evaluated.
     """
 
     pieces: Indices
@@ -73,7 +73,7 @@ class Cells:
         )  # fmt: skip
 
     def with_rows(self) -> Cells:
-        """Return the same cells with rows and numbers, which are 0, but for the limits."""
+        """Return the same cells with rows and numbers that are 0, except for the limits."""
         numbers = np.zeros((len(self), NUMBERS))
         numbers[:, LIMIT] = self.limits
         return replace(
@@ -105,12 +105,12 @@ class Cells:
 
     @property
     def chords(self) -> Array:
-        """How far normals of each cell (M,) are from that at its place, 2 if unknown."""
+        """The largest chord (M,) from a normal of each cell to that at its place, 2 if unknown."""
         return self.numbers[:, CHORD]
 
 
 def joined(parts: Sequence[Cells]) -> Cells:
-    """Return the cells of some parts, one part after another."""
+    """Return the cells of all parts, concatenated."""
     parts = [x for x in parts if len(x)] or parts[:1]
     if len(parts) == 1:
         return parts[0]
@@ -119,9 +119,9 @@ def joined(parts: Sequence[Cells]) -> Cells:
 
 
 def merged(parts: Sequence[Cells]) -> Cells:
-    """Return the cells of some parts, sorted by their pieces.
+    """Return the cells of all parts, sorted by their pieces.
 
-    One array after another is sorted: copies of all of them are large.
+    Arrays are sorted one by one: copies of all of them would be large.
     """
     pieces = np.concatenate([x.pieces for x in parts])
     if (np.diff(pieces) >= 0).all():
@@ -151,12 +151,12 @@ def into_parts(cells: Cells, parts: Indices) -> Cells:
 
 
 def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
-    """Yield the pieces of cells, which are sorted by them, and the rows of each."""
+    """Yield the pieces of cells that are sorted by piece, with the rows of each."""
     yield from runs(cells.pieces)
 
 
 def runs(numbers: Indices) -> Iterator[tuple[int, slice]]:
-    """Yield the numbers (k,) that differ from those before them, and the rows of each."""
+    """Yield runs of equal numbers (k,): the number, and its rows."""
     ends = (np.flatnonzero(np.diff(numbers)) + 1).tolist()
     if len(numbers):
         firsts = [0, *ends]
@@ -166,7 +166,7 @@ def runs(numbers: Indices) -> Iterator[tuple[int, slice]]:
 
 
 def grouped(numbers: Indices) -> Iterator[tuple[int, Indices]]:
-    """Yield the numbers (k,), each once and sorted, and the rows of each."""
+    """Yield the distinct numbers (k,), sorted, with the rows of each."""
     rows = np.argsort(numbers, kind="stable")
     for number, part in runs(numbers[rows]):
         yield number, rows[part]

@@ -20,8 +20,8 @@ __all__ = ["Chosen", "choose"]
 # The relative accuracy of the number of samples, and the largest number of attempts.
 NEAR_ENOUGH = 0.01
 ATTEMPTS = 20
-# The first attempts scale the density by the ratio of the counts. The others vary it by this step
-# up and down: if there are few samples, several appear or vanish at once.
+# The first attempts scale the density by the ratio of the counts. The others vary it up and down by
+# this step: if samples are few, several appear or vanish together.
 IN_PROPORTION, DITHER = 6, 0.008
 # The largest number of normals per requested sample (a thin Gaussian image has few samples).
 NORMALS_PER_SAMPLE = 100
@@ -33,7 +33,7 @@ PILOT = 1_000_000
 class Chosen:
     """The normals to search for: an array, or a lattice with `density` normals per steradian.
 
-    `found` holds the normals and the hits if the search has been made already.
+    `found` holds the normals and the hits if the search is already done.
     """
 
     source: NDArray[np.float64] | Lattice
@@ -47,7 +47,7 @@ class Chosen:
         return len(self.source)
 
     def part(self, first: int, last: int, threads: int | None) -> NDArray[np.float64]:
-        """Return the normals first, …, last − 1."""
+        """Return the normals [first, last)."""
         if isinstance(self.source, Lattice):
             return self.source.normals(self.density, first, last, threads)
         return self.source[first:last]
@@ -100,7 +100,7 @@ def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, in
 
 
 def _number_inside(geometry: OnSpline, normals: NDArray[np.float64], hits: Hits) -> int:
-    """Return the number of hits that are inside the trim of a spline."""
+    """Return the number of hits inside the trim of a spline."""
     spline = geometry.spline
     if spline.trim is None:
         return len(hits)

@@ -1,4 +1,4 @@
-"""Covering the pieces of a surface or a part with samples, greedily: the widest gaps first."""
+"""Greedy covering of the pieces of a surface or a part with samples, the widest gaps first."""
 
 from __future__ import annotations
 
@@ -17,48 +17,46 @@ from .voronoi import Voronoi
 
 __all__ = ["STEP", "Cover"]
 
-# Samples are chosen within radii that fall from WIDEST times the expected radius on, each STEP
-# times the one before.
+# Samples are chosen with radii that fall from WIDEST times the expected radius, by the factor STEP.
 WIDEST, STEP = 1.25, 0.98
 # For a maximal set of n samples that are no closer to one another than r, relative to the sizing
 # function, n r² is about this part of the integral of the target density.
 PACKED = 0.6
-# The radii of the cells of candidates, relative to the covering radius. Smaller cells are taken
-# when the covering radius has fallen by the factor SMALLER.
+# The radii of the cells of candidates, relative to the covering radius. They are cut again when the
+# covering radius has fallen by the factor SMALLER.
 FINE, SMALLER = 0.4, 1.3
-# Where all of the surface is to be covered, and not candidates only, cells that may hold an
-# uncovered point are bisected until they have this radius, relative to the covering radius.
+# To cover the whole surface, and not only candidates, cells that may hold an uncovered point are
+# bisected until they have this radius, relative to the covering radius.
 FINEST = 0.07
-# And borders are covered at places that are apart by twice this part of the covering radius.
+# Boundaries are covered at points that are apart by twice this part of the covering radius.
 ON_BORDERS = 0.05
-# Samples that move to centres move by less than this part of the radius, but for few.
+# All but a few samples move by less than this part of the radius when they move to centres.
 HARDLY = 0.3
-# When samples are spread, this part of them fills the gaps that are widest after the others have
-# moved. With half of it, samples in a row leave wider gaps than without moving.
+# The part of the samples that `spread` keeps for the widest gaps after the others have moved. With
+# half of it, samples in a row leave wider gaps than without moving.
 REST = 0.2
 # Gaps are at most this much wider than the radius while samples are missing.
 WIDEST_GAP = 2.0
-# Gaps between candidates are searched down to the radius, and then to this part of it, and so on.
+# Gaps between candidates are searched down to the radius, then to this part of it, and so on.
 STEP_DOWN, ROUNDS = 0.9, 3
-# At most this number of cells is bisected at a time, to bound the memory.
+# The largest number of cells that are bisected at a time, to bound the memory.
 BLOCK = 1 << 18
 
 
 class Cover:
-    """Samples of a space: some that are given, and others that are added until it is covered.
+    """Samples of a space: given ones, and others that are added until it is covered.
 
     A point is covered if a sample is within radius/√w, with the target density w of the space.
-    Lengths are scaled as in `Space`. Rows of `points` (N, 6), point and unit normal, and
-    `curvatures` (N,), K, are the samples; the first `given` ones are those `at_normals`, the others
-    lie at the places of the cells `added`, of which the first ones are those of the `grid`,
-    if there is one.
+    Lengths are scaled as in `Space`. The samples are rows of `points` (N, 6), point and unit
+    normal, and `curvatures` (N,), K. The first `given` samples are those `at_normals`, the others
+    lie at the places of the cells `added`, which begin with those of the `grid`, if there is one.
 
     Samples are chosen among the places of `cells`. `show_count` is called with the number of
-    samples when it has grown.
+    samples whenever it grows.
 
-    The first `fixed` samples, those given and those of the grid, are never removed.
+    The first `fixed` samples, given or on the grid, are never removed.
 
-    `coverage`, in L, and `angle`, in degrees, are what the cover has reached, if that is known.
+    `coverage`, in L, and `angle`, in degrees, are bounds that the cover has reached, if known.
     """
 
     coverage: float | None = None
@@ -118,7 +116,7 @@ class Cover:
         radius, largest = WIDEST * self._radius_for(count), self._largest_radius
         self._begin(radius, count)
         while self.count == count > self.fixed + 1 and radius < largest:
-            # The first candidates have used up the count, wherever the widest gaps are.
+            # The first candidates have used up the count, and may not be in the widest gaps.
             self.remove_added()
             radius *= 2.0
             self._begin(radius, count)
@@ -155,19 +153,19 @@ class Cover:
         self._choose(self.cells, self._candidates, radius, most)
 
     def take_candidates(self, radius: float, widest: float) -> None:
-        """Take candidates for sweeps with radii that fall from `widest` to this radius.
+        """Make candidates for sweeps with radii that fall from `widest` to this radius.
 
         They are the places of cells whose radii are FINE times the radius.
         """
-        for name in ("cells", "_candidates"):  # the former ones, which take as much memory
+        for name in ("cells", "_candidates"):  # free the former ones, which take as much memory
             vars(self).pop(name, None)
         self.radius, self.cells = widest, self.space.cut(FINE * radius)
         self._candidates = self._with_distances(self.cells.rows, radius, widest)
 
     def whole(self, turn: float) -> Cells:
-        """Return few cells, which make up the surface, and places along its borders.
+        """Return a few cells that make up the surface, and cells along its boundaries.
 
-        Normals turn by about `turn` between these, in radians, and by half of it around each.
+        Normals turn by about `turn` radians between the latter, and by half of it around each.
         """
         space = self.space
         borders = space.along_borders(math.inf, turn)
@@ -175,7 +173,7 @@ class Cover:
         return merged([space.evaluated(space.first), borders])
 
     def missing(self) -> Cells:
-        """Return a cell near the middle of each piece that has no sample, if it has a cell."""
+        """Return a cell near the middle of each piece without a sample, if it has a cell."""
         held = np.concatenate([self.at_normals.pieces, self.added.pieces])
         return self.space.middles(np.setdiff1d(self.space.first.pieces, held))
 
@@ -199,7 +197,7 @@ class Cover:
         self._candidates.update_distances(self.points[first:], self.radius)
 
     def evaluate_exactly(self) -> None:
-        """Take points and normals from the derivatives of what is sampled from now on."""
+        """From now on, take points and normals from the sampled surface itself."""
         space, added = self.space.exact, self.added
         if space is not self.space:
             self.space = space
@@ -208,7 +206,8 @@ class Cover:
     def renew_distances(self, widest: float) -> None:
         """Compute the distances of all candidates from the samples again, within `widest`."""
         self._candidates.reset_distances()
-        # Nearly all candidates are that near to a sample. The others need the wide search.
+        # Nearly all candidates are within this distance of a sample; the others need the wide
+        # search.
         near = min((1.0 + HARDLY) * self.radius, widest)
         self._candidates.update_distances(self.points, near)
         self._candidates.update_far(self.points, widest)
@@ -216,8 +215,8 @@ class Cover:
     def move_to_centres(self) -> Voronoi:
         """Move the samples that are not fixed to about the centres of their Voronoi cells.
 
-        The distances of the candidates have to be renewed before and after that. Returns finer
-        places than those of the candidates, for `fill_gaps`.
+        The distances of the candidates have to be renewed before and after the call. Return the
+        Voronoi cells, for `fill_gaps`.
         """
         margin = HARDLY * self.radius
         reach = self.radius + 2.0 * FINE * self.radius + margin
@@ -233,7 +232,7 @@ class Cover:
     def fill_gaps(self, voronoi: Voronoi, widest: float, count: int) -> None:
         """Add samples at finer places, the widest gaps first, until there are `count`.
 
-        Gaps are searched from `widest` on.
+        The search begins with gaps of the radius `widest`.
         """
         least = self.radius
         for _ in range(ROUNDS):
@@ -249,7 +248,7 @@ class Cover:
         self.narrow(widest, 0.0, count)
 
     def _evaluated_at(self, rows: Indices, places: Array) -> tuple[Cells, Indices]:
-        """Return places (k, 2) in cells of the candidates as cells, and their order."""
+        """Return cells without an extent at points (k, 2) of candidates, and their order."""
         order = np.argsort(self.cells.pieces[rows], kind="stable")
         near = self.cells[rows[order]]
         found = self.space.at(near.pieces, places[order], near.numbers[:, LIMIT], keep=True)
@@ -262,14 +261,14 @@ class Cover:
     def _radius_for(self, count: int) -> float:
         """Return the radius at which about `count` samples cover the surface.
 
-        On a strip that is narrower than that they stand in a row.
+        On a strip narrower than the radius, the samples stand in a row.
         """
         packed = math.sqrt(PACKED * self.space.integral / count)
         return max(packed, 0.5 * self.space.longest / count)
 
     @property
     def _largest_radius(self) -> float:
-        """A radius at which few samples cover the surface, also if it is a narrow strip."""
+        """A radius at which a few samples cover the surface, even a narrow strip."""
         return max(math.sqrt(self.space.integral), 0.5 * self.space.longest)
 
     def _begin(self, radius: float, count: int) -> None:
@@ -279,7 +278,7 @@ class Cover:
     def _choose(
         self, cells: Cells, candidates: Candidates, radius: float, most: int | None
     ) -> None:
-        """Add those places of some cells that are far from all samples."""
+        """Add those places of given cells that are far from all samples."""
         room = len(cells) if most is None else most - self.count
         if room > 0:
             self._append(cells[candidates.choose(radius, room)])
@@ -294,7 +293,7 @@ class Cover:
         self._added, self._waiting = self.space.nothing(), [cells]
 
     def _joined(self) -> Cover:
-        """Join the samples that wait with the others: many at once are quicker."""
+        """Append pending samples to the arrays: concatenating many at once is faster."""
         if self._waiting:
             added = joined(self._waiting)
             self._waiting = []
@@ -306,7 +305,7 @@ class Cover:
     def _cover_cells(
         self, cells: Cells, candidates: Candidates, radius: float, most: int | None
     ) -> None:
-        """Add samples until cells, whose places are covered candidates, are covered as a whole."""
+        """Add samples until cells whose places are covered are covered as a whole."""
         shares = cells.radii * np.sqrt(cells.rows[:, 6]) / radius
         far, small = candidates.distances > (1.0 - shares) * radius, shares <= FINEST
         large = np.flatnonzero(far & ~small)
@@ -320,9 +319,9 @@ class Cover:
         self._cover_small_cells(cells[far & small], radius, most)
 
     def _borders(self, radius: float) -> Cells:
-        """Return places along borders, whose radii reach half of the way to the next ones.
+        """Return cells along boundaries whose radii reach halfway to their neighbours.
 
-        In tips too narrow for cells, all that is to be covered is between these.
+        In tips too narrow for other cells, these cells cover the surface.
         """
         borders = self.space.along_borders(2.0 * ON_BORDERS * radius)
         borders.numbers[:, RADIUS] += ON_BORDERS * radius / np.sqrt(borders.rows[:, 6])
@@ -333,7 +332,8 @@ class Cover:
         if not len(cells):
             return
         rows = cells.rows.copy()
-        # A cell is covered by a sample that is closer to its place by its radius.
+        # A sample covers a cell if its distance from the place, plus the radius of the cell, is
+        # small enough.
         rows[:, 6] /= (1.0 - cells.radii * np.sqrt(rows[:, 6]) / radius) ** 2
         self._choose(cells, self._with_distances(rows, radius, radius), radius, most)
 

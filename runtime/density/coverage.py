@@ -18,22 +18,22 @@ __all__ = ["coverage"]
 # The search ends when the bound is within this factor of the largest distance found.
 TIGHT = 1.1
 MOST_CUTS = 40
-# Along borders, distances are taken at steps of this part of the mean spacing of samples.
+# Along boundaries, distances are measured at steps of this part of the mean spacing of samples.
 ON_BORDERS = 0.025
 
 
 def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
-    """Return a bound of the distance of points of the surface from the nearest of samples.
+    """Return a bound of the distance from any point of the surface to the nearest sample.
 
     Samples are points (N, 3), or points and unit normals (N, 6). With normals, the distance of a
     point is that from the nearest sample on its side of the surface, by the normals at the places
-    of cells; if there is none, from the nearest of all.
+    of cells; without such a sample, from the nearest of all.
 
-    Points and the distance are scaled as in `Space`. This is branch and bound: cells are cut that
-    may hold a point farther away than TIGHT times the farthest place, or than `asked` if no place
-    is. Where cells are those of a spline, and samples on the surface, twice the distance between
-    spline and surface is added.
-    Infinite if there are no samples.
+    Points and the distance are scaled as in `Space`. The method is branch and bound: a cell is cut
+    if it may hold a point farther away than TIGHT times the farthest place, or than `asked` while
+    no place is farther than that. If the cells are on a spline and the samples on the surface,
+    twice the distance between spline and surface is added. The bound is infinite if there are no
+    samples.
     """
     if len(samples) == 0:
         return math.inf
@@ -58,7 +58,7 @@ def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
 
 
 class _Distances:
-    """The distances of places from the nearest samples: points (N, 3), or with normals (N, 6)."""
+    """Distances from the nearest samples, which are points (N, 3), or with normals (N, 6)."""
 
     def __init__(self, space: Space, samples: Array) -> None:
         self.space, self.samples = space, samples
@@ -73,7 +73,7 @@ class _Distances:
         normals = rows[:, 3:6]
         cosines = np.einsum("mx,mx->m", normals, self.samples[nearest, 3:])
         left = np.flatnonzero((cosines < SAME_SIDE) & normals.any(axis=1))
-        # The nearest one is on the other side of a wall, or of an edge.
+        # The nearest sample is on the other side of a wall or of an edge.
         radius = math.sqrt(self.space.area / len(self.samples)) or 1.0
         while len(left) and radius < 2.0 * self.space.size:
             candidates = Candidates(rows[left], radius, self.space.threads)

@@ -1,4 +1,4 @@
-"""How far the normals of a surface are from those of its samples: in normal space and in space."""
+"""Normal deviation: angles between the normals of a surface and those of its samples."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from .space import Space
 
 __all__ = ["normal_deviation", "widest_angle"]
 
-# Places for each sample at which normals are compared at first, and the least number of them.
+# The number of test points for each sample at first, and the least number of test points.
 PLACES, FEWEST = 16, 20_000
-# Then cells that may hold a larger angle than the largest found so far are cut, this often.
+# Then cells that may hold a larger angle than the largest found so far are cut, at most this often.
 CUTS = 6
-# There are no more of these places than MOST; their cells are cut as much more often, BLOCK of them
-# at a time, for the memory.
+# At most MOST test points are used at first; beyond that, their cells are cut further, BLOCK of
+# them at a time, to bound the memory.
 MOST, BLOCK = 1 << 21, 1 << 16
 
 
 def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDeviation:
     """Return the largest angles that are found; `points` (N, 3) are scaled as in `Space`.
 
-    They are 180 degrees if there are no samples.
+    The angles are 180 degrees if there are no samples.
     """
     if len(points) == 0:
         return NormalDeviation(180.0, 180.0)
@@ -44,9 +44,9 @@ def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDevia
 
 
 def widest_angle(space: Space, normals: Array, least: float = 0.0) -> float:
-    """Return the largest angle in degrees that is found from a normal to the nearest of (N, 3).
+    """Return the largest angle found, in degrees, from a normal to the nearest of normals (N, 3).
 
-    Or `least`, if it is larger, which spares the search for smaller ones.
+    Return `least` if it is larger, which saves the search for smaller angles.
     """
     if len(normals) == 0:
         return 180.0
@@ -61,7 +61,7 @@ def widest_angle(space: Space, normals: Array, least: float = 0.0) -> float:
 def _largest(
     space: Space, samples: int, chord_of: Callable[[Array], Array], least: float = 0.0
 ) -> float:
-    """Return the largest angle in degrees that is found of chords at places, beyond `least`."""
+    """Return the largest angle found, in degrees, from chords at test points; at least `least`."""
     even = space.uniform.exact
     begin = found = 2.0 * math.sin(math.radians(least) / 2.0)
     wanted = max(PLACES * samples, FEWEST)

@@ -20,7 +20,7 @@ __all__ = ["Lattice"]
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """A Fibonacci lattice round `axis`, on the cap of cosines to the axis of at least `cosine`.
+    """A Fibonacci lattice on the cap of directions n with n · `axis` ≥ `cosine`.
 
     Caps larger than a hemisphere are replaced by the whole sphere round +z.
     """
@@ -32,7 +32,7 @@ class Lattice:
     def around(cls, spline: Spline, reach: Cap | None = None) -> Lattice:
         """Return the lattice on the smallest cap round the mean normal that holds every normal.
 
-        Or on the `reach` if that is smaller.
+        The lattice is on the `reach` if that cap is smaller.
         """
         found = cls._around_all(spline)
         if reach is not None and reach.angle < 90.0:
@@ -83,7 +83,7 @@ class Lattice:
     ) -> NDArray[np.float64]:
         """Return unit normals (…, 3), `density` of them per steradian, at least one.
 
-        With `first` and `last`, only the rows first, …, last − 1 of these.
+        With `first` and `last`, return only the rows [first, last).
         """
         last = self.size(density) if last is None else last
         if self.cosine == -1.0:

@@ -1,4 +1,4 @@
-"""Samples for any density but "gauss": at normals, and where these leave gaps."""
+"""Samples for all densities but "gauss": at normals, and in the gaps that these leave."""
 
 from __future__ import annotations
 
@@ -33,41 +33,42 @@ __all__ = ["Filling", "fields_of", "fill", "spacing", "target_of"]
 
 # Twice the area of a hexagon of circumradius 1.
 HEXAGON = 3.0 * math.sqrt(3.0)
-# For n samples with round cells that cover the surface within a radius r, relative to the sizing
-# function, the integral of the target density is n r² times this.
+# If n samples of a greedy cover have the covering radius r, relative to the sizing function, the
+# integral of the target density is about n r² times this.
 GREEDY = 1.85
 # Balanced: the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
-# Balanced: the floor of the target density, relative to the mean of κ², and the κ above which
-# curvature does not count for a count or a coverage, relative to the root of the floor.
+# Balanced: the floor of the target density, relative to the mean of κ²; and the ceiling of κ, for a
+# count or a coverage, relative to the root of the floor.
 FLOOR, MOST_CURVED = 0.8, 20.0
-# For an angle the mean of κ² is that of the κ that counts: both fall until the mean is within this
-# factor of the one before.
+# For an angle, the mean of κ² is that of the capped κ: mean and ceiling are iterated until the
+# ratio of consecutive means exceeds this.
 SETTLED = 0.9
-# An angle is refused if it would take more samples than this, which is minutes of work, and more
-# than on this number of spheres: not because it is small, but because of narrow faces.
+# An angle is refused if it would take more samples than this, minutes of work, and more than on
+# this number of spheres: then the reason is narrow faces, and not a small angle.
 MOST_FOR_ANGLE, SPHERES = 2e6, 300.0
-# |K|^α vanishes where K does; gaps there are wider than the mean by at most this factor.
+# |K|^α vanishes with K; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
-# The number of added samples that a sample at a normal is taken to save. It saves up to 0.7; with
-# less, more samples are left for gaps, of which |K| alone leaves wide ones.
+# The number of added samples that a sample at a normal is assumed to save. It saves up to 0.7; a
+# smaller value leaves more samples for the wide gaps of the density |K|.
 SAVED = 0.25
-# A piece has samples at the normals of a lattice if it is to have this part of all samples there:
+# A piece has samples at the normals of a lattice if these are at least this part of all samples:
 # its spline takes as long as many samples.
 LATTICE = 0.1
-# Pieces whose normals fill less than this solid angle have no samples at prescribed normals.
+# Pieces whose Gaussian images have less than this solid angle have no samples at prescribed
+# normals.
 LEAST_IMAGE = 1e-9
-# Where some of several pieces have no lattice: the part of a count that goes where normals are
-# farthest from those of all samples. On one piece, that is where the others are.
+# If some of several pieces have no lattice: the part of a count that is placed where normals are
+# farthest from those of all samples.
 FOR_NORMALS = 0.05
-# The chord between the normals of candidates for these samples, relative to that which their number
-# leaves on a sphere, and about the number of these candidates, beside as many as there are samples.
+# The chord between the normals of candidates for these samples, relative to the spacing of as many
+# points on a sphere, and about the number of these candidates in addition to the number of samples.
 NORMALS_APART, CANDIDATES = 0.2, 200_000
 # The smallest such chord.
 LEAST_CHORD = math.radians(0.5)
-# Decimal places to which normals of samples differ.
+# Normals of samples are distinct when rounded to this number of decimals.
 DIGITS = 6
-# Each piece gets a sample if there are at least this many samples for each piece.
+# Each piece gets a sample if there are at least this many samples per piece.
 SAMPLES_A_PIECE = 2
 # The bisection for the radius of a balanced cover that leaves enough samples for a coverage: its
 # steps, the part of the count at which it ends, and the logarithm of the ratio of its bounds.
@@ -87,9 +88,9 @@ def fill(
     progress: bool,
     each_once: Callable[[Given], Given] | None = None,
 ) -> Cover:
-    """Sample a space, whose target density has no floor; raises what `sample` raises.
+    """Sample a space whose target density has no floor; raises the errors of `sample`.
 
-    `each_once` leaves out samples at prescribed normals that several pieces have.
+    With `each_once`, a sample at a prescribed normal that several pieces share is returned once.
     """
     with counted(request.count, progress) as show_count:
         filling = Filling(space, request, progress, show_count, each_once)
@@ -97,7 +98,7 @@ def fill(
         if request.angle is not None:
             cover.angle = cover_normals(cover, request.angle)
             if any(x.trim is not None for x in space.pieces):
-                # Tips may be too narrow for cells.
+                # Tips may be too narrow for cells, so that the angle is not yet reached there.
                 cover.angle = widest_angle(space, cover.points[:, 3:], cover.angle)
         if request.coverage is not None:
             cover.coverage = filling.reached(cover) / space.unit
@@ -105,7 +106,7 @@ def fill(
 
 
 def fields_of(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
-    """Return fields of samples: those at normals, followed by the others."""
+    """Return fields of the samples at normals, followed by the others."""
     added = cover.added
     order = np.argsort(added.pieces, kind="stable")
     added = added[order]
@@ -134,7 +135,7 @@ def _of_piece(
 
 @dataclass(frozen=True, eq=False)
 class Filling:
-    """How a space is sampled for a request; `show_count` is called with the number of samples.
+    """The sampling of a space for a request; `show_count` is called with the number of samples.
 
     `each_once` is that of `fill`.
     """
@@ -146,7 +147,7 @@ class Filling:
     each_once: Callable[[Given], Given] | None = None
 
     def cover(self) -> Cover:
-        """Return the cover that is asked for."""
+        """Return the requested cover."""
         request = self.request
         if request.density == "gauss":
             return self._new(self.space, self._at_normals())
@@ -176,8 +177,8 @@ class Filling:
     def balanced(self, *, capped: bool = False) -> Space:
         """Return the space with the floor of "balanced", and, if it is capped, a ceiling.
 
-        For an angle the floor follows from what is below the ceiling: else tiny fillets would make
-        all flat parts dense.
+        For an angle, the floor follows from the capped density: else tiny fillets would make all
+        flat parts dense.
         """
         floor = self._floor(math.inf)
         if not capped:
@@ -190,7 +191,7 @@ class Filling:
     def _floor(self, ceiling: float) -> float:
         """Return the floor of "balanced" for a target density with a ceiling."""
         request, space = self.request, self.space.between(self.space.target.floor, ceiling)
-        # Normals and angles are absolute: flat parts then count as parts of a sphere.
+        # Normals and angles do not depend on the size: flat parts count as parts of a sphere.
         absolute = request.normals is not None or request.angle is not None
         least = request.solid_angle if absolute else FLAT_SURFACE
         return FLOOR * max(space.integral, least) / space.area
@@ -199,7 +200,8 @@ class Filling:
     def _by_power(self) -> Space:
         """The space with the floor of "uniform" or a power of |K|.
 
-        A power is uniform, too, on pieces whose curvature is an error of their spline.
+        A power of |K| is replaced by a constant on pieces whose curvature is an error of their
+        spline.
         """
         if self.request.density == "uniform":
             return self.space.between(1.0)
@@ -212,10 +214,10 @@ class Filling:
 
     @property
     def _asked(self) -> float | None:
-        """The coverage that is asked for as a scaled length, between rounding and the size.
+        """The requested coverage as a scaled length, between the rounding error and the size.
 
-        Where cells are those of a spline, and samples on the surface, twice the distance between
-        spline and surface is subtracted, and half of the coverage is left at least.
+        If the cells are on a spline and the samples on the surface, twice the distance between
+        spline and surface is subtracted; at least half of the coverage is left.
         """
         asked, space = self.request.coverage, self.space
         if asked is None:
@@ -226,7 +228,7 @@ class Filling:
     # --- covers -----------------------------------------------------------------------------------
 
     def _by_radius(self) -> Cover:
-        """Sample at the normals asked for, or at as many as fit a coverage, and fill the gaps."""
+        """Sample at requested normals, or at a lattice for a coverage, and fill the gaps."""
         request, asked = self.request, self._asked
         space = self.balanced(capped=request.angle is not None)
         if request.angle is not None:
@@ -250,7 +252,7 @@ class Filling:
         return self._to_radius(space, given, radius)
 
     def _to_radius(self, space: Space, given: Given, radius: float) -> Cover:
-        """Cover a space within a radius, each piece by a sample if that is not too many."""
+        """Cover a space within a radius, with a sample on each piece unless these are too many."""
         cover = self._new(space, given)
         cover.to_radius(radius)
         missing = cover.missing()
@@ -261,8 +263,7 @@ class Filling:
     def _by_count(self, space: Space, count: int) -> Cover:
         """Divide a count between samples at normals and others, which fill gaps.
 
-        A part of these is for pieces without any among several, and goes where normals are far
-        from all.
+        Among several pieces, some of the latter cover the normals of pieces without a lattice.
         """
         given, rest = Given(space), 0
         if self.request.density in BY_CURVATURE:
@@ -285,7 +286,7 @@ class Filling:
         return cover
 
     def _by_count_and_coverage(self, count: int) -> Cover:
-        """Find the smallest radius of a balanced cover that leaves enough for a coverage."""
+        """Find the smallest radius that leaves enough samples for a coverage."""
         asked, best = self._asked, None
         assert asked is not None
         high = math.log(count)
@@ -302,7 +303,7 @@ class Filling:
             low, best = (low + high) / 2, cover
             if cover.count > NEAR_ENOUGH * count:
                 break
-        if best is None:  # not even without normals
+        if best is None:  # not possible even without samples at normals
             best = self._new(self.space.uniform, Given(self.space))
             best.to_count(count)
         best.fill_up(count)
@@ -314,7 +315,7 @@ class Filling:
     # --- samples at normals -----------------------------------------------------------------------
 
     def _at_normals(self) -> Given:
-        """Return the samples at the normals that are asked for."""
+        """Return the samples at the requested normals."""
         space, count = self.space, self.request.count
         if count is None:
             curved = np.flatnonzero(space.images > LEAST_IMAGE)
@@ -325,19 +326,19 @@ class Filling:
         return at_count(space, counts, self.progress)
 
     def _for_count(self, space: Space, count: int) -> Given:
-        """Return the samples at lattices of normals that belong to a count of samples."""
+        """Return the samples at lattices of normals for a count of samples."""
         seen = space.solid_angles(count / (4 * math.pi))
-        # The number of samples that fill gaps beside one normal per steradian.
+        # The number of filling samples for a lattice of one normal per steradian.
         filling = space.integral / (GREEDY * (WIDER * spacing(1.0)) ** 2)
         chosen, density = np.arange(len(seen)), 0.0
-        for _ in range(2):  # with all pieces, and then with those that have a lattice
+        for _ in range(2):  # with all pieces, then with those that have a lattice
             curved = float(seen[chosen].sum())
             density = count / (curved + max(filling - SAVED * curved, 0.0))
             chosen = np.flatnonzero((seen > 0.0) & (density * seen >= LATTICE * count))
         return at_lattices(space, density, chosen, self.progress, count)
 
     def _at_lattices(self, radius: float, space: Space) -> Given:
-        """Return the samples at lattices of normals that belong to a covering radius."""
+        """Return the samples at lattices of normals for a covering radius."""
         density = 2.0 / (HEXAGON * (radius / WIDER) ** 2)
         expected = density * space.solid_angles(density)
         least = max(LATTICE * space.integral / (GREEDY * radius**2), 0.5)
@@ -345,7 +346,7 @@ class Filling:
 
 
 def _refuse_too_many(space: Space, radius: float, request: Request) -> None:
-    """Raise InputError if an angle takes too many samples because faces are narrow."""
+    """Raise InputError if narrow faces make an angle take too many samples."""
     counts, angle = space.integrals / (GREEDY * radius**2), request.angle
     total = float(counts.sum())
     if angle is None or total <= MOST_FOR_ANGLE or space.integral <= SPHERES * request.solid_angle:
@@ -365,7 +366,7 @@ def _fill_normals(cover: Cover, number: int) -> None:
     cells, normals = list[Cells](), list[Array]()
     for block in cover.space.cut_by_normals(max(chord, LEAST_CHORD), most):
         normals.append(block.rows[:, 3:6].copy())
-        cells.append(block.without_rows())  # most of the memory is theirs
+        cells.append(block.without_rows())  # rows take most of the memory
     known = np.unique(cover.points[:, 3:].round(DIGITS), axis=0)
     opposite, threads = 2.0, cover.space.threads  # the largest chord between normals
     chosen = choose_apart(np.concatenate(normals), chord, threads, opposite, number, known)

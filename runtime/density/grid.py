@@ -1,4 +1,4 @@
-"""Samples on a grid of lines of both parameters."""
+"""Samples on a grid of parameter lines."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ __all__ = ["Grid", "lines_of", "without_lines"]
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Samples on a grid: the cells that have them as their places, and their lines.
+    """Samples on a grid: cells whose places they are, and the numbers of their lines.
 
-    `rows` and `columns` (N,) number lines v = const and u = const; −1 for samples between lines.
+    `rows` and `columns` (N,) are the indices of the lines v = const and u = const, −1 between
+    lines.
     """
 
     cells: Cells
@@ -46,7 +47,7 @@ class Grid:
 
     @property
     def border(self) -> int:
-        """The number of samples that have no neighbour in some direction, within the domain."""
+        """The number of samples that lack a neighbour in some direction within the domain."""
         inside = np.zeros(self.lines, dtype=np.bool_)
         on = self.rows >= 0
         inside[self.columns[on], self.rows[on]] = True
@@ -61,7 +62,7 @@ class Grid:
 
 
 def lines_of(grid: Grid | None, count: int, fields: Sequence[str]) -> dict[str, Indices]:
-    """Return the requested ones of the fields row and column of samples, the grid's being first."""
+    """Return the requested ones of the fields row and column; samples of the grid come first."""
     found = {name: np.full(count, -1, dtype=np.int64) for name in GRID_NAMES if name in fields}
     if grid is not None:
         for name, numbers in zip(GRID_NAMES, (grid.rows, grid.columns), strict=True):

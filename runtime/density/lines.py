@@ -1,4 +1,4 @@
-"""Lines of a grid along one parameter: where they are for given steps."""
+"""The positions of the lines of a grid along one parameter, for given steps."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ FEWEST = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """An interval of a parameter, in cells, cut at `edges` (k + 1,), which rise.
+    """An interval of a parameter, in cells, cut at increasing `edges` (k + 1,).
 
-    At the edges numbered `breaks`, the first and the last among them, parts begin and end: the
+    The edges with the indices `breaks`, which include the first and the last, separate parts: the
     lines of each part are half a step away from its ends.
     """
 
@@ -48,11 +48,11 @@ class Axis:
         return np.diff(self.edges)
 
     def lengths(self, steps: Array) -> Array:
-        """Return the numbers of steps (parts,), whose lengths (k,) are given on the pieces."""
+        """Return the lengths of the parts in steps (k,), which are given on the pieces."""
         return np.add.reduceat(self.widths / steps, self.breaks[:-1])
 
     def lines(self, steps: Array, numbers: Indices) -> Array:
-        """Return the places of lines, `numbers` (parts,) in each part, spaced by steps (k,)."""
+        """Return the positions of lines, `numbers` (parts,) in each part, spaced by steps (k,)."""
         found = []
         for first, last, number in zip(
             self.breaks[:-1], self.breaks[1:], numbers.tolist(), strict=True

@@ -23,10 +23,10 @@ __all__ = ["coverage", "normal_deviation", "progressive", "space_on"]
 
 
 def progressive(self: Samples, *, progress: bool = False) -> Samples:
-    """Return the same samples in an order in which every prefix is well distributed.
+    """Return the samples in progressive order: every prefix is well distributed.
 
     The first ones are far apart relative to the local spacing of the samples; the next ones
-    halve the gaps, and so on. Spacings below a thousandth of the median count as that.
+    halve the gaps, and so on. Spacings below a thousandth of the median are replaced by it.
 
     Parameters
     ----------
@@ -113,8 +113,8 @@ def normal_deviation(
 ) -> NormalDeviation:
     """Return the largest angles between normals of the surface and those of the samples.
 
-    Normals are compared at 16 places for each sample and at least 20,000, and at more of them
-    where larger angles may be.
+    Normals are compared at 16 test points for each sample, at least 20,000, and at more of them
+    where larger angles are possible.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def normal_deviation(
 
 
 def _space_of(samples: Samples, spline: Spline | None, threads: int | None) -> Space:
-    """Return what was sampled; without a spline, all pieces of the surface that have an area."""
+    """Return the sampled space; without a spline, all pieces of the surface with an area."""
     surface = samples.surface
     if isinstance(surface, Whole):
         return surface._space(threads, reach=samples.report._cap)
@@ -164,6 +164,6 @@ def _space_of(samples: Samples, spline: Spline | None, threads: int | None) -> S
 
 
 def space_on(spline: Spline, surface: Surface | None, threads: int | None) -> Space:
-    """Return a spline, or the surface that it approximates, as what is sampled."""
+    """Return the space of a spline, or of the surface that it approximates."""
     on = OnSpline(spline, threads) if surface is None else OnSurface(spline, threads, surface)
     return space_of([on], threads)

@@ -1,4 +1,4 @@
-"""Covers that begin with graded grids; what these leave is filled as usual."""
+"""Covers that begin with graded grids; the remaining gaps are filled as usual."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from .space import Space
 
 __all__ = ["cover_on_grid"]
 
-# The largest distance of a point from the nearest sample if round cells follow the curvature: that
-# of a sizing function, times this.
+# The covering radius of samples whose round cells follow the curvature, relative to the sizing
+# function.
 WIDEST = 1.0
-# Without a coverage, gaps are wider by this factor, where the surface is flat.
+# Without a requested coverage, gaps in flat regions are wider by this factor.
 WIDER = 2.0
-# An angle is asked of the grid that is smaller by this part, and a distance, too.
+# Angle and distance requested of the grid are smaller by this part.
 MARGIN = 0.02
-# The parts of a count that a grid is given in turn, until what is left is enough for a coverage.
+# The parts of a count tried for the grid, until the remaining samples suffice for a coverage.
 PARTS = (1.0, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3)
 
 
@@ -32,7 +32,7 @@ def cover_on_grid(
 ) -> Cover:
     """Return a cover with a count of samples, or for an angle or a coverage.
 
-    `distance` is the scaled coverage that is asked for.
+    `distance` is the requested coverage, scaled.
     """
     if request.count is None:
         return _by_errors(space, request.angle, distance, show_count)
@@ -44,9 +44,9 @@ def cover_on_grid(
 def _by_count(space: Space, count: int, show_count: Callable[[int], object]) -> Cover:
     """Return a cover with a count."""
     grid = _grid_of(space, count, _usual_distance(space, count))
-    # A few samples are too few for all parts of the parameters.
+    # A small count does not suffice for a grid with all parts of the axes.
     cover = Cover(space, None, show_count, grid if len(grid) <= count else None)
-    if cover.count < count:  # at the border of a trim
+    if cover.count < count:  # at the boundary of a trim
         cover.to_count(count)
     return cover
 
@@ -77,13 +77,13 @@ def _by_errors(
 def _by_count_and_distance(
     space: Space, count: int, distance: float, show_count: Callable[[int], object]
 ) -> Cover:
-    """Return a cover with a count; the distance is kept if the count is enough for that."""
+    """Return a cover with a count; the distance is kept if the count suffices."""
     apart = min((1.0 - MARGIN) * distance, _usual_distance(space, count))
     even = space.uniform
     for part in PARTS:
         grid = _grid_of(space, round(part * count), apart)
         if len(grid) > count:
-            continue  # a few samples are too few for all parts of the parameters
+            continue  # the count does not suffice for all parts of the axes
         cover = Cover(even, None, show_count, grid)
         cover.to_radius(distance, count + 1)
         if cover.count <= count:
@@ -102,5 +102,5 @@ def _grid_of(space: Space, count: int, distance: float) -> Grid:
 
 
 def _usual_distance(space: Space, count: int) -> float:
-    """Return the largest distance of a point from the nearest one of `count` usual samples."""
+    """Return the covering radius of `count` samples without a grid."""
     return WIDEST * math.sqrt(space.integral / count / space.smallest)

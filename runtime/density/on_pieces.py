@@ -1,4 +1,4 @@
-"""Surfaces of several smooth pieces: which ones, and one report of them."""
+"""Surfaces of several smooth pieces: the sampled pieces, and their common report."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ __all__ = ["cells_of_piece", "geometries_of", "kept_geometries", "pieces_to_samp
 # Each piece is fitted and searched by itself, which takes 20 ms.
 MOST_PIECES = 2000
 FEWEST_CELLS = 4
-# The number of surfaces of which splines and indices are kept; these take some MB each.
+# The number of surfaces whose splines and indices are cached; these take some MB each.
 KEPT = 8
 SUMS = ("patches", "apexes")
 LARGEST = ("fit_distance", "fit_angle")
 
 
 def pieces_to_sample(surface: object) -> tuple[Surface, ...]:
-    """Return the pieces of a surface that has more than one, and nothing for any other.
+    """Return the pieces of a surface that has more than one, and () for any other.
 
     Raises InputError if there are too many.
     """
@@ -55,7 +55,7 @@ def geometries_of(
     on: str | None,
     indexed: bool = False,
 ) -> tuple[OnSpline, ...]:
-    """Return what is sampled: one for each piece of a surface. See `geometry_of`."""
+    """Return a geometry for each piece of a surface; see `geometry_of`."""
     surface = named(surface)
     place_of_samples(surface, on)
     if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
@@ -66,7 +66,7 @@ def geometries_of(
 def kept_geometries(
     surface: Surface | Spline | str, cells: Sequence[int] | None, on: str | None
 ) -> tuple[OnSpline, ...]:
-    """Return the same as `geometries_of`, indexed, made once for the last few surfaces."""
+    """Return the geometries of `geometries_of`, indexed, cached for the last few surfaces."""
     if not isinstance(surface, Surface | Spline | str):
         return geometries_of(surface, cells, on)  # raises
     return _kept(surface, None if cells is None else pair_of_cells(cells), on)
@@ -82,7 +82,7 @@ def _kept(
 def cells_of_piece(
     surface: Surface, piece: Surface, cells: Sequence[int] | None
 ) -> tuple[int, int] | None:
-    """Return the cells of a piece, of those of the whole: in proportion to its parameters."""
+    """Return the cells of a piece, in proportion to its part of the domain of the whole surface."""
     if cells is None:
         return None
     m, n = (

@@ -1,4 +1,4 @@
-"""A smooth piece of what is sampled: its derivatives, its border, and boxes of its parameters."""
+"""A smooth piece of the sampled surface: derivatives, boundary, and boxes of its parameters."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ __all__ = ["Piece", "boxes_between"]
 class Piece(ABC):
     """A smooth surface on a rectangle of parameters, or a part of it: a surface, or a face.
 
-    `label` is what it is called in messages, `trim` the part of the domain that belongs to it, None
-    if that is all of it. `indices` are fields that are the same for all of its samples, and the
-    number of its first patch. Points of what is sampled are farther than `distance` from those of
-    `jets` nowhere, in L. Below the lengths `finest` (2,) of parameters its curvature means nothing.
+    `label` is its name in messages, `trim` the part of the domain that belongs to it, None for the
+    whole domain. `indices` are fields that are constant on the piece, and the index of its first
+    patch. The distance between points of the surface and those of `jets` is at most `distance`, in
+    L. Curvature at scales below `finest` (2,), lengths in u and v, is noise.
     """
 
     label: str
@@ -40,7 +40,7 @@ class Piece(ABC):
 
     @property
     def polygons(self) -> Sequence[Array]:
-        """The closed polygons (k, 2) along which there are samples, if there is a trim.
+        """The closed polygons (k, 2) along which samples are placed, if there is a trim.
 
         The first point is not repeated.
         """
@@ -54,20 +54,20 @@ class Piece(ABC):
     @property
     @abstractmethod
     def boxes(self) -> Array:
-        """Boxes (M, 4) that the domain is made of, in each of which the surface is smooth."""
+        """Boxes (M, 4) that partition the domain; the surface is smooth in each."""
 
     @abstractmethod
     def jets(self, u: Array, v: Array) -> Array:
-        """Return 2-jets (k, 6, 3) at parameters, from which candidates follow."""
+        """Return 2-jets (k, 6, 3) at parameters, for candidates."""
 
     @abstractmethod
     def geometries(self, threads: int | None) -> list[OnSpline]:
-        """Return what is searched for points with a normal; GaussmapError if it has no spline."""
+        """Return the geometries that are searched for normals; GaussmapError without a spline."""
 
     def proved_at(self, normals: Array, threads: int | None) -> list[Samples] | None:
-        """Return all points with unit normals (S, 3), with a proof; None if there is none.
+        """Return all points with unit normals (S, 3), with a proof; None without a proof.
 
-        The list is empty if there are no points, and none that are undecided.
+        The list is empty if there are no points and no undecided normals.
         """
         return None
 
@@ -78,7 +78,7 @@ class Piece(ABC):
         """Return fields of samples at parameters (k, 2); rows (k, 8) are those of candidates."""
 
     def solid_angle(self, density: float) -> float | None:
-        """Return the solid angle of the normals of what `density` normals per steradian sample.
+        """Return the solid angle of the normals that a lattice of this density samples.
 
         None if it follows from K.
         """
@@ -86,7 +86,7 @@ class Piece(ABC):
 
     @property
     def exact(self) -> Piece:
-        """The piece with the derivatives of what is sampled, which may take longer."""
+        """The piece with the derivatives of the sampled surface itself, which may take longer."""
         return self
 
     @cached_property
@@ -101,7 +101,7 @@ class Piece(ABC):
         return np.array(self.domain).mean(axis=1, keepdims=True)
 
     def border(self, n: int) -> Border | None:
-        """Return the border on a raster of n × n pixels, None if there is none."""
+        """Return the boundary on a raster of n × n pixels; None if there is none."""
         if self.trim is None:
             return None
         if n not in self._borders:
@@ -119,13 +119,13 @@ class Piece(ABC):
         )
 
     def wrapped(self, places: Array) -> Array:
-        """Return places (k, 2) less whole periods, if there is a trim."""
+        """Return parameters (k, 2) modulo periods, if there is a trim."""
         assert self.trim is not None
         u, v = places.T
         return np.stack(brought_inside(u, v, self.domain, self.trim.boundary), axis=1)
 
     def border_lines(self, step: float) -> Iterator[Array]:
-        """Yield the polygons, closed, with further places: steps are `step` of `sizes` at most."""
+        """Yield the polygons, closed and refined to steps of at most `step` times `sizes`."""
         for polygon in self.polygons:
             steps = np.diff(polygon, axis=0, append=polygon[:1])
             parts = np.maximum(np.ceil(np.abs(steps / self.sizes).max(axis=1) / step), 1.0)

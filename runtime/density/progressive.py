@@ -13,17 +13,17 @@ from .candidates import Candidates
 
 __all__ = ["progressive_order"]
 
-# Samples are chosen no closer to one another than a radius that falls by STEP, from one that holds
-# all to FINEST, in spacings of the samples.
+# Samples are chosen no closer to one another than a radius, which falls by the factor STEP from one
+# that holds all samples to FINEST, in local spacings.
 STEP, FINEST = 2.0**-0.5, 0.25
-# The spacing at a sample is the mean distance to this number of nearest others.
+# The local spacing is the mean distance to this number of nearest neighbours.
 NEIGHBOURS = 6
 
 
 def progressive_order(
     points: NDArray[np.float64], normals: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """Return the numbers (N,) of points (N, 3) with normals (N, 3) in progressive order.
+    """Return the indices (N,) of points (N, 3) with normals (N, 3) in progressive order.
 
     Distances are relative to the local spacing of the samples: a prefix has the density of the
     whole, up to a factor.
@@ -42,13 +42,13 @@ def progressive_order(
         chosen = candidates.choose(radius, len(left))
         order, left = np.append(order, left[chosen]), np.delete(left, chosen)
         radius *= STEP
-    return np.append(order, left)  # those that all but coincide with others
+    return np.append(order, left)  # samples that nearly coincide with others
 
 
 def _spacings(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the mean distance (N,) of each point from its nearest others, nowhere zero.
+    """Return the local spacing (N,) at each point, which is positive.
 
-    Where most points coincide with others, it is at least that of points spread over a square.
+    If most points coincide, it is at least the spacing of as many points in a square.
     """
     distances = tree_of(points).query(points, k=NEIGHBOURS + 1, workers=-1)[0][:, 1:].mean(axis=1)
     least = float(np.median(distances)) * 1e-3

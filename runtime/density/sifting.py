@@ -1,4 +1,4 @@
-"""Which cells are inside the trims of their pieces, and where in them."""
+"""The cells that are inside the trims of their pieces, and their places."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .trims import Trims
 
 __all__ = ["beside", "placed", "sifted"]
 
-# Cells that the border passes are tested at SUB² places.
+# Cells that the boundary intersects are tested at SUB² points, their subplaces.
 SUB = 4
 BOXES_AT_A_TIME = 1 << 13
 
@@ -35,7 +35,7 @@ def sifted(
 
 
 def placed(trims: Trims, cells: Cells) -> tuple[Cells, Cells]:
-    """Return the cells that have a place inside, with it, and those without."""
+    """Return the cells with a place inside the trim, which is set, and the other cells."""
     found, places, here = cells.whole.copy(), cells.places.copy(), np.flatnonzero(~cells.whole)
     found[here] = trims.contains(cells.pieces[here], places[here])
     lost = here[~found[here]]
@@ -47,7 +47,7 @@ def placed(trims: Trims, cells: Cells) -> tuple[Cells, Cells]:
 
 
 def beside(trims: Trims, lost: Cells, pixels: Indices) -> tuple[Indices, Array]:
-    """Return places (k, 2) next to the border where cells have none inside, and their pieces."""
+    """Return pieces and points (k, 2) next to the boundary, for cells without a place."""
     owners, places = [np.empty(0, dtype=np.int64)], [np.empty((0, 2))]
     for k, rows in by_piece(lost):
         n = int(pixels[k])
@@ -60,7 +60,7 @@ def beside(trims: Trims, lost: Cells, pixels: Indices) -> tuple[Indices, Array]:
 
 
 def _subplaces(trims: Trims, pieces: Indices, boxes: Array) -> tuple[Flags, Array]:
-    """Return which boxes (M, 4) have a subplace inside, and the one in the middle of these."""
+    """Return which boxes (M, 4) have subplaces inside, and the middle one of these."""
     steps = (np.arange(SUB) + 0.5) / SUB
     grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
     sizes = boxes[:, None, 2:] - boxes[:, None, :2]

@@ -1,4 +1,4 @@
-"""All pieces of what is sampled as one surface: its cells, and the target density on it."""
+"""The space that is sampled: all pieces as one surface, with cells and a target density."""
 
 from __future__ import annotations
 
@@ -45,25 +45,25 @@ __all__ = ["Space"]
 # The first cells bend by at most this along u and along v, in radians.
 FLAT = 0.3
 MOST_BENDS = 24
-# Cells of the first ones that have no place inside are cut into four so many times.
+# First cells without a place inside are quartered this many times.
 MOST_LOST = 4
-# The pixels along u and v of the rasters of borders.
+# The least and the largest number of pixels along u and v of the rasters of boundaries.
 FEWEST_PIXELS, MOST_PIXELS = 64, 512
-# Cells with more parts than this, which the border passes, are cut in two steps.
+# Cells that the boundary intersects are cut in two steps if they have more parts than this.
 AT_ONCE = 64
-# Cells are not cut below this part of the domain of their piece, and of its size.
+# The smallest cells, relative to the domain of their piece and to its size.
 DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
-# The factor by which cells are made coarser if there were too many.
+# The factor by which cells are coarsened if they are too many.
 COARSER = 1.2
-# The places on borders that are measured at a time.
+# The number of points on boundaries that are evaluated at a time.
 PLACES_AT_A_TIME = 1 << 17
-# This number of cells is evaluated at a time, at most, and about the RANGES-th part of all that is
-# evaluated by one thread.
+# The largest number of cells that are evaluated at a time, and the number of ranges per thread,
+# about.
 CELLS_AT_A_TIME, RANGES = 1 << 12, 32
-# Cells that are cut by their normals are evaluated in blocks of about this number.
+# `cut_by_normals` evaluates cells in blocks of about this number.
 BLOCK = 1 << 16
-# Where |K| is below this part of 1/area, a part counts as developable.
+# A cell counts as developable if |K| is below this part of 1/area.
 FLAT_CURVATURE = 1e-6
 
 
@@ -73,7 +73,7 @@ class Space:
 
     Lengths are multiplied by `unit`, and points are relative to `centre`, in L. The target density
     of `first` has no floor and no ceiling, so that spaces that differ in these share it. On the
-    `developable` pieces, K is rounding, and a power of it counts as 0.
+    `developable` pieces, K is rounding error, and a power of it counts as 0.
     """
 
     label: str
@@ -97,7 +97,7 @@ class Space:
 
     @cached_property
     def centre(self) -> Array:
-        """What scaled points are relative to, in L."""
+        """The origin of scaled points, in L."""
         return self.pieces[0].jets(*self.pieces[0].middle)[0, 0]
 
     @cached_property
@@ -141,7 +141,7 @@ class Space:
 
     @property
     def longest(self) -> float:
-        """The longest extent of a piece along an axis, for the smallest target density."""
+        """The longest extent of a piece along an axis."""
         points = (self.first.rows[found, :3] for _, found in by_piece(self.first))
         return math.sqrt(self.smallest) * max(float(np.ptp(x, axis=0).max()) for x in points)
 
@@ -157,18 +157,18 @@ class Space:
         return np.bincount(self.first.pieces, weights, len(self.pieces)).astype(np.float64)
 
     def solid_angles(self, density: float) -> Array:
-        """Return the same of what `density` normals per steradian sample."""
+        """Return the solid angles of the normals that a lattice of this density samples."""
         known = (x.solid_angle(density) for x in self.pieces)
         return np.array([y if x is None else x for x, y in zip(known, self.images, strict=True)])
 
     @property
     def distance(self) -> float:
-        """How far points of what is sampled are from those of the cells, at most, in L."""
+        """A bound of the distance between the sampled surface and that of the cells, in L."""
         return max(x.distance for x in self.pieces)
 
     @property
     def developable_share(self) -> float:
-        """The part of the area that is flat, or curved in one direction only."""
+        """The part of the area that is developable."""
         flat = np.abs(self.first.rows[:, 7]) * self.area < FLAT_CURVATURE
         areas = self.first.numbers[:, AREA]
         return float(areas[flat].sum() / areas.sum()) if areas.any() else 1.0
@@ -185,7 +185,7 @@ class Space:
 
     @property
     def exact(self) -> Space:
-        """The same with the derivatives of what is sampled, which may take longer."""
+        """The same space with the derivatives of the sampled surface, which may take longer."""
         pieces = tuple(x.exact for x in self.pieces)
         if all(x is y for x, y in zip(pieces, self.pieces, strict=True)):
             return self
@@ -219,7 +219,7 @@ class Space:
 
     @property
     def _shared(self) -> dict[str, object]:
-        """What spaces of the same pieces share."""
+        """The attributes that spaces of the same pieces share."""
         return {x: getattr(self, x) for x in ("areas", "unit", "centre", "sizes", "trims")}
 
     def scaled_points(self, points: NDArray[np.floating]) -> Array:
@@ -234,30 +234,30 @@ class Space:
 
     @property
     def first(self) -> Cells:
-        """Cells of all pieces, as large as the surface is flat in each; without the floor."""
+        """Cells of all pieces, as large as flatness allows; their density has no floor."""
         if "first" not in self._held:
             self._held["first"] = self._first()
         return self._held["first"]
 
     @property
     def borders(self) -> BorderLines:
-        """The borders of all pieces, without the floor."""
+        """The boundaries of all pieces; the density there has no floor."""
         if "borders" not in self._held:
             self._held["borders"] = self._borders()
         return self._held["borders"]
 
     def along_borders(self, step: float, turn: float = math.inf) -> Cells:
-        """Return places along borders as cells without an extent; see `places_along`."""
+        """Return cells without an extent along boundaries; see `places_along`."""
         return self.known(self._beside_borders(step, turn))
 
     def at(
         self, pieces: Indices, places: Array, limits: Array | float = 0.0, *, keep: bool = False
     ) -> Cells:
-        """Return cells without an extent at places (k, 2) of pieces (k,); see `known`."""
+        """Return cells without an extent at parameters (k, 2) of pieces (k,); see `known`."""
         return self.known(points_of(pieces, places, self.sizes[pieces], limits), keep=keep)
 
     def middles(self, pieces: Indices) -> Cells:
-        """Return the cell nearest to the middle of each of some pieces."""
+        """Return the cell nearest to the middle of each of the given pieces."""
         first, rows, wanted = self.first, [], set(pieces.tolist())
         for k, found in by_piece(first):
             if k in wanted:
@@ -273,7 +273,7 @@ class Space:
     def cut(self, radius: float) -> Cells:
         """Return cells that lie within radius/√w of their places, w the target density there.
 
-        And places along borders, about as far apart, as cells without an extent.
+        Also return cells without an extent along boundaries, about as far apart.
         """
         return self.known(self._cut(radius))
 
@@ -288,9 +288,9 @@ class Space:
         return merged([cells, self._beside_borders(radius)])
 
     def parts(self, radius: float) -> Indices:
-        """Return into how many parts (M, 2) `cut` divides the first cells along u and v.
+        """Return the numbers (M, 2) of parts of each first cell along u and v in `cut`.
 
-        Raises InputError if these are too many.
+        Raises InputError if the parts are too many.
         """
         lengths = self.first.numbers[:, [ALONG_U, ALONG_V]]
         with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
@@ -308,9 +308,9 @@ class Space:
         )
 
     def cut_by_normals(self, chord: float, most: float) -> Iterator[Cells]:
-        """Yield cells whose normals are about within a chord from that at their places, in blocks.
+        """Yield, in blocks, cells whose normals are within about a chord of that at their places.
 
-        The chord is made larger until there are about `most` cells at most.
+        The chord is increased until there are at most about `most` cells.
         """
         first = self.first
         bends = np.where(first.numbers[:, [CHORD]] > chord, first.numbers[:, [BEND_U, BEND_V]], 0.0)
@@ -323,7 +323,7 @@ class Space:
             yield self.evaluated(into_parts(first[rows], parts[rows].astype(np.int64)))
 
     def evaluated(self, cells: Cells, pixels: Indices | None = None) -> Cells:
-        """Return those of cells that have a place inside the trim, with their rows and numbers."""
+        """Return the cells that have a place inside the trim, evaluated."""
         return self.known(self._inside(cells, self._fewest if pixels is None else pixels))
 
     def halves(self, cells: Cells) -> Cells:
@@ -334,12 +334,12 @@ class Space:
     def quarters(self, cells: Cells) -> Cells:
         """Return cells bisected along u and along v.
 
-        Where the surface is singular, normals turn most along the shorter side.
+        Near singular points, normals turn most along the shorter side.
         """
         return self.evaluated(into_parts(cells, np.full((len(cells), 2), 2)))
 
     def deepest(self, cells: Cells) -> NDArray[np.bool_]:
-        """Return which cells are so small that they are not cut any more."""
+        """Return which cells are too small to be cut further."""
         sizes = cells.boxes[:, 2:] - cells.boxes[:, :2]
         small = np.all(sizes <= DEEPEST * self.sizes[cells.pieces], axis=1)
         return small | (cells.radii <= DEEPEST * np.sqrt(self.areas[cells.pieces]))
@@ -347,7 +347,7 @@ class Space:
     # --- steps ------------------------------------------------------------------------------------
 
     def _inside(self, cells: Cells, pixels: Indices) -> Cells:
-        """Return those of cells that have a place inside the trim, with it."""
+        """Return the cells that have a place inside the trim, which is set."""
         return placed(self.trims, sifted(self.trims, cells.sorted(), pixels)[0])[0]
 
     def _beside_borders(self, step: float, turn: float = math.inf) -> Cells:
@@ -394,7 +394,7 @@ class Space:
         return np.full(len(self.pieces), FEWEST_PIXELS)
 
     def _pixels(self, radius: float) -> Indices:
-        """Return for each piece the pixels of its raster: half a radius wide, if that is enough."""
+        """Return the number of pixels for each piece: half a radius wide, within the limits."""
         cells, count = self.first, len(self.pieces)
         rates = np.sqrt(self.densities)
         low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
@@ -411,7 +411,7 @@ class Space:
     def known(self, cells: Cells, *, keep: bool = False) -> Cells:
         """Return cells, sorted by their pieces, with rows and numbers.
 
-        Those that are not finite are left out, or, with `keep`, singular.
+        Cells that are not finite are left out, or, with `keep`, marked as singular.
         """
 
         def work(first: int, last: int) -> None:
@@ -437,9 +437,9 @@ class Space:
         return cells if finite.all() else cells[finite]
 
     def _groups(self, cells: Cells) -> list[list[tuple[int, slice]]]:
-        """Return the rows of cells that are evaluated at a time, and of which pieces they are.
+        """Return groups of cells to evaluate at a time: pieces, with the rows of each.
 
-        In a group `finest` and the target density are the same: pieces may have few cells each.
+        Cells of a group have the same `finest` and target density: each piece may have few cells.
         """
         groups, last, room = list[list[tuple[int, slice]]](), None, 0
         for k, rows in by_piece(cells):

@@ -1,4 +1,4 @@
-"""The steps of a graded grid: how far apart its lines may be for the same error everywhere.
+"""The steps of a graded grid: the distances of its lines for the same error everywhere.
 
 With steps a along u and b along v, the corners of a cell of a grid are farther apart than
 
@@ -24,15 +24,15 @@ __all__ = ["Forms", "Steps", "equal_steps", "steps_for_count"]
 
 _Arrays = tuple[Array, Array, Array, Array, float]
 
-# The part of the limits that steps along u are given first: the best one of these, and then of
-# those in between, among forms on a coarser grid.
+# The shares of the limits for steps along u: the best of SHARES, refined by SEARCHES, with forms on
+# a coarser grid.
 SHARES, SEARCHES, COARSE = np.linspace(0.15, 0.95, 7), 4, 24
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
-# The parts of the domain that a step spans at most and at least.
+# The longest and the shortest step, as parts of the domain.
 LONGEST, SHORTEST = 0.5, 1e-9
 # The angle that gives a count is searched up to WIDEST, until the count is met within CLOSE.
 WIDEST, CLOSE, TRIALS = math.pi, 0.002, 12
-# A distance that needs too many samples is made so much larger than needed.
+# A distance that needs too many samples is increased by this factor beyond the possible one.
 LARGER = 1.1
 
 
@@ -45,7 +45,7 @@ class Forms:
     widths: tuple[Array, Array]
 
     def coarser(self, number: int) -> Forms:
-        """Return the largest entries on groups of neighbours, `number` along u and v at most."""
+        """Return the largest entries on blocks of neighbours, at most `number` along u and v."""
         third, first, widths = self.third, self.first, list(self.widths)
         for axis in (0, 1):
             count = len(widths[axis])
@@ -59,7 +59,7 @@ class Forms:
 
     @cached_property
     def swapped(self) -> Forms:
-        """The same with u and v exchanged."""
+        """The same forms with u and v exchanged."""
         third, first = (
             np.ascontiguousarray(x[::-1].transpose(0, 2, 1)) for x in (self.third, self.first)
         )
@@ -77,7 +77,7 @@ class Forms:
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Steps along u (k,) and along v (l,) for an error, and the number of samples of such a grid.
+    """Steps along u (k,) and along v (l,) for an error, with the number of samples of the grid.
 
     `lengths` are the numbers of steps along u and v, `angle` and `distance` halves of the
     longest diagonals of cells in normal space and in space.
@@ -133,7 +133,7 @@ def _least(value: Callable[[float], float]) -> float:
     found = [value(x) for x in places]
     for _ in range(SEARCHES):
         k = int(found[0] < found[1])
-        # The part beyond the worse place is dropped, and a new place taken in the rest.
+        # The part beyond the worse point is dropped, and a new point taken in the rest.
         low, high = (low, places[1]) if k else (places[0], high)
         places[k], found[k] = places[1 - k], found[1 - k]
         new = high - GOLDEN * (high - low) if k else low + GOLDEN * (high - low)
@@ -145,7 +145,7 @@ def _least(value: Callable[[float], float]) -> float:
 def _steps_at_share(
     forms: Forms, share: float, count: float, distance: float, angle: float
 ) -> tuple[Steps, float]:
-    """Return the steps for a share that give a count, and their angle, from a guess of it on."""
+    """Return the steps for a share that give a count, and their angle, starting from a guess."""
 
     def steps_at(angle: float) -> Steps:
         return _steps(forms, ((2.0 * angle) ** 2, (2.0 * distance) ** 2), share)
@@ -166,14 +166,14 @@ def _steps_at_share(
 
 
 def _typical(forms: Forms) -> float:
-    """Return a count times the square of its angle, roughly."""
+    """Return the product of a count and the square of its angle, roughly."""
     u, v = (np.sqrt(forms.third[k].max(axis=1 - k // 2)) for k in (0, 2))
     lengths = (u * forms.widths[0]).sum() * (v * forms.widths[1]).sum()
     return max(float(lengths) / 2.0, 1e-9)
 
 
 def _steps(forms: Forms, limits: tuple[float, float], share: float) -> Steps:
-    """Return steps that give u a share of the limits, where they reach these."""
+    """Return steps of which those along u use a share of the limits."""
     along = np.empty(len(forms.widths[0])), np.empty(len(forms.widths[1]))
     shared_steps(*forms.arrays, limits, share, SHORTEST, LONGEST, *along)
     lengths = tuple(float((w / x).sum()) for w, x in zip(forms.widths, along, strict=True))

@@ -1,4 +1,4 @@
-"""A surface or a spline as a piece that is sampled."""
+"""A surface or a spline as a piece of a space."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ __all__ = ["SurfacePiece", "space_of"]
 
 # About this number of boxes along u and along v; their sides are lines between cells.
 BOXES = 32
-# A piece that is smaller than this part of the largest is no surface, and gets no samples.
+# A piece smaller than this part of the largest is degenerate, and gets no samples.
 NO_SIZE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SurfacePiece(Piece):
-    """What is sampled, with its spline.
+    """A sampled surface with its spline, as a piece.
 
-    Candidates follow from the derivatives of the surface where it knows them, otherwise from those
-    of the spline; with `exactly`, from differences of the surface. There are no polygons: samples
-    beside borders would be in the way of the vertices of meshes.
+    Candidates follow from the derivatives of the surface if it has them, otherwise from those of
+    the spline; with `exactly`, from finite differences of the surface. There are no polygons:
+    samples beside the boundary would be too close to the boundary vertices of meshes.
     """
 
     geometry: OnSpline
@@ -41,7 +41,7 @@ class SurfacePiece(Piece):
 
     @classmethod
     def of(cls, geometry: OnSpline, first_patch: int) -> SurfacePiece:
-        """Return what is sampled as a piece, with patches that are numbered from a number on."""
+        """Return a geometry as a piece whose patches are numbered from `first_patch` on."""
         spline = geometry.spline
         # At poles the curvature of splines is far from that of the surface.
         exactly = geometry.knows_jets or any("pole" in ends for ends in spline.boundary)
@@ -58,7 +58,7 @@ class SurfacePiece(Piece):
 
     @cached_property
     def size(self) -> float:
-        """The root of the area inside the trim, in L; 0 if that is rounding."""
+        """The root of the area inside the trim, in L; 0 if it is rounding error."""
         spline = self.geometry.spline
         extents = np.ptp(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * spline.scale, axis=0)
         diagonal, area = float(np.linalg.norm(extents)), float(spline.measure[0].sum())
@@ -78,7 +78,7 @@ class SurfacePiece(Piece):
         return (self.geometry.jets if self.exactly else self.geometry.jets_of_spline)(u, v)
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
-        """Return what is searched for points with a normal."""
+        """Return the geometry that is searched for points with a normal."""
         return [self.geometry]
 
     def fields_at(
@@ -88,7 +88,7 @@ class SurfacePiece(Piece):
         return self.geometry.at_parameters(uv, rows[:, 3:6], rows[:, 7], fields, dtype)
 
     def solid_angle(self, density: float) -> float:
-        """Return the solid angle of the normals of what `density` normals per steradian sample."""
+        """Return the solid angle of the normals that a lattice of this density samples."""
         return self.geometry.cell_measure.curved_solid_angle(density)
 
     @property
@@ -102,7 +102,7 @@ def space_of(
     threads: int | None,
     target: TargetDensity = TargetDensity(floor=1.0),  # noqa: B008 - it does not change
 ) -> Space:
-    """Return what is sampled: those of the pieces of a surface that have an area.
+    """Return the space of the pieces of a surface that have an area.
 
     Raises SurfaceError if none has.
     """

@@ -1,4 +1,4 @@
-"""The trims of all pieces, asked for places on many pieces at a time: each may have few places."""
+"""The trims of all pieces, evaluated at points of many pieces in one call."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .piece import Piece
 
 __all__ = ["Trims"]
 
-# The distance from the border of places beside it, relative to the domain.
+# The distance from the boundary of points beside it, relative to the domain.
 BESIDE = 1e-6
 PLACES_AT_A_TIME = 1 << 17
 
@@ -25,15 +25,16 @@ PLACES_AT_A_TIME = 1 << 17
 class Trims:
     """The trims of pieces.
 
-    Those that are loops, which may be reversed, are joined for one call of a kernel; pieces with
-    other conditions are asked in turn.
+    Loops, which may be reversed, are joined for one call of a kernel; other conditions are
+    evaluated piece by piece.
     """
 
     def __init__(self, pieces: Sequence[Piece]) -> None:
         self.pieces = pieces
         self.trimmed = np.array([x.trim is not None for x in pieces], dtype=np.bool_)
         self.domains = np.array([x.domain for x in pieces])
-        # Each place of a piece in `_loops`, −1 for others, and the sums of the ends of reversed u.
+        # The index of each piece in `_loops`, −1 for others, and the sums of the bounds of reversed
+        # u.
         self._place, self._totals = np.full(len(pieces), -1), np.full(len(pieces), np.nan)
         self._loops = list[Loops]()
         for k in np.flatnonzero(self.trimmed).tolist():
@@ -65,7 +66,7 @@ class Trims:
         return inside
 
     def wrapped(self, pieces: Indices, places: Array) -> Array:
-        """Return places (k, 2) of pieces (k,) with a trim less whole periods."""
+        """Return parameters (k, 2) of pieces (k,), modulo periods if the piece has a trim."""
         found = places.copy()
         is_joined = self._place[pieces] >= 0
         low, high = self.domains[pieces, :, 0], self.domains[pieces, :, 1]
@@ -78,7 +79,7 @@ class Trims:
         return found
 
     def beside_border(self, piece: int, step: float) -> Array:
-        """Return places (k, 2) inside a piece, close to its border, at distances `step`."""
+        """Return parameters (k, 2) inside a piece, beside its boundary, at distances `step`."""
         lines = list(self.pieces[piece].border_lines(step))
         steps = np.concatenate([np.empty((0, 2)), *(np.diff(x, axis=0) for x in lines)])
         places = np.concatenate([np.empty((0, 2)), *(x[:-1] for x in lines)]) + steps / 2.0
@@ -87,11 +88,11 @@ class Trims:
     def beside(
         self, pieces: Indices, places: Array, steps: Array
     ) -> tuple[Array, Indices, Indices]:
-        """Return which places are inside, of those left and right of places (k, 2) on borders.
+        """Return parameters beside points (k, 2) of boundaries, on the sides that are inside.
 
-        And the numbers of these; the borders run along steps (k, 2). Where neither is, in tips too
-        narrow for that, the place on the border stands for both. Those at the left come first, and
-        are 0 in what is returned last; those at the right are 1, and those in tips 2.
+        Also return the indices of these points, and the side: 0 for left, 1 for right, in this
+        order. The boundaries run along steps (k, 2). If neither side is inside, in narrow tips, the
+        point itself is returned, with 2.
         """
         low, high = self.domains[pieces, :, 0], self.domains[pieces, :, 1]
         along = steps / (high - low)
@@ -148,8 +149,8 @@ class Trims:
 
     @cached_property
     def _joined(self) -> Joined:
-        """The cells of all loops, and their shifts, one after another."""
-        # Loops do not keep theirs, which take as much memory.
+        """The cells of all loops, and their shifts, concatenated."""
+        # Loops do not cache their own cells, which take as much memory.
         cells, shifts = zip(*(x.in_cells() for x in self._loops), strict=True)
         segments = _starts(x.segments for x in cells)
         return Joined(
@@ -171,5 +172,5 @@ class Trims:
 
 
 def _starts(parts: Iterator[Array] | Sequence[Array]) -> Indices:
-    """Return where each of some arrays begins in all of them, and where the last one ends."""
+    """Return the offsets of arrays in their concatenation, and its length."""
     return np.cumsum([0, *map(len, parts)], dtype=np.int64)

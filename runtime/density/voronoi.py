@@ -1,4 +1,4 @@
-"""The Voronoi cells of samples among finer places than those of the candidates."""
+"""Discrete Voronoi cells of samples, on points finer than the candidates."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from .cells import SIDES, Cells
 
 __all__ = ["Voronoi"]
 
-# The most samples in the list of a candidate.
+# The largest number of samples in the list of a candidate.
 MOST = 16
 
 
 class Voronoi:
-    """Which samples are the nearest ones of finer places in cells.
+    """The nearest samples of a fine grid of points in cells.
 
-    The cells are those of the candidates, whose distances from the samples (N, 6) are known. Finer
-    places are those of kernels/centres.py, linear in the parameters; in cells that a border passes,
-    only the place of the cell counts. What is found stays right for samples that move by less than
-    margin/√w; of those that are far from all samples within radius/√w, only the place counts.
+    The cells are those of the candidates, whose distances from the samples (N, 6) are known. The
+    fine points are those of kernels/centres.py, linear in the parameters; in cells that a boundary
+    intersects, only the place of the cell counts. The lists remain valid for samples that move by
+    less than margin/√w. Of cells without a sample within radius/√w, only the place counts.
     """
 
     def __init__(
         self, candidates: Candidates, cells: Cells, samples: Array, radius: float, margin: float
     ) -> None:
         self.cells, numbers = cells, cells.numbers
-        numbers[~cells.whole, SIDES] = 0.0  # nothing else asks for these, and a copy is large
+        numbers[~cells.whole, SIDES] = 0.0  # nothing else reads these, and a copy is large
         samples = np.ascontiguousarray(samples)
 
         def listed(first: int, last: int) -> tuple[Block, Lists]:
@@ -44,9 +44,9 @@ class Voronoi:
         self._parts = list(over_ranges(listed, len(candidates.parts), 1, candidates.threads))
 
     def centres(self, samples: Array, first: int) -> tuple[Indices, Indices, Array]:
-        """Return the samples from number `first` on that have a cell, and where its centre is.
+        """Return the samples from index `first` on that have a Voronoi cell, with its centre.
 
-        That is a cell of the candidates, and parameters (k, 2) in it.
+        The centre is a cell of the candidates, and parameters (k, 2) in it.
         """
         moments, work = np.zeros((len(samples), 4)), np.empty((5, FINER**2))
         for part, lists in self._parts:
@@ -61,9 +61,9 @@ class Voronoi:
         return moved, found[moved, 0], self._parameters(*found[moved].T)
 
     def widest(self, samples: Array, least: float) -> tuple[Indices, Array]:
-        """Return the cells with a place that is at least least/√w from all samples, and this.
+        """Return the cells with a point at least least/√w from all samples, and that point.
 
-        It is the farthest one of each cell, by its parameters (k, 2).
+        The point is the farthest one of each cell, by its parameters (k, 2).
         """
         rows, places, work = list[Indices](), list[Indices](), np.empty((5, FINER**2))
         for part, lists in self._parts:
@@ -76,7 +76,7 @@ class Voronoi:
         return chosen, self._parameters(chosen, np.concatenate(places))
 
     def _parameters(self, rows: Indices, numbers: Indices) -> Array:
-        """Return the parameters (k, 2) of finer places in cells, by their numbers (k,)."""
+        """Return the parameters (k, 2) of fine points in cells, by their indices (k,)."""
         cells = self.cells[rows]
         finer = cells.whole & (numbers >= 0)
         steps = (np.stack(np.divmod(numbers, FINER), axis=1) + 0.5) / FINER - 0.5

@@ -22,14 +22,14 @@ def circle(count: int) -> NDArray[np.float64]:
     Returns
     -------
     (count, 2) float64 array
-        Unit normals; normal k is at the angle 2π (k + ½)/count. They are as symmetric as the set of
-        angles is, bit for bit: mirrored in both axes if `count` is even, and in the diagonals too
-        if it is a multiple of 4.
+        Unit normals; normal k is at the angle 2π (k + ½)/count. They have the symmetries of the set
+        of angles, bit for bit: reflections in both axes if `count` is even, and in the diagonals if
+        it is a multiple of 4.
 
     Raises
     ------
     InputError
-        If `count` is not such a number.
+        If `count` is not an integer in this range.
 
     Examples
     --------

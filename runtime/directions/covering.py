@@ -40,8 +40,8 @@ def covering_radius(normals: ArrayLike) -> float:
     -----
     Each facet of the convex hull of the normals bounds an empty cap round its own normal; the
     covering radius is the largest angle of these caps. It is that of the whole sphere: for normals
-    that fill a part of it only, such as a `cap`, it is 180° minus the radius of the smallest cap
-    that holds them.
+    within a hemisphere, such as those of a small `cap`, it is 180° minus the radius of the smallest
+    cap that holds them.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def _smallest_cap(normals: Array) -> float:
 
 
 def _cap_of_few(normals: Array) -> tuple[Array, Array, float]:
-    """Return the smallest cap of up to four normals: its centre, those on its border, radius."""
+    """Return the smallest cap of up to four normals: centre, normals on its boundary, radius."""
     found: list[tuple[float, Array, Array]] = []
     for size in (1, 2, 3):
         for rows in combinations(normals, size):

@@ -29,7 +29,7 @@ class Cap(NamedTuple):
         return 4.0 * math.pi * math.sin(math.radians(self.angle) / 2.0) ** 2
 
     def contains(self, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return which unit normals (N, 3) are in it; what is NaN or 0 is not."""
+        """Return which unit normals (N, 3) are in the cap; rows of NaN or 0 are not."""
         return normals.any(axis=1) & (angles_between(normals, self.axis) <= self.angle)
 
 
@@ -69,8 +69,8 @@ def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64
     Raises
     ------
     InputError
-        For unusable normals (see `sample`), an axis that is not three finite numbers or is zero,
-        and another angle.
+        For unusable normals (see `sample`), an axis that is zero or not three finite numbers, or an
+        angle out of range.
 
     See Also
     --------
@@ -115,8 +115,8 @@ def polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     InputError
-        For unusable normals and corners, neighbouring corners that are equal or opposite, and
-        corners that do not go round a convex polygon anticlockwise.
+        For unusable normals or corners, neighbouring corners that are equal or opposite, or corners
+        that are not in anticlockwise order round a convex polygon.
 
     See Also
     --------

@@ -55,7 +55,7 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
     Raises
     ------
     InputError
-        If `frequency` is not such a number.
+        If `frequency` is not an integer in this range.
 
     Notes
     -----
@@ -81,7 +81,7 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
 
 
 def frequency_within(angle: float) -> int:
-    """Return the least ν for which every direction is within `angle` degrees of `icosphere(ν)`.
+    """Return the least ν with a covering radius of `icosphere(ν)` of at most `angle` degrees.
 
     Raises InputError if there is none.
     """
@@ -148,7 +148,7 @@ def healpix(nside: int) -> NDArray[np.float64]:
     Raises
     ------
     InputError
-        If `nside` is not such a number.
+        If `nside` is not a power of 2 in this range.
     MissingExtraError
         If astropy-healpix is not installed, which the extra "spheres" brings.
 
@@ -177,8 +177,8 @@ def random(count: int, *, seed: int = 0) -> NDArray[np.float64]:
     count : int
         The number of normals, at least 1.
     seed : int, default 0
-        Another seed gives other normals; at least 0. The same seed gives the same normals (with the
-        same version of NumPy), and fewer of them are the first of more.
+        The seed of the random numbers, at least 0. The same seed gives the same normals (with the
+        same version of NumPy), and a smaller `count` gives a prefix of a larger one.
 
     Returns
     -------
@@ -188,12 +188,12 @@ def random(count: int, *, seed: int = 0) -> NDArray[np.float64]:
     Raises
     ------
     InputError
-        If `count` or `seed` is not such a number.
+        If `count` or `seed` is not an integer in its range.
 
     Notes
     -----
-    They are less evenly distributed than a lattice: of regions of the area 4π/count, a fraction of
-    about 1/e contains none.
+    They are less evenly distributed than a lattice: about a fraction 1/e of all regions of area
+    4π/count contains no normal.
 
     Examples
     --------
@@ -211,7 +211,7 @@ def random(count: int, *, seed: int = 0) -> NDArray[np.float64]:
 def part_of_fibonacci(
     count: int, first: int, last: int, threads: int | None = None
 ) -> NDArray[np.float64]:
-    """Return the rows first, …, last − 1 of `fibonacci(count)`."""
+    """Return the rows [first, last) of `fibonacci(count)`."""
 
     def rows(begin: int, end: int) -> NDArray[np.float64]:
         k = np.arange(begin, end)

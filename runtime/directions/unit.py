@@ -30,7 +30,7 @@ def as_normals(
 
     A vector that has unit length already, up to rounding, is kept bit for bit; an array of such
     vectors is returned itself, not a copy. Raises InputError for another shape, an empty array,
-    NaN, infinity, or a vector of length 0, and names its row.
+    NaN, infinity, or a vector of length 0, with the number of its row.
     """
     if hasattr(normals, "normals"):  # samples: as an array they are points
         raise InputError(
@@ -73,7 +73,7 @@ def in_pieces(
     threads: int | None = None,
     width: int = 3,
 ) -> NDArray[np.float64]:
-    """Return rows(first, last) (…, width), computed on threads in pieces of the size PIECE."""
+    """Return rows(first, last) (…, width), computed on threads, PIECE rows at a time."""
     check_memory("normals", last - first)
     result = np.empty((last - first, width))
 
@@ -96,7 +96,7 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _are_unit(array: NDArray[Any], threads: int | None) -> bool:
-    """Return whether an array holds unit vectors, in the type and layout that kernels take."""
+    """Return whether an array holds unit vectors in the dtype and layout of the kernels."""
     if array.dtype != np.float64 or not array.flags.carray:
         return False
 

@@ -34,9 +34,9 @@ __all__ = [
 # The boundary condition of a side: open, periodic, mirrored (periodic, with the other parameter
 # reversed) or pole.
 BoundaryCondition = Literal["open", "periodic", "mirrored", "pole"]
-BoundaryPair = tuple[BoundaryCondition, BoundaryCondition]  # at the low and at the high end
+BoundaryPair = tuple[BoundaryCondition, BoundaryCondition]  # at the lower and at the upper bound
 Boundary = tuple[BoundaryPair, BoundaryPair]  # for u and for v
-Assumed = tuple[bool, bool]  # for u and for v, whether open ends were assumed, not declared
+Assumed = tuple[bool, bool]  # for u and for v: whether open sides were assumed, not declared
 Interval = tuple[float, float]
 Domain = tuple[Interval, Interval]
 Periodicity = bool | BoundaryCondition | BoundaryPair  # of one parameter
@@ -44,13 +44,13 @@ Periodic = bool | Sequence[Periodicity]  # of both, or of u and of v
 
 
 def checked_domain(domain: Sequence[Sequence[float]]) -> Domain:
-    """Return a domain as floats; InputError unless it is a bounded rectangle with an inside."""
+    """Return a domain as floats; InputError unless it is a bounded rectangle of positive area."""
     u, v = _checked(domain, "uv", "((u0, u1), (v0, v1))")
     return u, v
 
 
 def checked_interval(domain: Sequence[float]) -> Interval:
-    """Return the domain of a curve as floats; InputError unless it is bounded, with an inside."""
+    """Return the domain of a curve as floats; InputError unless it is bounded and not empty."""
     return _checked((domain,), "t", "(t0, t1)")[0]
 
 
@@ -70,7 +70,7 @@ def _checked(domain: Sequence[Sequence[float]], names: str, form: str) -> list[I
 def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
     """Return the boundary conditions from their short forms; InputError on a clash.
 
-    And for u and v whether open ends were assumed: `periodic` has False, and not "open".
+    Also return, for u and v, whether open sides were assumed: `periodic` has False, not "open".
     """
     boundary = checked_sides(periodic)
     for name, other, ends, around in (("u", "v", *boundary), ("v", "u", *boundary[::-1])):
@@ -81,7 +81,7 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
 
 
 def checked_sides(periodic: Periodic) -> Boundary:
-    """Return the conditions of all sides, of which any may be a pole; InputError if one is none."""
+    """Return the boundary conditions of all sides, any of which may be poles; or InputError."""
     along_u, along_v = _entries(periodic)
     return _pair(along_u, "u"), _pair(along_v, "v")
 
@@ -106,7 +106,7 @@ def closes(ends: Sequence[str]) -> bool:
 
 
 def cells_between(shape: Sequence[int], boundary: Boundary) -> tuple[int, int]:
-    """Return the numbers of cells between the points of a grid (m, n, …)."""
+    """Return the numbers of cells of a grid of points (m, n, …)."""
     m, n = (
         count if closes(ends) else count - 1 for count, ends in zip(shape, boundary, strict=False)
     )
@@ -116,7 +116,7 @@ def cells_between(shape: Sequence[int], boundary: Boundary) -> tuple[int, int]:
 def less_periods(
     values: NDArray[np.float64], low: NDArray[np.float64] | float, high: NDArray[np.float64] | float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return values (k,) less whole periods, between the ends, and the numbers of these periods."""
+    """Return values (k,) reduced modulo the period to the domain, and the numbers of periods."""
     periods = np.floor((values - low) / (high - low))
     return np.clip(values - periods * (high - low), low, high), periods
 
@@ -124,7 +124,7 @@ def less_periods(
 def brought_inside(
     u: NDArray[np.float64], v: NDArray[np.float64], domain: Domain, boundary: Boundary
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return parameters (k,) less whole periods; those beyond other ends stay what they are."""
+    """Reduce periodic parameters (k,) modulo their periods; leave the others unchanged."""
     places = u.copy(), v.copy()
     for axis, (low, high) in enumerate(domain):
         if not closes(boundary[axis]):

@@ -1,4 +1,4 @@
-"""Loops in the parameter plane: closed polygons, and whether a point is inside of them."""
+"""Loops: closed polygons in the parameter plane, with tests of points inside."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .domain import Boundary, Domain, closes
 __all__ = ["Loops", "checked_loops"]
 
 
-# A closed polygon of n segments is sorted into about this number of cells for each of them.
+# The number of cells for each segment, about, and the largest number of rows of cells.
 CELLS_A_SEGMENT, MOST_ROWS = 8, 2048
-# The lists of all cells have about at most this number of entries.
+# The largest number of entries of the lists of all cells, about.
 MOST_ENTRIES = 1 << 24
-# Segments belong to all cells that they may touch: in units of a cell, and of the rounding of the
+# Segments belong to all cells within this margin: in units of a cell, and in roundings of the
 # largest coordinate.
 MARGIN, MARGIN_IN_ROUNDINGS = 1e-9, 16.0
 POINTS_AT_A_TIME = 1 << 14
@@ -33,7 +33,7 @@ POINTS_AT_A_TIME = 1 << 14
 MOST_PERIODS = 100
 # The number of pairs of a box and a segment that are compared at a time.
 PAIRS_AT_A_TIME = 1 << 20
-# Points on an open side of the domain stand for points inside, at this part of the domain.
+# Points on an open side of the domain are moved inwards by this part of the domain.
 INSIDE = 1e-13
 
 
@@ -42,7 +42,7 @@ class Loops:
     """Closed polygons (k, 2) in the parameter plane; a point is inside by the even-odd rule.
 
     The first point of a polygon is not repeated. Loops may run beyond the seam of a periodic
-    direction: a point is inside if it, or its copy any number of periods away, is.
+    direction: a point is inside if it, or a copy shifted by whole periods, is.
     """
 
     polygons: tuple[Array, ...]
@@ -61,19 +61,19 @@ class Loops:
         return inside
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
-        """Return the cells (m, n) of a grid on the domain that the polygons may pass."""
+        """Return the cells (m, n) of a grid on the domain that the polygons may intersect."""
         low, high = np.array(domain).T
         steps = (high - low) / cells
         points = np.concatenate([_steps(x, steps / 2.0) for x in self.polygons])
         passed = np.zeros(cells, dtype=np.bool_)
         for a, b, c, d in self.shifts:
-            # The shifts are their own inverses where they turn a direction.
+            # Shifts that reverse a direction are their own inverses.
             places = np.stack([a * (points[:, 0] - b), c * (points[:, 1] - d)], axis=1)
             i, j = np.floor((places - low) / steps).astype(np.int64).T
             here = (i >= -1) & (i <= cells[0]) & (j >= -1) & (j <= cells[1])
             marks = np.zeros((cells[0] + 2, cells[1] + 2), dtype=np.bool_)
             marks[i[here] + 1, j[here] + 1] = True
-            # And the cells around those with a point.
+            # The cells with a point, and their neighbours.
             rows = marks[:-2] | marks[1:-1] | marks[2:]
             passed |= rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
         return passed
@@ -81,7 +81,7 @@ class Loops:
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
         """Return 1 for boxes (k, 4) inside, −1 outside, and 0 where a segment may meet the box.
 
-        That has a margin for rounding. The normals (k, 3) of boxes do not matter.
+        The box has a margin for rounding. The normals (k, 3) are not used.
         """
         low, high = boxes[:, ::2], boxes[:, 1::2]
         middles, halves = (low + high) / 2.0, (high - low) / 2.0
@@ -115,7 +115,7 @@ class Loops:
 
     @cached_property
     def shifts(self) -> Array:
-        """The copies (s, 4) of a point of the domain, (a u + b, c v + d), that may be inside."""
+        """The maps (s, 4) to copies (a u + b, c v + d) of a point that may be inside."""
         (u0, u1), (v0, v1) = self.domain
         along_u, along_v = (self._periods(axis) for axis in (0, 1))
         rows = []
@@ -129,7 +129,7 @@ class Loops:
         return np.array(rows)
 
     def _periods(self, axis: int) -> list[int]:
-        """Return by how many periods points may be shifted along an axis, 0 first."""
+        """Return the numbers of periods by which points may be shifted along an axis, 0 first."""
         low, high = self.domain[axis]
         if not closes(self.boundary[axis]):
             return [0]
@@ -140,7 +140,7 @@ class Loops:
 
     @cached_property
     def _cells(self) -> tuple[kernels.Cells, Array]:
-        """What `in_cells` returns."""
+        """The cached result of `in_cells`."""
         return self.in_cells()
 
     def in_cells(self) -> tuple[kernels.Cells, Array]:
@@ -149,7 +149,7 @@ class Loops:
         scales = np.array([scale_to_one(float(x)) for x in sizes])
         ends = [np.stack([x, np.roll(x, -1, axis=0)], axis=1) for x in self.polygons]
         segments = np.concatenate(ends) * scales
-        # The lower end first: then a side that two polygons share is the same for both.
+        # From the lower end: a segment that two polygons share is then the same for both.
         (u, v), (w, z) = segments[:, 0].T, segments[:, 1].T
         turned = (v > z) | ((v == z) & (u > w))
         segments[turned] = segments[turned][:, ::-1]
@@ -177,7 +177,7 @@ class Loops:
 def _may_meet(segments: Array, middles: Array, halves: Array) -> Flags:
     """Return whether segments (n, 4) may meet boxes with middles and half sizes (k, 2): (k, n).
 
-    Disjoint ones are separated by a line along u, along v or along the segment.
+    Disjoint ones are separated by a line parallel to u, to v or to the segment.
     """
     start, way = segments[:, :2], (segments[:, 2:] - segments[:, :2]) / 2.0
     largest = np.maximum(np.abs(segments).max(), np.abs(middles).max(initial=0.0))
@@ -203,7 +203,7 @@ def _steps(polygon: Array, steps: Array) -> Array:
 
 
 def checked_loops(loops: object, domain: Domain, boundary: Boundary) -> Loops:
-    """Return loops; InputError if they are no polygons, and says why."""
+    """Return loops; InputError, with the reason, if they are not closed polygons."""
     polygons = [_polygon(x, k) for k, x in enumerate(_rings(loops))]
     if not polygons:
         raise InputError("loops is empty; give at least one closed polygon of points u, v.")
@@ -219,7 +219,7 @@ def checked_loops(loops: object, domain: Domain, boundary: Boundary) -> Loops:
 
 
 def _rings(loops: Any) -> list[Any]:  # noqa: ANN401
-    """Return the closed polygons of what may be a geometry, one of them, or a sequence of both."""
+    """Return the closed polygons of a geometry, of one polygon, or of a sequence of these."""
     if hasattr(loops, "__geo_interface__"):
         return _rings_of_geometry(loops.__geo_interface__)
     items = listed(loops)

@@ -25,18 +25,18 @@ class TrimPart(Protocol):
     """One condition of a trim."""
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
-        """Return whether points (k, 2) of the domain fulfil it, as booleans (k,)."""
+        """Return whether points (k, 2) of the domain fulfil the condition, as booleans (k,)."""
         ...
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
-        """Return the cells (m, n) of a grid that its border may pass, None if that is unknown."""
+        """Return the cells (m, n) of a grid that its boundary may pass; None if unknown."""
         ...
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Return 1 for boxes (k, 4), u₀, u₁, v₀, v₁, that fulfil it in all points with a normal.
+        """Classify boxes (k, 4), u₀, u₁, v₀, v₁, by their points with a given normal.
 
-        Each box has one of normals (k, 3). It is −1 if none of these points does, and 0 if that is
-        not known.
+        Each box has one of the normals (k, 3). Return 1 if all its points with this normal fulfil
+        the condition, −1 if none does, 0 if unknown.
         """
         ...
 
@@ -45,7 +45,8 @@ class TrimPart(Protocol):
 class Trim:
     """The part of a domain that belongs to a surface: where all conditions hold.
 
-    Made by `Surface.trimmed`, and for grids with missing points. It pickles if its predicates do.
+    `Surface.trimmed` makes it, and a grid with missing points has one. It pickles if its predicates
+    do.
 
     Attributes
     ----------
@@ -54,7 +55,7 @@ class Trim:
     boundary : pair of pairs of str
         The boundary conditions, see `Surface`.
     parts : tuple
-        The conditions: closed polygons, predicates, and points of a grid that are there.
+        The conditions: closed polygons, predicates, and the present points of a grid.
 
     Examples
     --------
@@ -111,7 +112,7 @@ class Trim:
         return inside
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> tuple[Flags, bool]:
-        """Return the cells (m, n) that the border is known to pass, and whether these are all.
+        """Return the cells (m, n) that the boundary may pass, and whether the list is complete.
 
         Parameters
         ----------
@@ -125,7 +126,7 @@ class Trim:
         (m, n) bool array
             The cells that the border may pass.
         bool
-            False if there is a predicate, whose border is not known.
+            False if there is a predicate, whose boundary is unknown.
 
         Examples
         --------
@@ -146,20 +147,20 @@ class Trim:
         return passed, all_known
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Return whether boxes are inside of the trim (1), or outside (−1), as far as known (0).
+        """Return whether boxes are inside the trim (1), outside (−1), or undecided (0).
 
         Parameters
         ----------
         boxes : (k, 4) float64 array
             Rectangles u₀, u₁, v₀, v₁ of parameters.
         normals : (k, 3) float64 array
-            A unit normal for each: only the points of the box that have it count.
+            A unit normal for each box: only points of the box with this normal count.
 
         Returns
         -------
         (k,) int8 array
-            1 and −1 are proved up to rounding; 0 for boxes that may meet the border, and where a
-            predicate decides that is not made of inequalities between NumPy functions.
+            1 and −1 are proved up to rounding. It is 0 for boxes that may meet the boundary, and
+            for predicates that are not inequalities between NumPy functions.
 
         Examples
         --------
@@ -186,10 +187,10 @@ class Trim:
 
 
 class OnBoxes(Protocol):
-    """What is known of a condition on boxes."""
+    """A condition evaluated on boxes."""
 
     def sides(self, boxes: Array) -> NDArray[np.int8]:
-        """Return 1 for boxes (k, 4) where it holds, −1 where it does not, 0 if that is unknown."""
+        """Return 1 for boxes (k, 4) where the condition holds, −1 where it fails, 0 if unknown."""
         ...
 
 
@@ -198,9 +199,9 @@ Traced = Callable[[Callable[[Array, Array], Any], Domain], OnBoxes | None]
 
 @dataclass(frozen=True, eq=False)
 class Predicate:
-    """A vectorized callable f(u, v) → booleans, of the surface with a name and a domain.
+    """A vectorized callable f(u, v) → booleans as a condition; name and domain are the surface's.
 
-    `traced` makes of it what is known of boxes, or None.
+    `traced` returns its evaluation on boxes, or None.
     """
 
     function: Callable[[Array, Array], Any]
@@ -209,16 +210,16 @@ class Predicate:
     traced: Traced
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
-        """Return what the callable says of points (k, 2)."""
+        """Return the booleans of the callable at points (k, 2)."""
         starts = range(0, len(uv), POINTS_AT_A_TIME)
         found = [self._part(uv[first : first + POINTS_AT_A_TIME]) for first in starts]
         return np.concatenate([np.empty(0, dtype=np.bool_), *found])
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> None:
-        """Return None: where the callable changes is not known."""
+        """Return None: the boundary of the condition is unknown."""
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Return on which side boxes (k, 4) are: 0 for all if the callable cannot be traced."""
+        """Classify boxes (k, 4), see `Trim.sides`: 0 for all if the callable cannot be traced."""
         condition = self.traced(self.function, self.domain)
         return np.zeros(len(boxes), np.int8) if condition is None else condition.sides(boxes)
 

@@ -1,1 +1,1 @@
-"""Fitting splines to surfaces: the choice of cells, and the error that is left."""
+"""Fitting splines to surfaces: the choice of cells, and the remaining error."""

@@ -26,18 +26,18 @@ POINTS_AT_A_TIME = 1 << 16
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """A misfit, and where it comes from.
+    """A misfit, with the parameters where it is largest.
 
     Attributes
     ----------
     misfit : Misfit
         The misfit of a spline.
     angle_away : float or None
-        The largest angle away from sides of the domain that are one point, such as poles: next to
-        them it falls only slowly with the size of the cells.
+        The largest angle away from collapsed sides of the domain, such as poles: next to these it
+        falls only slowly with the size of the cells.
     farthest, steepest : (2,) float64 array
-        The places of the largest distance, and of the largest angle (of `angle_away` if that is
-        known), as parts of the domain.
+        The parameters, as fractions of the domain, of the largest distance, and of the largest
+        angle (of `angle_away` if that is known).
 
     """
 
@@ -71,7 +71,7 @@ def compare_with_data(spline: Spline, data: Array, boundary: Boundary) -> Compar
 
 
 def evaluated(spline: Spline, u: Array, v: Array) -> tuple[Array, Array]:
-    """Return points and unnormalized normals of a spline at places as parts of the domain."""
+    """Return points and unnormalized normals of a spline at fractions of the domain."""
     return spline._evaluated(np.stack([u * spline.cells[0], v * spline.cells[1]], axis=1))
 
 
@@ -84,7 +84,7 @@ def squared_lengths(differences: Array, scale: float) -> Array:
 def angles_between(vectors: Array, normals: Array) -> Array:
     """Return the angles, in degrees, between vectors and unit normals.
 
-    Where the spline is singular, its vector vanishes, and every direction is 90° off.
+    At a singular point of the spline its vector vanishes, and the angle counts as 90°.
     """
     largest = np.abs(vectors).max(axis=1, keepdims=True)
     scaled = vectors / np.where(largest > 0.0, largest, 1.0)

@@ -28,18 +28,18 @@ from .tolerance import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
 
 __all__ = ["DEFAULT_CELLS", "check_range", "fit", "spline_of"]
 
-# Without cells or tolerance: the least numbers of cells, and what they are increased for. At
-# creases no number of cells makes normals accurate: the search ends when it does not improve them.
+# Without cells or tolerance: the least numbers of cells, and the goal for which they are increased.
+# At creases no number of cells makes normals accurate: the search ends when they do not improve.
 DEFAULT_CELLS = (64, 64)
 DEFAULT_TOLERANCE = Tolerance(distance=None, relative=1e-4, angle=0.1)
 DEFAULT_BOUNDS = Bounds(most=(1024, 1024), total=2**16, patience=2)
-# For a tolerance: the first cells that are tried, and the most. The search ends at these.
+# For a tolerance: the numbers of cells of the first attempt, and the largest ones.
 FEWEST_CELLS = (8, 8)
 BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
 
 
 def spline_of(surface: Surface | Spline | str, cells: Sequence[int] | None) -> Spline:
-    """Return a spline unchanged, or the spline of a surface or of a surface's name.
+    """Return a spline unchanged, or fit one to a surface or to a catalogue surface by its name.
 
     Raises InputError for `cells` with a spline.
     """
@@ -71,14 +71,15 @@ def fit(
     """Approximate a surface by a C¹ quadratic spline.
 
     The quasi-interpolant (paper, Sect. 3.1) is exact on quadratics. The error of positions falls
-    with the third power of the cell size, that of normals with the second (13). It is measured at
-    thousands of places that the fit does not use, among them lines of hundreds of places along u
-    and along v, and is the `misfit` of the spline. A spline rounds the creases of a NURBS: fit its
-    pieces one by one (see `Surface.pieces`).
+    with the third power of the cell size, that of normals with the second (13). The `misfit` of the
+    spline is this error, measured at thousands of points that the fit does not use, among them
+    hundreds on each of several lines along u and along v. A spline rounds the creases of a NURBS:
+    fit its pieces one by one (see `Surface.pieces`).
 
-    Sides of the domain that are one point become poles where the surface goes on smoothly, unless
-    `periodic` says how they end (see `Surface.assumed_open`). There the spline has one normal. Next
-    to it, in a few cells, errors of normals fall with the first power of the cell size only.
+    Collapsed sides of the domain become poles where the surface is smooth there, unless `periodic`
+    gives their boundary condition (see `Surface.assumed_open`). At a pole the spline has one
+    normal; in the few cells around it, errors of normals fall only with the first power of the cell
+    size.
 
     Parameters
     ----------
@@ -88,15 +89,15 @@ def fit(
         The numbers of cells along u and v, at least 3. By default, one cell between any four
         neighbouring points of a grid; else 64 × 64 or more, see Notes.
     tolerance : float, optional
-        Instead of `cells`: the largest distance between surface and spline, in L. As many cells
-        along u, and along v, as it takes are found, by doubling.
+        Instead of `cells`: the largest distance between surface and spline, in L. The numbers of
+        cells along u and v are doubled until it is reached.
     relative_tolerance : float, optional
         The same, relative to the diagonal of the bounding box of the surface.
     normal_tolerance : float, optional
         The largest angle between the normals of surface and spline, in degrees, from 0.0001 to 90.
         Alone, it goes with a relative tolerance of 1e-4.
     progress : bool, default False
-        Show on a terminal what is done, after the first second.
+        Show progress on a terminal, after the first second.
 
     Returns
     -------
@@ -107,8 +108,8 @@ def fit(
     Raises
     ------
     InputError
-        For unusable `cells`, and more of them than a narrow domain can hold; for a tolerance that
-        is not positive or below the rounding of the coordinates, or beside `cells`.
+        For unusable `cells`, or more of them than a narrow domain can hold; for a tolerance that is
+        not positive, is below the rounding of the coordinates, or is given together with `cells`.
     UnknownNameError
         If there is no surface of that name.
     SurfaceError
@@ -117,14 +118,14 @@ def fit(
     Warns
     -----
     GaussmapWarning
-        If a tolerance is not reached with 4096 cells along u or v, 2²⁰ cells in all, or those of a
-        grid. If the default misses its goal by a factor of ten.
+        If a tolerance is not reached with 4096 cells along u or v, 2²⁰ cells in all, or the cells
+        of a grid; or if the default misses its goal by a factor of ten.
 
     Notes
     -----
     By default, cells are increased from 64 × 64 until the distance is 1e-4 of the diagonal, and the
-    angle 0.1°, next to poles excepted: up to 1024 along u or v, and 2¹⁶ in all. If twice the cells
-    do not help, as at creases, fewer remain.
+    angle 0.1°, next to poles excepted: up to 1024 along u or v, and 2¹⁶ in all. If doubling the
+    cells does not reduce the error, as at creases, the smaller number is kept.
 
     Examples
     --------
@@ -161,7 +162,7 @@ def fit(
 
 
 def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
-    """Return a spline with a tolerance, or with that of the default."""
+    """Return a spline within a tolerance, by default that of the default cells."""
     spline = _fitted(surface, DEFAULT_CELLS if asked is None else FEWEST_CELLS)
     probe = probe_of(surface, DEFAULT_CELLS)
     goal = (asked or DEFAULT_TOLERANCE).goal(probe.diagonal, probe.largest, poles=asked is not None)
@@ -185,7 +186,7 @@ def _fit_data(
     cells: Sequence[int] | None,
     asked: Tolerance | None,
 ) -> Spline:
-    """Return the spline of a grid of points, by default with one cell between any four of them."""
+    """Return the spline of a grid of points, by default with a cell for any four neighbours."""
     if asked is None:
         spline = _fitted(surface, cells) if cells is not None else _finest(surface, grid)
         misfit = compare_with_data(spline, grid, surface.boundary).misfit
@@ -204,7 +205,7 @@ def _fit_data(
 def _fit_data_to(
     surface: Surface, grid: NDArray[np.float64], asked: Tolerance
 ) -> tuple[Spline, Misfit]:
-    """Return a spline with a tolerance, and its misfit to the data."""
+    """Return a spline within a tolerance, and its misfit to the data."""
     if asked.angle is not None:
         raise InputError("normal_tolerance=... is for surfaces; data have no normals.")
     extent = np.nanmax(grid, axis=(0, 1)) - np.nanmin(grid, axis=(0, 1))
@@ -238,7 +239,7 @@ def _finest(surface: Surface, grid: NDArray[np.float64]) -> Spline:
 
 
 def _within(domain: Domain, bounds: Bounds) -> Bounds:
-    """Return bounds for the cells of a domain, which may be narrow relative to its numbers."""
+    """Return bounds reduced for a domain that is narrow relative to the magnitude of its bounds."""
     most = [
         min(most, max(int((high - low) / np.spacing(max(-low, high)) / 8.0), 64))
         for (low, high), most in zip(domain, bounds.most, strict=True)
@@ -269,9 +270,9 @@ def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
 
 
 def _close(surface: Surface, vertices: NDArray[np.float64]) -> None:
-    """Make values (m + 1, n + 1, 3) on a seam bitwise equal, so that the spline closes exactly.
+    """Make vertices (m + 1, n + 1, 3) on a seam equal, so that the spline closes exactly.
 
-    Raises SurfaceError if they are not about the same, and for a pole that is not one point.
+    Raises SurfaceError if they differ beyond rounding, or if a pole is not one point.
     """
     for axis, (along, ends) in enumerate(zip("uv", surface.boundary, strict=True)):
         rows = np.swapaxes(vertices, 0, axis)

@@ -1,4 +1,4 @@
-"""Places where a spline is compared with its surface, which are not those of the fit."""
+"""Test points at which a spline is compared with its surface, distinct from those of the fit."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ __all__ = ["Probe", "probe_of", "variation"]
 
 
 class Counts(NamedTuple):
-    """The numbers of values on a line, of lines inside the domain, and of spread places."""
+    """The numbers of test points on a line, of lines inside the domain, of scattered points."""
 
     steps: int
     lines: int
     spread: int
 
 
-# Places where a spline is compared with its surface: on lines along u and along v, and spread over
-# the domain. A strip of 1 % of the domain has three values of each line that crosses it.
+# Test points are on lines along u and along v, and scattered over the domain. A strip of 1 % of the
+# domain has three of each line that crosses it.
 MANY = Counts(steps=301, lines=4, spread=2048)
-# The same for a spline of fewer cells than FEW_CELLS: so the surface is evaluated at most twice as
-# often as for the fit, and 8,000 times.
+# The same for a spline of fewer cells than FEW_CELLS: the surface is evaluated at most twice as
+# often as for the fit, and at most 8,000 times.
 FEW_CELLS, FEW = 2048, Counts(steps=202, lines=1, spread=512)
-# Lines more in either direction are this near to the ends: at poles and open sides the spline is
-# worst, in the first cell.
+# Further lines in both directions are this close to the sides: at poles and open sides the spline
+# is worst, in the first cell.
 NEAR_ENDS = (0.002, 0.015)
-# A side of the domain is one point if the line nearest to it is shorter than this part of the
-# diagonal; so near to it, as a part of the domain, normals converge more slowly than elsewhere.
+# A side of the domain is collapsed if the line nearest to it is shorter than this part of the
+# diagonal; within this fraction of the domain from it, normals converge more slowly.
 COLLAPSED, NEXT_TO_POLE = 0.01, 1.0 / 16.0
-# Normals take four evaluations, points one: they are compared at every third place on lines, and
-# at every fourth of those that are spread.
+# Normals take four evaluations, points one: normals are compared at every third test point on
+# lines, and at every fourth of the scattered ones.
 EACH_ON_LINES, EACH_SPREAD = 3, 4
 # The multiples of irrational numbers are spread evenly, modulo 1: those of 1/g in one dimension, g
 # the golden ratio, those of 1/ρ and 1/ρ² in two, ρ³ = ρ + 1 (Roberts' R2 sequence). Parameters of
@@ -50,22 +50,23 @@ PLASTIC = 0.7548776662466927
 # with the square of it, and its rounding grows with its inverse. On surfaces that are far from the
 # origin, relative to their size, it is the cube root of the rounding.
 SHORTEST_STEP, LONGEST_STEP = 2.0**-17, 2.0**-11
-# Surface normals with a larger error than this (radians) are left out: at singular points.
+# Surface normals with a larger error than this (radians), near singular points, are left out.
 NORMAL_ERROR = 1e-4
 # Of the difference of two coordinates, relative to the largest: eight roundings.
 DIFFERENCE = 2.0**-49
-# The surface is evaluated again at AROUND places around each of the WORST ones, within a cell, and
-# its normals at one of EACH_AROUND of these. No two of the worst are in one of GROUPS of places.
+# The surface is evaluated again at AROUND points around each of the WORST test points, within a
+# cell, and its normal at every EACH_AROUND-th of these. The worst are in different ones of GROUPS
+# groups.
 AROUND, WORST, GROUPS, EACH_AROUND = 30, 16, 100, 4
-# The places on each line of a cross around a place, within a cell on either side.
+# The number of points on each line of a cross around a test point, within a cell on either side.
 CROSS = 17
 
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """A surface at places: points (k, 3) at parts (2, k), and unit normals (l, 3) at some of them.
+    """Values of a surface: points (k, 3) at fractions (2, k) of the domain, and l unit normals.
 
-    `with_normals` (l,) are the numbers of these.
+    `with_normals` (l,) are the indices of the points that have a normal (l, 3).
     """
 
     parts: Array
@@ -82,18 +83,18 @@ class Known:
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """A surface at places, with which splines of it are compared.
+    """Values of a surface at test points, with which splines of it are compared.
 
     Attributes
     ----------
     surface : Surface
         The surface.
     known : Known
-        What is known of it.
+        Its values at the test points.
     spread : int
-        The number of the last places, which are spread evenly.
+        The number of scattered test points, which come last.
     sides : tuple of (int, int)
-        The axis and the end of sides of the domain that are one point.
+        The axis and the end of each collapsed side of the domain.
     diagonal, extent, largest : float
         The length of the diagonal of the bounding box of all points, of its longest side, and the
         largest coordinate.
@@ -111,7 +112,7 @@ class Probe:
     def compare(self, spline: Spline) -> Comparison:
         """Return the misfit of a spline of the surface.
 
-        The surface is evaluated again around the worst places, or narrow maxima would be missed.
+        The surface is evaluated again around the worst test points, lest narrow maxima be missed.
         """
         squares, angles = self.known.errors(spline)
         rms = math.sqrt(float(squares[len(squares) - self.spread :].mean())) / spline.scale
@@ -131,7 +132,7 @@ class Probe:
         return Comparison(misfit, float(there.max()), farthest, of_angles[:, there.argmax()])
 
     def _around(self, places: Array, cells: tuple[int, int]) -> Known:
-        """Return the surface around places, within a cell on either side."""
+        """Evaluate the surface around test points, within a cell on either side."""
         half = 1.0 / np.array(cells)[:, None]
         low = np.clip(places - half, LONGEST_STEP, 1.0 - LONGEST_STEP)
         high = np.clip(places + half, LONGEST_STEP, 1.0 - LONGEST_STEP)
@@ -143,7 +144,7 @@ class Probe:
         return _known(self.surface, parts, points, some, (self.extent, self.largest))
 
     def _away(self, parts: Array) -> Flags:
-        """Return which places are away from sides of the domain that are one point."""
+        """Return which test points are away from collapsed sides of the domain."""
         away = np.ones(parts.shape[1], dtype=np.bool_)
         for axis, end in self.sides:
             away &= (parts[axis] if end == 0 else 1.0 - parts[axis]) > NEXT_TO_POLE
@@ -151,7 +152,7 @@ class Probe:
 
 
 def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
-    """Return the places for splines of a surface with at least the given numbers of cells.
+    """Return the test points for splines of a surface with at least the given numbers of cells.
 
     Raises SurfaceError if the surface cannot be evaluated there.
     """
@@ -179,11 +180,11 @@ def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
 def variation(
     surface: Surface, spline: Spline, comparison: Comparison, slopes: bool
 ) -> tuple[float, float]:
-    """Return how much the error of a spline varies along u and along v where it is worst.
+    """Return the variation of the error of a spline along u and along v where it is worst.
 
     It varies between the middle of a cell and its ends along u if the cells are too long along u,
-    and less if they are too long along v only. With `slopes`, it is relative to the derivative of
-    the surface: errors along the shorter way turn normals more.
+    and less if they are too long along v only. With `slopes`, it is divided by the length of the
+    derivative of the surface: errors along the shorter tangent turn normals more.
     """
     found, place = [], comparison.steepest if slopes else comparison.farthest
     for axis in (0, 1):
@@ -204,10 +205,11 @@ def variation(
 
 @cache
 def _places(counts: Counts) -> Array:
-    """Return places (2, k) as parts of the domain: on lines along u, along v, and spread evenly.
+    """Return test points (2, k) as fractions of the domain: on lines along u and v, and scattered.
 
-    The first two lines along u, and along v, are the nearest to the ends. The number of steps is
-    one more than a multiple of EACH_ON_LINES, so that normals are at other places on each line.
+    The first two lines along u, and along v, are the nearest to the sides. The number of steps is
+    one more than a multiple of EACH_ON_LINES, so that the points with normals differ from line to
+    line.
     """
     along = (np.arange(counts.steps, dtype=np.float64) + GOLDEN) / counts.steps
     numbers = np.arange(1, counts.lines + 1, dtype=np.float64)
@@ -219,13 +221,13 @@ def _places(counts: Counts) -> Array:
 
 
 def _even(count: int) -> Array:
-    """Return places (2, k) that are spread evenly over the unit square."""
+    """Return points (2, k) of a low-discrepancy sequence in the unit square."""
     k = np.arange(1, count + 1, dtype=np.float64)
     return np.stack([k * PLASTIC % 1.0, k * PLASTIC**2 % 1.0])
 
 
 def worst_of(errors: Array) -> Indices:
-    """Return the numbers of WORST of the largest errors, no two of one of GROUPS of neighbours."""
+    """Return the indices of WORST of the largest errors, at most one in each of GROUPS groups."""
     length = max(-(-len(errors) // GROUPS), 1)
     starts = range(0, len(errors), length)
     largest = np.array([k + int(errors[k : k + length].argmax()) for k in starts], dtype=np.int64)
@@ -236,12 +238,12 @@ def worst_of(errors: Array) -> Indices:
 
 
 def _points(surface: Surface, parts: Array) -> Array:
-    """Return the points of a surface at parts (2, …) of its domain."""
+    """Return the points of a surface at fractions (2, …) of its domain."""
     return surface.evaluate(*_in_domain(parts, surface.domain))
 
 
 def _belonging(surface: Surface, parts: Array) -> Indices:
-    """Return the numbers of the places that belong to the surface; of all, if none does."""
+    """Return the indices of the test points inside the trim; of all, if none is."""
     if surface.trim is None:
         return np.arange(parts.shape[1])
     inside = surface.trim.contains(np.stack(_in_domain(parts, surface.domain), axis=1))
@@ -255,14 +257,14 @@ def _known(
     some: Indices,
     size: tuple[float, float],
 ) -> Known:
-    """Return a surface of an extent and a largest coordinate at places, some with normals."""
+    """Evaluate a surface at test points, with normals at some of them; see `_normals`."""
     normals = _normals(surface, parts[:, some], *size)
     regular = np.isfinite(normals[:, 0])
     return Known(parts, points, some[regular], normals[regular])
 
 
 def _in_domain(parts: Array, domain: Domain) -> list[Array]:
-    """Return parameters u, v from parts (2, …) of the domain."""
+    """Return parameters u, v from fractions (2, …) of the domain."""
     return [low + (high - low) * part for part, (low, high) in zip(parts, domain, strict=True)]
 
 

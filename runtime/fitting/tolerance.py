@@ -14,17 +14,17 @@ from .comparison import Comparison, Misfit
 
 __all__ = ["FAR_OFF", "Bounds", "Goal", "Tolerance", "checked_tolerance", "refined"]
 
-# Of a step that halves the cells, the part of the misfit that may remain: of order 3 an eighth
+# The largest part of the misfit that may remain when the cells are halved: of order 3 an eighth
 # remains, of order 1, as at folds, a half.
 IMPROVED = 0.75
 # Cells are halved along both u and v unless one of the two has this many times the error.
 DOMINANT = 4.0
 # The smallest angle, in degrees, that is measured.
 LEAST_ANGLE = 1e-4
-# The relative tolerance of positions where that of normals is given only.
+# The relative tolerance of positions if only that of normals is given.
 BESIDE_NORMALS = 1e-4
-# A spline whose distance exceeds the goal by this factor may not have seen a part of the surface:
-# the search goes on then.
+# A spline whose distance exceeds the goal by this factor may miss a feature of the surface: the
+# search goes on.
 FAR_OFF = 10.0
 
 
@@ -53,7 +53,7 @@ class Goal:
     poles: bool
 
     def excess(self, comparison: Comparison) -> tuple[float, float]:
-        """Return distance and angle relative to the goal: at most 1 where it is reached."""
+        """Return distance and angle relative to the goal: at most 1 if it is reached."""
         misfit = comparison.misfit
         angle = misfit.angle if self.poles else comparison.angle_away
         return (
@@ -62,15 +62,15 @@ class Goal:
         )
 
     def reached(self, comparison: Comparison) -> bool:
-        """Return whether a spline is as accurate as asked for."""
+        """Return whether a spline is as accurate as requested."""
         return max(self.excess(comparison)) <= 1.0
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The distance of a spline, in L or relative to the diagonal, and its angle in degrees.
+    """The requested distance of a spline, in L or relative to the diagonal, and angle in degrees.
 
-    They are those of `fit`; at least one is not None.
+    They are the arguments of `fit`; at least one is not None.
     """
 
     distance: float | None
@@ -78,7 +78,7 @@ class Tolerance:
     angle: float | None
 
     def goal(self, diagonal: float, largest: float, poles: bool) -> Goal:
-        """Return the goal for a surface with a diagonal and a largest coordinate.
+        """Return the goal for a surface with this diagonal and this largest coordinate.
 
         Raises InputError if it is below the rounding of the coordinates.
         """
@@ -129,11 +129,11 @@ def refined(
     goal: Goal,
     bounds: Bounds,
 ) -> tuple[Spline, Misfit, bool]:
-    """Return a spline of as many cells as a goal takes, its misfit, and success.
+    """Return a spline with enough cells for a goal, its misfit, and whether the goal is reached.
 
-    Those of `spline` are halved along u, along v or both: where the error varies most, which
-    `variation` returns, for True relative to the derivatives. Without success it is the last spline
-    that was better than those before.
+    The cells of `spline` are halved along u, along v or both: along the parameter with the largest
+    `variation` of the error. If the goal is not reached, the last spline that was an improvement is
+    returned.
     """
     stalled, comparison = 0, compare(spline)
     best, its_comparison = spline, comparison
@@ -162,7 +162,7 @@ def _improved(goal: Goal, before: Comparison, after: Comparison) -> bool:
 
 
 def _finer(cells: tuple[int, int], u: float, v: float, bounds: Bounds) -> tuple[int, int]:
-    """Return twice the cells along u, v or both, by their errors, as far as the bounds allow it."""
+    """Double the cells along u, v or both, by their errors, as far as the bounds allow."""
     twice = [min(2 * count, most) for count, most in zip(cells, bounds.most, strict=True)]
     along_u, along_v = (twice[0], cells[1]), (cells[0], twice[1])
     larger, smaller = (along_u, along_v) if u >= v else (along_v, along_u)

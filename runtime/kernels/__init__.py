@@ -1,1 +1,1 @@
-"""The algorithms that Numba compiles: loops over the formulas of `generated`, in plain Python."""
+"""Algorithms in plain Python that Numba compiles: loops over the formulas of `generated`."""

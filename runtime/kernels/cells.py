@@ -1,7 +1,7 @@
-"""Rectangles of the parameters of a surface: what they hold, and how far it reaches.
+"""Cells, rectangles of the parameters of a surface: radii, spreads of normals, areas.
 
-A cell is a rectangle u, v with a place in it. The quadratic patch that osculates the surface at the
-place stands for the surface in the cell, which has to be small enough for that.
+A cell is a rectangle in u, v with a parameter pair in it, its place. In the cell, the surface is
+approximated by the quadratic patch that osculates it at the place; the cell has to be small enough.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .vectors import dot, length, set_row
 
 __all__ = ["evaluate_cells"]
 
-# What the surface may be farther away than its osculating patch, as parts of the distance.
+# The factor by which the surface may be farther away than its osculating patch.
 BEYOND = 1.03
 
 
@@ -31,10 +31,10 @@ def distance_of(v, w):
 
 @loop
 def squared_sine(patch, s, t, sign, n, least):
-    """Return that of the largest angle from n to normals over half a cell; 2 if it is not acute.
+    """Return sin² of the largest angle from n to normals of half a cell; 2 if it is not acute.
 
-    These are combinations of control normals, of which those shorter than `least` count for
-    nothing. The half is the triangle of the corner s, t and those a step of `sign` away from it.
+    The normals are combinations of control normals; those shorter than `least` are ignored. The
+    half is the triangle of the corner s, t and the two corners a step of `sign` away from it.
     """
     p_u, p_v, _ = tangents(patch, s, t)
     d = Vector(sign * p_u.x, sign * p_u.y, sign * p_u.z)
@@ -63,17 +63,17 @@ def chord_of_cell(patch, low_s, low_t, n, least):
 
 @jit
 def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numbers):
-    """Write what is known of cells with boxes (M, 4), from 2-jets (M, 6, 3) at places (M, 2).
+    """Write measures of cells with boxes (M, 4), from 2-jets (M, 6, 3) at their places (M, 2).
 
     Boxes are u0, v0, u1, v1. Lengths are multiplied by `size`, and points are relative to a centre.
 
     rows (M, 8): point, unit normal, target density and K; normal and K are 0 at singular points.
-    numbers (M, 14): a radius around the point that holds the cell; the largest chord between the
-    normal and others of the cell, 0 if these are rounding, 2 if an angle is not acute or there is
-    no normal; the lengths of the cell along u and v; its bends along u and v, relative to these, 0
-    if these are rounding; its area; the radius of curvature below which curvature does not count:
-    the width of the cell, if it is 0 on entry, or of one whose sides are `finest` (2,); and its
-    sides along u and v at the place, which are vectors.
+    numbers (M, 14): the radius of a ball around the point that contains the cell; the largest chord
+    between the normal and others of the cell, 0 if it is rounding error, 2 if an angle is not acute
+    or there is no normal; the lengths of the cell along u and v; its bends along u and v, relative
+    to the lengths, 0 if they are rounding error; its area; the least radius of curvature (smaller
+    ones count as this): if it is 0 on entry, the width of the cell, or of one whose sides are
+    `finest` (2,); and its sides along u and v at the place, which are vectors.
     """
     for k in range(jets.shape[0]):
         du = boxes[k, 2] - boxes[k, 0]

@@ -1,7 +1,7 @@
-"""Voronoi cells of samples among finer places: where to move samples, and the widest gaps.
+"""Discrete Voronoi cells of samples: their centres, and the widest gaps.
 
-The cell of a candidate that no border passes is nearly a parallelogram; FINER² places are in it.
-Their nearest samples are found among the few that are in the list of the candidate.
+The cell of a candidate that no boundary intersects is nearly a parallelogram, with a grid of FINER²
+points. Their nearest samples are found among the few in the list of the candidate.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from .vectors import length, row_vector
 
 __all__ = ["FINER", "add_moments", "begin_lists", "find_nearest", "find_widest"]
 
-# The places along each side of a cell.
+# The number of fine points along each side of a cell.
 FINER = 4
 PLACES = FINER * FINER
 # The columns of `numbers` of cells, see kernels/cells.py.
@@ -26,13 +26,13 @@ AREA, U, V = 6, 8, 11
 
 @inline
 def offset(i):
-    """Return the coordinate of places number i along a side, from −1/2 to 1/2."""
+    """Return the coordinate of fine point i along a side, from −1/2 to 1/2."""
     return (i + 0.5) / FINER - 0.5
 
 
 @inline
 def place_in(candidates, lists, k, i, j):
-    """Return place number (i, j) in the cell of candidate k."""
+    """Return fine point (i, j) in the cell of candidate k."""
     row, s, t = lists.order[k], offset(i), offset(j)
     sides = lists.numbers
     return Vector(
@@ -44,7 +44,7 @@ def place_in(candidates, lists, k, i, j):
 
 @inline
 def extent(lists, k):
-    """Return the radius of the ball around candidate k that holds the places in its cell."""
+    """Return the radius of the ball around candidate k with all fine points of its cell."""
     sides, row = lists.numbers, lists.order[k]
     u, v = row_vector(sides[:, U:V], row), row_vector(sides[:, V:], row)
     diagonal = max(
@@ -63,7 +63,7 @@ def squared_distance(x, rows, k):
 
 @loop
 def find_in_cell(candidates, lists, samples, k, work):
-    """Write the points of the places in a cell to work (5, FINER²), and their nearest samples.
+    """Write the fine points of a cell, with their nearest samples, to work (5, FINER²).
 
     The rows are x, y, z, the squared distance and the number of the nearest sample in the list.
     """
@@ -95,9 +95,9 @@ def find_in_cell(candidates, lists, samples, k, work):
 
 @jit
 def begin_lists(grids, lists, margin):
-    """Write within which distances of candidates samples are noted.
+    """Write the radius around each candidate within which samples are listed.
 
-    These may be the nearest ones in the cell of the candidate after they have moved by margin/√w.
+    Samples within it may be the nearest ones in the cell after they have moved by margin/√w.
     """
     for k in range(lists.within.size):
         away = math.sqrt(max(grids.candidates[k, SQUARE], 0.0))
@@ -107,7 +107,7 @@ def begin_lists(grids, lists, margin):
 
 @jit
 def add_moments(candidates, lists, samples, work, moments):
-    """Add the places in the cells of candidates to the moments (N, 4) of the nearest samples.
+    """Add the fine points in the cells of candidates to the moments (N, 4) of the nearest samples.
 
     Moments are the sums of weights times the points, and of the weights: area times w² times the
     squared distance from the sample. The gradient, by the sample, of the integral of w² times the
@@ -129,10 +129,10 @@ def add_moments(candidates, lists, samples, work, moments):
 
 @jit
 def find_nearest(candidates, lists, points, found, squares):
-    """Find the place nearest to each of points (N, 3) that belong to the samples.
+    """Find the fine point nearest to each of the points (N, 3), one for each sample.
 
-    found (N, 2) are the row and the number of the place, −1 for that of the candidate, squares (N,)
-    the squared distances so far, −1 where there is no point.
+    found (N, 2) are the row of the candidate and the index of the fine point, −1 for the candidate
+    itself; squares (N,) are the squared distances so far, −1 for a sample without a point.
     """
     for k in range(candidates.shape[0]):
         x, reach = Vector(candidates[k, 0], candidates[k, 1], candidates[k, 2]), extent(lists, k)
@@ -154,9 +154,9 @@ def find_nearest(candidates, lists, points, found, squares):
 
 @jit
 def find_widest(candidates, lists, samples, least, work, found):
-    """Find the place of each cell that is farthest from all samples, if it is as far as least/√w.
+    """Find the point of each cell that is farthest from all samples, if at least least/√w away.
 
-    found (M,) are the numbers of the places, −1 for that of the candidate, −2 if none is as far.
+    found (M,) are the indices of the points, −1 for the candidate itself, −2 if none is as far.
     """
     for k in range(candidates.shape[0]):
         found[k] = -2

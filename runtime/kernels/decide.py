@@ -22,10 +22,10 @@ from .wide_integers import MANTISSA, rounded, wide
 
 __all__ = ["NORMAL_LIMBS", "PATCH_LIMBS", "SPARE", "Decided", "decide_exactly"]
 
-# The limbs of coefficients, and of normals: those at corners, of patches along an axis, have
+# The limbs of coefficients, and of normals: normals at corners of patches along an axis have
 # components that are rounding errors of rounding errors.
 PATCH_LIMBS, NORMAL_LIMBS = (0, 0), (0, 0, 0)
-# The bits that are left free, for weights and sums.
+# The spare bits, for weights and sums.
 SPARE = 6
 
 
@@ -54,9 +54,9 @@ def widened(least, largest, x):
 
 @loop
 def unit_of(least, largest, limbs):
-    """Return the exponent of a unit in which numbers of these moduli are integers, and if it fits.
+    """Return the exponent of a unit in which numbers of these moduli are integers, and if they fit.
 
-    It does if they have as many limbs at most, with bits to spare.
+    They fit if they have at most as many limbs as `limbs`, with SPARE bits left.
     """
     unit = math.frexp(least)[1] - MANTISSA
     return unit, largest == 0.0 or math.frexp(largest)[1] - unit <= 64 * len(limbs) - SPARE
@@ -84,7 +84,7 @@ def unit_of_normal(n):
 
 @loop
 def wide_coefficient(mu, i, j, unit):
-    """Return a coefficient on integers."""
+    """Return a coefficient as integers."""
     x, y, z = vector_at(mu, i, j)
     return Vector(
         wide(x, unit, PATCH_LIMBS), wide(y, unit, PATCH_LIMBS), wide(z, unit, PATCH_LIMBS)
@@ -100,7 +100,7 @@ def neighbour(mu, i, j, turn, k, centre, unit):
 
 @inline
 def wide_patch(mu, i, j, turn, unit) -> Patch:
-    """Return the vectors of the patch of the coefficient (i, j) on integers."""
+    """Return the vectors of the patch of the coefficient (i, j) as integers."""
     centre = wide_coefficient(mu, i, j, unit)
     return triangle(
         neighbour(mu, i, j, turn, SOUTHWEST, centre, unit),
@@ -114,11 +114,11 @@ def wide_patch(mu, i, j, turn, unit) -> Patch:
 
 @loop
 def wide_normal(n, unit):
-    """Return a normal on integers, with its first component positive.
+    """Return a normal as integers, with its first component positive.
 
     The forms are even in n, but a normal and its opposite must be displaced to opposite normals:
-    where a surface is joined to its own mirror image, one patch has the one and its neighbour the
-    other.
+    where a surface is joined to its own mirror image, one patch has the normal and its neighbour
+    the opposite one.
     """
     side = math.copysign(1.0, n.x if n.x != 0.0 else n.y if n.y != 0.0 else n.z)
     return Vector(
@@ -133,9 +133,9 @@ def wide_normal(n, unit):
 
 @loop
 def note(D, U, V, W, forms, signs):
-    """Note the coefficients of one monomial: they give the signs that are still zero.
+    """Use the coefficients of one monomial for the signs that are still zero.
 
-    They are those of D, U, V, too, if D has none yet. Returns whether all signs are known.
+    Keep them for D, U, V if D has no leading monomial yet. Return whether all signs are known.
     """
     if forms[0] == 0.0:
         forms[0], forms[1], forms[2] = D, U, V
@@ -149,10 +149,10 @@ def note(D, U, V, W, forms, signs):
 def exact_forms(patch, n, forms, signs):
     """Write D, U, V to forms (3,) and the signs of U, V, W to signs (3,), all zero before.
 
-    Where a zero among U, V, W leaves undecided whether the patch has the normal, the normal is
+    If a zero among U, V, W leaves undecided whether the patch has the normal, the normal is
     displaced to n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁²: a form is then a sum of ten
-    monomials, each infinitesimal relative to the one before, and the first nonzero one gives
-    its sign. For quotients by D, the coefficients of the leading monomial of D are written.
+    monomials, each infinitesimal relative to the one before, and the first nonzero one gives its
+    sign. For quotients by D, the coefficients of the leading monomial of D are written.
     """
     A, B, C, P, Q = linear_forms(patch, n)
     D, U, V, W = eliminated_forms(A, B, C, P, Q)
@@ -178,9 +178,9 @@ def exact_forms(patch, n, forms, signs):
 
 @jit
 def decide_exactly(mu, scale, patches, normals, first, last, forms, decided):
-    """Decide the pairs first, …, last − 1 of patches (k,) and normals (k, 3).
+    """Decide the pairs [first, last) of patches (k,) and normals (k, 3).
 
-    They stay unknown if the numbers are too long. `forms` (3,) is a work array.
+    A pair stays undecided if its numbers are too long. `forms` (3,) is a work array.
     """
     columns = mu.shape[1] - 2
     exponent = math.frexp(scale)[1] - 1

@@ -24,8 +24,8 @@ TO_PATCH = np.linalg.inv(CORNERS)
 def forms_of_jets(jets, scales, forms):
     """Write E, F, G, e, f, g and D (k, 7) of 2-jets (k, 6, 3), see `forms_at_jet`.
 
-    They are those of `size` times the surface in cells; `scales` = (size, du, dv). The third form
-    and the sign are 0 where it is singular.
+    The forms are those of `size` times the surface, by u and v in cells; `scales` = (size, du, dv).
+    The third form and the sign of K are 0 at singular points.
     """
     size, du, dv = scales
     for k in range(jets.shape[0]):
@@ -59,9 +59,9 @@ def set_second(jets, k, row, patch, uu, uv, vv, size):
 
 @jit
 def jets_on_spline(mu, scale, frame, cells, jets):
-    """Write the 2-jets (k, 6, 3) of a spline at places (k, 2) in cells.
+    """Write the 2-jets (k, 6, 3) of a spline at parameters (k, 2) in cells.
 
-    Second derivatives are those of one of the patches that meet at a place.
+    Second derivatives are those of one of the patches that meet at a point.
     """
     size = SCALE * scale
     du = frame[2]
@@ -86,7 +86,7 @@ def jets_on_spline(mu, scale, frame, cells, jets):
 
 @jit
 def patches_at(rows, columns, cells, patches, places):
-    """Write the patches (k,) and their parameters (k, 2) at places (k, 2) in cells.
+    """Write the patches (k,) and the parameters (k, 2) in these for parameters (k, 2) in cells.
 
     `rows` and `columns` are the numbers of cells along u and v.
     """

@@ -1,4 +1,4 @@
-"""Greedy covering: candidates that are far from all samples become samples.
+"""Greedy covering: candidates far from all samples become samples.
 
 Each new sample updates the distances of the candidates around it, which is cheaper than repeated
 searches for the nearest sample of each candidate. A sample counts for candidates on its own side of
@@ -19,7 +19,7 @@ from .vectors import dot, row_vector
 
 __all__ = ["Lists", "choose_far", "note_samples", "update_distances"]
 
-# The number of a sample without one; typed, so that Numba compiles one function for all numbers.
+# The index of a sample without one; typed, so that Numba compiles one function for all indices.
 NO_NUMBER = np.int64(-1)
 # The cosine of the largest angle between normals on the same side of a surface.
 SAME_SIDE = 0.5
@@ -39,16 +39,16 @@ def normal_of(rows, k):
 
 @inline
 def on_side(candidates, at, n):
-    """Say whether a candidate is on the side of the surface on which normals are near n."""
+    """Return whether a candidate is on the side of the surface with the normal n."""
     return dot(normal_of(candidates, at), n) >= SAME_SIDE
 
 
 class Lists(NamedTuple):
     """For each candidate, the samples that may be the nearest ones in its cell.
 
-    near: (M, …) int32, their numbers; others are left out if there are too many.
-    counts: (M,) int32, how many there are.
-    within: (M,) w times the squared distance within which they are.
+    near: (M, …) int32, their indices; if they are too many, the rest is left out.
+    counts: (M,) int32, their numbers.
+    within: (M,) w times the square of the largest distance for the list.
     order: (M,) int32, the rows of the candidates in `numbers`.
     numbers: (M, 14), see kernels/cells.py.
     """
@@ -63,8 +63,8 @@ class Lists(NamedTuple):
 def around(meet):
     """Return a loop that calls meet(grids, kept, at, number, square, n) near a sample.
 
-    All candidates within radius/√w of the sample x, with the normal n, are among these; `square` is
-    w times the squared distance, and `kept` what `meet` writes to.
+    It is called for all candidates within radius/√w of the sample x with the normal n, and for some
+    others; `square` is w times the squared distance, and `kept` is the output of `meet`.
     """
     meets = inline(meet)
 
@@ -109,9 +109,9 @@ def update(grids, nearest, at, number, square, n):
 
 
 def note(grids, lists, at, number, square, n):
-    """Note a sample that may be the nearest one somewhere in the cell of a candidate."""
+    """List a sample that may be the nearest one somewhere in the cell of a candidate."""
     near, count = lists.near, lists.counts[at]
-    # Cells of a grid may share a bucket, which is then visited again.
+    # Cells of a grid may share a bucket, which is then visited several times.
     has_room = count < near.shape[1] and (count == 0 or near[at, count - 1] != number)
     if has_room and square <= lists.within[at] and on_side(grids.candidates, at, n):
         near[at, count] = number
@@ -159,7 +159,7 @@ def choose_far(grids, radius, least, searched, chosen):
     """Choose candidates that are farther than radius/√w from all samples, chosen ones included.
 
     Only candidates in `searched` are considered, in this order. Those still farther than least/√w
-    are moved to its beginning. Returns their number, and the number of chosen ones.
+    are moved to its front. Return their number, and the number of chosen candidates.
     """
     candidates = grids.candidates
     kept = 0

@@ -1,7 +1,7 @@
 """Candidates for samples in spatial hash grids, one grid for each power of two of 1/√density.
 
-The width of gaps varies with the sizing function 1/√w, so that a search in cells of one size would
-visit far too many candidates or far too many cells. The buckets of all grids share one array.
+The width of gaps varies with the sizing function 1/√w: a search in cells of one size would visit
+far too many candidates or cells. The buckets of all grids share one array.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class HashGrids(NamedTuple):
     """Candidates, sorted by the buckets of their cells.
 
     candidates: (M, 8) float64, point, unit normal, density w, and w times the squared distance to
-        the nearest sample as far as it is known, or −1 where there is no normal.
+        the nearest sample so far, or −1 for a candidate without a normal.
     nearest: (M,) int32, the number of that sample, or −1.
     starts: (buckets + 1,) int32, the first candidate of each bucket; a power of two of them.
     sizes: (grids,) the largest 1/√w of each grid.
@@ -61,7 +61,7 @@ def level_of(density):
 
 @inline
 def bucket_of(level, i, j, k, buckets):
-    """Return the bucket of the cell (i, j, k) of a grid, which other cells may share.
+    """Return the bucket of the cell (i, j, k) of a grid; several cells may share it.
 
     The buckets of 4 × 4 × 4 cells are consecutive: neighbours in space are close in memory.
     """
@@ -94,7 +94,7 @@ def measure(rows, box, sizes):
 def sort_candidates(rows, finest, grids, buckets, order):
     """Sort rows (M, 8) by their buckets into the candidates of grids: a counting sort.
 
-    The starts must be 0 on entry. Candidate k is row order[k]; `buckets` (M,) is workspace.
+    The starts must be 0 on entry. Candidate k is row order[k]; `buckets` (M,) is a work array.
     """
     starts = grids.starts
     for k in range(rows.shape[0]):

@@ -1,4 +1,4 @@
-"""The points of the icosphere, a refined icosahedron: their numbers and their unit normals.
+"""The points of the icosphere, a refined icosahedron: their indices and unit normals.
 
 The points of frequency ν on a face are (ν − s − t, s, t): s counts its rows, t its columns. The 12
 corners come first, then the points inside the 30 edges, then those inside the 20 faces, row by row.
@@ -33,7 +33,7 @@ def new_line() -> tuple[NDArray[np.int64], NDArray[np.float64]]:
 
 @inline
 def row_start(face, s, frequency):
-    """Return the number of the point (s, 0) of a face: that of (s, 1) minus one."""
+    """Return the index of the point (s, 0) of a face: that of (s, 1) minus one."""
     rows = s - 1
     inside = (frequency - 1) * (frequency - 2) >> 1
     before = rows * (frequency - 1) - (rows * (rows + 1) >> 1)
@@ -44,8 +44,8 @@ def row_start(face, s, frequency):
 def write_normals(face, frequency, places, first, count, tile):
     """Write the unit normals of points of a face to the first three rows of a tile.
 
-    From sample `first` on, and up to VECTOR − 1 more than `count`; `places` (2 STEP) holds rows and
-    columns of the points. Before the square root, only b φ and one sum are rounded: mirror images
+    They are `count` points from `first` on, and up to VECTOR − 1 more; `places` (2 STEP) holds
+    their rows and columns. Before the square root, only b φ and one sum are rounded: mirror images
     agree bit for bit, and a point of two faces is the same on both.
     """
     long_vectors()
@@ -68,7 +68,7 @@ def write_normals(face, frequency, places, first, count, tile):
 
 @inline
 def line(face, k):
-    """Return the first corner of a face or a step along it: x, y, z as a + b φ, each as a, b."""
+    """Return the first corner of a face or a step along it: x, y, z as pairs a, b for a + b φ."""
     return (
         LINES[face, k, 0],
         LINES[face, k, 1],
@@ -96,7 +96,7 @@ def line_count(part, frequency):
 
 @loop
 def line_of(part, k, frequency):
-    """Return a line of a part: its first number, its length, and the arguments of `write_line`."""
+    """Return a line of a part: its first index, its length, and the arguments of `write_line`."""
     inner = frequency - 1
     if part == 0:
         face, t, s = CORNER_PLACES[k, 0], CORNER_PLACES[k, 1], CORNER_PLACES[k, 2]
@@ -115,7 +115,7 @@ def line_of(part, k, frequency):
 
 @jit
 def write_points(frequency, first, last, normals, places, tile):
-    """Write the unit normals (S, 3) of the parts first, …, last − 1; work arrays by `new_line`."""
+    """Write the unit normals (S, 3) of the parts [first, last); work arrays by `new_line`."""
     for part in range(first, last):
         for k in range(line_count(part, frequency)):
             number, count, face, s, t, s_step, t_step = line_of(part, k, frequency)

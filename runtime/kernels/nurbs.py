@@ -20,11 +20,11 @@ __all__ = ["Net", "Scratch", "jets", "positions"]
 
 
 class Net(NamedTuple):
-    """A NURBS surface: what kernels read.
+    """A NURBS surface, as arrays for kernels.
 
     Points are (m, n, 3), or (m, n, 4) if they are w x, w y, w z, w; relative to the centre (3,).
-    For u and for v: the degree; the knots; the first and last knot span that is used, which goes on
-    beyond its ends; and the low end and length of the period, which is 0 if there is none.
+    For u and for v: the degree; the knots; the first and last knot span in use, whose polynomials
+    extend beyond their ends; and the lower end and length of the period, which is 0 without one.
     """
 
     degrees: NDArray[np.int64]
@@ -39,7 +39,7 @@ class Net(NamedTuple):
 class Scratch(NamedTuple):
     """Memory for one call.
 
-    The basis functions of u and v with derivatives (3, degree + 1), and sums (6, 4).
+    The basis functions of u and v with their derivatives (3, degree + 1), and sums (6, 4).
     """
 
     basis_u: NDArray[np.float64]
@@ -49,7 +49,7 @@ class Scratch(NamedTuple):
 
 @loop
 def in_period(x, low, period):
-    """Return a parameter, or its like in the period [low, low + period] if there is one."""
+    """Return a parameter, reduced to the period [low, low + period] if there is one."""
     if period > 0.0 and (x < low or x > low + period):
         return x - period * math.floor((x - low) / period)
     return x
@@ -79,9 +79,9 @@ def span_of(knots, first, last, near, x):
 
 @loop
 def basis_functions(knots, degree, span, x, basis):
-    """Write the basis functions that do not vanish, and their first and second derivatives.
+    """Write the nonzero basis functions, and their first and second derivatives.
 
-    Each step raises the degree of all by one. The derivatives of one degree are the differences of
+    Each step raises the degree by one. The derivatives of one degree are the differences of
     the functions of the degree below, relative to the knots that they cover.
     """
     basis[0, 0], basis[1, 0], basis[2, 0] = 1.0, 0.0, 0.0

@@ -25,7 +25,7 @@ __all__ = [
     "vector_at",
 ]
 
-# The places of neighbours in NEIGHBOURS. They have a type: a literal number is compiled for itself.
+# The indices of neighbours in NEIGHBOURS; typed, as each literal would be compiled on its own.
 SOUTHWEST, SOUTH, SOUTHEAST, WEST, EAST, NORTH = (np.int64(k) for k in (0, 1, 2, 3, 5, 7))
 
 
@@ -102,7 +102,7 @@ def curvatures_of_patch(patch, N, u, v):
 
 @jit
 def normals_at(mu, scale, patches, places, normals):
-    """Write the unnormalized oriented normals (k, 3) of patches (k,) at u, v (k, 2)."""
+    """Write the unnormalized oriented normals (k, 3) of patches (k,) at parameters (k, 2)."""
     for k in range(patches.size):
         patch = patch_of(mu, scale, patches[k])
         set_row(normals, k, normal_of_patch(patch, places[k, 0], places[k, 1]))

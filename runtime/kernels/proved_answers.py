@@ -1,4 +1,4 @@
-"""What a search answers: places, each once, and boxes that are not decided."""
+"""Answers of a search: solutions, each once, and undecided boxes."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ __all__ = [
     "merge_places",
 ]
 
-# What is not decided: none or two places in a box, several or none, a curve or more of them, or
-# places where the surface may have no normal.
+# Kinds of undecided boxes: none or two solutions, none or several, a curve or a region of
+# solutions, or points where the surface may have no normal.
 KINDS = ("double", "multiple", "continuum", "singular")
 DOUBLE_KIND, MULTIPLE, CONTINUUM, SINGULAR = range(4)
-# The columns of places: u, v, how far they may be off, D; then the box in which there is no other
-# place, u₀, u₁, v₀, v₁; and whether the border of the domain is so near.
+# The columns of solutions: u, v, their error bounds, D; then the box without other solutions, u₀,
+# u₁, v₀, v₁; and whether the error bounds reach the boundary of the domain.
 BOX, BORDER, COLUMNS = 5, 9, 10
 
 
 class Answers(NamedTuple):
-    """Room for places (k, 10), undecided boxes (k, 5) with their kinds, and the normals of both.
+    """Arrays for solutions (k, 10), undecided boxes (k, 5) with their kinds, and normals of both.
 
-    `counts` are the numbers of both.
+    `counts` are the numbers of solutions and boxes.
     """
 
     places: NDArray[np.float64]
@@ -50,7 +50,7 @@ class Answers(NamedTuple):
 
     @classmethod
     def new(cls, room: int) -> Answers:
-        """Return some room."""
+        """Return empty arrays."""
         return cls(
             np.empty((room, COLUMNS)), np.empty(room, np.int64), np.empty((room, 5)),
             np.empty(room, np.int64), np.empty(room, np.int64), np.zeros(2, np.int64),
@@ -59,9 +59,9 @@ class Answers(NamedTuple):
 
 @loop
 def add_open(answers, number, u0, u1, v0, v1, kind, domain):
-    """List a box that is not decided, less what is outside of the domain; say if there was room.
+    """List the part of an undecided box inside the domain; return whether there was room.
 
-    A box outside is not listed.
+    A box outside the domain is not listed.
     """
     at = answers.counts[1]
     if at == answers.kinds.shape[0]:
@@ -86,18 +86,18 @@ def add_open(answers, number, u0, u1, v0, v1, kind, domain):
 
 @loop
 def add_place(answers, number, row, kind, domain):
-    """List where a place may be as not decided; say if there was room."""
+    """List the box of a possible solution as undecided; return whether there was room."""
     u, v, r_u, r_v = row[0], row[1], row[2], row[3]
     return add_open(answers, number, u - r_u, u + r_u, v - r_v, v + r_v, kind, domain)
 
 
 @jit
 def merge_places(places, numbers, groups, first, last, fast, fast_starts, domain, keep, answers):
-    """Say which places to keep: each once, and those in the domain; list what is not known.
+    """Mark the solutions to keep: those in the domain, each once; list undecided ones.
 
-    Places (k, 10) of the groups first, …, last − 1 have one normal each, of these numbers (k,);
-    other places with it, fast[fast_starts[g]:fast_starts[g + 1]], are kept anyway. Returns the
-    next group, `last` unless there was no more room for boxes.
+    Solutions (k, 10) of a group share one normal, whose index is in numbers (k,). The groups are
+    [first, last); further solutions of group g, fast[fast_starts[g]:fast_starts[g + 1]], are always
+    kept. Return the next group, `last` unless there was no more room for boxes.
     """
     answers.counts[0] = answers.counts[1] = 0
     for g in range(first, last):
@@ -122,14 +122,14 @@ def merge_places(places, numbers, groups, first, last, fast, fast_starts, domain
 
 @loop
 def either(row, other, period):
-    """Return the relation of two places by the box of either."""
+    """Return the relation of two solutions by the box of either."""
     one, two = relation(row, other, period), relation(other, row, period)
     return 1 if one == 1 or two == 1 else one
 
 
 @loop
 def relation(row, other, period):
-    """Return 1 if another place is that of a row, 0 if it is not, −1 if this is not known."""
+    """Return 1 if two solutions are the same, 0 if they are distinct, −1 if unknown."""
     du = shift_to(other[0], 0.5 * (row[5] + row[6]), period[0])
     dv = shift_to(other[1], 0.5 * (row[7] + row[8]), period[1])
     u, v = other[0] + du, other[1] + dv
@@ -142,7 +142,7 @@ def relation(row, other, period):
         return 1
     du = shift_to(other[0], row[0], period[0])
     dv = shift_to(other[1], row[1], period[1])
-    # More than the rounding of shifts.
+    # Above the rounding errors of shifts.
     slack_u, slack_v = 4.0 * EPS * (abs(du) + abs(row[0])), 4.0 * EPS * (abs(dv) + abs(row[1]))
     apart_u = abs(other[0] + du - row[0]) > other[2] + row[2] + slack_u
     apart_v = abs(other[1] + dv - row[1]) > other[3] + row[3] + slack_v
@@ -151,15 +151,15 @@ def relation(row, other, period):
 
 @loop
 def worse(one, other):
-    """Return the relation to two places from those to each: the same as one, or not known."""
+    """Return the relation to a pair of solutions from those to each: the larger, or unknown."""
     return 1 if one == 1 or other == 1 else -1 if one == -1 or other == -1 else 0
 
 
 @loop
 def is_inside(row, domain):
-    """Say whether a place may be in the domain, and write whether its border is as near as that.
+    """Return whether a solution may be in the domain; write whether it may be on the boundary.
 
-    Places are brought into the domain.
+    Solutions are shifted into the domain.
     """
     border = 0.0
     for axis in range(2):

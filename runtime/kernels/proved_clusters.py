@@ -1,4 +1,4 @@
-"""Clusters of boxes that touch, modulo periods: each in a box that holds it."""
+"""Clusters of boxes that touch, modulo periods, with the bounding box of each."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..machine_code.jit import inline, loop
 
 __all__ = ["cluster"]
 
-# Boxes touch if they are not farther apart than this multiple of their size.
+# Boxes touch if their distance is at most this multiple of their size.
 TOUCHING = 1e-6
 
 
@@ -20,7 +20,7 @@ def shift_to(x, y, period):
 
 @loop
 def join(hull, u0, u1, v0, v1, period):
-    """Extend a hull by a box that touches it; say whether it does."""
+    """Extend a hull by a box if they touch; return whether they do."""
     du = shift_to(0.5 * (u0 + u1), 0.5 * (hull[0] + hull[1]), period[0])
     dv = shift_to(0.5 * (v0 + v1), 0.5 * (hull[2] + hull[3]), period[1])
     u0, u1, v0, v1 = u0 + du, u1 + du, v0 + dv, v1 + dv
@@ -39,7 +39,7 @@ def join(hull, u0, u1, v0, v1, period):
 
 @loop
 def cluster(boxes, count, cells, size, period, hulls, owner):
-    """Write the hulls (…, 4) of clusters, u₀, u₁, v₀, v₁, and of which one each box is a part.
+    """Write the hulls (…, 4) of clusters, u₀, u₁, v₀, v₁, and the cluster of each box.
 
     Boxes (count, 3) are parts of cells: u, v and the number of the cell; half their widths is
     `size` times that of the cell. Returns the number of hulls.

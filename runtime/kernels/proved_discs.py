@@ -1,4 +1,4 @@
-"""Discs around poles: the places with given normals there, in coordinates of the tangent plane.
+"""Discs around poles: the points with given normals there, in coordinates of the tangent plane.
 
 At a pole the parameters are u around it and r, which is 0 at it. The surface is a graph over its
 tangent plane, whose coordinates s and t are scaled so that the disc is within s² + t² ≤ 1.
@@ -23,9 +23,9 @@ from .vectors import dot, row_vector
 
 __all__ = ["Disc", "decide_discs"]
 
-# Steps towards a place.
+# The largest number of steps towards a solution.
 STEPS = 60
-# A step that is longer than this part of the distance from the pole begins at the pole anew.
+# A step longer than this part of the distance from the pole restarts at the pole.
 LONG = 0.25
 # The numbers of the frame of a disc.
 (
@@ -38,7 +38,7 @@ class Disc(NamedTuple):
     """The disc around a pole.
 
     hot (1, 15): the vectors a, b, c, d, e of the patch that osculates at the pole, by s and t.
-    changes (m, 3, 3): how far x_ss, x_st, x_tt may be from a, b, c up to `whole`, half of it, …
+    changes (m, 3, 3): bounds of x_ss, x_st, x_tt minus a, b, c, within `whole`, half of it, …
     frame (14): the derivatives of h by s and t are computed up to the first one plus the second
     over r, in units of the size; radius of the disc; first u, and its length; the other parameter
     at the pole, whether it grows with r (1 or −1), and the number of the first, 0 or 1; the unit of
@@ -85,7 +85,7 @@ def change_in(disc, ring, n, y11, y12, y22):
 
 @loop
 def place_towards(disc, s, t):
-    """Return u and r of a place near s, t, or of another one where these are small."""
+    """Return u and r of a point near s, t; of another point if s, t are small."""
     table = disc.directions
     count = table.shape[0] - 1
     angle = disc.frame[SENSE] * math.atan2(t, s)
@@ -131,9 +131,9 @@ def graph_at(tape, work, disc, u, r):
 
 @loop
 def place_in(tape, work, disc, n):
-    """Return u, r, how far s and t of the only place with the normal n may be, the determinant.
+    """Return u, r, a bound of the distance to the only solution for n in s, t, and the determinant.
 
-    The distance is infinite if this is not proved, and negative if there is no place in the disc.
+    The bound is infinite if nothing is proved, and negative if no solution is in the disc.
     """
     frame = disc.frame
     a, b, c, p, q = linear_forms_of(patch_of(disc.hot, 0), n)
@@ -152,8 +152,8 @@ def place_in(tape, work, disc, n):
     s, t = u / d, v / d
     base = rows_of(y11, y12, y22, frame[FAR_NOISE], frame[FAR_NOISE]) / (1.0 - change)
     if max(abs(s), abs(t)) > 1.0 + change + base:
-        return 0.0, 0.0, -1.0, d  # the step to it from the pole is too long
-    # From the 2-jet at the pole, which may be better than a small circle around it.
+        return 0.0, 0.0, -1.0, d  # the solution is too far from the pole
+    # The 2-jet at the pole may be more accurate than that of a small circle around it.
     length, ring = math.hypot(s, t), 0
     while ring + 1 < disc.changes.shape[0] and 2.0 * length <= whole * 0.5 ** (ring + 1):
         ring += 1
@@ -195,7 +195,7 @@ def place_in(tape, work, disc, n):
         else:
             u, r = u + u_s * s1 + u_t * t1, r + r_s * s1 + r_t * t1
             u -= frame[TURN] * math.floor((u - frame[START]) / frame[TURN])
-    # The square around the place has to be where bounds hold.
+    # The square around the point has to be where bounds hold.
     if not best_length + 1.5 * least <= whole:
         least = math.inf
     return best_u, best_r, least, d
@@ -203,7 +203,7 @@ def place_in(tape, work, disc, n):
 
 @jit
 def decide_discs(tape, work, disc, normals, numbers, first, last, domain, answers):
-    """Find the places in a disc with normals (S, 3) of some numbers; see `decide_normals`.
+    """Find the solutions in a disc for normals (S, 3) with some indices; see `decide_normals`.
 
     The tape is that of the surface by u and r, with the coordinates of the plane and h, or of its
     quotient by r. Returns the next position in `numbers`.
@@ -238,7 +238,7 @@ def decide_discs(tape, work, disc, normals, numbers, first, last, domain, answer
             row[2 + angle] = min(frame[BY_U] * error / (r - of_r), 0.5 * turn)
         row[2 + angle] += 4.0 * EPS * (abs(start) + turn)
         row[4] = d
-        # The disc, with all angles, and beyond the pole.
+        # The box is the whole disc: all angles, and beyond the pole.
         row[5 + 2 * angle], row[6 + 2 * angle] = start - 2.0 * turn, start + 3.0 * turn
         edge, beyond = end + inward * frame[WHOLE] * size, end - inward * size
         row[7 - 2 * angle], row[8 - 2 * angle] = min(edge, beyond), max(edge, beyond)

@@ -1,4 +1,4 @@
-"""Folds: whether a small box with a singular Hessian has no place with a normal, or a double."""
+"""Folds: small boxes with a singular Hessian that have no solution for a normal, or two."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ from .tape import POINT, evaluate_points
 __all__ = ["DOUBLE", "NO_PLACE", "UNKNOWN", "at_fold"]
 
 NO_PLACE, DOUBLE, UNKNOWN = range(3)
-# Turned coordinates p, w go so far, and bounds as far as these are in s and t: √(2² + 2) < 2.5.
+# The ranges of the rotated coordinates p, w, and that of s and t for bounds: √(2² + 2) < 2.5.
 ALONG, ACROSS, WIDER = 2.0, 1.4143, 2.5
-# Steps towards the extreme, and one that is small enough.
+# The largest number of steps towards the extremum, and the length of the last one.
 STEPS, SMALL = 30, 1e-10
 
 
 @loop
 def at_fold(tape, work, tile, n):
-    """Say whether the first cell of a tile has a place with the normal n, or a double one.
+    """Classify the first cell of a tile: no solution for the normal n, a double one, or unknown.
 
-    With a double one the cell becomes a box that has all places with this normal, none or two.
+    For a double one, the cell is replaced by a box with all solutions for n, none or two.
     """
     write_cells(tape, work, WIDER, tile, 1)
     if tile.noise[0, REACH] < WIDER:

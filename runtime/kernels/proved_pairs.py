@@ -1,8 +1,8 @@
-"""Pairs of a cell and a normal: those that bounds exclude, and the one place that the others have.
+"""Pairs of a cell and a normal: exclusion by bounds, and the unique solutions of other pairs.
 
-Pairs are worked on in tiles of LANES: each step is a vectorized loop over the lanes. Pairs that
-take another evaluation of the surface stay in the tile, and others take the lanes of those that are
-done. What is not decided in a few evaluations is left to `proved_places`.
+Pairs are processed in tiles of LANES: each step is a vectorized loop over the lanes. Pairs that
+need another evaluation of the surface stay in the tile; new pairs replace those that are done.
+Pairs that are not decided after a few evaluations are left to `proved_places`.
 """
 
 from __future__ import annotations
@@ -53,22 +53,22 @@ __all__ = [
 
 # The rows of a tile of pairs, of LANES numbers: the normal, the cell, the forms of the pair, bounds
 # (see `Cells`), the inverse of the Hessian and bounds of its product with it (see `inverse_of`),
-# and the place: s, t, how far it may be from the exact one, D, the number of evaluations, a state.
+# and the solution: s, t, its error bound, D, the number of evaluations, a state.
 (
     NX, NY, NZ, U0, V0, HU, HV, A, B, C, P, Q, T0, T1, T2, T3, R0, R1, R2, R3,
     ROUND_S, ROUND_T, ROUND_2, REACHED,
     Y11, Y12, Y22, CHANGE, NOISE, BASE, S, T, RADIUS, DETERMINANT, ROUND, STATE,
 ) = (np.uint64(k * LANES) for k in range(36))  # fmt: skip
 ROWS = 36
-# States of a pair: no place, one, one evaluation more, not decided here, one near a side.
+# States of a pair: no solution, one, needs another evaluation, not decided here, one near a side.
 NONE, ONE, MORE, HARD, EDGE = 0.0, 1.0, 2.0, 3.0, 4.0
-# The product of the inverse of the Hessian with its change is at most this.
+# The largest product of the inverse of the Hessian with its change.
 CONTRACTING = 0.95
-# A place is good enough if it is known up to this multiple of what rounding leaves.
+# A solution is accurate enough if its error bound is below this multiple of the rounding error.
 CLOSE = 4.0
 # The largest number of evaluations for a pair.
 ROUNDS = 6.0
-# The model may lead out of the cell by this much.
+# The model's solution may be outside the cell, up to this coordinate.
 OUTSIDE = 1.5
 
 
@@ -118,7 +118,7 @@ def write_forms(t, count, registers, outputs):
 
 @inline
 def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap):
-    """Say whether a cell has no place with a normal or its opposite."""
+    """Return whether a cell has no solution for a normal or its opposite."""
     rest_s, rest_t = remainders(abs(t0) + r0, abs(t1) + r1, abs(t2) + r2, abs(t3) + r3)
     rest_s = rest_s * (1.0 + 4.0 * gap) + round_s + 2.0 * round_2 + gap * (abs(a) + abs(b) + abs(p))
     rest_t = rest_t * (1.0 + 4.0 * gap) + round_t + 2.0 * round_2 + gap * (abs(b) + abs(c) + abs(q))
@@ -128,7 +128,7 @@ def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t,
 
 @inline
 def model_start(a, b, c, p, q, t0, t1, t2, t3, y11, y12, y22):
-    """Return the place of the cubic model with a normal, near the cell."""
+    """Return the solution of the cubic model for a normal, near the cell."""
     s, t = -(y11 * p + y12 * q), -(y12 * p + y22 * q)
     for _ in range(3):
         s, t = min(max(s, -OUTSIDE), OUTSIDE), min(max(t, -OUTSIDE), OUTSIDE)
@@ -141,11 +141,11 @@ def model_start(a, b, c, p, q, t0, t1, t2, t3, y11, y12, y22):
 
 @inline
 def is_beyond(s, t, g1, g2, error, change):
-    """Say whether a cell has no place, from the residual at a place (s, t) of it.
+    """Return whether a cell has no solution, from the residual at a point (s, t) of it.
 
     g1, g2 are the residual times the inverse of the Hessian, known up to `error`. If the step of
-    Newton's simplified method, cut off at the sides, leads to a place near (s, t), then so is a
-    place that the cell has; but the residual is too large for that.
+    Newton's simplified method, cut off at the sides, leads to a point near (s, t), any solution in
+    the cell is near (s, t) as well; the cell has none if the residual is too large for that.
     """
     step = max(abs(min(max(s - g1, -1.0), 1.0) - s), abs(min(max(t - g2, -1.0), 1.0) - t))
     away = (step + error) / (1.0 - change)
@@ -154,7 +154,7 @@ def is_beyond(s, t, g1, g2, error, change):
 
 @loop
 def bound_pairs(t, first, count):
-    """Write the states of pairs; inverse, bounds and start of those that may have a place."""
+    """Write the states of pairs; inverse, bounds and start if they may have a solution."""
     long_vectors()
     for k in range(first, count):
         i = np.uint64(k)
@@ -171,7 +171,7 @@ def bound_pairs(t, first, count):
         i11, i12, i22 = abs(y11), abs(y12), abs(y22)
         rounding = max(i11 * round_s + i12 * round_t, i12 * round_s + i22 * round_t)
         s, z = model_start(a, b, c, p, q, t0, t1, t2, t3, y11, y12, y22)
-        # The residual at the nearest place of the cell, by the model.
+        # The residual at the nearest point of the cell, by the model.
         s1, z1 = min(max(s, -1.0), 1.0), min(max(z, -1.0), 1.0)
         _, _, _, p1, q1 = model_at(a, b, c, p, q, t0, t1, t2, t3, s1, z1)
         rest_s, rest_t = remainders(r0, r1, r2, r3)
@@ -260,7 +260,7 @@ def form(registers, x, y, z, n, at):
 
 @inline
 def distance(p, q, y11, y12, y22, whole, base):
-    """Return a bound of the distance from the only place with P = Q = 0, if it is near."""
+    """Return a bound of the distance from the unique solution of P = Q = 0, if it is near."""
     i11, i12, i22 = abs(y11), abs(y12), abs(y22)
     g1 = abs(y11 * p + y12 * q) + 4.0 * EPS * (i11 * abs(p) + i12 * abs(q))
     g2 = abs(y12 * p + y22 * q) + 4.0 * EPS * (i12 * abs(p) + i22 * abs(q))
@@ -277,5 +277,5 @@ def newton(a, b, c, p, q, s, t):
 
 @inline
 def after_step(away, change, noise, whole, base):
-    """Return a bound of the distance from the place after a step of Newton's method."""
+    """Return a bound of the distance from the solution after a step of Newton's method."""
     return (0.5 * change * away + noise) * away / (1.0 - whole) + base

@@ -1,7 +1,7 @@
-"""All places with a normal in the cells that a simple search left open: bisection, folds, doubles.
+"""All solutions for a normal in cells that the simple search left open: bisection, folds, doubles.
 
-The cells of a normal are cut level by level. What stays open in the end lies in a few small boxes,
-and is listed with them.
+The cells of a normal are bisected level by level. Remaining undecided solutions lie in a few small
+boxes, which are listed.
 """
 
 from __future__ import annotations
@@ -61,13 +61,12 @@ from .vectors import row_vector
 
 __all__ = ["Boxes", "decide_normals"]
 
-# Boxes are cut so often; after each of some levels folds are looked for.
+# The number of levels of bisection, and the levels after which folds are tested.
 DEEPEST, FOLDS = 24, (4, 8, 14, 19)
-# A curve of places has about twice as many boxes on each level. More boxes than MANY are a curve if
-# their number grows by GROWTH for several levels; at most so many cells, or a quarter of so many
-# boxes, are looked at.
+# The boxes of a curve of solutions about double on each level. More boxes than MANY are a curve if
+# their number grows by GROWTH for TIMES levels; at most MOST cells, or MOST/4 boxes, are processed.
 MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
-# From this level on, more than twice as many open boxes as on the one before are due to rounding.
+# From this level on, rounding explains open boxes more than twice as many as on the level before.
 FINE = 10
 
 
@@ -86,7 +85,7 @@ class Boxes(NamedTuple):
 
     @classmethod
     def new(cls, cells: int) -> Boxes:
-        """Return work arrays for an index with so many cells."""
+        """Return work arrays for an index with this number of cells."""
         most = 16 * MOST + cells
         return cls(
             np.empty((most, 3)), np.empty((most, 3)), np.empty((most, 4)), np.empty(most, np.int64),
@@ -109,7 +108,7 @@ def side_at(tape, work, tile, cells, j, u, v, r_u, r_v, n):
 
 @loop
 def rest_in(cells, j, size_u, size_v):
-    """Return what a patch leaves out of x_s, x_t in a part of cell j, relative to it so large."""
+    """Return the remainders of x_s, x_t beyond the patch in a part of cell j of this size."""
     t0, t1, t2, t3 = third_sizes(cells.thirds, j)
     square = max(size_u, size_v) ** 2
     second = 2.0 * square * cells.noise[j, SECOND]
@@ -173,7 +172,7 @@ def keep_boxes(t, lanes, boxes, size, following):
 
 @loop
 def store_places(t, lanes, work, boxes, number, answers):
-    """Store the places that are proved in a tile of boxes; say whether there was room."""
+    """Store the proved solutions of a tile of boxes; return whether there was room."""
     if answers.counts[0] + lanes > answers.numbers.shape[0]:
         return False
     for k in range(lanes):
@@ -195,7 +194,7 @@ def store_places(t, lanes, work, boxes, number, answers):
 
 @loop
 def use_folds(tape, work, index, boxes, count, size, domain, number, n, last, answers):
-    """Drop the clusters of boxes that folds decide; the others, too, after the `last` level.
+    """Drop clusters of boxes that folds decide; after the `last` level, list and drop others.
 
     Returns the number of boxes that are left, −1 if there was no room.
     """
@@ -231,7 +230,7 @@ def use_folds(tape, work, index, boxes, count, size, domain, number, n, last, an
 
 @loop
 def give_up(index, boxes, rows, count, size, domain, number, answers):
-    """List all boxes of rows as a continuum, or as singular; say whether there was room."""
+    """List all boxes of rows as a continuum, or as singular; return whether there was room."""
     cells = index.cells
     hulls = cluster(rows, count, cells, size, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
@@ -247,7 +246,7 @@ def give_up(index, boxes, rows, count, size, domain, number, answers):
 
 @loop
 def bisect(tape, work, index, boxes, count, domain, number, n, answers):
-    """Find the places of a normal in boxes that are whole cells; say if there was room."""
+    """Find the solutions for a normal in whole cells; return whether there was room."""
     size = 1.0
     fold = growing = 0
     if count > MOST:
@@ -279,9 +278,9 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
 
 @loop
 def orient(tape, work, index, boxes, first, domain, number, n, answers):
-    """Leave places out that have the normal −n; list those that may have none as singular.
+    """Remove solutions with the normal −n; list those that may have no normal as singular.
 
-    Says whether there was room.
+    Return whether there was room.
     """
     cells = index.cells
     kept = first
@@ -304,7 +303,7 @@ def orient(tape, work, index, boxes, first, domain, number, n, answers):
 
 @jit
 def decide_normals(tape, work, index, normals, hard, groups, first, last, domain, boxes, answers):
-    """Decide the hard pairs of the groups first, …, last − 1, each of one normal.
+    """Decide the hard pairs of the groups [first, last), each of one normal.
 
     hard (…, 2) are numbers of normals (S, 3) and of cells; groups[g] is the start of a group.
     `domain` (6) is u₀, u₁, v₀, v₁, and the periods of u and v or 0. Returns the next group, `last`

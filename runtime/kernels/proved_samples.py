@@ -1,4 +1,4 @@
-"""The fields of places of a surface whose normals are known, from its tape."""
+"""The fields of samples at solutions, whose normals are known, from the tape of the surface."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from .vectors import dot, row_vector, set_row
 
 __all__ = ["CURVATURES", "SampleFields", "fill_places"]
 
-# Scratch memory: Gaussian and mean curvatures of a tile.
+# The size of a work array: Gaussian and mean curvatures of a tile.
 CURVATURES = 2 * LANES
 MEAN = np.uint64(LANES)
 
 
 class SampleFields(NamedTuple):
-    """Arrays of fields of samples; those that are not wanted are empty."""
+    """Arrays of fields of samples; those that are not requested are empty."""
 
     points: NDArray[np.float64]
     normals: NDArray[np.float64]
@@ -74,11 +74,11 @@ def curvatures_of_tile(registers, outputs, scales, count, curvatures):
 def fill_places(
     tape, work, numbers, places, first, last, normals, scales, frame, cells, curvatures, fields
 ):
-    """Write the fields of places first, …, last − 1.
+    """Write the fields of the solutions [first, last).
 
-    places (k, 6) are those of a search, numbers (k,) those of their unit normals (S, 3). `scales` =
-    (size, du, dv): `size` times the surface has cells du × dv of about the size 1. `frame` are u₀,
-    v₀, du, dv of the spline, which has m × n `cells`.
+    places (k, 6) are the solutions of a search, numbers (k,) the indices of their unit normals (S,
+    3). `scales` = (size, du, dv): `size` times the surface has cells du × dv of about the size 1.
+    `frame` are u₀, v₀, du, dv of the spline, which has m × n `cells`.
     """
     x, y, z = POINT * tape.outputs[0], POINT * tape.outputs[1], POINT * tape.outputs[2]
     u0, v0, du, dv = frame[0], frame[1], frame[2], frame[3]

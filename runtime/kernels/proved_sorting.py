@@ -1,4 +1,4 @@
-"""Places in the order of their normals, those of a normal by u and v: a counting sort."""
+"""Solutions sorted by normal (a counting sort), and for each normal by u and v."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ __all__ = ["Sorted", "count_places", "order_places", "put_places", "start_normal
 
 
 class Sorted(NamedTuple):
-    """Room for sorted places (k, 6) of a search, and the numbers (k,) of their normals."""
+    """Arrays for sorted solutions (k, 6) of a search, and the indices (k,) of their normals."""
 
     numbers: NDArray[np.int64]
     places: NDArray[np.float64]
 
     @classmethod
     def new(cls, count: int) -> Sorted:
-        """Return room for some places."""
+        """Return empty arrays for a number of solutions."""
         return cls(np.empty(count, np.int64), np.empty((count, PLACE)))
 
 
 @jit
 def count_places(numbers, starts):
-    """Add the numbers of places with each normal to `starts` (S + 1,), shifted by one."""
+    """Add the number of solutions for each normal to `starts` (S + 1,), shifted by one."""
     for k in range(numbers.size):
         starts[numbers[k] + 1] += 1
 
 
 @jit
 def start_normals(starts):
-    """Change the numbers of places into their starts."""
+    """Replace the numbers of solutions by their cumulative sums, the starts."""
     for n in range(starts.size - 1):
         starts[n + 1] += starts[n]
 
 
 @jit
 def put_places(places, numbers, starts, room):
-    """Write places (k, 6) where those with their normals start, and move the starts on."""
+    """Write solutions (k, 6) at the starts of their normals, and advance the starts."""
     for k in range(numbers.size):
         at = starts[numbers[k]]
         starts[numbers[k]] = at + 1
@@ -52,7 +52,7 @@ def put_places(places, numbers, starts, room):
 
 @jit
 def order_places(room):
-    """Sort the places with each normal by u, then v."""
+    """Sort the solutions for each normal by u, then v."""
     for first in range(1, room.numbers.size):
         k = first
         while k > 0 and room.numbers[k - 1] == room.numbers[k] and is_before(room.places, k, k - 1):
@@ -63,7 +63,7 @@ def order_places(room):
 
 @loop
 def is_before(places, i, k):
-    """Say whether the parameters of place i are before those of place k."""
+    """Return whether the parameters of solution i precede those of solution k."""
     return places[i, 0] < places[k, 0] or (
         places[i, 0] == places[k, 0] and places[i, 1] < places[k, 1]
     )

@@ -36,22 +36,21 @@ __all__ = [
     "newton",
 ]
 
-# What a parameter does at the ends of its interval: there are none, it stops there, or it goes on
-# at the other end.
+# The behaviour of a parameter at the ends of its interval: no ends, clamped to them, or periodic.
 FREE, CLAMPED, PERIODIC = 0, 1, 2
 NOT_FOUND, FOUND = 0, 1
-# In cells of the spline: the length of a step, and of all steps together. What is farther away
-# belongs to another sample.
+# In cells of the spline: the largest length of a step, and of all steps together. A point farther
+# away belongs to another sample.
 LONGEST_STEP, FARTHEST = 1.0, 3.0
-# The part of a step that is taken back if the angle does not get smaller by it.
+# The part of a step that is taken back if it does not reduce the angle.
 TAKEN_BACK = 0.5
-# A squared sine that does not get smaller than this part of the last one does not converge.
+# The iteration does not converge if the squared sine is not below this part of the previous one.
 SLOW = 0.25
 OPPOSITE = 4.0  # in place of the squared sine of angles above 90 degrees
 
 
 class Rows(NamedTuple):
-    """The rows that are not finished: their `numbers` (n,), and the parameters (2, n) of each.
+    """The unfinished rows: their indices `numbers` (n,), and their parameters (2, n).
 
     In cells of the spline, `steps` (4, n) are the last step and all steps together; `least` (n,) is
     the squared sine of the smallest angle so far.
@@ -64,13 +63,13 @@ class Rows(NamedTuple):
 
     @classmethod
     def new(cls, numbers: NDArray[np.int64]) -> Rows:
-        """Return room for the state of rows with some numbers."""
+        """Return arrays for the state of rows with these indices."""
         count = len(numbers)
         return cls(numbers, np.empty((2, count)), np.empty((4, count)), np.empty(count))
 
 
 class Target(NamedTuple):
-    """By the numbers of rows: the normals, the signs that K is to have, or 0, and what is found.
+    """For each row: the normal, the required sign of K, or 0, and the sample that is found.
 
     `state` (n,) is NOT_FOUND or FOUND; only samples that are FOUND are overwritten.
     """
@@ -85,7 +84,7 @@ class Target(NamedTuple):
 
 
 class Box(NamedTuple):
-    """The ends of the two parameters, what they do there, and the size of a cell of the spline."""
+    """The ends of both parameters, their behaviour there, and the size of a cell of the spline."""
 
     ends: tuple[float, float, float, float]
     kinds: tuple[int, int]
@@ -115,7 +114,7 @@ def patch_of_jet(jets, k, size, du, dv):
 
 @inline
 def inside(value, low, high, kind):
-    """Return a parameter of the interval: the same, that of the same points, or the nearest."""
+    """Return a parameter of the interval: unchanged, modulo the period, or the nearest one."""
     if kind == PERIODIC:
         if value < low:
             value += high - low
@@ -147,9 +146,9 @@ def is_regular(patch, L, K):
 
 @inline
 def store(target, row, patch, u, v, size):
-    """Write the sample at (u, v) away, unless it is singular or K has the wrong sign.
+    """Store the sample at (u, v), unless it is singular or K has the wrong sign.
 
-    At parabolic points K is as small as the error of the normal makes it, and has any sign.
+    At parabolic points K is about the error of the normal, and has either sign.
     """
     L, _, K, H = at_jet(patch)
     if target.signs[row] * K >= -NORMAL_ERROR * 4.0 * H * H and is_regular(patch, L, K):
@@ -157,7 +156,7 @@ def store(target, row, patch, u, v, size):
         target.uv[row, 0] = u
         target.uv[row, 1] = v
         set_row(target.points, row, Vector(patch.p.x * unit, patch.p.y * unit, patch.p.z * unit))
-        # K may be 0, of any sign.
+        # K may be 0, with either sign.
         sign = target.signs[row] if target.signs[row] != 0.0 else K
         target.gaussian[row] = math.copysign(K * size * size, sign)
         target.mean[row] = H * size
@@ -166,7 +165,7 @@ def store(target, row, patch, u, v, size):
 
 @inline
 def keep(rows, left, row, u, v, s, t, gone_u, gone_v, least):
-    """Write the state of a row that is not finished; it becomes number `left`."""
+    """Write the state of an unfinished row, which becomes row `left`."""
     at = np.uint64(left)
     rows.numbers[at] = row
     rows.place[0, at] = u
@@ -180,12 +179,12 @@ def keep(rows, left, row, u, v, s, t, gone_u, gone_v, least):
 
 @jit
 def newton(jets, count, rows, target, box, size, tolerance, noise):
-    """Finish the first `count` rows or move them by a step; return how many are left.
+    """Finish the first `count` rows or move them by a step; return the number of unfinished rows.
 
     A row is finished where the squared sine of the angle between its normal and that of the surface
-    is at most `tolerance`, or where it is at most `noise` and does not get smaller. What is written
-    are the point and the curvatures there. `size`, a power of two, times the surface has cells of
-    about the size 1.
+    is at most `tolerance`, or where it is at most `noise` and does not decrease. Point and
+    curvatures there are written. `size`, a power of two, times the surface has cells of about the
+    size 1.
     """
     u0, u1, v0, v1 = box.ends
     du, dv = box.cell
@@ -212,7 +211,7 @@ def newton(jets, count, rows, target, box, size, tolerance, noise):
         new_u = inside(u + s * du, u0, u1, box.kinds[0])
         new_v = inside(v + t * dv, v0, v1, box.kinds[1])
         gone_u, gone_v = rows.steps[2, k] + s, rows.steps[3, k] + t
-        # Where there is no number, as 1/D for D = 0, no comparison is true.
+        # Comparisons with NaN, as from 1/D for D = 0, are false.
         near = gone_u * gone_u + gone_v * gone_v <= FARTHEST * FARTHEST
         if near and (new_u != u or new_v != v):
             keep(rows, left, row, new_u, new_v, s, t, gone_u, gone_v, least)
@@ -243,7 +242,7 @@ def evaluate_jets(jets, scales, normals, gaussian, mean):
 
 @inline
 def polar_jet(jets, k, angle, turn, sign):
-    """Return a 2-jet by φ and r: the parameter `angle` is φ/turn, and the other grows as sign r."""
+    """Return a 2-jet by φ and r: parameter `angle` is φ/turn, the other one grows as sign · r."""
     radius = 1 - angle
     by_angle = 1.0 / turn
     return Patch(

@@ -40,7 +40,7 @@ def at_most(value, limit):
 def density_of(K, H, radius, target):
     """Return the target density for the Gaussian and mean curvature.
 
-    Radii of curvature smaller than a radius count as that.
+    Radii of curvature below `radius` count as `radius`.
     """
     density = 0.0
     limit = 1.0 / (radius * radius)

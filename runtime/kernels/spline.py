@@ -1,4 +1,4 @@
-"""The C¹ quadratic spline: fitting its coefficients, its control nets, evaluation and measure."""
+"""The C¹ quadratic spline: its coefficients, control nets, evaluation, areas and solid angles."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def locate(s, t):
 
 @inline
 def patch_at(x, y, rows, columns):
-    """Return row, column and triangle of the cell of a place in cells, and u, v there."""
+    """Return row, column and triangle of the cell of a parameter pair in cells, and u, v there."""
     i = min(max(int(math.floor(x)), 0), rows - 1)
     j = min(max(int(math.floor(y)), 0), columns - 1)
     turn, u, v = locate(x - i - 0.5, y - j - 0.5)
@@ -124,7 +124,7 @@ def patch_at(x, y, rows, columns):
 
 @inline
 def in_triangle(s, t, turn):
-    """Return u, v in a triangle of a cell; s, t are relative to the centre of it, in cells."""
+    """Return u, v in a triangle of a cell; s, t are relative to its centre, in cells."""
     for _ in range(turn):
         s, t = t, -s
     return -t - s, -t + s
@@ -132,7 +132,7 @@ def in_triangle(s, t, turn):
 
 @jit
 def evaluate(mu, scale, cells, points, normals):
-    """Write points (k, 3) and unnormalized normals (k, 3) at places (k, 2) in cells."""
+    """Write points (k, 3) and unnormalized normals (k, 3) at parameters (k, 2) in cells."""
     size = SCALE * scale
     for k in range(cells.shape[0]):
         i, j, turn, u, v = patch_at(cells[k, 0], cells[k, 1], mu.shape[0] - 2, mu.shape[1] - 2)
@@ -146,7 +146,7 @@ def evaluate(mu, scale, cells, points, normals):
 
 @jit
 def mark_left(uv, patches, frame, columns, near, left):
-    """Write which parameters (k, 2) are not in their patches (k,), or `near` the sides, in cells.
+    """Mark parameters (k, 2) outside their patches (k,), or within `near` of the sides, in cells.
 
     A step of one cell along both axes changes u and v in a triangle by two.
     """
@@ -159,7 +159,7 @@ def mark_left(uv, patches, frame, columns, near, left):
 
 @jit
 def measure_patches(mu, scale, first, last, areas, solid_angles):
-    """Write area (scaled) and signed solid angle of the patches first, …, last − 1."""
+    """Write area (scaled) and signed solid angle of the patches [first, last)."""
     columns = mu.shape[1] - 2
     for number in range(first, last):
         i, j, turn = place_of(number, columns)

@@ -1,4 +1,4 @@
-"""The steps of a graded grid along both parameters: as long as errors allow."""
+"""The steps of a graded grid along both parameters, as long as limits of errors allow."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ EPS = 2.0**-52
 
 @inline
 def longest_step(e, f, g, a, limit):
-    """Return the largest b with e a² + 2 |f| a b + g b² ≤ limit, 0 if there is none."""
+    """Return the largest b with e a² + 2 |f| a b + g b² ≤ limit; 0 if none exists."""
     left = limit - e * a * a
     if f == 0.0 and g == 0.0:
         return math.inf if left >= -8.0 * EPS * limit else 0.0  # a may have reached the limit
@@ -49,7 +49,7 @@ def longest_steps(third, first, limits, along, least, most, steps):
 
 @jit
 def shared_steps(forms, swapped, limits, share, shortest, longest, along_u, along_v):
-    """Write steps along u (k,) and v (l,) that give u a share of the limits, if these are reached.
+    """Write steps along u (k,) and v (l,), of which those along u use a share of the limits.
 
     `forms` are two forms (3, k, l), the largest first entry of each along u (k,), and the width of
     the domain; `swapped` are the same with u and v exchanged. Steps are between the parts

@@ -1,7 +1,7 @@
-"""Tapes: the operations that compute a surface, and the 2-jets of many points by them.
+"""Tapes: lists of the operations that compute a surface; their evaluation to 2-jets.
 
-Points are evaluated in tiles of LANES: each operation is a loop over the lanes, so that the time of
-interpretation is shared. Results of operations, the registers, are Taylor polynomials in u and v of
+Points are evaluated in tiles of LANES: each operation is a loop over the lanes, which share the
+time of interpretation. Results of operations, the registers, are Taylor polynomials in u and v of
 degree 2: numbers 1, u, v, uu, uv, vv for each row of the tape, each with LANES lanes.
 """
 
@@ -23,7 +23,7 @@ from .tape_splines import COORDINATES, NO_SPLINE, Polynomials, own_parameter, sp
 __all__ = ["LANES", "POINT", "Tape", "evaluate_points", "points_jets"]
 
 LANES = 32
-# The numbers of a row of registers, and where the coefficients of one begin.
+# The size of a row of registers, and the offsets of its coefficients.
 POINT = np.int64(6 * LANES)
 U, V, UU, UV, VV = (np.uint64(k * LANES) for k in range(1, 6))
 
@@ -31,9 +31,9 @@ U, V, UU, UV, VV = (np.uint64(k * LANES) for k in range(1, 6))
 class Tape(NamedTuple):
     """Three functions of u and v as operations, each on results of earlier ones.
 
-    Operations (k, 4) int64 are a code of `generated.elementary` and the rows of arguments. Numbers
-    (k, 2) are constants, and how far the exact ones may be from them. Outputs (3,) int64 are the
-    rows of x, y and z. A spline is read by the operation of that name.
+    Operations (k, 4) int64 are a code of `generated.elementary` and the rows of its arguments.
+    Numbers (k, 2) are constants with bounds of their errors. Outputs (3,) int64 are the rows of x,
+    y and z. A spline is read by the operation of that name.
     """
 
     operations: NDArray[np.int64]
@@ -136,7 +136,7 @@ def multiply(registers, a, b, at, count):
 
 @loop
 def compose(registers, a, at, count):
-    """Write a function of a register, whose value, f1 and f2 are in the places of 1, u and v."""
+    """Write a function of a register; its value, f1 and f2 are in the slots of 1, u and v."""
     for k in range(count):
         x = taylor_at(registers, a, k)
         i = np.uint64(at + k)
@@ -147,7 +147,7 @@ def compose(registers, a, at, count):
 
 @loop
 def write_coefficients(code, registers, a, at, count):
-    """Write the value, f1 and f2 of a function of a register to the places of 1, u and v."""
+    """Write the value, f1 and f2 of a function of a register to the slots of 1, u and v."""
     for k in range(count):
         value, f1, f2, _ = coefficients(code, registers[np.uint64(a + k)])
         i = np.uint64(at + k)

@@ -4,9 +4,9 @@ A coefficient is known as a ball: a midpoint and a radius. Registers are those o
 `runtime.kernels.tape`, with the ten coefficients 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv; there are
 registers of midpoints and of radii. Boxes are evaluated in tiles of LANES.
 
-Radii hold the rounding of all operations, with bounds that are derived with the formulas
-(`symbolic/taylor.py`). That the functions of the C library are exact to two units of the last place
-is an assumption.
+Radii include the rounding errors of all operations; their bounds are derived with the formulas
+(`symbolic/taylor.py`). The functions of the C library are assumed to be accurate to two units in
+the last place.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from .tape_spline_bounds import write_spline_balls
 
 __all__ = ["BALL", "bounds_of_boxes", "evaluate_boxes"]
 
-# The numbers of a row of registers, and where the coefficients begin.
+# The size of a row of registers, and the offsets of its coefficients.
 BALL = np.int64(10 * LANES)
 U, V, UU, UV, VV, UUU, UUV, UVV, VVV = (np.uint64(k * LANES) for k in range(1, 10))
-# More than the rounding of radii, which are sums of less than 64 terms, and than what underflows.
+# Bounds of the relative rounding errors of radii, sums of fewer than 64 terms, and of underflow.
 INFLATION = 1.0 + 2.0**-46
 TINY = 1e-290
 
@@ -170,7 +170,7 @@ def multiply(terms, middles, radii, a, b, at, count):
 
 @loop
 def inflate(terms, radii, at, count):
-    """Add their own rounding to radii."""
+    """Add the rounding errors of radii to them."""
     for j in range(terms):
         for k in range(count):
             i = np.uint64(at + j * LANES + k)
@@ -287,7 +287,7 @@ def evaluate_boxes(tape, order, centres, half_widths, count, middles, radii, end
 
 @loop
 def hide_unknown(tape, terms, middles, radii, count):
-    """Make the radii of outputs infinite that are not numbers, or have infinite midpoints."""
+    """Make radii of outputs infinite if they are NaN, or if their midpoints are infinite."""
     for axis in range(3):
         for j in range(terms):
             for k in range(count):

@@ -1,4 +1,4 @@
-"""The functions of one variable that tapes have: Taylor coefficients at a number, and ranges."""
+"""The functions of one variable in tapes: Taylor coefficients at a number, and their ranges."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ __all__ = [
 
 UNIT = 2.0**-53  # the unit of rounding
 QUARTER = 0.5 * math.pi
-FAR = 1e8  # where multiples of π/2 are not looked for
+FAR = 1e8  # beyond this, multiples of π/2 are not located
 # Adding and subtracting it rounds numbers to integers.
 SHIFT = 1.5 * 2.0**52
-LARGEST_ANGLE = 2.0**18  # that `reduced_angle` is good for
+LARGEST_ANGLE = 2.0**18  # the domain of `reduced_angle`
 
 
 @inline
 def sine_and_cosine(x):
-    """Return the sine and the cosine of an angle, as exact as those of the C library.
+    """Return the sine and the cosine of an angle, as accurate as those of the C library.
 
-    Angles are less than LARGEST_ANGLE. There are no branches, so that loops over lanes are
+    Angles are below LARGEST_ANGLE. The code has no branches, so that loops over lanes are
     vectorized.
     """
     k = (x * (1.0 / QUARTER) + SHIFT) - SHIFT
     y, w = elementary.sine_and_cosine(elementary.reduced_angle(x, k))
-    half = ((0.5 * k - 0.25) + SHIFT) - SHIFT  # of whole numbers, rounded down
+    half = ((0.5 * k - 0.25) + SHIFT) - SHIFT  # half of an integer, rounded down
     whole = ((0.5 * half - 0.25) + SHIFT) - SHIFT
     sign = 1.0 - 2.0 * (half - 2.0 * whole)
     swapped = k != 2.0 * half
@@ -44,7 +44,7 @@ def sine_and_cosine(x):
 def coefficients(code, x):
     """Return the value of the function with this code at x, and its Taylor coefficients after it.
 
-    They are NaN or infinite where there are none.
+    They are NaN or infinite where they do not exist.
     """
     if code == elementary.RECIPROCAL:
         y = 1.0 / x
@@ -116,8 +116,8 @@ def include(code, x, f):
 def ranges(code, low, high, f):
     """Write midpoints and radii (2, 4) of the Taylor coefficients on an interval.
 
-    Between their extremes they are monotone, so that the values there, and at the ends, bound them.
-    Radii are infinite where the function has a singularity, or nothing is known.
+    They are monotone between their extrema, so that the values at extrema and ends bound them.
+    Radii are infinite if the function has a singularity in the interval, or if no bound is known.
     """
     function = code - elementary.RECIPROCAL
     for k in range(4):

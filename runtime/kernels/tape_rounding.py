@@ -1,8 +1,9 @@
-"""How far the 2-jets of points by a tape may be from exact ones, in boxes of parameters.
+"""Bounds of the rounding errors of 2-jets that a tape computes, over boxes of parameters.
 
-Each operation has the exact Taylor coefficients, bounded by balls on the box, and the errors of
-those that `runtime.kernels.tape` computes, wherever in the box: of its arguments, and of its own
-rounding. The assumptions are those of `runtime.kernels.tape_balls`.
+For each operation, balls enclose the exact Taylor coefficients on the box, and a bound is computed
+for the errors of those that `runtime.kernels.tape` computes anywhere in the box: errors of the
+arguments, and rounding errors of the operation. The assumptions are those of
+`runtime.kernels.tape_balls`.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ def of_sum(code, factor, distance, middles, radii, errors, a, b, at, count):
             else:
                 largest = size_at(middles, radii, x) + errors[x]
                 error = abs(factor) * errors[x] + distance * largest + UNIT * size
-            # UNIT * size is that of the exact result: the computed one is not larger by much.
+            # UNIT * size is for the exact result: the computed one is hardly larger.
             errors[z] = error * INFLATION + TINY
 
 
@@ -84,7 +85,7 @@ def of_product(middles, radii, errors, a, b, at, count):
 
 @loop
 def of_coefficients(code, middles, radii, errors, a, f, ends, count):
-    """Write sizes of the Taylor coefficients of a function, and their errors, from row f on.
+    """Write bounds of the Taylor coefficients of a function, and of their errors, from row f on.
 
     Between the exact argument and the computed one a coefficient changes by its slope, which is the
     next coefficient.
@@ -119,7 +120,7 @@ def compose_errors(middles, radii, errors, a, f, at, count):
 def rounding_of_points(tape, centres, half_widths, count, middles, radii, errors, ends):
     """Write bounds of the errors of all rows at points in `count` boxes, at most LANES.
 
-    Registers of midpoints and radii are filled, too, to order 2.
+    Registers of midpoints and radii are filled to order 2 as well.
     """
     evaluate_boxes(tape, 2, centres, half_widths, count, middles, radii, ends)
     rows = tape.operations.shape[0]

@@ -1,10 +1,10 @@
 """Bounds of the polynomials of a spline over boxes, for `tape_balls` and `tape_rounding`.
 
-On a box, a polynomial is expanded at its centre s, t. The coefficients of the expansion change over
-the box by at most what the absolute values of those of higher order sum up to. The same expansion
-of absolute values bounds rounding errors.
+On a box, a polynomial is expanded at its centre s, t. Over the box, a coefficient of the expansion
+changes by at most the sum of the absolute values of those of higher order. The same expansion of
+absolute values bounds rounding errors.
 
-A box may contain knots. A derivative that is not bounded there has an infinite radius.
+A box may contain knots. A derivative that is unbounded there has an infinite radius.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ __all__ = ["SLACK", "write_spline_balls", "write_spline_errors"]
 # The orders of Taylor coefficients in u and v.
 IN_U = np.array([0, 1, 0, 2, 1, 0, 3, 2, 1, 0])
 IN_V = np.array([0, 0, 1, 0, 1, 2, 0, 1, 2, 3])
-SECOND = np.int64(MOST_COEFFICIENTS)  # where the second polynomial of an array begins
-# An end of a box that is closer to a knot than this, in roundings of the knots, is at the knot.
+SECOND = np.int64(MOST_COEFFICIENTS)  # the offset of the second polynomial of an array
+# An end of a box within this distance of a knot, in roundings of the knots, counts as the knot.
 SLACK = 8.0 * UNIT
 
 
@@ -45,9 +45,9 @@ def shift_polynomial(d, at, p, q, s, t):
 
 @loop
 def spans_of(breaks, low_end, period, low, high):
-    """Return the first and last span that an interval meets, and the period it is in.
+    """Return the first and last span that an interval intersects, and the period of its lower end.
 
-    Numbers of spans go on after the end of a period.
+    The numbering of spans continues beyond the end of a period.
     """
     slack = SLACK * (abs(breaks[0]) + abs(breaks[-1]))
     last = len(breaks) - 2
@@ -65,14 +65,14 @@ def spans_of(breaks, low_end, period, low, high):
 
 @loop
 def end_of(breaks, period, i):
-    """Return where a span ends, which may be in a later period."""
+    """Return the end of a span, which may be in a later period."""
     spans = len(breaks) - 1
     return breaks[i % spans + 1] + (i // spans) * period
 
 
 @loop
 def part_in(breaks, frames, period, turns, first, last, i, u, half_width):
-    """Return centre and half width of the part of an interval in a span, and the error of places.
+    """Return centre and half width of the part of an interval in a span, with their error.
 
     All are in the unit of the span.
     """
@@ -96,7 +96,7 @@ def part_in(breaks, frames, period, turns, first, last, i, u, half_width):
 
 @loop
 def least_smooth(smooth, first, last):
-    """Return how many derivatives are continuous at the knots between spans."""
+    """Return the number of derivatives that are continuous at the knots between spans."""
     spans, least = len(smooth) - 1, 1000
     for i in range(first, last):
         least = min(least, smooth[(i + 1) % spans])
@@ -107,8 +107,8 @@ def least_smooth(smooth, first, last):
 def expand(spline, i, j, c, s, t, middles, radii, at):
     """Expand a polynomial at s, t.
 
-    From `at` on, `middles` get its coefficients and those of its absolute values at |s|, |t|;
-    `radii` get what errors of its coefficients amount to.
+    From `at` on, `middles` receive its coefficients and those of its absolute values at |s|, |t|;
+    `radii` receive the effect of the errors of its coefficients.
     """
     table, errors = spline.coefficients, spline.errors
     p, q = table.shape[2] - 1, table.shape[3] - 1
@@ -201,7 +201,7 @@ def write_spline_errors(
 ):
     """Write bounds of the errors of the coordinates of a spline at points of a box.
 
-    A place in a span has an error itself, which the slopes of coefficients multiply.
+    The parameter in a span has an error itself, which is multiplied by the slopes of coefficients.
     """
     x = own_parameter(turned, number, u)
     if turned == 1:

@@ -31,10 +31,10 @@ MOST_COEFFICIENTS = 160  # of one polynomial, for which registers have room
 class Polynomials(NamedTuple):
     """The polynomials of a spline.
 
-    For u and for v, breaks (k + 1,) are the ends of spans, `smooth` (k + 1,) is how many
-    derivatives are continuous there, and frames (k, 2) are the middle of a span and the factor.
-    Periods (2, 2) are the low end and the length of the periods, 0 if there is none. Coefficients
-    (k, l, p + 1, q + 1, 4) of s and t in turn, and how far exact ones may be from them.
+    For u and for v, breaks (k + 1,) are the ends of spans, `smooth` (k + 1,) the numbers of
+    continuous derivatives there, and frames (k, 2) the middle of each span and the factor. Periods
+    (2, 2) are the lower end and the length of the periods, 0 without one. Coefficients (k, l, p +
+    1, q + 1, 4) are by powers of s and t, with bounds of their errors.
     """
 
     breaks_u: NDArray[np.float64]
@@ -69,7 +69,7 @@ def own_parameter(turned, total, u):
 
 @loop
 def span_at(breaks, frames, low, period, near, x):
-    """Return the span that holds a parameter, or is nearest to it, and the place in it."""
+    """Return the span that contains a parameter, or the nearest one, and the parameter s in it."""
     x = in_period(x, low, period)
     i = span_of(breaks, 0, len(breaks) - 2, near, x)
     return i, (x - frames[i, 0]) * frames[i, 1]

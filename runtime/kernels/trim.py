@@ -1,14 +1,14 @@
 """Points inside closed polygons of the parameter plane, by the even-odd rule.
 
 The plane is cut into cells, and each cell has a list of the segments that may touch it. The parity
-at the corner of each cell is known; a point has the same one, or the other one if an odd number of
-segments of the cell lies between it and the corner.
+at the corner of each cell is known; a point has the same parity, or the opposite one if an odd
+number of segments of the cell lies between it and the corner.
 
-Every place p stands for one that is infinitesimally displaced, first along u and much less along v
-(Simulation of Simplicity, Edelsbrunner and Mücke 1990): no place is on a segment, or beside a
-vertex, and of two polygons with a common side just one holds a point of it. Comparisons with the
-ends of a segment are exact. Only inside its bounding box a rounded product decides, and the same
-one wherever it is asked for, so that rounding matters next to a segment alone.
+Every point p is displaced infinitesimally along u, and much less along v (Simulation of Simplicity,
+Edelsbrunner and Mücke 1990): no point is on a segment, or level with a vertex, and of two polygons
+with a common side exactly one contains a point of it. Comparisons with the ends of a segment are
+exact. Only inside its bounding box a rounded product decides, always the same one, so that rounding
+matters only next to a segment.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ class Cells(NamedTuple):
 
 @inline
 def is_left(segment, u, v):
-    """Return whether the place is left of the line through a segment, as seen from its first end.
+    """Return whether a point is left of the line through a segment, as seen from its first end.
 
-    For a segment along u, above it is left; a place on its line is above it.
+    For a segment along u, left means above; a point on its line is above it.
     """
     rise = segment[3] - segment[1]
     product = (segment[2] - segment[0]) * (v - segment[1]) - rise * (u - segment[0])
@@ -62,9 +62,9 @@ def is_left(segment, u, v):
 
 @inline
 def is_right_of(segment, u, v):
-    """Return whether a segment whose v span that of a place is on its right, that is at larger u.
+    """Return whether a segment whose v range contains that of a point is right of it (at larger u).
 
-    The first end of the segment is the lower one, so that the place is then left of it.
+    The first end of the segment is the lower one, so that the point is then left of it.
     """
     if segment[0] > u and segment[2] > u:
         return True
@@ -75,7 +75,7 @@ def is_right_of(segment, u, v):
 
 @inline
 def is_below(segment, u, v):
-    """Return whether a segment whose u span that of a place is below it, that is at smaller v."""
+    """Return whether a segment whose u range contains that of a point is below it."""
     if segment[3] <= v:
         return True
     if segment[1] > v:
@@ -85,9 +85,9 @@ def is_below(segment, u, v):
 
 @inline
 def crosses(segment, u, v, corner_u, corner_v):
-    """Return whether a segment is crossed an odd number of times on the way to a corner.
+    """Return whether a segment is crossed an odd number of times on the path to a corner.
 
-    The way goes along u first.
+    The path goes along u first.
     """
     odd = False
     if segment[1] <= v < segment[3]:
@@ -105,7 +105,7 @@ def cell_along(x, low, rate, count):
 
 @loop
 def is_inside(cells, u, v):
-    """Return whether a place is inside the polygons."""
+    """Return whether a point is inside the polygons."""
     rows, columns = cells.parity.shape
     frame = cells.frame
     if not (
@@ -126,9 +126,9 @@ def is_inside(cells, u, v):
 
 @jit
 def find_inside(cells, shifts, places, first, last, inside):
-    """Write whether places first, …, last − 1, rows u, v, are inside after one of the shifts.
+    """Write whether the points [first, last) of rows u, v are inside after one of the shifts.
 
-    shifts (s, 4): rows a, b, c, d stand for the place (a u + b, c v + d).
+    shifts (s, 4): rows a, b, c, d map (u, v) to (a u + b, c v + d).
     """
     for k in range(first, last):
         inside[k] = False
@@ -140,10 +140,11 @@ def find_inside(cells, shifts, places, first, last, inside):
 
 
 class Joined(NamedTuple):
-    """The cells of L sets of polygons, one after another, and their shifts (s, 4).
+    """The cells of L sets of polygons, concatenated, and their shifts (s, 4).
 
-    starts (L + 1, 6): where segments, starts, members, parities and shifts of each begin, and its
-    number of rows, which is that of its columns. `cell_starts` and `members` count from there.
+    starts (L + 1, 6): the offsets of segments, starts, members, parities and shifts of each set,
+    and its number of rows, which equals that of its columns. `cell_starts` and `members` are
+    relative to these offsets.
     """
 
     segments: NDArray[np.float64]
@@ -157,7 +158,7 @@ class Joined(NamedTuple):
 
 @jit
 def find_inside_each(joined, owners, places, inside):
-    """Write whether places (k, 2) are inside those polygons whose numbers are `owners` (k,)."""
+    """Write whether points (k, 2) are inside the sets of polygons given by `owners` (k,)."""
     for k in range(owners.shape[0]):
         owner = owners[k]
         first = joined.starts[owner]
@@ -192,7 +193,7 @@ def find_parities(cells):
         while j < rows and frame[1] + j * frame[5] < segment[3]:
             v = frame[1] + j * frame[5]
             if segment[1] <= v:
-                # The last of the corners that the segment is right of.
+                # The last corner that is left of the segment.
                 share = (v - segment[1]) / (segment[3] - segment[1])
                 near = segment[0] + share * (segment[2] - segment[0])
                 i = cell_along(near, frame[0], frame[2], columns)
@@ -212,8 +213,8 @@ def find_parities(cells):
 def list_segments(cells, margins, stores):
     """Count the segments of each cell in starts[cell + 1], or store them, from starts[cell] on.
 
-    Those that are stored move the starts to the ends. A segment belongs to the cells that it may
-    touch: margins (2,) are more than the rounding of coordinates.
+    Storing moves the starts to the ends. A segment belongs to all cells that it may touch: margins
+    (2,) exceed the rounding errors of coordinates.
     """
     rows, columns = cells.parity.shape
     frame = cells.frame
@@ -243,7 +244,7 @@ def list_segments(cells, margins, stores):
 
 @jit
 def to_cells(patches, places, columns, first, last, cells):
-    """Write the places (k, 2) in cells of a grid of the parameters (k, 2) of patches (k,)."""
+    """Write parameters (k, 2) in cells of the grid, from those (k, 2) in patches (k,)."""
     for k in range(first, last):
         i, j, turn = place_of(patches[k], columns)
         u = places[k, 0]

@@ -1,4 +1,4 @@
-"""Whether vectors have unit length."""
+"""The test of vectors for unit length."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ NEAR = 5.6e-16
 
 @jit
 def are_unit(vectors, first, last):
-    """Return whether the vectors first, …, last − 1 (S, 3) have unit length, up to rounding.
+    """Return whether the vectors [first, last) (S, 3) have unit length, up to rounding.
 
-    Those that do also have it for `normalized`, which rounds the sum of squares differently: by
-    less than 4.5e-16.
+    `normalized` agrees, although it rounds the sum of squares differently, by less than 4.5e-16.
     """
     far = 0
     for k in range(first, last):

@@ -18,7 +18,7 @@ __all__ = [
     "whole_vectors",
 ]
 
-# The largest number of lanes of a vectorized loop; arrays have room for as many more numbers.
+# The largest number of lanes of a vectorized loop; arrays are padded by as many numbers.
 VECTOR = 16
 
 

@@ -1,9 +1,9 @@
-"""Wide integers: exact numbers of many bits, on which formulas run as they are.
+"""Wide integers: exact numbers of many bits, on which formulas run unchanged.
 
 Binary fractions are integers in a common unit, and so are their sums and products. In compiled code
 `wide` returns an integer of two or more limbs of 64 bits. A product has as many bits as both of its
-factors together, and so never overflows; a sum has those of its terms, and needs bits to spare.
-Without compilation they are Python's integers.
+factors together, and so never overflows; a sum has the bits of its terms, and needs spare ones.
+Without compilation, wide integers are Python's integers.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from numba.extending import intrinsic, lower_builtin, models, overload, register
 
 __all__ = ["MANTISSA", "rounded", "wide"]
 
-# The format of floating-point numbers: the bits of an integer mantissa, those that are stored, and
-# the exponent of the last one in the smallest numbers.
+# The format of floating-point numbers: the bits of an integer mantissa, the mask of those that are
+# stored, and the exponent of the last one in the smallest numbers.
 MANTISSA, FRACTION, LOWEST = 53, (1 << 52) - 1, -1074
 LIMB, PAIR, BIT = ir.IntType(64), ir.IntType(128), ir.IntType(1)
 
@@ -39,10 +39,10 @@ class Wide(types.Type):
 
 @register_model(Wide)
 class WideModel(models.PrimitiveModel):
-    """They are integers of LLVM."""
+    """The data model: integers of LLVM."""
 
     def __init__(self, manager: Any, kind: Wide) -> None:
-        """Take the type of LLVM with as many bits."""
+        """Use the integer type of LLVM with the same number of bits."""
         super().__init__(manager, kind, ir.IntType(kind.bits))
 
 
@@ -52,7 +52,7 @@ class WideModel(models.PrimitiveModel):
 def wide(value, unit, limbs) -> Any:
     """Return value / 2^unit, an integer with as many limbs as the tuple `limbs` has entries.
 
-    Its type depends on their number, and not on what they are.
+    Its type depends on the number of entries, and not on their values.
     """
     mantissa, exponent = math.frexp(value)
     return int(math.ldexp(mantissa, MANTISSA)) << max(exponent - MANTISSA - unit, 0)
@@ -84,7 +84,8 @@ def shifted(_: Any, mantissa: Any, shift: Any, limbs: Any) -> Any:
 def leading(_: Any, x: Any) -> Any:
     """Return the first 63 bits of the modulus of a number, and the exponent of the last one.
 
-    That one is set if any bit beyond it is: the result is rounded like the number itself.
+    The last bit is set if any bit beyond it is set, so that the result rounds like the number
+    itself.
     """
 
     def emit(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -198,7 +199,7 @@ def long_product(builder: Any, x: Any, y: Any) -> Any:
     for k, limb in enumerate(total):
         value = builder.or_(value, builder.shl(builder.zext(limb, kind), kind(64 * k)))
     for z, other in (x, y), (y, x):
-        # As an unsigned number, a negative one is too large by a power of two.
+        # Read as unsigned, a negative number is too large by a power of two.
         surplus = builder.shl(builder.zext(other, kind), kind(z.type.width))
         negative = builder.icmp_signed("<", z, z.type(0))
         value = builder.sub(value, builder.select(negative, surplus, kind(0)))

@@ -1,1 +1,1 @@
-"""Machine code of kernels: shipped with the package, or compiled here and kept."""
+"""Machine code of kernels: shipped with the package, or compiled here and cached."""

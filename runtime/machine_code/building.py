@@ -3,9 +3,9 @@
     python -m gaussmap.runtime.machine_code.building [--usual] [FOLDER]
 
 compiles them, or those that usual calls need, for the level of this architecture, without running
-them, in as many processes as there are cores, into FOLDER/compiled (of the package, if no folder is
-named). What a file of the same sources and versions has is taken from there. With
-GAUSSMAP_KERNELS=0 nothing is compiled, and no file used.
+them, in one process per core, into FOLDER/compiled (by default of the package). Entries of a file
+of the same sources and versions are reused. With GAUSSMAP_KERNELS=0 nothing is compiled, and no
+file used.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ from .sources import PACKAGE
 
 __all__ = ["build", "kernel_named"]
 
-# Intel's library of vectors may be on the machine that builds, and not on others.
+# Intel's vector library may be installed on the machine that builds, and not on others.
 OPTIONS = {"NUMBA_CPU_FEATURES": "", "NUMBA_DISABLE_INTEL_SVML": "1"}
-# Numba numbers functions in the order in which a process compiles them, and machine code has these
-# numbers in it. So each process compiles one share, and shares are the same for any number of
+# Numba numbers functions in the order in which a process compiles them, and machine code contains
+# these numbers. So each process compiles one share, and shares are the same for any number of
 # cores: the same sources, in the same folder, give the same bytes.
 SHARES = 3
 
 
 class _Taken(NullCache):
-    """Takes the kernels that are compiled, as entries by their keys."""
+    """A cache that collects compiled kernels, as entries by their keys."""
 
     def __init__(self, function: Callable[..., Any], entries: dict[str, bytes]) -> None:
         self._function, self._entries = function, entries
@@ -54,7 +54,7 @@ class _Taken(NullCache):
 
 
 def build(folder: Path = PACKAGE, usual: bool = False) -> Path | None:
-    """Make the file of the package, unless it is there; None if this architecture has none."""
+    """Make the file of the package unless it exists; None if this architecture has none."""
     path, level, listing = pack_path(folder), level_here(), signatures.read()
     if usual:
         listing = {name: listing[name] for name in signatures.usual()}
@@ -76,14 +76,14 @@ def build(folder: Path = PACKAGE, usual: bool = False) -> Path | None:
 
 
 def kernel_named(name: str) -> Any:
-    """Return the kernel of a module's name for it, or of the formula that is one."""
+    """Return the kernel with a qualified name, which may be a formula."""
     function = signatures.named(name)
     return function if isinstance(function, Dispatcher) else jit(function)
 
 
 @contextmanager
 def _options(level: Level) -> Iterator[None]:
-    """Set Numba's options for a level of processors, in processes that start meanwhile."""
+    """Set Numba's options for a level of processors, in processes that start in this context."""
     before = dict(os.environ)
     for name in changed_options():
         del os.environ[name]
@@ -104,7 +104,7 @@ def _keys(listing: signatures.Listing) -> Iterator[tuple[str, str]]:
 
 
 def _known(path: Path) -> dict[str, bytes]:
-    """Return the entries of a file that was made of these sources, with these versions."""
+    """Return the entries of a file if it was made of these sources, with these versions."""
     try:
         pack = Pack(path)
     except (OSError, ValueError):
@@ -115,9 +115,9 @@ def _known(path: Path) -> dict[str, bytes]:
 
 
 def _shares(listing: signatures.Listing) -> list[dict[str, Any]]:
-    """Deal out the signatures: modules that call one another have names that begin alike.
+    """Divide the signatures into shares, sorted by name: related modules have similar names.
 
-    What they call is compiled in each share again, so they stay together.
+    Functions that several shares call are compiled in each of them.
     """
     names = sorted(listing)
     lengths = {x: len(getsource(import_module(x))) for x in map(_module_of, names)}
@@ -136,7 +136,7 @@ def _module_of(name: str) -> str:
 
 def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:
     """Compile kernels for their signatures; called in a process of its own."""
-    gc.disable()  # Numba numbers types, too, and again those that the collector has removed
+    gc.disable()  # Numba numbers types as well, and renumbers those that were collected
     entries: dict[str, bytes] = {}
     for name, kinds in listing.items():
         kernel = kernel_named(name)

@@ -1,4 +1,4 @@
-"""Where Numba looks for the machine code of a kernel before it compiles, and keeps it after."""
+"""Numba's cache of kernels: the machine code of the package, and that compiled here."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class KernelCache(NullCache):
     """The machine code of one kernel: that of the package, or what was compiled here."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        """Touch no file: that waits for the first call."""
+        """Touch no file before the first call."""
         self._function = function
         self._lock: kept.FileLock | None = None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return a kernel; wait for a process that compiles it now. None: this one has to."""
+        """Return a kernel, waiting for a process that compiles it; None if this process has to."""
         if self._lock is not None:
             self._lock.release()  # the last compilation has failed
         key = key_of(self._function, sig)

@@ -1,8 +1,8 @@
 """The machine code of one kernel for one signature, as bytes: an entry.
 
-Of what Numba keeps in its own cache, an entry leaves out LLVM's bitcode and the annotated source:
-machine code that no other compiled function is linked with needs neither. It is loaded without
-Numba's compiler. Files of entries appear whole or not at all, and damage is found by a checksum.
+Unlike Numba's own cache, an entry has neither LLVM's bitcode nor the annotated source: machine code
+that is not linked into other functions needs neither. It is loaded without Numba's compiler. Files
+of entries are written atomically, and a checksum detects damage.
 """
 
 from __future__ import annotations
@@ -85,13 +85,13 @@ def sealed(data: bytes) -> bytes:
 
 
 def opened(content: bytes) -> bytes | None:
-    """Return what was sealed; None if it is damaged."""
+    """Return the data behind a checksum; None if they are damaged."""
     checksum, data = content[:CHECKSUM], content[CHECKSUM:]
     return data if hashlib.sha256(data).digest() == checksum else None
 
 
 def replace_file(path: Path, content: bytes) -> None:
-    """Write a file, with the permissions of new files: it appears whole or not at all."""
+    """Write a file atomically, with the permissions of new files."""
     part = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
     try:
         part.write_bytes(content)

@@ -28,9 +28,9 @@ OPTIONS: dict[str, Any] = {
 
 
 def loop(function: Function) -> Function:
-    """Compile a part of kernels once, as a function of its own.
+    """Compile a function that kernels call, once and separately.
 
-    This is for functions that are long or called in several places. They allocate no memory: arrays
+    Use it for functions that are long or have several callers. They allocate no memory: arrays
     come from the caller. Short functions are `inline`, that is, copied into their callers.
     """
     options = {"pipeline_class": PartCompiler, "no_cpython_wrapper": True, **OPTIONS}
@@ -38,7 +38,7 @@ def loop(function: Function) -> Function:
 
 
 def jit(function: Function) -> Function:
-    """Compile a kernel for the first call from Python, unless its machine code is there already.
+    """Compile a kernel at its first call from Python, unless its machine code is cached.
 
     Kernels allocate no memory either: all arrays are arguments. They are called from Python only:
     machine code of the package cannot be linked into other kernels.
@@ -50,13 +50,13 @@ def jit(function: Function) -> Function:
 
 
 def _long_vectors(_: object) -> tuple[Any, Callable[..., Any]]:
-    """Ask for the longest vectors of the processor in the function that calls this first.
+    """Request the longest vectors of the processor in the calling function.
 
     LLVM uses half of their length unless it is told to. The results are the same.
     """
 
     def lowered(context: Any, builder: Any, *_: object) -> Any:
-        # llvmlite's own `add` knows no attributes with values.
+        # llvmlite's own `add` does not accept attributes with values.
         set.add(builder.function.attributes, '"prefer-vector-width"="512"')
         return context.get_dummy_value()
 

@@ -1,8 +1,8 @@
-"""Machine code that was compiled here, kept on disk: a folder with a file for each entry.
+"""The disk cache of machine code that was compiled here: a folder with a file for each entry.
 
-The folder is named after the digest of all sources of kernels: after a change of a formula the
-kernels are compiled again, and after its reversal they are found again. (Numba's own cache looks at
-the file of a kernel only: https://github.com/numba/numba/issues/1833.)
+The folder is named after the digest of all sources of kernels: a change of a formula compiles the
+kernels again, and its reversal finds the old ones. (Numba's own cache checks only the file of a
+kernel: https://github.com/numba/numba/issues/1833.)
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ __all__ = ["FileLock", "entries_in", "kept_folder", "load", "lock_of", "save"]
 config: Any = numba_config  # Numba makes its attributes at run time
 # Folders of other sources are removed after this many days without use.
 DAYS_KEPT = 30
-# In seconds: how long a process waits for another one that compiles, and how often it looks.
+# In seconds: the longest wait for another process that compiles, and the polling interval.
 LONGEST_WAIT, POLL = 120.0, 0.02
 SUFFIX = ".kernel"
 
@@ -56,20 +56,20 @@ def kept_folder() -> Path | None:
 
 
 def load(folder: Path, key: str, processor: object) -> bytes | None:
-    """Return an entry that was compiled for a processor, perhaps a damaged one; None: not here."""
+    """Return an entry compiled for a processor, possibly damaged; None if there is none."""
     with suppress(OSError):
         return _path(folder, key, processor).read_bytes()
     return None
 
 
 def save(folder: Path, key: str, processor: object, entry: bytes) -> None:
-    """Keep an entry, whole or not at all; ignore errors of the disk."""
+    """Write an entry atomically; ignore errors of the disk."""
     with suppress(OSError):
         replace_file(_path(folder, key, processor), entry)
 
 
 def lock_of(folder: Path, key: str, processor: object) -> FileLock:
-    """Return the lock of those who compile an entry."""
+    """Return the lock of the processes that compile an entry."""
     return FileLock(_path(folder, key, processor).with_suffix(".lock"))
 
 
@@ -86,9 +86,9 @@ def _path(folder: Path, key: str, processor: object) -> Path:
 
 
 class FileLock:
-    """A lock between processes: many that start at a time compile each kernel once, not each.
+    """A lock between processes: many that start together compile each kernel once.
 
-    It ends with its process. Where there are no locks, each process compiles.
+    It ends with its process. On systems without locks, each process compiles.
     """
 
     def __init__(self, path: Path) -> None:
@@ -114,7 +114,7 @@ class FileLock:
         self.release()
 
     def release(self) -> None:
-        """Let others have it."""
+        """Release the lock."""
         file, self._file = self._file, None
         if file is not None:
             file.close()

@@ -1,12 +1,12 @@
-"""Each part of a kernel is optimised once, and becomes machine code only with the kernel.
+"""Linking of kernels: each part is optimised once, and compiled to machine code with the kernel.
 
 Numba optimises a function together with everything that it calls, and makes machine code of all of
 it, at each level of calls: what a kernel reaches in four steps is optimised four times. Here a part
-is optimised once, on its own, with small parts at hand that may be inlined; a kernel is linked with
-the parts that it needs. The results are the same.
+is optimised once, on its own, together with small parts that may be inlined; a kernel is linked
+with the parts that it needs. The results are the same.
 
-This overrides methods of Numba that are not public. Where Numba lacks them, it compiles in its own
-way, which takes twice as long.
+This overrides methods of Numba that are not public. If a version of Numba lacks them, it compiles
+in its own way, which takes twice as long.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from numba.core.environment import lookup_environment
 
 __all__ = ["Kernel", "KernelCompiler", "PartCompiler", "copies_in", "without_literals"]
 
-# What is used of a library of Numba, beside what is public.
+# The private attributes of Numba's code libraries that are used here.
 PRIVATE = (
     "_codegen", "_final_module", "_finalized", "_linking_libraries", "_reload_init",
     "_finalize_final_module", "_get_module_for_linking", "_optimize_final_module",
     "_raise_if_finalized",
 )  # fmt: skip
-# Functions of at most so many instructions may be inlined. LLVM decides, and takes fewer: its limit
-# is about 50, and more for functions of many arguments.
+# The largest number of instructions of functions offered for inlining. LLVM decides, with a lower
+# limit: about 50, more for functions of many arguments.
 SMALL = 200
 
 
@@ -46,11 +46,11 @@ class Part(JITCodeLibrary):
 
     @property
     def codegen(self) -> Any:
-        """What owns the code: the execution engine does not, until a kernel is linked with it."""
+        """The owner of the code: not the execution engine, until a kernel is linked with it."""
         return self
 
     def set_env(self, name: str, environment: Any) -> None:
-        """Do nothing: the kernels do it, which have the variable of this name."""
+        """Do nothing: the kernels, which have the variable of this name, set it."""
 
     def finalize(self) -> None:
         """Optimise this function alone."""
@@ -81,7 +81,7 @@ class Kernel(Part):
     """The code of a kernel, with that of all parts that it needs."""
 
     def _finish(self) -> None:
-        # Callers first: code that nothing calls by now is left out.
+        # Callers first: code without remaining callers is left out.
         for part in reversed(self.called):
             self._final_module.link_in(part._get_module_for_linking(), preserve=True)
         self._final_module.verify()
@@ -99,7 +99,7 @@ class PartCompiler(Compiler):
     library = Part
 
     def compile_extra(self, func: Any) -> Any:
-        """Compile a function into a library of this kind, if Numba has what that needs."""
+        """Compile a function into a library of this kind, if Numba has all of PRIVATE."""
         name = f"{func.__module__}.{func.__qualname__}"
         library = self.library(self.state.targetctx.codegen(), name)
         if all(hasattr(library, name) for name in PRIVATE):
@@ -121,7 +121,7 @@ def copies_in(library: Any) -> list[str]:
 
 
 def without_literals(part: Any) -> Any:
-    """Have one copy of a part for all integers, where Numba makes one for each literal."""
+    """Compile one copy of a part for all integers, where Numba makes one for each literal."""
     if hasattr(part, "_compiler"):  # not if compilation is switched off
         fold = part._compiler.fold_argument_types
 

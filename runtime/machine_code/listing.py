@@ -1,11 +1,10 @@
-"""Compare the list of signatures with what was compiled here, or write it anew.
+"""Compare the list of signatures with the kernels compiled here, or rewrite it.
 
     python -m gaussmap.runtime.machine_code.listing [--write | --usual] [FOLDER]
 
-Kernels are compiled, and kept in the folder (that of this machine, if none is named), when the file
-of the package does not have them: after a run of tests these are what the list lacks. Exit code 1
-says that it lacks some. With --usual, what is kept there is written to the list of those that usual
-calls need.
+Kernels that the file of the package lacks are compiled and cached in the folder (by default that of
+this machine): after a run of tests these are missing from the list. Exit code 1 means that some are
+missing. With --usual, the kernels cached there become the list of those that usual calls need.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ def compiled_in(folder: Path) -> dict[str, list[Any]]:
 
 
 def _is_named(module: str, name: str) -> bool:
-    """Return whether a kernel is one of this package, and none of a test or a user."""
+    """Return whether a kernel is one of this package, and not one of a test or a user."""
     if not module.startswith(f"{PACKAGE}."):
         return False
     try:
@@ -58,7 +57,7 @@ def main(arguments: Sequence[str]) -> int:
     names = [x for x in arguments if not x.startswith("--")]
     folder = Path(names[0]) if names else kept_folder()
     if folder is None:
-        return 0  # nothing can be kept
+        return 0  # nothing can be cached
     if "--write" in arguments:
         signatures.write(compiled_in(folder))
         return 0

@@ -14,7 +14,7 @@ import numba
 __all__ = ["Level", "changed_options", "identity", "level_here", "runs_here"]
 
 SYSTEMS = ("linux", "darwin", "windows")
-# Options of Numba, as variables of the environment, that change the code or what it checks.
+# Options of Numba, as environment variables, that change the code or its checks.
 CODE_OPTIONS = (
     "CPU_NAME", "CPU_FEATURES", "OPT", "ENABLE_AVX", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DEBUG",
     "DEBUGINFO", "BOUNDSCHECK", "FULL_TRACEBACKS", "ENABLE_PROFILING",
@@ -31,7 +31,7 @@ class Level(NamedTuple):
 
 
 V3 = "cx16 sahf popcnt sse3 sse4.1 sse4.2 ssse3 avx avx2 bmi bmi2 f16c fma lzcnt movbe"
-# One level for each architecture: between v3 and the processor's own code lie 0 to 12 % of time.
+# One level for each architecture: code for v3 takes 0 to 12 % longer than for the processor itself.
 LEVELS = {
     "x86_64": Level("x86-64-v3", V3),
     "aarch64": Level("generic", "neon"),
@@ -42,7 +42,7 @@ LEVELS = {
 def identity() -> dict[str, str]:
     """Return the versions and the platform that machine code depends on.
 
-    Releases of one series of Numba, and of llvmlite, understand one another's machine code.
+    Releases of one series of Numba, and of llvmlite, load one another's machine code.
     """
     architecture, _, system = llvm.get_process_triple().partition("-")
     return {

@@ -51,7 +51,7 @@ class Pack:
         self.digest: str = self.header["digest"]
 
     def get(self, key: str) -> bytes | None:
-        """Return an entry, perhaps a damaged one; None if it is not here."""
+        """Return an entry, possibly damaged; None if there is none."""
         if key not in self.places:
             return None
         offset, size = self.places[key]
@@ -59,7 +59,7 @@ class Pack:
 
 
 def pack_path(folder: Path = PACKAGE) -> Path | None:
-    """Return where a package has the file for this architecture; None if it can have none."""
+    """Return the path of the file for this architecture in a package; None if it can have none."""
     level = level_here()
     return None if level is None else folder / "compiled" / f"{level.name}.kernels"
 
@@ -79,7 +79,7 @@ def write_pack(path: Path, entries: Mapping[str, bytes], **header: object) -> No
 
 @cache
 def open_pack() -> Pack | None:
-    """Return the file of the package if its code runs here and is of these sources; else None."""
+    """Return the file of the package if its code runs here and was built from these sources."""
     pack = _pack_of_package()
     if pack is None or pack.identity != identity() or changed_options():
         return None
@@ -89,7 +89,7 @@ def open_pack() -> Pack | None:
 
 
 def misfit() -> str:
-    """Say which other versions the file of the package is for; an empty text if for these."""
+    """Return the other versions that the file of the package is for; an empty text if none."""
     pack = _pack_of_package()
     if pack is None:
         return ""

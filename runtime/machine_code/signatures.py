@@ -1,4 +1,4 @@
-"""The list of signatures of kernels, `signatures.json`: what the file of the package is made of.
+"""The list of signatures of kernels, `signatures.json`, from which the package's file is built.
 
 `usual.json` names those that usual calls need: `pip install .` compiles these.
 
@@ -75,7 +75,7 @@ def as_json(kind: Any) -> Any:
 
 
 def as_types(kind: Any) -> Any:
-    """Return the type of Numba that JSON stands for."""
+    """Return the type of Numba for a type in JSON."""
     if isinstance(kind, list):
         return types.BaseTuple.from_types([as_types(x) for x in kind])
     if isinstance(kind, dict):
@@ -89,6 +89,6 @@ def as_types(kind: Any) -> Any:
 
 
 def named(name: str) -> Any:
-    """Return what a module calls by a name, as "gaussmap.runtime.kernels.fill.Target"."""
+    """Return an object by its qualified name, such as "gaussmap.runtime.kernels.fill.Target"."""
     module, _, name = name.rpartition(".")
     return getattr(import_module(module), name)

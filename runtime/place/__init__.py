@@ -1,1 +1,1 @@
-"""From the spline to the surface: where samples are, and what is known of them there."""
+"""From the spline to the surface: samples are moved to it and evaluated on it."""

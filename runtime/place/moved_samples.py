@@ -20,7 +20,7 @@ from .on_spline import Fields, FieldsOfSamples
 
 __all__ = ["as_fields", "moved_samples", "part_of"]
 
-# The fields of samples that are moved; others follow from them.
+# The fields of samples that are moved; other fields follow from them.
 NEEDED = (
     *("points", "normals", "uv", "gaussian_curvature", "mean_curvature"),
     *("normal_index", "patch_index"),
@@ -30,7 +30,7 @@ NEEDED = (
 def moved_samples(
     surface: Surface, spline: Spline, normals: Array, hits: Hits, threads: int | None
 ) -> Fields:
-    """Return the samples at hits, on the surface where they could be moved to it.
+    """Return the samples at hits, moved to the surface where Newton's method succeeds.
 
     They have all fields but the support, in float64.
     """
@@ -52,7 +52,7 @@ def part_of(arrays: Fields, kept: NDArray[np.bool_]) -> Fields:
 
 
 def as_fields(arrays: Fields, fields: Sequence[str], dtype: DTypeLike) -> FieldsOfSamples:
-    """Return the fields that are requested of samples with all fields but the support."""
+    """Return the requested fields of samples that have all fields but the support."""
     unrefined = int(np.count_nonzero(~arrays[FLAG_NAMES[0]]))
     if "support" in fields:
         support = np.einsum("ij,ij->i", arrays["points"], arrays["normals"])

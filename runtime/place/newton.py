@@ -1,7 +1,7 @@
 """Samples of a spline moved to the surface that it approximates, by Newton's method.
 
 The samples of a spline at prescribed normals are close to those of the surface. Newton's method for
-n·x_u = n·x_v = 0 leads from one to the other, where the surface is neither parabolic nor singular.
+n·x_u = n·x_v = 0 moves the former to the latter, except at parabolic and singular points.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ __all__ = ["FOUND", "Target", "evaluate_on_surface", "near_poles", "refine"]
 Jets = Callable[[Array, Array], Array]
 
 ROWS_AT_A_TIME = 4096
-# When this part of some rows is left, which need more steps than the others, they are left for the
-# end, when there are more of their kind.
+# When this part of a batch of rows is left, which need more steps than the others, they are
+# postponed and solved together with those of other batches.
 FEW = 1 / 32
 MOST_STEPS = 32
 
 
 @dataclass(frozen=True, eq=False)
 class Parameters:
-    """Two parameters of a surface: the 2-jets, and what happens at the ends of the parameters.
+    """Two parameters of a surface: its 2-jets, and the behaviour at the ends of the parameters.
 
-    `size` times the surface has cells of about the size 1. The angle of normals may not get smaller
-    than `noise`, because of rounding.
+    `size` times the surface has cells of about the size 1. Rounding may keep the angle between
+    normals from falling below `noise`.
     """
 
     jets: Jets
@@ -68,14 +68,14 @@ class Parameters:
 
     @classmethod
     def of_chart(cls, chart: PoleChart, spline: Spline) -> Parameters:
-        """Return s and t of a chart at a pole; they have no ends, but the rounding of u and v."""
+        """Return s and t of a chart at a pole: without ends, with the rounding of u and v."""
         largest = max(abs(chart.end), abs(chart.other))
         ends = (-largest, largest, -largest, largest)
         box = Box(ends, (FREE, FREE), (chart.cell, chart.cell))
         return cls(chart.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
 
     def solve(self, target: Target, numbers: Indices, few: int) -> Indices:
-        """Move rows from target.uv on; return the numbers of the last ones, at most `few`."""
+        """Solve for rows, from target.uv on; return the unfinished ones, at most `few`."""
         count, rows = len(numbers), Rows.new(numbers)
         begin(target.uv, count, rows, self.box)
         for _ in range(MOST_STEPS):
@@ -91,11 +91,11 @@ class Parameters:
 def refine(surface: Surface, spline: Spline, target: Target, threads: int | None = None) -> None:
     """Move samples of a spline at unit normals to the surface.
 
-    Overwrites the parameters, points and curvatures where the normal of the surface has become the
-    prescribed one, up to NORMAL_ERROR, and K has its sign of target.signs. Elsewhere they stay
-    those of the spline: at parabolic and singular points, and where the place of the normal is
-    outside the domain or farther than three cells away. Next to a pole K may change its sign, since
-    the spline has folds there. target.state is overwritten everywhere.
+    Overwrites the parameters, points and curvatures where the normal of the surface agrees with the
+    prescribed one, up to NORMAL_ERROR, and K has the sign of target.signs. Elsewhere they stay
+    those of the spline: at parabolic and singular points, and if the solution is outside the domain
+    or more than three cells away. Next to a pole K may change its sign, since the spline has folds
+    there. target.state is overwritten for all samples.
     """
     target.state[:] = NOT_FOUND
     charts = pole_charts(surface, spline)
@@ -111,7 +111,7 @@ def _refine_away(
     target: Target,
     threads: int | None,
 ) -> list[Indices]:
-    """Move the samples that are not next to a pole; return the others, for each chart."""
+    """Move the samples that are not next to poles; return the others for each chart."""
     domain = Parameters.of_domain(surface, spline)
 
     def work(first: int, last: int) -> tuple[Indices, list[Indices]]:
@@ -134,7 +134,7 @@ def _refine_away(
 def _on_rows(
     target: Target, numbers: Indices, solve: Callable[[Target], object], threads: int | None
 ) -> None:
-    """Call `solve` with copies of some rows; write what it finds into the arrays of all samples."""
+    """Call `solve` with copies of some rows; write the results into the arrays of all samples."""
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]
@@ -160,7 +160,7 @@ def _refine_at_pole(
         part.uv[:] = chart.places(part.uv)
         parameters.solve(part, np.arange(len(part.uv)), 0)
         part.uv[:] = chart.parameters(part.uv)
-        # Not those in the chart: the differences that it consists of are rounded.
+        # Not those of the chart: its finite differences have rounding errors.
         found = part.state == FOUND
         points, _, gaussian, mean = evaluate_on_surface(
             chart.surface, spline, part.uv[found], threads=1

@@ -1,7 +1,7 @@
 """Charts at the poles of a surface, where its own parameters are singular.
 
-At a pole the parameters are polar coordinates, an angle φ and a distance r. The surface goes on
-smoothly in s = r cos φ, t = r sin φ.
+At a pole the parameters are polar coordinates, an angle φ and a distance r. The surface is smooth
+in s = r cos φ, t = r sin φ.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ __all__ = ["PoleChart", "pole_charts"]
 
 
 # The spline is inaccurate, and may have folds, within four cells of a pole; its samples are up to a
-# cell away from those of the surface. With one cell samples are lost; more than three change
-# roundings only.
+# cell away from those of the surface. With one cell samples are lost; with more than three only
+# rounding errors change.
 POLE_CELLS = 6
-# Nearer to a pole than this part r of the domain the 2-jet of the pole is continued. That has an
-# error of r, and derivatives by the angle have one of up to ε/r², where coordinates cancel.
+# Within this part r of the domain from a pole, its 2-jet is continued. The error of that is of
+# order r; derivatives by the angle have errors of up to ε/r² by cancellation.
 NEAR = 2.0**-20
 
 
@@ -34,8 +34,8 @@ NEAR = 2.0**-20
 class PoleChart:
     """The chart at one pole.
 
-    The parameter number `angle` runs around the pole; the other one is `end` there and `other` at
-    the other end of the domain.
+    Parameter `angle` (0 or 1) runs around the pole; the other one is `end` there and `other` at the
+    opposite side of the domain.
     """
 
     surface: Surface
@@ -71,7 +71,7 @@ class PoleChart:
         return self._distances(uv) < cells * self.cell
 
     def next_to(self, uv: Array) -> Flags:
-        """Return which parameters (k, 2) are so near to the pole that the chart is needed.
+        """Return which parameters (k, 2) are so close to the pole that they need the chart.
 
         Differences along a small circle around a pole are inaccurate, relative to its radius.
         """
@@ -86,7 +86,7 @@ class PoleChart:
         return np.stack([r * np.cos(phi), r * np.sin(phi)], axis=1)
 
     def parameters(self, places: Array) -> Array:
-        """Return the parameters (k, 2) of s and t, as far as they go."""
+        """Return the parameters (k, 2) of s and t, clipped to the domain."""
         low, high = self.surface.domain[self.angle]
         phi = np.arctan2(places[:, 1], places[:, 0])
         phi[phi < 0.0] += 2.0 * math.pi

@@ -1,4 +1,4 @@
-"""The part of what is sampled whose normals are within an angle of an axis: a part of its trim."""
+"""The reach, the part of a surface whose normals are within an angle of an axis, as a trim."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ __all__ = ["InReach", "in_reach", "reached"]
 class InReach:
     """The condition that the normal is in a cap.
 
-    `normals` returns unit normals (k, 3) at parameters (k, 2); 0 or NaN where there is none.
+    `normals` returns unit normals (k, 3) at parameters (k, 2), 0 or NaN at singular points.
     """
 
     normals: Callable[[Array], Array]
@@ -36,23 +36,23 @@ class InReach:
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
         """Return the cells (m, n) whose normals may enter the cap, or leave it.
 
-        The cosine of the angle is known at the corners and the middle of each. It is taken to
-        exceed these by no more than they differ.
+        The cosine of the angle is evaluated at the corners and the middle of each. It is assumed to
+        exceed their range by at most its width.
         """
         nodes, middles = (self._cosines(domain, cells, shift) for shift in (0.0, 0.5))
         nodes = [nodes[i : i + cells[0], j : j + cells[1]] for i in (0, 1) for j in (0, 1)]
         known = np.stack([*nodes, middles[: cells[0], : cells[1]]])
         low, high = known.min(axis=0), known.max(axis=0)
         limit = math.cos(math.radians(self.cap.angle))
-        # Also where there is a place without a normal.
+        # Comparisons with NaN are false: cells with a point without a normal are included.
         return ~((2.0 * low - high > limit) | (2.0 * high - low < limit))
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Return 1 for boxes whose normals (k, 3) are in the cap, −1 for others."""
+        """Return 1 for boxes whose normal, of (k, 3), is in the cap, −1 for others."""
         return np.where(self.cap.contains(normals), 1, -1).astype(np.int8)
 
     def _cosines(self, domain: Domain, cells: tuple[int, int], shift: float) -> Array:
-        """Return cosines (m + 1, n + 1), or (m, n) with a shift; NaN where there is no normal."""
+        """Return cosines (m + 1, n + 1), or (m, n) with a shift; NaN at points without a normal."""
         u, v = (
             low + (high - low) * ((np.arange(count + (shift == 0.0)) + shift) / count)
             for (low, high), count in zip(domain, cells, strict=True)
@@ -64,13 +64,13 @@ class InReach:
 
 
 def reached(trim: Trim | None, domain: Domain, boundary: Boundary, condition: InReach) -> Trim:
-    """Return a trim, or that of a whole domain, with a condition on normals."""
+    """Return a trim, by default that of the whole domain, with a condition on normals."""
     whole = Trim(domain, boundary, ()) if trim is None else trim
     return whole.and_(condition)
 
 
 def in_reach(surface: Surface | None, reach: Cap | None) -> Surface | None:
-    """Return a surface of several pieces without the normals outside of a cap."""
+    """Return a surface of several pieces, trimmed to the points with normals in a cap."""
     if surface is None or reach is None:
         return surface
     x = surface

@@ -1,9 +1,9 @@
-"""Samples that meet: those of a fold of the spline are one on the surface, which has no fold there.
+"""Repeated samples: those of a fold of the spline coincide on the surface, which has no fold there.
 
-Of the preimages of one normal on a fold, one is counted with the sign of K and the others cancel.
+Of the preimages of a normal on a fold, all but one cancel in the sum of the signs of K.
 
-A patch has a normal once at most. So of two samples of one normal at one place at least one has
-left its patch, and only normals of such samples are looked at.
+A patch has at most one point with a normal. So of two coincident samples of one normal at least one
+has left its patch, and only normals of such samples are examined.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ __all__ = ["kept_once", "left_patch"]
 
 
 def kept_once(spline: Spline, arrays: Fields, at_pole: Flags) -> Flags:
-    """Return which samples (k,) to keep, such that none on the surface is repeated.
+    """Return which samples (k,) to keep, so that none on the surface is repeated.
 
-    It is repeated where one with the same normal and the same sign of K is at the same point and
-    has the same parameters, modulo periods; next to a pole these do not matter. All but one are
-    left out, first those that have left their patch. Elsewhere than next to a pole as many samples
-    of the normal that are not on the surface, with the other sign of K, are left out with them: the
-    other side of a fold that the surface does not have. So the sum of the signs does not change.
+    Samples are repeated if they have the same normal, sign of K and point, and the same parameters
+    modulo periods; next to a pole, parameters are ignored. All but one are removed, first those
+    that have left their patch. Away from poles, as many samples of the normal with the other sign
+    of K that are not on the surface are removed with them: the other side of a fold that the
+    surface does not have. So the sum of the signs does not change.
     """
     kept, found, normal_index = np.ones_like(at_pole), arrays[FLAG_NAMES[0]], arrays["normal_index"]
     left = left_patch(spline, arrays)
@@ -47,12 +47,12 @@ def kept_once(spline: Spline, arrays: Fields, at_pole: Flags) -> Flags:
 
 
 def _keys(arrays: Fields, rows: Indices) -> Indices:
-    """Return numbers that rows share if they have the same normal and the same sign of K."""
+    """Return keys that are equal for rows with the same normal and the same sign of K."""
     return 2 * arrays["normal_index"][rows] + np.signbit(arrays["gaussian_curvature"][rows])
 
 
 def left_patch(spline: Spline, arrays: Fields) -> Flags:
-    """Return which samples are not in their patches, or so close to the sides that they meet."""
+    """Return which samples are outside their patches, or close enough to a side to coincide."""
     left = np.empty(len(arrays["uv"]), dtype=np.bool_)
     mark_left(arrays["uv"], arrays["patch_index"], spline.frame, spline.cells[1], MEETING, left)
     return left
@@ -61,10 +61,10 @@ def left_patch(spline: Spline, arrays: Fields) -> Flags:
 def _repeats(
     spline: Spline, arrays: Fields, at_pole: Flags, rows: Indices
 ) -> tuple[Indices, Indices]:
-    """Return which of some rows, sorted by normal, repeat another one of them, and these.
+    """Return which of the rows, sorted by normal, repeat another row, and the latter.
 
-    They do where points and parameters, in cells, are the same, and the sign of K; at poles the
-    parameters do not count.
+    Rows are repeated if points, parameters (in cells) and the sign of K agree; at poles, parameters
+    are ignored.
     """
     points, uv = arrays["points"][rows] * spline.scale, arrays["uv"][rows] / spline.frame[2:]
     places, normals = np.hstack([points, uv]), arrays["normal_index"][rows]
@@ -85,13 +85,13 @@ def _repeats(
 
 
 def _starts(values: Indices) -> Indices:
-    """Return for each of the sorted values the place of the first one that is equal."""
+    """Return for each of the sorted values the index of the first equal one."""
     new = np.r_[True, values[1:] != values[:-1]]
     return np.maximum.accumulate(np.where(new, np.arange(len(values)), 0))
 
 
 def _paired(rows: Indices, keys: Indices, others: Indices) -> Indices:
-    """Return rows with `keys` (k,): of each key as many as it has among others, or all of fewer."""
+    """Return, for each of the `keys` (k,), as many rows as it has among others, or all if fewer."""
     if len(rows) == 0 or len(others) == 0:
         return rows[:0]
     order = np.argsort(keys, kind="stable")

@@ -1,1 +1,1 @@
-"""Samples: their fields, their report, and what they lie on."""
+"""Samples: their fields, their report, and the surfaces on which they lie."""

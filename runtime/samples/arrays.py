@@ -33,9 +33,9 @@ from .whole import Whole
 
 __all__ = ["SampleArrays"]
 
-# What a field is set to that was not asked for; reading it raises MissingFieldError.
+# The value of a field that was not requested; reading it raises MissingFieldError.
 _NOT_ASKED: Any = None
-# The types of what is no array.
+# The types of the attributes that are not arrays.
 _KINDS = {
     "report": (SamplingReport, "a SamplingReport"),
     "spline": (Spline | None, "a Spline or None"),
@@ -83,7 +83,7 @@ class SampleArrays:
                 shape, dtype = (count, *row_shape(name)), dtype_of(name, floating)
                 object.__setattr__(self, name, checked_array(name, arrays[name], shape, dtype))
             elif not FIELDS[name].only:
-                object.__delattr__(self, name)  # an empty slot, for which __getattr__ speaks
+                object.__delattr__(self, name)  # an empty slot, so that __getattr__ raises
         for name, (kind, allowed) in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
                 raise InputError(f"{name} must be {allowed}, not {type(value).__name__}.")
@@ -117,9 +117,9 @@ class SampleArrays:
         Returns
         -------
         Samples
-            The rows of all parts, in turn. The report counts all of them; entries that the reports
-            of the parts do not agree about are None. The spline, the surface and `offset_of` are
-            kept if all parts have the same.
+            The rows of all parts, in order. The report counts all of them; entries that differ
+            between the reports of the parts are None. The spline, the surface and `offset_of` are
+            kept if they are the same for all parts.
 
         Raises
         ------
@@ -158,7 +158,7 @@ class SampleArrays:
         Returns
         -------
         dict of str to array
-            The fields that the samples hold; not copies.
+            The fields of the samples, without copying.
 
         Examples
         --------
@@ -171,7 +171,7 @@ class SampleArrays:
         found: dict[str, NDArray[Any]] = {}
         for name in COLUMNS:
             with suppress(AttributeError):
-                # Past __getattr__, which asks here what there is.
+                # Not by __getattr__, which calls this method.
                 array = object.__getattribute__(self, name)
                 if array is not None:
                     found[name] = array
@@ -179,7 +179,7 @@ class SampleArrays:
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """The names of the arrays that the samples hold, a tuple of str."""
+        """The names of the fields of the samples, a tuple of str."""
         return tuple(self.arrays())
 
     @property
@@ -191,8 +191,8 @@ class SampleArrays:
     def elliptic(self) -> NDArray[np.bool_]:
         """(N,) bool array: where the Gaussian curvature is positive (its sign bit is clear).
 
-        Elliptic and hyperbolic samples are all samples. So Σ sign K = χ/2 holds for them, and the
-        parabolic ones are among them.
+        Every sample is either elliptic or hyperbolic, parabolic ones included, so that Σ sign K =
+        χ/2 holds for these two sets.
         """
         return ~self.hyperbolic
 
@@ -200,7 +200,7 @@ class SampleArrays:
     def parabolic(self) -> NDArray[np.bool_]:
         """(N,) bool array: where the Gaussian curvature is zero, up to rounding.
 
-        Its sign says nothing there: on planes, cylinders, and where it changes.
+        Its sign is meaningless there: on planes, cylinders, and along parabolic curves.
 
         Examples
         --------
@@ -220,7 +220,7 @@ class SampleArrays:
     def kind(self) -> NDArray[np.str_]:
         """(N,) str array: "normal" at prescribed normals, "grid", "edge", else "filling".
 
-        "grid" is for those on a grid, and "edge" for those on sharp edges.
+        "grid" is for samples on a grid, and "edge" for samples on sharp edges.
         """
         kinds = np.where(self.normal_index < 0, "filling", "normal")
         if self.row is not None:
@@ -256,7 +256,7 @@ class SampleArrays:
     def __array__(
         self, dtype: DTypeLike | None = None, copy: bool | None = None
     ) -> NDArray[np.floating]:
-        """Return the points: what NumPy makes of samples."""
+        """Return the points, for `numpy.asarray`."""
         return np.array(self.points, dtype=dtype, copy=copy)
 
     def __iter__(self) -> Iterator[Self]:
@@ -264,7 +264,7 @@ class SampleArrays:
         return (self[k : k + 1] for k in range(len(self)))
 
     def __getitem__(self, key: ArrayLike | slice) -> Self:
-        """Return rows: those of a slice, a mask or an index array, or the one of a number."""
+        """Return the rows of a slice, a mask, an index array or a number."""
         rows = key if isinstance(key, slice) else checked_rows(key, len(self))
         arrays = {name: array[rows] for name, array in self.arrays().items()}
         return type(self)(
@@ -274,7 +274,7 @@ class SampleArrays:
 
 
 def _if_it_pickles(surface: Whole | Surface | None) -> Any:  # noqa: ANN401 - of the same type
-    """Return a surface, or None if it cannot be pickled: its function may be a lambda."""
+    """Return a surface, or None if it cannot be pickled, as with a lambda."""
     return surface if _pickles(surface) else None
 
 
@@ -287,7 +287,7 @@ def _pickles(value: object) -> bool:
 
 
 def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
-    """Return float32 if all that may be float32 is, otherwise float64."""
+    """Return float32 if all real fields are float32, otherwise float64."""
     types = {getattr(arrays[name], "dtype", None) for name in REAL_NAMES if name in arrays}
     return np.dtype(np.float32 if types == {np.dtype(np.float32)} else np.float64)
 
@@ -295,7 +295,7 @@ def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
 def _is_parabolic(samples: SampleArrays) -> NDArray[np.bool_]:
     """Return at which samples (N,) one principal curvature is zero, up to rounding.
 
-    With an error t of both of them, κ₁ κ₂ has the error t (|κ₁| + |κ₂| + t), and |κ₁| + |κ₂| = 2|H|
+    If both have the error t, κ₁ κ₂ has the error t (|κ₁| + |κ₂| + t), and |κ₁| + |κ₂| = 2|H|
     where κ₂ is about 0; H = 1/D is assumed if it is unknown, D the diagonal of the bounding box.
     """
     K = samples.gaussian_curvature.astype(np.float64)
@@ -320,8 +320,8 @@ def _size_and_error(samples: SampleArrays) -> tuple[float, float]:
         largest = spline._largest
     elif "points" in samples.fields and len(samples.points) > 0:
         points, cells = samples.points.astype(np.float64), 0
-        diagonal = math.hypot(*np.ptp(points, axis=0))  # of coordinates whose squares overflow, too
-        largest = float(np.abs(points).max())
+        diagonal = math.hypot(*np.ptp(points, axis=0))  # also for coordinates whose squares
+        overflow largest = float(np.abs(points).max())
     else:
         return 0.0, 0.0
     rounding = float(np.spacing(largest)) / (diagonal or 1.0)

@@ -1,4 +1,4 @@
-"""The fields of samples: their names, columns, shapes and types, and which are wanted."""
+"""The fields of samples: their names, columns, shapes, types, and the selection of fields."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from warnings import catch_warnings, simplefilter
 
 from ..base.errors import InputError, MissingFieldError, shown
 
-if TYPE_CHECKING:  # names of fields stand in the help of commands, which is quick without NumPy
+if TYPE_CHECKING:  # the help of commands lists the names of fields, and is quick without NumPy
     import numpy as np
     from numpy.typing import DTypeLike, NDArray
 
@@ -42,10 +42,10 @@ __all__ = [
 
 
 class Field(NamedTuple):
-    """An array of `Samples`: its columns in a table, one for each of its numbers, and their type.
+    """An array of `Samples`: its columns in a table, one for each component, and their type.
 
-    `only` says which samples have it, if not all do. `unit` is that of real numbers: L is that of
-    the surface, u and v have their own.
+    `only` is the group of samples that have it, if not all do. `unit` is that of real numbers: L is
+    that of the surface, u and v have their own.
     """
 
     columns: tuple[str, ...]
@@ -73,7 +73,7 @@ FIELDS: dict[str, Field] = {
     "other_uv": Field(("other_u", "other_v"), "parameter", only="edges"),
     "other_face_index": Field(("other_face_index",), kind="index", only="edges"),
 }
-# Which samples have fields that not all have.
+# The groups of samples with fields that not all samples have, as worded in messages.
 ONLY = {
     "surface": 'on the surface only; see on="surface"',
     "proved": "at prescribed normals of surfaces with bounds of their derivatives only",
@@ -99,7 +99,7 @@ FLOAT_NAMES = tuple(name for name in ARRAY_NAMES if name in REAL_NAMES)
 INDEX_NAMES = tuple(name for name in ARRAY_NAMES if name in INTEGER_NAMES)
 ARRAY_NAMES_ON_SURFACE = ARRAY_NAMES + FLAG_NAMES
 ARRAY_NAMES_OF_PART = tuple(x for x in ARRAY_NAMES_ON_SURFACE if x != "patch_index") + PART_NAMES
-# What is computed from fields when it is read.
+# Attributes that are computed from fields when they are read.
 DERIVED: dict[str, tuple[str, ...]] = {
     "elliptic": ("gaussian_curvature",),
     "hyperbolic": ("gaussian_curvature",),
@@ -110,20 +110,20 @@ DERIVED: dict[str, tuple[str, ...]] = {
 
 
 def row_shape(name: str) -> tuple[int, ...]:
-    """Return the shape of what a field holds of one sample."""
+    """Return the shape of a field for one sample."""
     width = len(COLUMNS[name])
     return (width,) if width > 1 else ()
 
 
 def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
-    """Return the type of a field, if that of all numbers but the indices is `floating`."""
+    """Return the dtype of a field, `floating` for all fields of real numbers."""
     import numpy as np
 
     return np.dtype({"flag": np.bool_, "index": np.int64, "real": floating}[FIELDS[name].kind])
 
 
 def bytes_of(fields: Iterable[str], floating: DTypeLike) -> int:
-    """Return how many bytes the fields of one sample take."""
+    """Return the number of bytes of the fields of one sample."""
     return sum(len(COLUMNS[x]) * dtype_of(x, floating).itemsize for x in fields)
 
 
@@ -135,7 +135,7 @@ def new_field(
 ) -> NDArray[Any]:
     """Return an array for the field of `count` samples, not yet filled.
 
-    It is a part of that field in `memory`, if this one is large enough and has the type.
+    It is a part of that field of `memory`, if that is large enough and has the same dtype.
     """
     import numpy as np
 
@@ -162,13 +162,13 @@ def checked_fields(
     part: bool = False,
     edges: bool = False,
 ) -> tuple[str, ...]:
-    """Return the fields that are wanted, in the order of `COLUMNS`; None stands for all.
+    """Return the requested fields, in the order of `COLUMNS`; None means all.
 
     With `surface` they are for samples on the surface, with `proved` for those of a proved search,
     with `grid` for those that may be on a grid, with `part` for those of a CAD part, and with
     `edges` on its sharp edges, too. Raises
-    UnknownNameError for an unknown name, InputError for what is no tuple of names, for no names,
-    for a name that comes twice, and for one that is computed from fields.
+    UnknownNameError for an unknown name, and InputError for anything but a tuple of names, for no
+    names, for a repeated name, and for an attribute that is computed from fields.
     """
     from ..base.checks import known_name, listed
 
@@ -207,7 +207,7 @@ def checked_fields(
 def missing_fields(
     held: Sequence[str], lacking: Sequence[str], subject: str = ""
 ) -> MissingFieldError:
-    """Return the error for samples that hold some fields and lack those that a subject needs."""
+    """Return the error for samples that lack fields that a subject needs."""
     needs = f"{subject} needs {_listed(lacking)}, but " if subject else ""
     return MissingFieldError(
         f"{needs}these samples hold {', '.join(held)} only; "
@@ -225,7 +225,7 @@ def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:
     import numpy as np
 
     known = np.dtype(np.float32), np.dtype(np.float64)
-    with suppress(Exception), catch_warnings():  # NumPy reads some texts as Python
+    with suppress(Exception), catch_warnings():  # NumPy evaluates some texts as Python
         simplefilter("ignore")
         if dtype is not None and np.dtype(dtype) in known:
             return known[known.index(np.dtype(dtype))]

@@ -1,7 +1,7 @@
-"""The methods of `Samples` that rooms above this one define: `methods.pyi` says what they are.
+"""The methods of `Samples` that folders above define; `methods.pyi` has their signatures.
 
-Each is loaded when it is first asked for, as the names of the package are (see `__init__.pyi`).
-Nothing here imports what stands on samples.
+Each is imported at first use, as are the names of the package (see `__init__.pyi`), so that this
+module does not import modules that use samples.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ OTHERS = "gaussmap.tools.files.of_samples"
 
 
 class Methods:
-    """Samples compared with their surface, and what is made of them."""
+    """Comparisons of samples with their surface, and results derived from samples."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""What samples of an offset come from."""
+"""The origin of the samples of an offset."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["OffsetOf"]
 
 @dataclass(frozen=True)
 class OffsetOf:
-    """Where samples of an offset come from, so that they can be meshed.
+    """The origin of the samples of an offset, from which they can be meshed.
 
     Attributes
     ----------
@@ -22,7 +22,7 @@ class OffsetOf:
     spline : Spline or None
         The spline that was sampled, None if it is unknown.
     surface : Surface, Part or None
-        The surface, or the CAD part, on which the samples were.
+        The surface, or the CAD part, on which the samples were before.
 
     Examples
     --------

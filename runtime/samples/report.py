@@ -1,4 +1,4 @@
-"""The report of a sampling, and the warning if it is not what was requested."""
+"""The report of a sampling, and the warning if it falls short of the request."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ __all__ = [
     "warn_of",
 ]
 
-# A share of the area, of the length of a curve, or of samples, that is larger is worth a warning.
+# A larger share of the area, of the length of a curve, or of samples causes a warning.
 WORTH_A_WARNING = 0.01
 # A count is missed if the difference exceeds this share of it plus this number of samples: on a
-# symmetric surface several appear or vanish at once.
+# symmetric surface several appear or vanish together.
 COUNT_TOLERANCE, FEW = 0.02, 5
 # A share is a quotient of sums, so rounding may carry it this far beyond 0 or 1.
 ROUNDING = 1e-9
 MOST_COUNT = 2**63 - 1
-# Where samples lie.
+# The surfaces on which samples may lie.
 PLACES = ("surface", "spline")
 DENSITIES = ("aligned", "gauss", "uniform", "power")
 COUNTS = (
@@ -80,22 +80,22 @@ def _reach(values: Any) -> tuple[float, float, float, float]:  # noqa: ANN401
 
 
 class UndecidedNormal(NamedTuple):
-    """A normal, and a box of parameters of which it is not known how many of its points it has.
+    """A normal, and a box of parameters in which the number of its points is unknown.
 
     Attributes
     ----------
     normal : int
-        The row of the normal.
+        The row of the normal among the prescribed ones.
     box : (u0, u1, v0, v1) of float
-        The rectangle. All points outside of such boxes are known.
+        The rectangle of parameters. All points outside these boxes are known.
     kind : {"double", "multiple", "continuum", "singular"}
-        "double": none or two, next to a fold, up to rounding. "multiple": a point where several may
-        meet. "continuum": a curve or a region with this normal, such as a ruling of a cylinder.
-        "singular": x_u × x_v may vanish.
+        "double": none or two points, next to a fold, up to rounding. "multiple": several points
+        that may coincide. "continuum": a curve or a region with this normal, such as a ruling of a
+        cylinder. "singular": x_u × x_v may vanish.
     border : bool
-        Whether the box reaches an open side of the domain, or may meet the border of the trim.
+        Whether the box reaches an open side of the domain, or may meet the boundary of the trim.
     face : int or None
-        Of a CAD part: the index of the face whose parameters these are.
+        For a CAD part: the index of the face to which the parameters belong.
 
     Examples
     --------
@@ -114,14 +114,14 @@ class UndecidedNormal(NamedTuple):
 
     @classmethod
     def of(cls, values: Sequence[Any]) -> UndecidedNormal:
-        """Return one from plain values, such as those of a file."""
+        """Return an undecided normal from plain values, such as those of a file."""
         normal, (u0, u1, v0, v1), kind, border, *rest = values
         box = float(u0), float(u1), float(v0), float(v1)
         face = int(rest[0]) if rest and rest[0] is not None else None
         return cls(int(normal), box, str(kind), bool(border), face)
 
 
-# What makes plain values of the entries, and refuses others; only those of KNOWN are never None.
+# Functions that convert the entries to plain values, and refuse others; only KNOWN are never None.
 KNOWN = ("surface", "samples")
 CHECKS: dict[str, Callable[[Any, str], Any]] = {
     **dict.fromkeys(("surface", "crs", "unit"), text),
@@ -152,17 +152,17 @@ class SamplingReport:
     patches : int or None
         The number of patches of the spline.
     developable_share : float or None
-        The developable share of the area (K ≈ 0), from 0 to 1, which no set of normals samples.
+        The developable share of the area (K ≈ 0), from 0 to 1; no set of normals samples it.
     developable_patches : int or None
         The number of patches that are developable up to the rounding of their coordinates, and so
-        have no support function (those at a pole are among them).
+        have no support function (including those at a pole).
     coverage : float or None
-        A bound of the distance of any point of the surface from the nearest sample on its side, one
-        whose normal is within 60°, if there is one; in the unit of the surface. Known if a coverage
-        was requested. `Samples.coverage` is that to the nearest sample on either side.
+        A bound of the distance from any point of the surface to the nearest sample on its side
+        (with a normal within 60°, if there is one), in the unit of the surface. Known if a coverage
+        was requested. `Samples.coverage` is the distance to the nearest sample on either side.
     angle : float or None
-        A bound of the angle, in degrees, between the normal of any point of the surface and that of
-        the sample nearest in normal. Known if an angle was requested.
+        A bound of the angle, in degrees, from the normal of any point of the surface to the nearest
+        normal of a sample. Known if an angle was requested.
     infinite_curvatures : int or None
         The number of samples with infinite Gaussian curvature: at singular points of the spline,
         which a coarse one may have, and where 1/L² exceeds the largest number of its type, on
@@ -175,48 +175,48 @@ class SamplingReport:
         False): those at prescribed normals that could not be moved from the spline to the point of
         the surface that has the normal, and others at singular points.
     proved : int or None
-        The number of prescribed normals of which all points are known, with a proof; the others are
-        `undecided`. None where nothing is proved: on splines, on surfaces whose derivatives have no
+        The number of prescribed normals whose points are proved to be all; the others are
+        `undecided`. None if nothing is proved: on splines, on surfaces whose derivatives have no
         bounds, and on parts with `estimated_faces`.
     undecided : tuple of UndecidedNormal, or None
-        Where further points of some normals may be: entries (normal, box, kind, border, face).
+        The boxes that may contain further points: entries (normal, box, kind, border, face).
     fit_distance, fit_rms : float or None
         The largest distance of the spline from the surface, or from the data, that it approximates,
         and the root mean square of the distance; see `Spline.misfit`.
     fit_angle : float or None
         The largest angle, in degrees, between normals of spline and surface; unknown for data.
     apexes : int or None
-        The number of sides of the domain that are one point, through which the surface does not go
-        on smoothly; see `Spline.apexes`.
+        The number of collapsed sides of the domain at which the surface is not smooth; see
+        `Spline.apexes`.
     index : int or None
         The number of the surface among those of `sample_many`.
     density : {"aligned", "gauss", "uniform", "power"} or None
-        "aligned" if samples are on a grid, whether or not they have the fields row and column. Of a
-        CAD part: the density, "power" for a power of K; None for "balanced".
+        "aligned" if samples are on a grid, whether or not they have the fields row and column. For
+        a CAD part: the density, "power" for a power of |K|; None for "balanced".
     faces, empty_faces : int or None
-        Of a CAD part: the number of its faces, and how many of them have no sample.
+        For a CAD part: the number of its faces, and the number of faces without samples.
     estimated_faces : int or None
-        Of a CAD part at prescribed normals: the number of faces whose derivatives have no bounds.
+        For a CAD part at prescribed normals: the number of faces whose derivatives have no bounds.
         Their points are found from a spline by Newton's method, and their `uv_radius` is NaN.
     oriented : bool or None
-        Of a CAD part: whether its normals are known to point out of solids.
+        For a CAD part: whether its normals are known to point out of solids.
     edge_samples : int or None
-        Of a CAD part, with ``edges=True``: how many of the samples are on sharp edges.
+        For a CAD part with ``edges=True``: the number of samples on sharp edges.
     reach : (float, float, float, float) or None
-        Of a CAD part, with ``reach=(axis, angle)``: the unit vector of the axis, and the angle in
-        degrees. `Samples.coverage`, `normal_deviation` and `weights` are those of what is in reach.
+        For a CAD part with ``reach=(axis, angle)``: the unit vector of the axis, and the angle in
+        degrees. `Samples.coverage`, `normal_deviation` and `weights` refer to the points in reach.
     unit : str or None
-        Of a CAD part: the unit of lengths, as "mm", if it is known.
+        For a CAD part: the unit of lengths, such as "mm", if it is known.
     crs : str or None
-        Of a `terrain`: the coordinate reference system of the points, as "EPSG:number" or WKT.
+        For a `terrain`: the coordinate reference system of the points, as "EPSG:number" or WKT.
     origin : (float, float, float) or None
-        Of a `terrain`: what was subtracted from the coordinates of the points.
+        For a `terrain`: the origin that was subtracted from the coordinates of the points.
 
     Raises
     ------
     InputError
-        If a count is not an integer or is negative, the share is outside 0…1, or the label is not a
-        string.
+        If a count is not an integer or is negative, the share is outside [0, 1], or the label is
+        not a string.
 
     Examples
     --------
@@ -310,7 +310,8 @@ def sampling_report(
 ) -> SamplingReport:
     """Return the report of a sampling with `density` normals per steradian and its `arrays`.
 
-    `cells` are those of the surface, if it was sampled beside its spline, `known` other entries.
+    `cells` are those of the surface, if the samples are on it and not on its spline; `known` are
+    other entries of the report.
     """
     misfit, place = spline.misfit, spline.georeference
     return SamplingReport(
@@ -340,7 +341,7 @@ def warn_of(
 ) -> None:
     """Warn if samples leave out a part of the surface, or miss a count or a coverage.
 
-    If they are `filled`, the parts that normals cannot sample have samples, too.
+    If the samples are `filled`, developable regions have samples as well.
     """
     reasons = [] if filled else _unseen(report)
     reasons += _missed(report, count, coverage) + _unrefined(report)
@@ -350,7 +351,7 @@ def warn_of(
 
 
 def _unseen(report: SamplingReport) -> list[str]:
-    """Return reasons: the part of the surface that no set of normals samples."""
+    """Return reasons for a warning: the part of the surface that no set of normals samples."""
     share = report.developable_share or 0.0
     if share > WORTH_A_WARNING:
         return [
@@ -363,7 +364,7 @@ def _unseen(report: SamplingReport) -> list[str]:
 
 
 def _missed(report: SamplingReport, count: int | None, coverage: float | None) -> list[str]:
-    """Return reasons: the requested numbers that are not met."""
+    """Return reasons for a warning: requested numbers that are not met."""
     reasons, samples = [], report.samples - (report.edge_samples or 0)
     if count is not None and abs(samples - count) > COUNT_TOLERANCE * count + FEW:
         reasons.append(f"there are {samples} samples instead of the requested {count}")
@@ -376,7 +377,7 @@ def _missed(report: SamplingReport, count: int | None, coverage: float | None) -
 
 
 def _unrefined(report: SamplingReport) -> list[str]:
-    """Return reasons: the samples that are not on the surface."""
+    """Return reasons for a warning: samples that are not on the surface."""
     unrefined = report.unrefined or 0
     if unrefined <= WORTH_A_WARNING * report.samples:
         return []
@@ -390,7 +391,7 @@ def _unrefined(report: SamplingReport) -> list[str]:
 def common_report(
     reports: Sequence[SamplingReport], arrays: Mapping[str, NDArray[Any]]
 ) -> SamplingReport:
-    """Return what reports agree about, with the number of all samples."""
+    """Return a report of the common entries of reports, with the total number of samples."""
     common: dict[str, Any] = {
         x.name: getattr(reports[0], x.name)
         if len({getattr(report, x.name) for report in reports}) == 1
@@ -408,20 +409,20 @@ def common_report(
 
 
 def count_infinite(arrays: Mapping[str, NDArray[Any]]) -> int | None:
-    """Return at how many samples K is infinite; None if K is not among their fields."""
+    """Return the number of samples with infinite K; None if K is not among their fields."""
     if "gaussian_curvature" not in arrays:
         return None
     return int(np.isinf(arrays["gaussian_curvature"]).sum())
 
 
 def count_unrefined(arrays: Mapping[str, NDArray[Any]]) -> int | None:
-    """Return how many samples are not on the surface; None if that is not among their fields."""
+    """Return the number of samples that are not on the surface; None if it is unknown."""
     if "on_surface" not in arrays:
         return None
     return int(np.count_nonzero(~arrays["on_surface"]))
 
 
 def have_large_squares(H: NDArray[np.floating], dtype: np.dtype[Any]) -> bool:
-    """Say whether the curvatures H, where they are finite, have squares that a type cannot hold."""
+    """Return whether squares of the finite curvatures H overflow in a dtype."""
     finite = np.abs(H[np.isfinite(H)].astype(np.float64))
     return float(finite.max(initial=0.0)) > math.sqrt(float(np.finfo(dtype).max))

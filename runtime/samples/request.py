@@ -18,19 +18,19 @@ from ..directions.unit import as_normals
 
 __all__ = ["BY_CURVATURE", "DENSITIES", "Request", "checked_request"]
 
-# Those that follow the larger principal curvature.
+# The densities that follow the larger principal curvature.
 BY_CURVATURE = ("balanced", "aligned")
 DENSITIES = ("gauss", "balanced", "aligned", "uniform")
 BALANCED = [[x] for x in ("normals", "count", "angle", "coverage")] + [
     [x, "coverage"] for x in ("normals", "count", "angle")
 ]
-# Beyond this |K|^α is so uneven that all samples crowd around the point of the largest |K|.
+# For larger α, |K|^α is so uneven that all samples crowd around the point of the largest |K|.
 LARGEST_POWER = 8.0
 
 
 @dataclass(frozen=True, eq=False)
 class Request:
-    """What to sample: one of normals (S, 3), a count, an angle in degrees and a coverage.
+    """A checked request: one of normals (S, 3), a count, an angle in degrees and a coverage.
 
     A coverage may also be given with one of the others. `density` is one of `DENSITIES`, or α for
     |K|^α. Normals outside of `reach` get no samples.
@@ -60,7 +60,7 @@ class Request:
 
     @property
     def directions(self) -> NDArray[np.float64]:
-        """The normals, or those of an icosphere that is fine enough for the angle."""
+        """The normals, or those of an icosphere whose covering radius is at most the angle."""
         if self.normals is not None:
             return self.normals
         assert self.angle is not None
@@ -118,7 +118,8 @@ def _density(density: str | float | None, default: str) -> str | float:
 def _check_that_they_fit(density: str | float, given: list[str]) -> None:
     """Raise InputError for amounts that a density does not support."""
     fitting = {
-        # No angle: next to open borders normals alone leave more than they are apart.
+        # No angle: next to open boundaries, normals alone leave gaps wider than their covering
+        # radius.
         "gauss": [["normals"], ["count"]],
         "balanced": BALANCED,
         "aligned": [x for x in BALANCED if "normals" not in x],

@@ -1,4 +1,4 @@
-"""What a sampling returns: points, normals, parameters, curvatures, and how it went."""
+"""`Samples`, the result of a sampling: points, normals, parameters, curvatures, and a report."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Samples(SampleArrays, Methods):
 
     `sample` and the other samplers make them. A boolean mask (N,), an index array, a slice or a
     number picks rows, with the same report and spline: ``samples[samples.elliptic]``. The result is
-    always Samples, those of ``samples[0]`` and of the steps of a loop have length 1.
-    `Samples.concatenate` joins several. ``numpy.asarray(samples)`` is their points.
+    always Samples; ``samples[0]`` and the items of a loop have length 1. `Samples.concatenate`
+    joins several. ``numpy.asarray(samples)`` is their points.
 
     With ``dtype=numpy.float32``, all numbers except the indices are float32. Fields that were not
     requested (`fields` of `sample`) are missing: reading them raises MissingFieldError, an
@@ -30,8 +30,8 @@ class Samples(SampleArrays, Methods):
 
     With ``on="surface"`` (see `sample`), points, normals and curvatures are those of the surface at
     `uv`. A sample with a `normal_index` has the prescribed normal; that of the surface differs from
-    it by rounding, 1e-12 where it is regular. With ``on="spline"``, and where `on_surface` is
-    False, all of them are those of the spline.
+    it by rounding, 1e-12 at regular points. With ``on="spline"``, and where `on_surface` is False,
+    all of these are those of the spline.
 
     Attributes
     ----------
@@ -44,9 +44,9 @@ class Samples(SampleArrays, Methods):
     support : (N,) float64 array
         Support function h = n·x (4), in L.
     gaussian_curvature : (N,) float64 array
-        Gaussian curvature K, in 1/L². Points are hyperbolic where its sign bit is set, −0.0
-        included; those where it is zero up to rounding are `parabolic`, too. On surfaces smaller
-        than 1e-154 it may be infinite, on those larger than 1e154 zero: float64 does not hold it.
+        Gaussian curvature K, in 1/L². Points are hyperbolic if its sign bit is set, −0.0 included,
+        and also `parabolic` if it is zero up to rounding. On surfaces smaller than 1e-154 it may
+        overflow to infinity, on those larger than 1e154 underflow to zero.
     mean_curvature : (N,) float64 array
         Mean curvature H, in 1/L, positive for a sphere with outward normals.
     normal_index : (N,) int64 array
@@ -54,35 +54,35 @@ class Samples(SampleArrays, Methods):
     patch_index : (N,) int64 array
         Patches of the spline in which the samples were found.
     on_surface : (N,) bool array or None
-        Whether the sample is on the surface, and its normal that of the surface up to 1e-9. False
-        for one at a prescribed normal that could not be moved there from the spline: next to
-        parabolic and singular points, and next to open borders where the surface has that normal
-        outside of its domain only. Its normal, K and H, with the sign of K, are then those of the
-        spline, and not those of the surface at its `uv`, which may differ in everything. None with
+        Whether the sample is on the surface, with the normal of the surface up to 1e-9. False for a
+        sample at a prescribed normal that could not be moved there from the spline: next to
+        parabolic and singular points, and next to open boundaries if the surface has that normal
+        only outside of its domain. Its normal, K and H are then those of the spline; those of the
+        surface at its `uv` may be entirely different, even the sign of K. None with
         ``on="spline"``, or if it was not requested.
     uv_radius : (N, 2) float64 array or None
-        Of points that are proved to be all with prescribed normals: how far the exact parameters
-        may be from `uv`; NaN on faces of parts where points are estimated. None for others.
+        For points that are proved to be all with prescribed normals: bounds of the errors of `uv`;
+        NaN on faces of parts where points are estimated. None for others.
     row, column : (N,) int64 array or None
-        For samples on a grid (see ``density="aligned"`` of `sample`): the numbers of the lines
-        v = const and u = const on which a sample is, from 0 upwards; −1 for one that is on no grid.
-        None if no sample is, or if they were not requested.
+        For samples on a grid (see ``density="aligned"`` of `sample`): the indices, from 0 on, of
+        the lines v = const and u = const that meet at a sample; −1 for a sample that is not on a
+        grid. None if no sample is on a grid, or if they were not requested.
     report : SamplingReport
         A report on the sampling.
     spline : Spline or None
         The spline that was sampled; None if it is unknown, as for samples from a file, and for
         samples of several pieces (see `Surface.pieces`), each of which has one.
     face_index, solid_index : (N,) int64 array or None
-        Of a CAD part: the places of the sample's face and solid in `Part.faces` and `Part.solids`;
-        −1 for a face that belongs to no solid. `uv` are those of the surface of the face. None for
-        other samples.
+        For a CAD part: the indices of the sample's face and solid in `Part.faces` and
+        `Part.solids`; −1 for a face that belongs to no solid. `uv` are those of the surface of the
+        face. None for other samples.
     other_normals : (N, 3) float64 array or None
-        Of samples with ``edges=True``: unit normals of the other face of a sample on a sharp edge,
-        whose `normals`, `uv`, curvatures and `face_index` are those of the first; else NaN.
+        With ``edges=True``: unit normals of the second face of a sample on a sharp edge; NaN for
+        others. Its `normals`, `uv`, curvatures and `face_index` are those of the first face.
     other_uv : (N, 2) float64 array or None
-        Of samples with ``edges=True``: parameters on the other face of a sharp edge; else NaN.
+        With ``edges=True``: parameters on the second face of a sharp edge; NaN for other samples.
     other_face_index : (N,) int64 array or None
-        Of samples with ``edges=True``: the other face of a sample on a sharp edge; −1 for others.
+        With ``edges=True``: the second face of a sample on a sharp edge; −1 for other samples.
     surface : Surface, Part or None
         The surface, or the CAD part, on which the samples are; None with ``on="spline"``, for
         samples from a file, and after pickling if the surface does not pickle.
@@ -142,7 +142,7 @@ class Samples(SampleArrays, Methods):
     """
 
     def summary(self) -> str:
-        """Return one line: the number of samples, where they come from, what they cover.
+        """Return one line: the number of samples, their origin, and their coverage.
 
         Returns
         -------
@@ -165,7 +165,7 @@ class Samples(SampleArrays, Methods):
 
 
 def spline_or(samples: Samples, spline: Spline | None) -> Spline:
-    """Return the spline that is given, else that of the samples; InputError without one."""
+    """Return the given spline, or that of the samples; InputError without one."""
     spline = samples.spline if spline is None else spline
     if spline is None and isinstance(samples.surface, Whole):
         raise InputError(

@@ -1,4 +1,4 @@
-"""The summary of samples: one line on their numbers, and on what the report says."""
+"""The summary of samples: one line on their numbers and their report."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ GRID = "a grid that follows the curvature"  # a graded grid, in plain words
 
 
 def summary_of(samples: SampleArrays) -> str:
-    """Return one line: the number of samples, where they come from, what they cover."""
+    """Return one line: the number of samples, their origin, and their coverage."""
     report, split = samples.report, kinds_of_points(samples).removeprefix(": ").strip(" ()")
     line = f"{plural(len(samples), 'sample')}{_origin(samples)} ({split})"
     if len(samples) != report.samples:
@@ -57,7 +57,7 @@ def summary_of(samples: SampleArrays) -> str:
 
 
 def _place(report: SamplingReport) -> str:
-    """Say in which reference system coordinates are, and what was subtracted from them."""
+    """Return a clause on the reference system of coordinates, and their origin."""
     clause = f"; coordinates in {crs_label(report.crs)}" if report.crs else ""
     if report.origin and any(report.origin):
         numbers = ", ".join(f"{x:.12g}" for x in report.origin)
@@ -66,7 +66,7 @@ def _place(report: SamplingReport) -> str:
 
 
 def misfit_clause(report: SamplingReport) -> str:
-    """Say how far the spline is from the surface, or from the data, if that is known."""
+    """Return a clause on the misfit of the spline to the surface or the data, if known."""
     if report.fit_distance is None or report.fit_rms is None:
         return ""
     if report.fit_angle is None:
@@ -91,7 +91,7 @@ def _filling(samples: SampleArrays) -> int:
 
 
 def _on_grid(samples: SampleArrays) -> str:
-    """Say how many samples are on a grid, or that it is the better choice for all."""
+    """Return a clause on the number of samples on a grid."""
     count = 0 if samples.row is None else int((samples.row >= 0).sum())
     if count == 0:
         return f" of {GRID}" if samples.report.density == "aligned" else ""
@@ -100,7 +100,7 @@ def _on_grid(samples: SampleArrays) -> str:
 
 
 def _origin(samples: SampleArrays) -> str:
-    """Say how many samples have prescribed normals, and how many fill gaps."""
+    """Return a clause on the numbers of samples at prescribed normals and of filling samples."""
     normals, filling = samples.report.normals, _filling(samples)
     if grid := _on_grid(samples):
         return grid
@@ -115,7 +115,7 @@ def _origin(samples: SampleArrays) -> str:
 
 
 def _each(samples: SampleArrays, normals: int) -> str:
-    """Say how many samples each of several prescribed normals has, if all have equally many."""
+    """Return a clause on the number of samples of each prescribed normal, if all have the same."""
     each, rest = divmod(len(samples), normals)
     if normals == 1 or each == 0 or rest or "normal_index" not in samples.fields:
         return ""
@@ -124,7 +124,7 @@ def _each(samples: SampleArrays, normals: int) -> str:
 
 
 def _infinite(samples: SampleArrays) -> str:
-    """Say at how many samples K is infinite, and why."""
+    """Return a clause on the number of samples with infinite K, and the reason."""
     if not count_infinite(samples.arrays()):
         return ""
     infinite = np.isinf(samples.gaussian_curvature)
@@ -137,7 +137,7 @@ def _infinite(samples: SampleArrays) -> str:
 
 
 def kinds_of_points(samples: SampleArrays) -> str:
-    """Return the numbers of points by the sign of K, or which fields there are.
+    """Return the numbers of points by the sign of K, or the fields if K is missing.
 
     Parabolic points are counted as such, and not by the sign bit of K.
     """

@@ -1,4 +1,4 @@
-"""What samples may lie on that is more than one surface: it answers for all of them."""
+"""The interface of objects that consist of several surfaces, such as CAD parts."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ __all__ = ["FaceColumn", "NormalDeviation", "Whole"]
 
 
 class FaceColumn(NamedTuple):
-    """A column of tables that says something of faces: its type, and a value for each face.
+    """A column of tables with a property of faces: its type, and a value for each face.
 
-    None stands for no value. `unit` is that of lengths, L, or empty.
+    None means no value. `unit` is that of lengths, L, or empty.
     """
 
     name: str
@@ -52,7 +52,7 @@ class NormalDeviation(NamedTuple):
 
 
 class Whole:
-    """A surface that is no `Surface`: a CAD part, which defines these methods."""
+    """A whole of several surfaces: the base class of CAD parts, which define these methods."""
 
     @property
     def unit(self) -> str:
@@ -63,13 +63,13 @@ class Whole:
         self, request: Request, fields: Sequence[str], dtype: DTypeLike, threads: int | None,
         progress: bool, edges: bool,
     ) -> tuple[Any, NDArray[np.float64]]:  # fmt: skip
-        """Return what `sample` returns, and the unit normals that were searched."""
+        """Return the result of `sample`, and the unit normals that were searched."""
         raise NotImplementedError
 
     def _space(self, threads: int | None, *, reach: Cap | None = None) -> Any:  # noqa: ANN401
-        """Return the `Space` of what is sampled, or of what is in a `reach`."""
+        """Return the `Space` of the whole, or of its points in a `reach`."""
         raise NotImplementedError
 
     def _face_columns(self) -> list[FaceColumn]:
-        """Return what tables of samples say of their faces."""
+        """Return the columns on faces in tables of samples."""
         raise NotImplementedError

@@ -1,1 +1,1 @@
-"""Splines of quadratic patches, of grids and points."""
+"""Splines of quadratic patches, on grids of cells and on triangulations."""

@@ -1,4 +1,4 @@
-"""Ghost coefficients, one ring outside the domain: what the boundary conditions demand of them."""
+"""Ghost coefficients, one ring outside the domain, which follow from the boundary conditions."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ Sides = tuple[Array, Array, Array, Array]
 
 @dataclass(frozen=True, eq=False)
 class Border:
-    """The spline on the border of the domain: the univariate quasi-interpolant of the border.
+    """The spline on the boundary of the domain: the univariate quasi-interpolant of the boundary.
 
-    `sides` are the middle Bézier points of the edges along u at the low and the high end of v, then
-    along v at the low and the high end of u; `corners` (2, 2, 3) the values at the corners.
+    `sides` are the middle Bézier points of the edges along u at the lower and the upper bound of v,
+    then along v at the lower and the upper bound of u; `corners` (2, 2, 3) the values at the
+    corners.
     """
 
     sides: Sides
@@ -30,7 +31,7 @@ class Border:
 
     @classmethod
     def of_values(cls, middles: Sides, g: Array) -> Border:
-        """Return the border from values at the middles of its edges and at all vertices."""
+        """Return the boundary from values at the midpoints of its edges and at all vertices."""
         rows = g[:, 0], g[:, -1], g[0], g[-1]
         south, north, west, east = (
             python_function(formulas.edge_point)(f, row[:-1], row[1:])
@@ -40,7 +41,7 @@ class Border:
 
     @classmethod
     def of_vertices(cls, ringed: Array) -> Border:
-        """Return the border from values at the vertices and one ring more."""
+        """Return the boundary from values at the vertices with one more ring."""
         south, north, west, east = (
             python_function(formulas.edge_point_from_vertices)(
                 row[1:-2], row[2:-1], row[:-3], row[3:]
@@ -54,9 +55,10 @@ class Border:
 def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> Array:
     """Return the coefficients (m + 2, n + 2, 3) with one ring outside the inner ones (m, n, 3).
 
-    Open sides follow the border, periodic ones are copied. At a pole the outer coefficients are the
-    first inner ones mirrored in one point, their mean, so that this end of the spline is exactly
-    one point; the inner ones are moved to one plane, so that it has one normal (planar_ring.py).
+    At open sides they follow from the boundary, at periodic ones they are copies. At a pole they
+    are the first inner coefficients mirrored in their mean, so that this side of the spline is
+    exactly one point; the inner ones are moved to one plane, so that the pole has one normal
+    (planar_ring.py).
     """
     result = np.pad(inner, [(1, 1), (1, 1), (0, 0)])
     turned = np.swapaxes(result, 0, 1)
@@ -82,8 +84,8 @@ def _open_rows(rows: Array, boundary: BoundaryPair, sides: tuple[Array, Array]) 
 def _close(result: Array, turned: Array, boundary: Boundary) -> None:
     """Write the rows outside poles and periodic ends.
 
-    Poles come first, and what runs along v comes before what runs along u, where u is open: then
-    copies hold the ring along the other parameter too.
+    Poles come first, and rows along v precede rows along u, where u is open: then copies include
+    the ring along the other parameter.
     """
     directions = ((turned, boundary[1]), (result, boundary[0]))
     for rows, end in directions:
@@ -108,15 +110,15 @@ def _close_pole(rows: Array, outside: int, first: int) -> None:
 def vertices_with_ring(values: Array, boundary: Boundary) -> Array:
     """Add the values (m, n, 3) at the vertices one step outside the domain.
 
-    Values of a periodic direction come without the repeated last row and get two rows at the high
-    end; others get one row at each end. The row beyond a pole is the one before it, half a period
-    away, or extrapolated if half a period is no whole number of points.
+    Values of a periodic direction come without the repeated last row and get two rows at the upper
+    end; others get one row at each end. The row beyond a pole is the one before it, shifted by half
+    a period, or extrapolated if half a period is not an integer number of points.
     """
     if "pole" in boundary[0]:
         swapped = vertices_with_ring(np.swapaxes(values, 0, 1), (boundary[1], boundary[0]))
         return np.ascontiguousarray(np.swapaxes(swapped, 0, 1))
     turned = np.swapaxes(values, 0, 1)
-    reverse = values[::-1]  # of vertices that close, the first stays the first
+    reverse = values[::-1]  # in a closed row of vertices, the first stays the first
     reverse = np.roll(reverse, 1, axis=0) if closes(boundary[0]) else reverse
     opposite = np.roll(turned, len(values) // 2, axis=1)
     low, high = _beyond(turned, np.swapaxes(reverse, 0, 1), opposite, boundary[1])

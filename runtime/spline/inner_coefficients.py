@@ -1,4 +1,4 @@
-"""The coefficients inside the domain, and the border, from values of a surface or of a grid."""
+"""The coefficients inside the domain, and the boundary, from values of a surface or a grid."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["Values", "from_grid", "from_values", "values_at"]
 class Values(NamedTuple):
     """Values at the centres (m, n, 3) and vertices (m + 1, n + 1, 3) of cells.
 
-    `middles` are those in the middle of the edges on the border of the domain.
+    `middles` are those at the midpoints of the edges on the boundary of the domain.
     """
 
     centres: Array
@@ -46,14 +46,14 @@ def values_at(
 
 
 def from_values(values: Values) -> tuple[Array, Border]:
-    """Return the coefficients (m, n, 3) and the border from values at centres and vertices."""
+    """Return the coefficients (m, n, 3) and the boundary from values at centres and vertices."""
     inner = np.empty_like(values.centres)
     kernels.fit_centres_and_vertices(values.centres, values.vertices, inner)
     return inner, Border.of_values(values.middles, values.vertices)
 
 
 def from_grid(points: Array, boundary: Boundary) -> tuple[Array, Border]:
-    """Return the coefficients and the border from values at the vertices only."""
+    """Return the coefficients and the boundary from values at the vertices only."""
     ringed = vertices_with_ring(points, boundary)
     inner = np.empty((ringed.shape[0] - 3, ringed.shape[1] - 3, 3))
     kernels.fit_vertices(ringed, inner)

@@ -1,4 +1,4 @@
-"""Which part of each patch of a spline is inside its trim."""
+"""The part of each patch of a spline that is inside its trim."""
 
 from __future__ import annotations
 
@@ -25,17 +25,18 @@ __all__ = [
 ]
 
 
-# A patch is tested at the centroids of this number of triangles squared: COARSE for all, where it
-# is not known which cells the border of the trim passes, and FINEST for those it may pass.
+# A patch is tested at the centroids of the square of this number of triangles: COARSE for all
+# patches, if the cells at the boundary of the trim are unknown, and FINEST for patches at the
+# boundary.
 COARSE, FINEST = 4, 8
 POINTS_AT_A_TIME = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
 class Inside:
-    """The shares (patches,) of the patches inside a trim, from 0 to 1, by their parameters.
+    """The shares (patches,) of the patches inside a trim, by area in the parameters, from 0 to 1.
 
-    `reached` (patches,) says which patches may have a part inside, however small.
+    `reached` (patches,) is True for patches that may have a part inside, however small.
     """
 
     shares: Array
@@ -66,7 +67,7 @@ class Inside:
 
 
 def with_uv(trim: Trim | None, fields: Sequence[str]) -> tuple[str, ...]:
-    """Return fields of samples, and uv too if there is a trim, which needs it."""
+    """Return fields of samples, with uv if there is a trim, which needs it."""
     return (*fields, "uv") if trim is not None and "uv" not in fields else tuple(fields)
 
 
@@ -88,7 +89,7 @@ def count_of(arrays: dict[str, NDArray[Any]]) -> int:
 def subcentroids(parts: int) -> Array:
     """Return the centroids (parts², 2) of the equal parts of the triangle (0, 0), (1, 0), (0, 1).
 
-    They lie on no line through points with binary fractions as coordinates.
+    None of them lies on a line through points whose coordinates are binary fractions.
     """
     i, j = (x.ravel() for x in np.indices((parts, parts)))
     upright, inverted = i + j < parts, i + j < parts - 1

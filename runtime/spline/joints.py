@@ -1,4 +1,4 @@
-"""Joints of quadratic patches: which edges are one curve, and how far their normals differ."""
+"""Joints of quadratic patches: edges that are one curve, and the angles between normals there."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ class Edge(NamedTuple):
 
 # The edges u = 0, v = 0, w = 0, counterclockwise.
 EDGES = (Edge(1, 5, 2, 3, 4), Edge(2, 4, 0, 5, 3), Edge(0, 3, 1, 4, 5))
-# The rows of the corners, and where they are in the control normals N200, N110, N101, N020, N011,
-# N002; then the control normals of the edges.
+# The indices of the corners in the control normals N200, N110, N101, N020, N011, N002; then those
+# of the edges.
 CORNER_NORMALS = (0, 3, 5)
 EDGE_NORMALS = ((3, 4, 5), (5, 2, 0), (0, 1, 3))
 # Parameters of an edge at which the normals of its patches are compared.
 PLACES = np.linspace(0.0, 1.0, 9)
-# Points closer than this, relative to the largest coordinate, are one point.
+# Points closer than this, relative to the largest coordinate, are the same point.
 SAME_POINT = 2.0**-36
-# Points of an edge that are tried as the nearest one to a corner, and steps of Newton's method.
+# The number of points of an edge that are tried as the nearest to a corner, and of Newton steps.
 TRIED, STEPS = 33, 4
 
 
@@ -81,7 +81,7 @@ def merged_points(points: Array) -> tuple[Array, Indices]:
     number = np.arange(len(points))
     if size == 0.0:
         return points[:1], np.zeros_like(number)
-    # Two points within half a box share a box in one of eight rasters.
+    # Two points closer than half a box share a box in one of eight rasters.
     for shift in product((0.0, 0.5), repeat=3):
         boxes = np.floor(points / (2.0 * size) + shift)
         _, group = np.unique(boxes, axis=0, return_inverse=True)
@@ -95,11 +95,11 @@ def merged_points(points: Array) -> tuple[Array, Indices]:
 
 
 def linked(count: int, one: Indices, other: Indices) -> tuple[int, Indices]:
-    """Return how many groups 0, …, count − 1 are if `one` and `other` (k,) are linked, and which.
+    """Return the number of connected components of a graph on [0, count), and those of the nodes.
 
-    Groups are numbered by their first members.
+    Its edges link `one` and `other` (k,). Components are numbered by their first nodes.
     """
-    from scipy.sparse import coo_array  # loaded late: most splines have a grid
+    from scipy.sparse import coo_array  # imported late: most splines have a grid
     from scipy.sparse.csgraph import connected_components
 
     links = coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
@@ -109,7 +109,7 @@ def linked(count: int, one: Indices, other: Indices) -> tuple[int, Indices]:
 
 @dataclass(frozen=True, eq=False)
 class Topology:
-    """Nets (T, 6, 3) with the numbers (T, 6) of their points, and control normals (T, 6, 3).
+    """Nets (T, 6, 3) with the indices (T, 6) of their points, and control normals (T, 6, 3).
 
     Joints whose normals differ by at most `smooth` degrees are smooth.
     """
@@ -130,7 +130,7 @@ class Topology:
         """The two edges (J, 2) of each joint, as rows 3 k + j."""
         start, end, middle = self._ends.T
         keys = np.stack([np.minimum(start, end), np.maximum(start, end), middle], axis=1)
-        rows = np.flatnonzero(start != end)  # an edge that is one point joins nothing
+        rows = np.flatnonzero(start != end)  # a collapsed edge is not a joint
         _, group, sizes = np.unique(keys[rows], axis=0, return_inverse=True, return_counts=True)
         group = group.ravel()
         if (sizes > 2).any():
@@ -162,15 +162,15 @@ class Topology:
 
     @cached_property
     def is_point(self) -> Flags:
-        """Which edges (3 T,) are one point."""
+        """Which edges (3 T,) are collapsed to a point."""
         return (self._ends[:, :1] == self._ends[:, 1:]).all(axis=1)
 
     @cached_property
     def smooth_pairs(self) -> Indices:
         """Pairs of edges, as in `pairs`, along which the normals are the same.
 
-        They are those of the smooth joints, and the other two edges of a patch with one edge that
-        is a point: its normals are those of these edges.
+        They are those of the smooth joints, and the other two edges of a patch with a collapsed
+        edge: the normals along these are the same.
         """
         rows = np.flatnonzero(self.is_point)
         patch, edge = np.divmod(rows, 3)
@@ -190,16 +190,16 @@ class Topology:
 
     @cached_property
     def on_border(self) -> Flags:
-        """Which edges (3 T,) are on no smooth joint; not those that are one point."""
+        """Which edges (3 T,), collapsed ones excepted, are not on a smooth joint."""
         free = ~self.is_point
         free[self.smooth_pairs.ravel()] = False
         return free
 
     @cached_property
     def corners(self) -> tuple[Array, Indices]:
-        """Unit normals at corners, one for all patches that meet there smoothly, and which (T, 3).
+        """Unit normals at corners, shared by patches that meet smoothly, and their indices (T, 3).
 
-        They are 0 where no patch has one.
+        A normal is 0 if no patch has one there.
         """
         pairs = self.smooth_pairs
         # Edge j runs from corner j + 1 to corner j + 2.
@@ -252,7 +252,7 @@ class Topology:
 
 
 def _firsts(numbers: Indices) -> Iterator[tuple[int, int]]:
-    """Yield a place in the flat array of points for each number."""
+    """Yield a row and a column in the array of points for each index."""
     values, places = np.unique(numbers, return_index=True)
     return zip(places.tolist(), values.tolist(), strict=True)
 
@@ -279,7 +279,7 @@ def _normals_along(normals: Array, edges: Indices) -> Array:
 
 
 def _largest_angles(left: Array, right: Array) -> Array:
-    """Return the largest angle (J,) of vectors (J, k, 3); none with a vector that is zero."""
+    """Return the largest angle (J,) between vectors (J, k, 3), zero vectors excepted."""
     left, right = _unit(left), _unit(right)
     known = left.any(axis=-1) & right.any(axis=-1)
     chord = np.where(known, np.linalg.norm(left - right, axis=-1), 0.0)
@@ -287,7 +287,7 @@ def _largest_angles(left: Array, right: Array) -> Array:
 
 
 def _unit(vectors: Array) -> Array:
-    """Return vectors (…, 3) of unit length, 0 for those that are rounding."""
+    """Return vectors (…, 3) of unit length, 0 for those that are rounding errors."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     regular = lengths > SAME_POINT
     return np.where(regular, vectors / np.where(regular, lengths, 1.0), 0.0)

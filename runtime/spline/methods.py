@@ -1,4 +1,4 @@
-"""What `Spline` and `NetSpline` have from modules above: `methods.pyi` says what it is."""
+"""Methods of `Spline` and `NetSpline` that modules above define; `methods.pyi` has signatures."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ __all__ = ["Methods", "NetMethods"]
 
 
 class Methods:
-    """Splines made in other ways than by `fit`."""
+    """Constructors of splines other than `fit`."""
 
     from_nets = Later("gaussmap.runtime.spline.nets")
 
 
 class NetMethods:
-    """What is made of splines of nets."""
+    """Results derived from splines of nets."""
 
     mesh = Later("gaussmap.tools.meshes.of_nets")

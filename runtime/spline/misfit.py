@@ -1,4 +1,4 @@
-"""How far a spline is from what it approximates; `fitting` measures it."""
+"""The misfit of a spline to the surface or data that it approximates; `fitting` measures it."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ __all__ = ["Misfit"]
 
 @dataclass(frozen=True, slots=True)
 class Misfit:
-    """How far a spline is from the surface or the data that it approximates.
+    """The distance of a spline from the surface or the data that it approximates.
 
-    Both are compared at equal parameters. So `distance` bounds the distance of the two surfaces at
-    these places from above, and rather well: the spline slides little along the surface.
+    Both are compared at equal parameters. So `distance` is an upper bound of the distance of the
+    two surfaces at these points, and a good one: tangential differences are small.
 
     Attributes
     ----------
     distance : float
-        The largest distance, in L: over thousands of places that the fit did not use, lines of
-        hundreds of them among these; over all points of data.
+        The largest distance, in L, at thousands of points that the fit did not use, including
+        hundreds on each of several lines; for data, at all points.
     rms : float
-        The root mean square of the distance, in L, over places that are spread evenly over the
-        domain of the parameters; over all points of data.
+        The root mean square of the distance, in L, over points that are evenly distributed in the
+        domain; for data, over all points.
     angle : float or None
-        The largest angle, in degrees, between the normals of spline and surface, without the poles
-        and singular points themselves; None for data, which have no normals.
+        The largest angle, in degrees, between the normals of spline and surface, poles and singular
+        points themselves excepted; None for data, which have no normals.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Grids with missing points: what of their spline does not depend on these."""
+"""Grids with missing points: the patches of their spline that do not depend on these."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ __all__ = [
 ]
 
 
-# What grids of elevations usually hold where there are none.
+# The usual values of missing elevations.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))
 USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)
 # The rows of points next to a pole that all patches around it depend on.
@@ -40,9 +40,9 @@ ROWS_AT_POLE = 3
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """The patches of a spline on a grid of cells that depend on no missing point.
+    """The patches of a spline on a grid of cells that do not depend on missing points.
 
-    `patches` (4 m n,) says which of them do not.
+    `patches` (4 m n,) is True for these.
     """
 
     domain: Domain
@@ -57,7 +57,7 @@ class Known:
         return self.patches[found]
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
-        """Return the cells (m, n) that the border passes, None for cells of another grid."""
+        """Return the cells (m, n) that the boundary intersects; None for cells of another grid."""
         if (domain, cells) != (self.domain, self.cells):
             return None
         of_cell = self.patches.reshape(*cells, 4).astype(np.float64)
@@ -65,12 +65,12 @@ class Known:
         return least < most
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Return 0 for all boxes (k, 4): no surface with such a trim has proved ones."""
+        """Return 0 for all boxes (k, 4): surfaces with such a trim are not proved."""
         return np.zeros(len(boxes), np.int8)
 
 
 def checked_nodata(nodata: Any) -> float:  # noqa: ANN401
-    """Return the number that stands for missing data; InputError if it is none."""
+    """Return the number that means missing data; InputError if it is not a number."""
     try:
         return as_float(nodata)
     except TypeError:
@@ -113,7 +113,7 @@ def _warn(text: str) -> None:
 
 
 def filled(points: Array) -> Array:
-    """Return points (m, n, 3) with those of the nearest points in place of missing numbers."""
+    """Return points (m, n, 3) with the nearest points in place of missing ones."""
     bad = np.isnan(points)
     if not bad.any():
         return points
@@ -128,7 +128,7 @@ def filled(points: Array) -> Array:
 def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) -> Known | None:
     """Return which patches of the spline of a grid depend on no point with NaN; None if all do.
 
-    Raises InputError if none is left.
+    Raises InputError if no patch is left.
     """
     bad = np.isnan(points).any(axis=2)
     if not bad.any():
@@ -152,9 +152,9 @@ def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) 
 def known_of_values(
     exists: Callable[[Array], Flags], domain: Domain, boundary: Boundary, cells: tuple[int, int]
 ) -> Known:
-    """Return which patches of a quasi-interpolant depend on no value that does not exist.
+    """Return the patches of a quasi-interpolant that depend only on existing values.
 
-    `exists` says that of points (k, 2) of the domain.
+    `exists` (k,) returns whether values exist at points (k, 2) of the domain.
     """
 
     def values(u: Array, v: Array) -> Array:
@@ -180,7 +180,7 @@ def _known(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> 
 
 
 def _without_poles(boundary: Boundary) -> Boundary:
-    """Return boundary conditions with open ends in place of poles, which refuse NaN."""
+    """Return boundary conditions with open sides in place of poles, which refuse NaN."""
 
     def pair(ends: BoundaryPair) -> BoundaryPair:
         return ("open", "open") if "pole" in ends else ends

@@ -25,7 +25,7 @@ from .spline import Spline, short_label
 
 __all__ = ["NetSpline", "from_nets", "vectors_of_nets"]
 
-# Areas and solid angles are sums over the centroids of the squared number of parts of a patch.
+# Areas and solid angles are sums over the centroids of PARTS² triangles of a patch.
 PARTS = 4
 GRID = (
     "{name!r} is made of nets and has no grid of cells nor parameters u, v of a whole surface, "
@@ -37,14 +37,14 @@ class NetSpline(Spline, NetMethods):
     """A spline of T quadratic Bézier triangles on any triangulation; made by `Spline.from_nets`.
 
     The parameters `uv` of its samples are those in the triangle of their patch, u, v ≥ 0 and
-    u + v ≤ 1. What needs a grid of cells raises InputError.
+    u + v ≤ 1. Attributes and functions that need a grid of cells raise InputError.
 
     Attributes
     ----------
     control_nets : (T, 6, 3) float64 array
         The nets, each in the order b200, b020, b002, b110, b101, b011.
     triangles : (T, 6) int64 array
-        The numbers of their points: equal ones for points that patches share.
+        The indices of their points, equal for points that patches share.
 
     Examples
     --------
@@ -76,7 +76,7 @@ class NetSpline(Spline, NetMethods):
     def checked(
         cls, points: ArrayLike, triangles: ArrayLike | None, name: str, smooth: float
     ) -> NetSpline:
-        """Make one of arguments of `Spline.from_nets`."""
+        """Make a spline of the arguments of `Spline.from_nets`."""
         limit = finite_number(smooth, "smooth")
         if not 0.0 <= limit < 90.0:
             raise InputError(f"smooth must be an angle from 0 to 90 degrees, not {limit:g}.")
@@ -106,13 +106,13 @@ class NetSpline(Spline, NetMethods):
         return f"NetSpline({self.patches:,} {kind} of {short_label(self.name)})"
 
     def __getstate__(self) -> dict[str, object]:
-        """Return what is pickled."""
+        """Return the pickled state."""
         names = "control_nets", "triangles", "name", "smooth"
         rest = {"misfit": None, "trim": None, "apexes": 0, "georeference": None}
         return {x: getattr(self, x) for x in names} | rest
 
     def __setstate__(self, state: dict[str, object]) -> None:
-        """Take what was pickled."""
+        """Restore the pickled state."""
         vars(self).update(state)
 
     def _refuse(self) -> NoReturn:
@@ -155,7 +155,7 @@ class NetSpline(Spline, NetMethods):
 
     @cached_property
     def topology(self) -> Topology:
-        """How the patches are joined."""
+        """The topology of the patches: their edges, joints and corners."""
         normals = python_function(formulas.control_normals)(self.patch())
         control = np.stack([np.stack(x, axis=-1) for x in normals], axis=1)
         sizes = np.square(self.vectors).sum(axis=-1).max(axis=1)[:, None, None]
@@ -178,23 +178,23 @@ class NetSpline(Spline, NetMethods):
         return math.hypot(*np.ptp(points, axis=0)), math.isqrt(self.patches)
 
     def patch(self, rows: NDArray[np.int64] | slice = slice(None)) -> Patch:
-        """Return the vectors of some patches, as formulas take them, times `scale`; p is 0."""
+        """Return the vectors of given patches for formulas, times `scale`; p is 0."""
         a, b, c, d, e = np.moveaxis(self.vectors[rows], 1, 0)
         zero = np.zeros_like(a)
         return Patch(vector(a), vector(b), vector(c), vector(d), vector(e), vector(zero))
 
     def points_in_patches(self, patches: NDArray[np.int64], places: Array) -> Array:
-        """Return the points (k, 3) of patches (k,) at places u, v (k, 2)."""
+        """Return the points (k, 3) of patches (k,) at parameters u, v (k, 2)."""
         x = python_function(formulas.envelope)(self.patch(patches), *places.T)
         return np.stack(x, axis=1) / self.scale + self.control_nets[patches, 2]
 
     def normals_in_patches(
         self, patches: NDArray[np.int64], places: Array
     ) -> tuple[Array, NDArray[np.bool_]]:
-        """Return normals (k, 3) of any length of patches (k,) at places u, v (k, 2).
+        """Return unnormalized normals (k, 3) of patches (k,) at parameters u, v (k, 2).
 
-        At a singular point, where there is none, it is that next to it, towards the centre; the
-        second array (k,) says where.
+        At a singular point, which has no normal, it is that of a nearby point towards the centre;
+        the second array (k,) marks these.
         """
         patch = self.patch(patches)
 
@@ -263,9 +263,9 @@ def from_nets(
     """Return a spline of quadratic Bézier triangles on any triangulation.
 
     Joints are found: edges with the same ends and the same middle control point, up to
-    rounding, or with the same indices. Where normals are continuous, a normal on the joint is
-    that of one of the two patches, and every point with a given normal is found exactly once.
-    A joint where they differ is a crease, and a border of both patches.
+    rounding, or with the same indices. Where normals are continuous, a normal on the joint belongs
+    to one of the two patches, and every point with a given normal is found exactly once. A joint
+    where they differ is a crease, and part of the boundary of both patches.
 
     Parameters
     ----------
@@ -289,9 +289,8 @@ def from_nets(
     Raises
     ------
     InputError
-        For arrays of other shapes, NaN and infinity; if a corner of a patch is inside an edge
-        of another one, if more than two patches share an edge, and if two have opposite
-        orientations.
+        For arrays of other shapes, NaN or infinity; if a corner of a patch is inside an edge of
+        another one, if more than two patches share an edge, or if two have opposite orientations.
     SurfaceError
         If all points are the same.
 

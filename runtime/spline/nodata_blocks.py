@@ -1,4 +1,4 @@
-"""Blocks of one height that look like missing data, and not like water."""
+"""Detection of blocks of one height that are missing data rather than water."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from ..base.aliases import Array, Flags
 __all__ = ["suspicious_block"]
 
 
-# A block has at least this number of heights, and this part of all.
+# The least number of heights of a block, and its least part of all heights.
 FEWEST, SMALLEST = 16, 1e-3
-# Shores are about as steep as the land. A block has no data if half of the steps at its border are
-# higher than this many times all but one in a hundred of the steps elsewhere.
+# Shores are about as steep as the land. A block is missing data if the median step at its boundary
+# exceeds this multiple of the QUANTILE of the steps elsewhere.
 STEEPER, QUANTILE = 3.0, 0.99
 
 
 def suspicious_block(heights: Array) -> tuple[float, int] | None:
-    """Return the value of a block without data among heights (m, n), and its size; None without.
+    """Return the height of a block of missing data in heights (m, n), and its size; or None.
 
-    It is a connected area of the lowest or the highest value, and that is 0 or the area reaches the
-    border of the grid. Heights at its border jump, as they do not at a lake or the sea.
+    The block is a connected area of the lowest or the highest value, which is 0 unless the area
+    reaches the boundary of the grid. Heights jump at its boundary, unlike at a lake or the sea.
     """
     known = ~np.isnan(heights)
     if not known.any():
@@ -47,7 +47,7 @@ def _largest_block(same: Flags) -> Flags:
 
 
 def _jumps(heights: Array, block: Flags) -> bool:
-    """Say whether steps at the border of a block are much higher than those elsewhere."""
+    """Return whether steps at the boundary of a block are much higher than those elsewhere."""
     across, elsewhere = [], []
     for axis in (0, 1):
         steps, inside = np.abs(np.diff(heights, axis=axis)), np.diff(block, axis=axis)

@@ -1,11 +1,11 @@
-"""The coefficients around a pole: in one plane exactly, so that the pole has one normal.
+"""The coefficients around a pole, exactly in one plane, so that the pole has one normal.
 
-The patches next to a pole have an edge that is one point p. With the first ring of coefficients at
-p + d and the ghosts at p − d, the normal there is along the cross product of two sums of
-neighbouring d: the same for all patches if all d lie in one plane, and the Gaussian images close
-around it without a gap. On a smooth surface the distances from such a plane are of third order in
-the size of a cell. They must be zero in exact arithmetic: d is rounded to x a + y b with integers
-x, y and two vectors a, b of integers, all in units of the rounding of the coordinates.
+The patches next to a pole have an edge that is collapsed to a point p. With the first ring of
+coefficients at p + d and the ghosts at p − d, the normal there is along the cross product of two
+sums of neighbouring d: the same for all patches if all d lie in one plane, and the Gaussian images
+close around it without a gap. On a smooth surface the distances from such a plane are of third
+order in the size of a cell. They must be zero in exact arithmetic: d is rounded to x a + y b with
+integers x, y and two vectors a, b of integers, all in units of the rounding of the coordinates.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from ..base.aliases import Array
 __all__ = ["ring_around"]
 
 
-# The plane is the closest of those of this number of pairs a, b.
+# The number of pairs a, b among whose planes the closest one is chosen.
 CANDIDATES = 4096
-# The length of a and b is the root of this times the distance of neighbours in the ring: longer
-# ones are closer to the plane of the ring, shorter ones to the coefficients in it.
+# The length of a and b is the root of this times the distance of neighbours in the ring: the plane
+# of longer vectors is closer to that of the ring, multiples of shorter ones to its coefficients.
 BALANCE = 1.0 / 32.0
 
 
 def ring_around(ring: Array) -> tuple[Array, Array]:
-    """Return a ring of coefficients (m, 3) in one plane, and the pole in the middle of them.
+    """Return a ring of coefficients (m, 3) moved into one plane, and the pole in its middle.
 
     All coordinates are multiples of a small power of two, so that 2 p − ring is exact. A ring that
-    rounding makes no polygon around p is only rounded.
+    does not run around p once, because of rounding, is only rounded.
     """
     grain = 4.0 * float(np.spacing(np.abs(ring).max()))
     ring = np.round(ring / grain)
@@ -40,7 +40,7 @@ def ring_around(ring: Array) -> tuple[Array, Array]:
 
 
 def _planar(offsets: Array) -> Array | None:
-    """Return vectors (m, 3) of integers in one plane; None if they do not turn around it once."""
+    """Return vectors (m, 3) of integers in one plane; None if they do not run around 0 once."""
     size = float(np.abs(offsets).max())
     axes, radius = _axes(offsets / (size or 1.0))
     length = math.sqrt(BALANCE * 2.0 * math.pi * radius * size / len(offsets))

@@ -1,4 +1,4 @@
-"""Points on a grid that are to be a surface: scans, elevation models, images."""
+"""Points on a grid as a surface: scans, elevation models, images."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .spline import Spline
 
 __all__ = ["checked_spacing", "points_of_elevations", "spline_of_points"]
 
-# A last row this near to the first, relative to the distance of two rows, is the first row again.
+# A last row this close to the first, relative to the distance of two rows, repeats the first row.
 REPEATED = 1e-3
 
 
@@ -39,7 +39,7 @@ def points_of_elevations(
 ) -> tuple[NDArray[np.float64], Domain]:
     """Return the points (m, n, 3) of elevations (rows along y, columns along x), and their domain.
 
-    They are ordered such that normals point upward.
+    Their order makes normals point upward.
     """
     if boundary != (("open", "open"), ("open", "open")):
         raise InputError("elevations are a graph and cannot be periodic.")
@@ -59,7 +59,7 @@ def points_of_elevations(
 
 
 def checked_spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]:
-    """Return the distances of elevations, at most `count` along x and y; InputError for others."""
+    """Return the spacing of elevations, at most `count` along x and y; InputError if invalid."""
     try:
         dx, dy = (as_float(x) for x in (() if spacing is None else spacing))
     except (TypeError, ValueError, OverflowError):

@@ -20,7 +20,7 @@ from .spline import Spline
 
 __all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
 
-# What is said to be one point may be this far apart, relative to the size of the surface.
+# Points that are declared to be one may be this far apart, relative to the size of the surface.
 SAME_POINT = 1e-6
 
 
@@ -32,7 +32,7 @@ def fit_values(values: Values, domain: Domain, boundary: Boundary, name: str) ->
 def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, name: str) -> Spline:
     """Return the spline with one cell between any four neighbouring points (m, n, 3) of a grid.
 
-    Missing points are filled.
+    Missing points are replaced by the nearest ones.
     """
     checked_cells(cells_between(points.shape, boundary))
     inner, border = from_grid(not_too_large(filled(points), name), boundary)
@@ -42,7 +42,7 @@ def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, na
 def _spline(
     inner: NDArray[np.float64], border: Border, domain: Domain, boundary: Boundary, name: str
 ) -> Spline:
-    """Return a spline; SurfaceError if its numbers are so small that they have fewer digits."""
+    """Return a spline; SurfaceError if its coefficients are subnormal numbers."""
     coefficients = coefficients_with_ring(inner, border, boundary)
     if 0.0 < float(np.abs(coefficients).max()) < 2.0**-LARGEST_EXPONENT:
         raise SurfaceError(
@@ -55,7 +55,7 @@ def _spline(
 def apart(
     first: NDArray[np.float64], second: NDArray[np.float64], points: NDArray[np.float64]
 ) -> bool:
-    """Return whether equal points differ by more than rounding, relative to all points."""
+    """Return whether points that should be equal differ by more than rounding."""
     extent = points.max(axis=0).max(axis=0) - points.min(axis=0).min(axis=0)  # fastest this way
     size = float(extent.max())
     rounding = 64.0 * float(np.spacing(np.abs(points).max()))
@@ -63,7 +63,7 @@ def apart(
 
 
 def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]:
-    """Return points; SurfaceError if formulas would overflow with them."""
+    """Return points; SurfaceError if they are so large that formulas would overflow."""
     if np.abs(points).max() > 2.0**LARGEST_EXPONENT:
         raise SurfaceError(
             f"the coordinates of {name!r} are too large to compute with: choose another unit of "

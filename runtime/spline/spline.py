@@ -54,21 +54,21 @@ class Spline(Immutable, Methods):
     domain : ((u0, u1), (v0, v1)) of float
         The rectangle of the parameters.
     boundary : pair of pairs of str
-        For u and for v, the boundary conditions at the low and the high end, see `Surface`.
+        For u and for v, the boundary conditions at the lower and the upper bound, see `Surface`.
     name : str
         Label of the surface.
     misfit : Misfit or None
-        How far the spline is from the surface, or from the data, that it approximates: the largest
-        and the root mean square of the distance, and the largest angle between the normals. None if
-        it was not made by `fit`.
+        The distance of the spline from the surface, or from the data, that it approximates: maximum
+        and root mean square, with the largest angle between the normals. None if the spline was not
+        made by `fit`.
     trim : Trim or None
         The part of the domain that belongs to the surface, None for all of it; see
         `Surface.trimmed`.
     apexes : int
-        The number of open sides that are one point where the surface does not go on smoothly: the
-        tip of a cone, the corner of a triangle. They are looked for where ``periodic=False``.
+        The number of open sides that are collapsed to a point at which the surface is not smooth:
+        the tip of a cone, the corner of a triangle. They are detected with ``periodic=False``.
     georeference : Georeference or None
-        Where the coordinates of a `terrain` are on the Earth, see `Surface`.
+        The georeference of a `terrain`, see `Surface`.
 
     Examples
     --------
@@ -230,9 +230,9 @@ class Spline(Immutable, Methods):
     def measure(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Areas and solid angles of the patches, by quadrature: two (patches,) float64 arrays.
 
-        Those of the parts inside the trim, if there is one, by their shares of the parameters.
+        If there is a trim, they are multiplied by the share of each patch inside it.
         Areas are in units of the squared diagonal of the bounding box of the coefficients. Solid
-        angles are signed, and those of the Gaussian images.
+        angles are the signed areas of the Gaussian images.
         """
         areas, solid_angles = np.empty(self.patches), np.empty(self.patches)
 
@@ -271,12 +271,12 @@ class Spline(Immutable, Methods):
         return points.reshape(*u_array.shape, 3), normals.reshape(*u_array.shape, 3)
 
     def normals_in_cells(self, cells: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return normals of the spline at places that are given in cells.
+        """Return normals of the spline at parameters in cells.
 
         Parameters
         ----------
         cells : (k, 2) float64 array
-            Places inside the domain, in cells from its corner; see `in_cells`.
+            Parameters inside the domain, in cells from its corner; see `in_cells`.
 
         Returns
         -------
@@ -305,7 +305,7 @@ class Spline(Immutable, Methods):
         kernels.evaluate(self.coefficients, self.scale, cells, points, normals)
         for axis, (count, ends) in enumerate(zip(self.cells, self.boundary, strict=True)):
             for end, place in zip(ends, (0, count), strict=True):
-                if end == "pole":  # all but rounding
+                if end == "pole":  # zero up to rounding
                     normals[np.abs(cells[:, axis] - place) <= SAME_PARAMETER * count] = 0.0
         return points, normals
 
@@ -320,7 +320,7 @@ class Spline(Immutable, Methods):
         Returns
         -------
         (k, 2) float64 array
-            The cell of a parameter and the place in it: 2.5 is the middle of the third cell.
+            Parameters in cells: 2.5 is the middle of the third cell.
 
         Raises
         ------
