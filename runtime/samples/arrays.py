@@ -320,8 +320,8 @@ def _size_and_error(samples: SampleArrays) -> tuple[float, float]:
         largest = spline._largest
     elif "points" in samples.fields and len(samples.points) > 0:
         points, cells = samples.points.astype(np.float64), 0
-        diagonal = math.hypot(*np.ptp(points, axis=0))  # also for coordinates whose squares
-        overflow largest = float(np.abs(points).max())
+        diagonal = math.hypot(*np.ptp(points, axis=0))  # squares of coordinates may overflow
+        largest = float(np.abs(points).max())
     else:
         return 0.0, 0.0
     rounding = float(np.spacing(largest)) / (diagonal or 1.0)
