@@ -5,7 +5,7 @@ from __future__ import annotations
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.kernels import spline as kernels
+from gaussmap.runtime.spline.kernels import spline as kernels
 
 TORUS = gm.surfaces.torus()
 SIZES = pytest.mark.parametrize("size", [64, 512])

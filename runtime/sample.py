@@ -19,9 +19,9 @@ from .density.filling import fields_of, fill, target_of
 from .density.grid import lines_of, without_lines
 from .density.on_pieces import geometries_of, kept_geometries, report_of
 from .density.surface_piece import SurfacePiece, space_of
-from .place.on_spline import OnSpline
-from .place.on_surface import checked_place, place_of_samples
-from .place.reach import in_reach
+from .onto_surface.on_spline import OnSpline
+from .onto_surface.on_surface import checked_place, place_of_samples
+from .onto_surface.reach import in_reach
 from .samples.fields import FLAG_NAMES, GRID_NAMES, bytes_of, checked_dtype, checked_fields
 from .samples.report import warn_of
 from .samples.request import Request, checked_request

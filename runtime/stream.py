@@ -15,8 +15,8 @@ from .base.threads import shown
 from .density.at_normals import samples_at
 from .density.chosen_normals import choose
 from .density.on_pieces import geometries_of, kept_geometries, pieces_to_sample
-from .place.on_spline import FieldsOfSamples, OnSpline
-from .place.on_surface import place_of_samples
+from .onto_surface.on_spline import FieldsOfSamples, OnSpline
+from .onto_surface.on_surface import place_of_samples
 from .samples.fields import checked_dtype, checked_fields
 from .samples.report import SamplingReport, count_infinite, warn_of
 from .samples.request import Request, checked_request

@@ -1,7 +1,7 @@
 """Tapes: three expressions in u and v as a list of steps, each of results of earlier ones.
 
 With numbers a tape gives points, with Taylor polynomials derivatives, with intervals bounds of
-these: `runtime/kernels/tape.py` and its neighbours interpret it.
+these: `runtime/tape/kernels/points.py` and its neighbours interpret it.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...generated.spline import SCALE
 from ..base.aliases import Array, Indices
-from ..place.on_spline import OnSpline
+from ..onto_surface.on_spline import OnSpline
 from .breaks import breaks_along
 from .grid import Grid
 from .lines import Axis

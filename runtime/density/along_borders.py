@@ -10,8 +10,8 @@ import numpy as np
 
 from ..base.aliases import Array, Indices
 from ..base.trees import tree_of
-from ..kernels.sizing import TargetDensity
 from .cells import LIMIT, Cells
+from .kernels.sizing import TargetDensity
 from .trims import Trims
 
 __all__ = ["BorderLines", "places_along", "polygons_of"]

@@ -15,11 +15,11 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array, Indices
 from ..base.errors import GaussmapError, GaussmapWarning
-from ..place.on_spline import OnSpline
-from ..place.proved import proved_samples
+from ..onto_surface.on_spline import OnSpline
+from ..onto_surface.proved import proved_samples
+from ..proof.index import ProvedIndex
 from ..samples.fields import ARRAY_NAMES_ON_SURFACE, dtype_of, row_shape
 from ..samples.samples import Samples
-from ..search.proved import ProvedIndex
 from ..search.search import developable_patches, find
 from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
 from .fibonacci_lattice import Lattice

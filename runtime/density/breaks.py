@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.aliases import Array
-from ..place.on_spline import OnSpline
+from ..onto_surface.on_spline import OnSpline
 from .lines import Axis
 
 __all__ = ["breaks_along"]

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ..base.aliases import Array, Indices
 from ..base.threads import over_ranges
-from ..kernels.greedy import choose_far, update_distances
-from ..kernels.hash_grids import LEVELS, SQUARE, HashGrids, measure, sort_candidates
+from .kernels.greedy import choose_far, update_distances
+from .kernels.hash_grids import LEVELS, SQUARE, HashGrids, measure, sort_candidates
 
 __all__ = ["Block", "Candidates"]
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.limits import MOST
-from ..place.on_spline import OnSpline
+from ..onto_surface.on_spline import OnSpline
 from ..search.fill import fill
 from ..search.search import Hits, find
 from ..spline.inside import count_of, samples_inside

@@ -9,8 +9,8 @@ import numpy as np
 from ..base.aliases import Array
 from ..base.threads import thread_count
 from ..base.trees import tree_of
-from ..kernels.greedy import SAME_SIDE
 from .candidates import Candidates
+from .kernels.greedy import SAME_SIDE
 from .space import Space
 
 __all__ = ["coverage"]

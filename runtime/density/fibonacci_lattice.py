@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..directions.regions import Cap
 from ..directions.sets import part_of_fibonacci, spiral_angle
 from ..directions.unit import in_pieces, perpendicular
-from ..kernels.cone import least_cosine
+from ..search.kernels.cone import least_cosine
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
 

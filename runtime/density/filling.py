@@ -16,7 +16,6 @@ from ..base.shares import apportioned
 from ..base.threads import counted
 from ..base.tolerances import FLAT_SURFACE, LENGTH_ERROR
 from ..directions.sets import frequency_within
-from ..kernels.sizing import TargetDensity
 from ..samples.fields import dtype_of
 from ..samples.request import BY_CURVATURE, Request
 from .angles import choose_apart, cover_normals
@@ -25,6 +24,7 @@ from .cells import Cells, by_piece, joined
 from .cover import Cover
 from .coverage import coverage
 from .deviation import widest_angle
+from .kernels.sizing import TargetDensity
 from .on_grid import cover_on_grid
 from .piece import Piece
 from .space import Space

@@ -7,8 +7,8 @@ import numpy as np
 from ..base.checks import finite_array
 from ..base.progress import busy
 from ..fitting.fit import fit
-from ..place.on_spline import OnSpline
-from ..place.on_surface import OnSurface
+from ..onto_surface.on_spline import OnSpline
+from ..onto_surface.on_surface import OnSurface
 from ..samples.samples import Samples, spline_or
 from ..samples.whole import NormalDeviation, Whole
 from ..spline.spline import Spline

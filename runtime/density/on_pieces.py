@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from ..base.checks import pair_of_cells
 from ..base.errors import InputError
-from ..place.on_spline import OnSpline
-from ..place.on_surface import geometry_of, place_of_samples
+from ..onto_surface.on_spline import OnSpline
+from ..onto_surface.on_surface import geometry_of, place_of_samples
 from ..samples.report import SamplingReport, count_unrefined
 from ..spline.spline import Spline
 from ..surface.surface import Surface

@@ -14,7 +14,7 @@ from numpy.typing import DTypeLike, NDArray
 from ..base.aliases import Array, Flags
 from ..domain.domain import Domain, brought_inside
 from ..domain.trim import Trim
-from ..place.on_spline import OnSpline
+from ..onto_surface.on_spline import OnSpline
 from ..samples.samples import Samples
 from .borders import Border
 

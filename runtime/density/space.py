@@ -16,8 +16,6 @@ from ..base.checks import finite_array
 from ..base.errors import InputError
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
-from ..kernels.cells import evaluate_cells
-from ..kernels.sizing import TargetDensity
 from .along_borders import BorderLines, places_along, polygons_of
 from .cells import (
     ALONG_U,
@@ -36,6 +34,8 @@ from .cells import (
     points_of,
     runs,
 )
+from .kernels.cells import evaluate_cells
+from .kernels.sizing import TargetDensity
 from .piece import Piece
 from .sifting import beside, placed, sifted
 from .trims import Trims

@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from ..base.aliases import Array
-from ..kernels.steps import shared_steps
+from .kernels.steps import shared_steps
 
 __all__ = ["Forms", "Steps", "equal_steps", "steps_for_count"]
 

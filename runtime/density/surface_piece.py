@@ -13,8 +13,8 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array
 from ..base.errors import SurfaceError
-from ..kernels.sizing import TargetDensity
-from ..place.on_spline import OnSpline
+from ..onto_surface.on_spline import OnSpline
+from .kernels.sizing import TargetDensity
 from .piece import Piece, boxes_between
 from .space import Space
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..base.aliases import Array, Flags, Indices
 from ..domain.domain import closes, less_periods
+from ..domain.kernels.trim import Joined, find_inside_each
 from ..domain.loops import Loops
-from ..kernels.trim import Joined, find_inside_each
 from ..surface.moved import Turned
 from .cells import grouped
 from .piece import Piece

@@ -6,10 +6,10 @@ import numpy as np
 
 from ..base.aliases import Array, Indices
 from ..base.threads import over_ranges
-from ..kernels.centres import FINER, add_moments, begin_lists, find_nearest, find_widest
-from ..kernels.greedy import Lists, note_samples
 from .candidates import Block, Candidates
 from .cells import SIDES, Cells
+from .kernels.centres import FINER, add_moments, begin_lists, find_nearest, find_widest
+from .kernels.greedy import Lists, note_samples
 
 __all__ = ["Voronoi"]
 

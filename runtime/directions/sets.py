@@ -15,7 +15,7 @@ from ..base.extras import from_extra
 from ..base.limits import MOST_FREQUENCY
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
-from ..kernels.icosphere import new_line, write_points
+from .kernels.icosphere import new_line, write_points
 from .unit import PIECE, as_normals, in_pieces, normalized
 
 __all__ = [

@@ -13,7 +13,7 @@ from ..base.checks import finite_array, real_values
 from ..base.errors import InputError
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
-from ..kernels.unit import are_unit
+from .kernels.unit import are_unit
 
 __all__ = ["PIECE", "as_normals", "in_pieces", "normalized", "perpendicular", "unit_vector"]
 

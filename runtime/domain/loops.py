@@ -15,8 +15,8 @@ from ..base.checks import finite_array, listed
 from ..base.errors import InputError, shown
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
-from ..kernels import trim as kernels
 from .domain import Boundary, Domain, closes
+from .kernels import trim as kernels
 
 __all__ = ["Loops", "checked_loops"]
 

@@ -11,8 +11,8 @@ __all__ = ["PACKAGE", "SOURCES", "digest"]
 PACKAGE = Path(__file__).parents[2]
 SOURCES = (
     "generated/*.py",
-    "runtime/kernels/*.py",
-    "tools/kernels/*.py",
+    "runtime/*/kernels/*.py",
+    "tools/*/kernels/*.py",
     "runtime/base/tolerances.py",
     "runtime/machine_code/jit.py",
     "runtime/machine_code/linking.py",

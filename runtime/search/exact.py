@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from ...generated.spline import CORNERS
 from ..base.threads import over_ranges
 from ..base.tolerances import SINGULAR_POINT
-from ..kernels.decide import Decided, decide_exactly
-from ..kernels.patch import normals_at
+from ..spline.kernels.patch import normals_at
 from ..spline.spline import Spline
+from .kernels.decide import Decided, decide_exactly
 from .long_integers import forms_of_pairs
 
 __all__ = ["Decision", "decide", "decided_forms"]

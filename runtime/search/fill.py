@@ -11,12 +11,12 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array
 from ..base.threads import over_ranges
-from ..kernels.fill import fill_samples
-from ..kernels.tile import fill_known, new_tile
 from ..samples.fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
 from .in_nets import fields_in_nets
+from .kernels.fill import fill_samples
+from .kernels.tile import fill_known, new_tile
 from .search import Hits
 
 __all__ = ["fill", "fill_hits"]

@@ -20,12 +20,12 @@ from ...generated import patch as formulas
 from ...generated.vectors import Vector
 from ..base.aliases import Array, Flags, Indices
 from ..base.formula_calls import patch, python_function, vector
-from ..base.integers import Integers, integers, integers_by_row, ratio, sign
 from ..base.kept import kept
 from ..base.tolerances import DATA_ERROR, FORM_ERROR
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
 from .exact import Decision
+from .integers import Integers, integers, integers_by_row, ratio, sign
 from .long_integers import displaced_forms, exact_forms, leading_sign
 
 __all__ = ["decide_in_nets", "edge_signs", "errors_of", "fields_in_nets", "flat_nets"]

@@ -13,12 +13,12 @@ from ..base.aliases import Array, Indices
 from ..base.kept import kept
 from ..base.threads import over_ranges
 from ..directions.unit import perpendicular
-from ..kernels.lists import FINEST, Lists, list_pieces, order_normals, write_caps
-from ..kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
-from ..kernels.sort import count_keys, place_keys
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
 from .in_nets import errors_of
+from .kernels.lists import FINEST, Lists, list_pieces, order_normals, write_caps
+from .kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
+from .kernels.sort import count_keys, place_keys
 
 __all__ = ["MOST_PATCHES", "Index", "index_of", "listed", "open_sides", "ordered", "sorted_keys"]
 

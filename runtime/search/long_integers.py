@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ...generated.patch import forms
 from ...generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
 from ..base.formula_calls import patch, python_function, vector
-from ..base.integers import Integers, integers, integers_by_row, ratio, sign
 from ..spline.spline import Spline
+from .integers import Integers, integers, integers_by_row, ratio, sign
 
 __all__ = [
     "displaced_forms",

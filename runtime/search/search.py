@@ -19,15 +19,15 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.kept import kept
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
-from ..kernels.developable import count_developable
-from ..kernels.lists import NUMBER
-from ..kernels.search import PATCHES, Found, Memory, search
-from ..kernels.sort import order_few
+from ..spline.kernels.developable import count_developable
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
 from .exact import decide
 from .in_nets import decide_in_nets, flat_nets
 from .index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
+from .kernels.lists import NUMBER
+from .kernels.search import PATCHES, Found, Memory, search
+from .kernels.sort import order_few
 
 __all__ = ["Hits", "developable_patches", "find", "find_in_turn", "on_border"]
 

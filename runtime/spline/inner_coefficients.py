@@ -10,8 +10,8 @@ import numpy as np
 from ..base.aliases import Array
 from ..base.errors import InputError
 from ..domain.domain import Boundary, Domain
-from ..kernels import spline as kernels
 from .ghosts import Border, Sides, vertices_with_ring
+from .kernels import spline as kernels
 
 __all__ = ["Values", "from_grid", "from_values", "values_at"]
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags, Indices
 from ..base.errors import SurfaceError
+from ..domain.kernels.trim import to_cells
 from ..domain.trim import Trim
-from ..kernels.trim import to_cells
 from .developable import widened
 
 __all__ = [

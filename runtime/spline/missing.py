@@ -14,11 +14,11 @@ from ..base.aliases import Array, Flags
 from ..base.checks import as_float
 from ..base.errors import GaussmapWarning, InputError, shown
 from ..domain.domain import Boundary, BoundaryPair, Domain
-from ..kernels import spline as kernels
-from ..kernels.forms import patches_at
 from .developable import widened
 from .ghosts import Border, coefficients_with_ring
 from .inner_coefficients import from_grid, from_values, values_at
+from .kernels import spline as kernels
+from .kernels.forms import patches_at
 from .nodata_blocks import suspicious_block
 
 __all__ = [

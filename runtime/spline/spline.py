@@ -18,9 +18,9 @@ from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
 from ..base.tolerances import DATA_ERROR, SAME_PARAMETER
 from ..domain.domain import Boundary, Domain, brought_inside, checked_boundary, checked_domain
-from ..kernels import spline as kernels
 from .developable import CellMeasure
 from .inside import Inside
+from .kernels import spline as kernels
 from .methods import Methods
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from ...generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
 from ..base.aliases import Array, Indices
 from ..base.scales import scale_to_one
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside
-from ..kernels.tape import Tape
+from ..tape.kernels.points import Tape
 
 __all__ = [
     "NAMES",

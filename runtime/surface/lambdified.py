@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from ..base import bridge
 from ..base.errors import InputError
-from ..kernels.tape import Tape
+from ..tape.kernels.points import Tape
+from ..tape.tapes import jets_of, tape_of_steps
 from .derivatives import NAMES, Differentiable
 from .expressions import as_position
-from .tapes import jets_of, tape_of_steps
 
 if TYPE_CHECKING:
     import sympy

@@ -13,10 +13,10 @@ from ..base.errors import InputError
 from ..base.evaluation import returned
 from ..domain.domain import Boundary, Domain, Interval
 from ..domain.trim import Trim, TrimPart
-from ..kernels.tape import Tape
+from ..tape.kernels.points import Tape
+from ..tape.tapes import moved_tape
 from .derivatives import Differences, Differentiable
 from .surface_values import SurfaceValues
-from .tapes import moved_tape
 
 __all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid", "turned_trim"]
 

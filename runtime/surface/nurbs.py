@@ -12,8 +12,8 @@ from ..base.aliases import Array
 from ..base.errors import InputError
 from ..base.tolerances import SAME_PARAMETER
 from ..domain.domain import Domain
-from ..kernels import nurbs as kernels
-from ..kernels.tape import Tape
+from ..tape.kernels import nurbs as kernels
+from ..tape.kernels.points import Tape
 from .derivatives import Differentiable, Lines
 from .nurbs_tape import nurbs_tape
 

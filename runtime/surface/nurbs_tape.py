@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.aliases import Array
-from ..kernels.nurbs import Net
-from ..kernels.tape import Tape
-from ..kernels.tape_splines import COORDINATES, MOST_COEFFICIENTS, Polynomials
-from .tapes import TapeWriter
+from ..tape.kernels.nurbs import Net
+from ..tape.kernels.points import Tape
+from ..tape.kernels.splines import COORDINATES, MOST_COEFFICIENTS, Polynomials
+from ..tape.tapes import TapeWriter
 
 __all__ = ["nurbs_tape"]
 

@@ -17,8 +17,8 @@ from ..base.kept import Immutable
 from ..base.scales import scale_to_one
 from ..domain.domain import Assumed, Boundary, Domain, checked_boundary, checked_domain, domain_text
 from ..domain.trim import Trim
-from ..kernels.tape import Tape
 from ..spline.spline import short_label
+from ..tape.kernels.points import Tape
 from .derivatives import NAMES, Differences, Differentiable, Function
 from .jet_functions import jet_function
 from .traced import traced_tape
@@ -192,7 +192,7 @@ class SurfaceValues(Immutable):
                [0.878, 0.   , 0.479]])
 
         """
-        from ..kernels.refine import evaluate_jets
+        from ..spline.kernels.jets import evaluate_jets
 
         jets = self.derivatives(u, v)
         rows = jets.reshape(-1, len(NAMES), 3)

@@ -19,11 +19,11 @@ from ..base.advice import file_advice
 from ..base.checks import as_float, known_name
 from ..base.errors import InputError, UnknownNameError, shown
 from ..domain.domain import Boundary, Domain
-from ..kernels.surfaces import jets, positions
-from ..kernels.tape import Tape
+from ..tape.kernels.points import Tape
+from ..tape.tapes import tape_of_steps
 from .derivatives import Differentiable
+from .kernels.surfaces import jets, positions
 from .surface import Surface
-from .tapes import tape_of_steps
 
 if TYPE_CHECKING:
     from ...generated.surfaces_signatures import *  # noqa: F403  # pyright: ignore[reportMissingModuleSource]

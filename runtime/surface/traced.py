@@ -17,8 +17,8 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array
 from ..domain.domain import Domain
-from ..kernels.tape import Tape
-from .tapes import TapeWriter, bounds_over_boxes, values_of
+from ..tape.kernels.points import Tape
+from ..tape.tapes import TapeWriter, bounds_over_boxes, values_of
 
 __all__ = ["traced_condition", "traced_tape"]
 

@@ -12,8 +12,9 @@ from textwrap import dedent
 import pytest
 
 ROOT = Path(__file__).parents[2]
-# The folders whose functions are counted, with what stands before the names of their files.
-FOLDERS = {"generated": "", "runtime/kernels": "kernels.", "tools/kernels": "kernels."}
+# The files whose functions are counted; the names of kernels begin with their room.
+GENERATED = sorted((ROOT / "generated").glob("*.py"))
+KERNELS = sorted(x for y in ("runtime", "tools") for x in (ROOT / y).glob("*/kernels/*.py"))
 RECORD = Path(__file__).with_name("operations.json")
 
 
@@ -63,13 +64,12 @@ def operations(function: ast.FunctionDef) -> list[int]:
 
 def counted() -> dict[str, list[int]]:
     """Return the counts of all formulas and kernels."""
+    rooms = dict.fromkeys(GENERATED, "") | {x: f"{x.parts[-3]}." for x in KERNELS}
     return {
-        f"{prefix}{path.stem}.{node.name}": operations(node)
-        for folder, prefix in FOLDERS.items()
-        for path in sorted((ROOT / folder).glob("*.py"))
-        if (folder, path.name) != ("runtime/kernels", "jit.py")  # decorators
+        f"{room}{path.stem}.{node.name}": operations(node)
+        for path, room in rooms.items()
         for node in ast.parse(path.read_text(encoding="utf-8")).body
-        if isinstance(node, ast.FunctionDef) and node.name != "jit"
+        if isinstance(node, ast.FunctionDef)
     }
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, DTypeLike
 from ...runtime.base.checks import known_name, yes_or_no
 from ...runtime.base.errors import GaussmapError, GaussmapWarning, InputError, shown
 from ...runtime.base.threads import seen
-from ...runtime.place.on_surface import checked_place
+from ...runtime.onto_surface.on_surface import checked_place
 from ...runtime.sample import sample_and_normals
 from ...runtime.samples.fields import checked_dtype, checked_fields
 from ...runtime.samples.request import Request, checked_request

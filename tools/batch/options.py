@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.checks import known_name, listed, pair_of_cells
-from ...runtime.place.on_surface import checked_place
+from ...runtime.onto_surface.on_surface import checked_place
 from ...runtime.samples.fields import FLOAT_NAMES, PART_NAMES, checked_dtype, checked_fields
 from ...runtime.samples.request import Request
 from ..files.formats import SUFFIXES

@@ -139,7 +139,7 @@ def _source(task: Task) -> tuple[Any, dict[str, str]]:
 
 def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: ANN401
     """Return numbers for the manifest, and the samples; write the file in another format."""
-    from ...runtime.place.on_surface import place_of_samples
+    from ...runtime.onto_surface.on_surface import place_of_samples
     from ...runtime.sample import sample
     from ...runtime.samples.fields import checked_fields
     from ..cad.part import Part

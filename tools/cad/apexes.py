@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.kernels.tape import Tape
-from ...runtime.search.proved import KINDS, Undecided
+from ...runtime.proof.index import KINDS, Undecided
 from ...runtime.surface.surface import Surface
-from ...runtime.surface.tapes import bounds_over_boxes
+from ...runtime.tape.kernels.points import Tape
+from ...runtime.tape.tapes import bounds_over_boxes
 
 __all__ = ["Apex", "apexes_of"]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.density.cells import grouped
-from ...runtime.kernels.refine import evaluate_jets
+from ...runtime.spline.kernels.jets import evaluate_jets
 from .faces import own_parameters
 from .part import Part
 from .results import PartSpace

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from ...generated.faces import offset_side
 from ...generated.vectors import Patch, Vector
-from ...runtime.base.balls import Ball
 from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.domain.domain import Domain
-from ...runtime.kernels.tape import Tape
-from ...runtime.place.proved import index_of
-from ...runtime.search.proved import KINDS, ProvedIndex, Undecided
+from ...runtime.onto_surface.proved import index_of
+from ...runtime.proof.ball import Ball
+from ...runtime.proof.index import KINDS, ProvedIndex, Undecided
 from ...runtime.surface.collapsed import found_sides
 from ...runtime.surface.surface import Surface
-from ...runtime.surface.tapes import bounds_over_boxes
+from ...runtime.tape.kernels.points import Tape
+from ...runtime.tape.tapes import bounds_over_boxes
 from .apexes import Apex, apexes_of
 from .face_places import FaceIndex, FacePlaces, joined, undecided
 from .faces import face_surface, simplest

@@ -20,14 +20,14 @@ from ...runtime.base.scales import scale_to_one
 from ...runtime.density.piece import Piece, boxes_between
 from ...runtime.directions.regions import Cap
 from ...runtime.domain.domain import Domain
-from ...runtime.kernels.refine import evaluate_jets
-from ...runtime.place.on_spline import OnSpline
-from ...runtime.place.on_surface import geometry_of
-from ...runtime.place.proved import proof_of
-from ...runtime.place.reach import in_reach
+from ...runtime.onto_surface.on_spline import OnSpline
+from ...runtime.onto_surface.on_surface import geometry_of
+from ...runtime.onto_surface.proved import proof_of
+from ...runtime.onto_surface.reach import in_reach
 from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, bytes_of, dtype_of
 from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
+from ...runtime.spline.kernels.jets import evaluate_jets
 from ...runtime.surface.derivatives import normals_of_jets
 from ...runtime.surface.surface import Surface
 from .face_indices import face_index

@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.search.proved import Undecided
+from ...runtime.proof.index import Undecided
 
 __all__ = ["NOTHING", "FaceIndex", "FacePlaces", "joined", "undecided"]
 

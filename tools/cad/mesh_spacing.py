@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.density.kernels.sizing import TargetDensity
 from ...runtime.density.piece import Piece
 from ...runtime.density.space import Space
-from ...runtime.kernels.sizing import TargetDensity
-from ...runtime.place.on_spline import OnSpline
+from ...runtime.onto_surface.on_spline import OnSpline
 from ...runtime.surface.derivatives import normals_of_jets
 from .edge_sampling import step_of
 from .face_pieces import FacePiece

@@ -28,8 +28,8 @@ from ...runtime.density.grid import Grid
 from ...runtime.density.space import Space
 from ...runtime.samples.request import Request, checked_request
 from ...runtime.samples.samples import Samples
-from ..kernels.flips import flip_edges
 from ..meshes.creased import mean_normals
+from ..meshes.kernels.flips import flip_edges
 from ..meshes.links import edge_numbers, neighbours
 from ..meshes.mesh import scaled
 from ..meshes.triangulated import ENOUGH, LARGEST_DEVIATION, checked_prefer

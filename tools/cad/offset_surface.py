@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from ...generated.differences import FIRST
 from ...runtime.base import compiling  # noqa: F401 - announces compilation on terminals
 from ...runtime.domain.domain import Domain
-from ...runtime.kernels.tape import Tape
 from ...runtime.surface.derivatives import (
     Differentiable,
     nodes_between,
@@ -26,7 +25,8 @@ from ...runtime.surface.derivatives import (
 )
 from ...runtime.surface.moved import Moved
 from ...runtime.surface.nurbs import Nurbs
-from ..kernels import faces as kernels
+from ...runtime.tape.kernels.points import Tape
+from .kernels import faces as kernels
 from .turned_tape import turned_tape
 
 __all__ = ["OffsetSurface", "Turned"]

@@ -9,10 +9,10 @@ import numpy as np
 from ...generated.faces import revolution_jet
 from ...generated.vectors import Vector
 from ...runtime.base.formula_calls import python_function
-from ...runtime.kernels.tape import Tape
 from ...runtime.surface.nurbs import Nurbs
-from ...runtime.surface.tapes import TapeWriter
 from ...runtime.surface.traced import Traced
+from ...runtime.tape.kernels.points import Tape
+from ...runtime.tape.tapes import TapeWriter
 
 __all__ = ["turned_tape"]
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ...generated import elementary as codes
-from ...runtime.kernels.tape import Tape
-from ...runtime.surface.tapes import BINARY, LEAVES, NEUTRAL
+from ...runtime.tape.kernels.points import Tape
+from ...runtime.tape.tapes import BINARY, LEAVES, NEUTRAL
 
 __all__ = ["tape_text"]
 

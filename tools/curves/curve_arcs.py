@@ -19,9 +19,9 @@ from ...generated import curve as formulas
 from ...runtime.base.formula_calls import plane_vector, python_function
 from ...runtime.base.kept import kept
 from ...runtime.base.scales import scale_to_one
-from ...runtime.kernels.tape import Tape
-from ...runtime.surface.tapes import bounds_over_boxes, jets_of
 from ...runtime.surface.traced import traced_tape
+from ...runtime.tape.kernels.points import Tape
+from ...runtime.tape.tapes import bounds_over_boxes, jets_of
 from .curve import Curve
 from .turning import Turning
 

@@ -17,7 +17,7 @@ from ...runtime.domain.domain import brought_inside
 from ...runtime.spline.quasi_interpolant import not_too_large
 from ...runtime.surface.derivatives import Function, differences
 from ...runtime.surface.surface import Surface
-from ...runtime.surface.tapes import jets_of
+from ...runtime.tape.tapes import jets_of
 
 __all__ = ["Curvature", "Known"]
 

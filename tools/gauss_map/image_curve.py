@@ -12,7 +12,7 @@ import numpy as np
 from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.wording import plural
 from ...runtime.domain.domain import brought_inside
-from ...runtime.place.on_spline import OnSpline
+from ...runtime.onto_surface.on_spline import OnSpline
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.derivatives import normals_of_jets
 from .polylines import distances, refined

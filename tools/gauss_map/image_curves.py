@@ -18,7 +18,7 @@ from ...runtime.directions.unit import as_normals
 from ...runtime.domain.domain import closes
 from ...runtime.domain.loops import Loops
 from ...runtime.gauss_map import GaussMap
-from ...runtime.place.on_spline import OnSpline
+from ...runtime.onto_surface.on_spline import OnSpline
 from .curvature import Curvature
 from .image_curve import ImageCurve, Traced, followed, jets_of_spline
 from .parabolic import checked_tolerance, size_of_spline, traced_curves

@@ -13,10 +13,10 @@ from ...generated import gaussian_image as lines
 from ...generated import patch as formulas
 from ...generated.vectors import Patch, Vector
 from ...runtime.base.formula_calls import python_function, vector
-from ...runtime.base.integers import integers, integers_by_row, ratio, sign
 from ...runtime.base.scales import scale_to_one
 from ...runtime.base.tolerances import ACCURATE, FORM_ERROR, NEAR_SINGULAR_POINT
-from ..kernels import support as kernels
+from ...runtime.search.integers import integers, integers_by_row, ratio, sign
+from .kernels import support as kernels
 
 __all__ = ["Members", "PatchNormals"]
 

@@ -18,8 +18,8 @@ from ...runtime.base.tolerances import NORMAL_ERROR
 from ...runtime.density.chosen_normals import NEAR_ENOUGH, NORMALS_PER_SAMPLE
 from ...runtime.directions.circle import circle
 from ...runtime.directions.unit import as_normals, perpendicular, unit_vector
-from ...runtime.place.on_spline import OnSpline
-from ...runtime.place.on_surface import geometry_of, place_of_samples
+from ...runtime.onto_surface.on_spline import OnSpline
+from ...runtime.onto_surface.on_surface import geometry_of, place_of_samples
 from ...runtime.samples.fields import FLAG_NAMES, checked_dtype, checked_fields
 from ...runtime.samples.report import warn_of
 from ...runtime.samples.samples import Samples

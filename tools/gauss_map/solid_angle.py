@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...generated.gaussian_image import boundary_arc
 from ...runtime.base.formula_calls import python_function, vector
-from ..kernels.solid_angle import integrate_arcs
+from .kernels.solid_angle import integrate_arcs
 
 __all__ = [
     "boundary_of",

@@ -14,7 +14,7 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.scales import scale_to_one
 from ...runtime.domain.domain import Boundary, Domain, checked_domain, checked_sides
 from ...runtime.spline.spline import short_label
-from ..kernels.flips import smallest_cosines, smallest_tangents
+from .kernels.flips import smallest_cosines, smallest_tangents
 from .links import edge_numbers
 from .methods import Methods
 from .texture import corner_places

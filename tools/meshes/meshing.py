@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.memory import check_memory
 from ...runtime.domain.domain import Boundary, BoundaryCondition
-from ...runtime.place.newton import evaluate_on_surface
+from ...runtime.onto_surface.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from .links import neighbours

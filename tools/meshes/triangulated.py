@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.tolerances import NO_AREA
 from ...runtime.domain.domain import Boundary, Domain
-from ..kernels import collapses
-from ..kernels import flips as kernels
+from .kernels import collapses
+from .kernels import flips as kernels
 from .links import neighbours
 from .mesh import Mesh, cosines_of, scaled, tangents_of
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from ...runtime.base.threads import over_ranges
 from ...runtime.base.tolerances import CIRCLE_HEIGHT_ERROR
 from ...runtime.domain.domain import Boundary
-from ...runtime.kernels import surfaces as kernels
+from ...runtime.surface.kernels import surfaces as kernels
 
 __all__ = ["Triangulation", "delaunay", "triangulations"]
 

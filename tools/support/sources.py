@@ -17,9 +17,9 @@ from ...runtime.search.fill import fill
 from ...runtime.search.search import find
 from ...runtime.spline.nets import NetSpline
 from ...runtime.spline.spline import Spline
+from ..gauss_map.kernels import support as kernels
 from ..gauss_map.membership import PatchNormals
 from ..gauss_map.patches import checked_control_points
-from ..kernels import support as kernels
 from .branches import Sheets
 
 if TYPE_CHECKING:

@@ -80,7 +80,7 @@ def test_all_listed_kernels_are_there(name: str) -> None:
 @pytest.mark.compiled
 @pytest.mark.slow
 def test_a_file_is_built_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    name = "gaussmap.runtime.kernels.unit.are_unit"
+    name = "gaussmap.runtime.directions.kernels.unit.are_unit"
     monkeypatch.setattr(signatures, "read", {name: signatures.read()[name]}.copy)
     path = building.build(tmp_path)
     assert path is not None
@@ -101,7 +101,8 @@ def test_what_a_file_has_is_not_compiled_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A longer list, and then those of usual calls."""
-    first, second = (f"gaussmap.runtime.kernels.{x}" for x in ("sort.merge_hits", "unit.are_unit"))
+    first = "gaussmap.runtime.search.kernels.sort.order_few"
+    second = "gaussmap.runtime.directions.kernels.unit.are_unit"
     listing = signatures.read()
     for names, entries_of in (((second,), 1), ((first, second), 2)):
         monkeypatch.setattr(signatures, "read", {x: listing[x] for x in names}.copy)
@@ -133,7 +134,10 @@ def test_the_bytes_of_a_file_are_those_of_its_sources(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """However many processes there are, and whichever of them compiles what."""
-    names = ("gaussmap.runtime.kernels.sort.order_few", "gaussmap.runtime.kernels.unit.are_unit")
+    names = (
+        "gaussmap.runtime.search.kernels.sort.order_few",
+        "gaussmap.runtime.directions.kernels.unit.are_unit",
+    )
     listed = {name: signatures.read()[name] for name in names}
     monkeypatch.setattr(signatures, "read", listed.copy)
     built = []
@@ -150,7 +154,7 @@ def test_what_the_list_lacks(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A kernel that is compiled here is found; after the list is written, it is on the list."""
-    name = "gaussmap.runtime.kernels.unit.are_unit"
+    name = "gaussmap.runtime.directions.kernels.unit.are_unit"
     (kinds,) = signatures.read()[name]
     monkeypatch.setattr(kept, "kept_folder", lambda: tmp_path)
     monkeypatch.setattr(shipped, "open_pack", lambda: None)

@@ -17,7 +17,7 @@ PACKAGE = Path(__file__).parents[3]
 # Prints the normal at the centre of a patch of a plane, and how many functions were compiled.
 NORMAL = """
 import numpy as np
-from gaussmap.runtime.kernels.patch import normals_at
+from gaussmap.runtime.spline.kernels.patch import normals_at
 from numba.core import config, event
 
 mu = np.stack(np.meshgrid(np.arange(3.0), np.arange(3.0), [0.0], indexing="ij"), axis=-1)[:, :, 0]

@@ -87,9 +87,10 @@ def test_long_parts_are_called(kernel: Any, monkeypatch: pytest.MonkeyPatch) -> 
 def test_copies_are_listed() -> None:
     """Kernels that are compiled here, one of each family that calls the most parts."""
     copies: set[str] = set()
-    names = "decide.decide_exactly", "fill.fill_samples", "proved_search.evaluate_pairs"
-    for name in (*names, "search.search"):
-        full = f"gaussmap.runtime.kernels.{name}"
+    names = ("decide.decide_exactly", "fill.fill_samples", "search.search")
+    kernels = [f"search.kernels.{x}" for x in names] + ["proof.kernels.search.evaluate_pairs"]
+    for name in kernels:
+        full = f"gaussmap.runtime.{name}"
         kernel = jit.jit(building.kernel_named(full).py_func)
         kernel._cache = NullCache()
         kernel.compile(tuple(map(signatures.as_types, signatures.read()[full][0])))

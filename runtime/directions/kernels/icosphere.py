@@ -1,0 +1,131 @@
+"""The points of the icosphere, a refined icosahedron: their indices and unit normals.
+
+The points of frequency ν on a face are (ν − s − t, s, t): s counts its rows, t its columns. The 12
+corners come first, then the points inside the 30 edges, then those inside the 20 faces, row by row.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....generated.icosahedron import CORNER_PLACES, EDGE_PLACES, LINES, PHI
+from ...machine_code.jit import inline, jit, long_vectors, loop
+from .vectors import STEP, TILE, whole_vectors
+
+__all__ = [
+    "new_line",
+    "write_points",
+]
+
+
+# Typed, since Numba compiles a function anew for each literal number in its arguments.
+ZERO = np.int64(0)
+
+
+def new_line() -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return work arrays for rows and columns of points, and for their normals."""
+    return np.zeros(2 * STEP, np.int64), np.zeros(3 * STEP)
+
+
+@inline
+def row_start(face, s, frequency):
+    """Return the index of the point (s, 0) of a face: that of (s, 1) minus one."""
+    rows = s - 1
+    inside = (frequency - 1) * (frequency - 2) >> 1
+    before = rows * (frequency - 1) - (rows * (rows + 1) >> 1)
+    return 12 + 30 * (frequency - 1) + face * inside + before - 1
+
+
+@loop
+def write_normals(face, frequency, places, first, count, tile):
+    """Write the unit normals of points of a face to the first three rows of a tile.
+
+    They are `count` points from `first` on, and up to VECTOR − 1 more; `places` (2 STEP) holds
+    their rows and columns. Before the square root, only b φ and one sum are rounded: mirror images
+    agree bit for bit, and a point of two faces is the same on both.
+    """
+    long_vectors()
+    a_x, b_x, a_y, b_y, a_z, b_z = line(face, 0)
+    p_x, q_x, p_y, q_y, p_z, q_z = line(face, 1)
+    f_x, g_x, f_y, g_y, f_z, g_z = line(face, 2)
+    r = float(frequency)
+    tile, places = tile[first:], places[first:]
+    for k in range(whole_vectors(count)):
+        s = float(places[k])
+        t = float(places[STEP + k])
+        x = (r * a_x + s * p_x + t * f_x) + (r * b_x + s * q_x + t * g_x) * PHI
+        y = (r * a_y + s * p_y + t * f_y) + (r * b_y + s * q_y + t * g_y) * PHI
+        z = (r * a_z + s * p_z + t * f_z) + (r * b_z + s * q_z + t * g_z) * PHI
+        length = math.sqrt(x * x + y * y + z * z)
+        tile[k] = x / length
+        tile[STEP + k] = y / length
+        tile[2 * STEP + k] = z / length
+
+
+@inline
+def line(face, k):
+    """Return the first corner of a face or a step along it: x, y, z as pairs a, b for a + b φ."""
+    return (
+        LINES[face, k, 0],
+        LINES[face, k, 1],
+        LINES[face, k, 2],
+        LINES[face, k, 3],
+        LINES[face, k, 4],
+        LINES[face, k, 5],
+    )
+
+
+@loop
+def write_line(face, frequency, s, t, s_step, t_step, count, places, tile):
+    """Write the unit normals (s, t), (s + s_step, t + t_step), … of a face to a tile."""
+    for k in range(whole_vectors(count)):
+        places[k] = s + k * s_step
+        places[STEP + k] = t + k * t_step
+    write_normals(face, frequency, places, ZERO, count, tile)
+
+
+@inline
+def line_count(part, frequency):
+    """Return the number of lines in the corners (0), an edge (1 … 30) or a face (31 … 50)."""
+    return 12 if part == 0 else 1 if part <= 30 else frequency - 2
+
+
+@loop
+def line_of(part, k, frequency):
+    """Return a line of a part: its first index, its length, and the arguments of `write_line`."""
+    inner = frequency - 1
+    if part == 0:
+        face, t, s = CORNER_PLACES[k, 0], CORNER_PLACES[k, 1], CORNER_PLACES[k, 2]
+        return k, 1, face, s * frequency, t * frequency, 0, 0
+    if part <= 30:
+        face, side = EDGE_PLACES[part - 1, 0], EDGE_PLACES[part - 1, 1]
+        first = 12 + (part - 1) * inner
+        if side == 0:
+            return first, inner, face, 1, 0, 1, 0
+        if side == 1:
+            return first, inner, face, 0, 1, 0, 1
+        return first, inner, face, inner, 1, -1, 1
+    face, s = part - 31, k + 1
+    return row_start(face, s, frequency) + 1, inner - s, face, s, 1, 0, 1
+
+
+@jit
+def write_points(frequency, first, last, normals, places, tile):
+    """Write the unit normals (S, 3) of the parts [first, last); work arrays by `new_line`."""
+    for part in range(first, last):
+        for k in range(line_count(part, frequency)):
+            number, count, face, s, t, s_step, t_step = line_of(part, k, frequency)
+            for begin in range(0, count, TILE):
+                size = min(TILE, count - begin)
+                write_line(
+                    face, frequency, s + begin * s_step, t + begin * t_step, s_step, t_step,
+                    size, places, tile,
+                )  # fmt: skip
+                for row in range(size):
+                    at = np.uint64(number + begin + row)
+                    normals[at, 0] = tile[row]
+                    normals[at, 1] = tile[STEP + row]
+                    normals[at, 2] = tile[2 * STEP + row]

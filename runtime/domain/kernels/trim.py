@@ -1,0 +1,254 @@
+"""Points inside closed polygons of the parameter plane, by the even-odd rule.
+
+The plane is cut into cells, and each cell has a list of the segments that may touch it. The parity
+at the corner of each cell is known; a point has the same parity, or the opposite one if an odd
+number of segments of the cell lies between it and the corner.
+
+Every point p is displaced infinitesimally along u, and much less along v (Simulation of Simplicity,
+Edelsbrunner and Mücke 1990): no point is on a segment, or level with a vertex, and of two polygons
+with a common side exactly one contains a point of it. Comparisons with the ends of a segment are
+exact. Only inside its bounding box a rounded product decides, always the same one, so that rounding
+matters only next to a segment.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....generated.spline import CORNERS
+from ...machine_code.jit import inline, jit, loop
+from .patch_numbers import place_of
+
+__all__ = [
+    "Cells",
+    "Joined",
+    "find_inside",
+    "find_inside_each",
+    "find_parities",
+    "list_segments",
+    "to_cells",
+]
+
+
+class Cells(NamedTuple):
+    """Segments of polygons, sorted into the rows (along v) and columns (along u) of a grid.
+
+    segments (n, 4): the ends u, v of each, the one with the smaller v first (or the smaller u).
+    frame (6,): the corner u, v of the grid, its cells per length along u and v, and their sizes.
+    starts (rows columns + 1,): segments of cell c are members[starts[c]:starts[c + 1]].
+    parity (rows, columns): whether the corner u, v of the cell is inside.
+    """
+
+    segments: NDArray[np.float64]
+    frame: NDArray[np.float64]
+    starts: NDArray[np.int64]
+    members: NDArray[np.int32]
+    parity: NDArray[np.bool_]
+
+
+@inline
+def is_left(segment, u, v):
+    """Return whether a point is left of the line through a segment, as seen from its first end.
+
+    For a segment along u, left means above; a point on its line is above it.
+    """
+    rise = segment[3] - segment[1]
+    product = (segment[2] - segment[0]) * (v - segment[1]) - rise * (u - segment[0])
+    return product > 0.0 or (product == 0.0 and rise == 0.0)
+
+
+@inline
+def is_right_of(segment, u, v):
+    """Return whether a segment whose v range contains that of a point is right of it (at larger u).
+
+    The first end of the segment is the lower one, so that the point is then left of it.
+    """
+    if segment[0] > u and segment[2] > u:
+        return True
+    if segment[0] <= u and segment[2] <= u:
+        return False
+    return is_left(segment, u, v)
+
+
+@inline
+def is_below(segment, u, v):
+    """Return whether a segment whose u range contains that of a point is below it."""
+    if segment[3] <= v:
+        return True
+    if segment[1] > v:
+        return False
+    return is_left(segment, u, v) == (segment[2] > segment[0])
+
+
+@inline
+def crosses(segment, u, v, corner_u, corner_v):
+    """Return whether a segment is crossed an odd number of times on the path to a corner.
+
+    The path goes along u first.
+    """
+    odd = False
+    if segment[1] <= v < segment[3]:
+        odd = is_right_of(segment, u, v) != is_right_of(segment, corner_u, v)
+    if (segment[0] <= corner_u) != (segment[2] <= corner_u):
+        odd ^= is_below(segment, corner_u, v) != is_below(segment, corner_u, corner_v)
+    return odd
+
+
+@inline
+def cell_along(x, low, rate, count):
+    """Return the number of the row or column of a coordinate."""
+    return min(max(int((x - low) * rate), 0), count - 1)
+
+
+@loop
+def is_inside(cells, u, v):
+    """Return whether a point is inside the polygons."""
+    rows, columns = cells.parity.shape
+    frame = cells.frame
+    if not (
+        frame[0] <= u <= frame[0] + columns * frame[4]
+        and frame[1] <= v <= frame[1] + rows * frame[5]
+    ):
+        return False
+    i = cell_along(u, frame[0], frame[2], columns)
+    j = cell_along(v, frame[1], frame[3], rows)
+    corner_u = frame[0] + i * frame[4]
+    corner_v = frame[1] + j * frame[5]
+    inside = cells.parity[j, i]
+    cell = j * columns + i
+    for k in range(cells.starts[cell], cells.starts[cell + 1]):
+        inside ^= crosses(cells.segments[cells.members[k]], u, v, corner_u, corner_v)
+    return inside
+
+
+@jit
+def find_inside(cells, shifts, places, first, last, inside):
+    """Write whether the points [first, last) of rows u, v are inside after one of the shifts.
+
+    shifts (s, 4): rows a, b, c, d map (u, v) to (a u + b, c v + d).
+    """
+    for k in range(first, last):
+        inside[k] = False
+        for s in range(shifts.shape[0]):
+            if not inside[k]:
+                u = shifts[s, 0] * places[k, 0] + shifts[s, 1]
+                v = shifts[s, 2] * places[k, 1] + shifts[s, 3]
+                inside[k] = is_inside(cells, u, v)
+
+
+class Joined(NamedTuple):
+    """The cells of L sets of polygons, concatenated, and their shifts (s, 4).
+
+    starts (L + 1, 6): the offsets of segments, starts, members, parities and shifts of each set,
+    and its number of rows, which equals that of its columns. `cell_starts` and `members` are
+    relative to these offsets.
+    """
+
+    segments: NDArray[np.float64]
+    frames: NDArray[np.float64]
+    cell_starts: NDArray[np.int32]
+    members: NDArray[np.int32]
+    parity: NDArray[np.bool_]
+    shifts: NDArray[np.float64]
+    starts: NDArray[np.int64]
+
+
+@jit
+def find_inside_each(joined, owners, places, inside):
+    """Write whether points (k, 2) are inside the sets of polygons given by `owners` (k,)."""
+    for k in range(owners.shape[0]):
+        owner = owners[k]
+        first = joined.starts[owner]
+        last = joined.starts[owner + 1]
+        cells = Cells(
+            joined.segments[first[0] : last[0]],
+            joined.frames[owner],
+            joined.cell_starts[first[1] : last[1]],
+            joined.members[first[2] : last[2]],
+            joined.parity[first[3] : last[3]].reshape(first[5], first[5]),
+        )
+        inside[k] = False
+        for s in range(first[4], last[4]):
+            if not inside[k]:
+                u = joined.shifts[s, 0] * places[k, 0] + joined.shifts[s, 1]
+                v = joined.shifts[s, 2] * places[k, 1] + joined.shifts[s, 3]
+                inside[k] = is_inside(cells, u, v)
+
+
+@jit
+def find_parities(cells):
+    """Write the parities at the corners of the cells.
+
+    The parity of a corner is that of the number of segments on its right in its row.
+    """
+    rows, columns = cells.parity.shape
+    frame = cells.frame
+    cells.parity[:] = False
+    for k in range(cells.segments.shape[0]):
+        segment = cells.segments[k]
+        j = max(cell_along(segment[1], frame[1], frame[3], rows) - 1, 0)
+        while j < rows and frame[1] + j * frame[5] < segment[3]:
+            v = frame[1] + j * frame[5]
+            if segment[1] <= v:
+                # The last corner that is left of the segment.
+                share = (v - segment[1]) / (segment[3] - segment[1])
+                near = segment[0] + share * (segment[2] - segment[0])
+                i = cell_along(near, frame[0], frame[2], columns)
+                while i + 1 < columns and is_right_of(segment, frame[0] + (i + 1) * frame[4], v):
+                    i += 1
+                while i >= 0 and not is_right_of(segment, frame[0] + i * frame[4], v):
+                    i -= 1
+                if i >= 0:
+                    cells.parity[j, i] ^= True
+            j += 1
+    for j in range(rows):
+        for i in range(columns - 2, -1, -1):
+            cells.parity[j, i] ^= cells.parity[j, i + 1]
+
+
+@jit
+def list_segments(cells, margins, stores):
+    """Count the segments of each cell in starts[cell + 1], or store them, from starts[cell] on.
+
+    Storing moves the starts to the ends. A segment belongs to all cells that it may touch: margins
+    (2,) exceed the rounding errors of coordinates.
+    """
+    rows, columns = cells.parity.shape
+    frame = cells.frame
+    for k in range(cells.segments.shape[0]):
+        segment = cells.segments[k]
+        j_first = cell_along(segment[1] - margins[1], frame[1], frame[3], rows)
+        j_last = cell_along(segment[3] + margins[1], frame[1], frame[3], rows)
+        rise = segment[3] - segment[1]
+        for j in range(j_first, j_last + 1):
+            begin, end = 0.0, 1.0
+            if rise > 0.0:
+                low = frame[1] + j * frame[5] - margins[1] - segment[1]
+                begin = min(max(low / rise, 0.0), 1.0)
+                end = min(max((low + frame[5] + 2.0 * margins[1]) / rise, 0.0), 1.0)
+            u = segment[0] + begin * (segment[2] - segment[0])
+            w = segment[0] + end * (segment[2] - segment[0])
+            i_first = cell_along(min(u, w) - margins[0], frame[0], frame[2], columns)
+            i_last = cell_along(max(u, w) + margins[0], frame[0], frame[2], columns)
+            for i in range(i_first, i_last + 1):
+                cell = j * columns + i
+                if stores:
+                    cells.members[cells.starts[cell]] = k
+                    cells.starts[cell] += 1
+                else:
+                    cells.starts[cell + 1] += 1
+
+
+@jit
+def to_cells(patches, places, columns, first, last, cells):
+    """Write parameters (k, 2) in cells of the grid, from those (k, 2) in patches (k,)."""
+    for k in range(first, last):
+        i, j, turn = place_of(patches[k], columns)
+        u = places[k, 0]
+        v = places[k, 1]
+        for x in range(2):
+            corner = i if x == 0 else j
+            cells[k, x] = corner + 0.5 + u * CORNERS[turn, 0, x] + v * CORNERS[turn, 1, x]

@@ -1,0 +1,61 @@
+"""Samples at normals, moved from a spline to its surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ..base.aliases import Array
+from ..base.memory import check_memory
+from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of
+from ..search.fill import fill
+from ..search.search import Hits
+from ..spline.spline import Spline
+from ..surface.surface import Surface
+from .kernels.refine import FOUND, Target
+from .newton import refine
+from .on_spline import Fields, FieldsOfSamples
+
+__all__ = ["as_fields", "moved_samples", "part_of"]
+
+# The fields of samples that are moved; other fields follow from them.
+NEEDED = (
+    *("points", "normals", "uv", "gaussian_curvature", "mean_curvature"),
+    *("normal_index", "patch_index"),
+)
+
+
+def moved_samples(
+    surface: Surface, spline: Spline, normals: Array, hits: Hits, threads: int | None
+) -> Fields:
+    """Return the samples at hits, moved to the surface where Newton's method succeeds.
+
+    They have all fields but the support, in float64.
+    """
+    check_memory("stored", len(hits), bytes_of(NEEDED, np.float64))
+    arrays = fill(spline, normals, hits, threads, NEEDED, np.float64)
+    signs = np.copysign(1.0, arrays["gaussian_curvature"])
+    states = np.empty(len(signs), dtype=np.int8)
+    target = Target(
+        arrays["normals"], signs, arrays["uv"], arrays["points"],
+        arrays["gaussian_curvature"], arrays["mean_curvature"], states,
+    )  # fmt: skip
+    refine(surface, spline, target, threads)
+    return arrays | {FLAG_NAMES[0]: states == FOUND}
+
+
+def part_of(arrays: Fields, kept: NDArray[np.bool_]) -> Fields:
+    """Return some of the samples."""
+    return arrays if kept.all() else {name: array[kept] for name, array in arrays.items()}
+
+
+def as_fields(arrays: Fields, fields: Sequence[str], dtype: DTypeLike) -> FieldsOfSamples:
+    """Return the requested fields of samples that have all fields but the support."""
+    unrefined = int(np.count_nonzero(~arrays[FLAG_NAMES[0]]))
+    if "support" in fields:
+        support = np.einsum("ij,ij->i", arrays["points"], arrays["normals"])
+        arrays = arrays | {"support": support}
+    kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
+    return FieldsOfSamples(kept, unrefined)

@@ -1,0 +1,209 @@
+"""Samples of a spline moved to the surface that it approximates, by Newton's method.
+
+The samples of a spline at prescribed normals are close to those of the surface. Newton's method for
+n·x_u = n·x_v = 0 moves the former to the latter, except at parabolic and singular points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.aliases import Array, Indices
+from ..base.threads import over_ranges
+from ..base.tolerances import NORMAL_ERROR, NORMAL_NOISE
+from ..spline.kernels.jets import evaluate_jets
+from ..spline.spline import Spline
+from ..surface.surface import Surface
+from .kernels.refine import (
+    CLAMPED,
+    FOUND,
+    FREE,
+    NOT_FOUND,
+    PERIODIC,
+    Box,
+    Rows,
+    Target,
+    begin,
+    newton,
+)
+from .pole_charts import PoleChart, pole_charts
+
+__all__ = ["FOUND", "Target", "evaluate_on_surface", "near_poles", "refine"]
+
+Jets = Callable[[Array, Array], Array]
+
+ROWS_AT_A_TIME = 4096
+# When this part of a batch of rows is left, which need more steps than the others, they are
+# postponed and solved together with those of other batches.
+FEW = 1 / 32
+MOST_STEPS = 32
+
+
+@dataclass(frozen=True, eq=False)
+class Parameters:
+    """Two parameters of a surface: its 2-jets, and the behaviour at the ends of the parameters.
+
+    `size` times the surface has cells of about the size 1. Rounding may keep the angle between
+    normals from falling below `noise`.
+    """
+
+    jets: Jets
+    box: Box
+    size: float
+    noise: float
+
+    @classmethod
+    def of_domain(cls, surface: Surface, spline: Spline) -> Parameters:
+        """Return the parameters u and v."""
+        (u0, u1), (v0, v1) = surface.domain
+        along_u, along_v = (
+            PERIODIC if ends[0] == "periodic" else CLAMPED for ends in spline.boundary
+        )
+        _, _, du, dv = spline.frame.tolist()
+        box = Box((u0, u1, v0, v1), (along_u, along_v), (du, dv))
+        return cls(surface.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
+
+    @classmethod
+    def of_chart(cls, chart: PoleChart, spline: Spline) -> Parameters:
+        """Return s and t of a chart at a pole: without ends, with the rounding of u and v."""
+        largest = max(abs(chart.end), abs(chart.other))
+        ends = (-largest, largest, -largest, largest)
+        box = Box(ends, (FREE, FREE), (chart.cell, chart.cell))
+        return cls(chart.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
+
+    def solve(self, target: Target, numbers: Indices, few: int) -> Indices:
+        """Solve for rows, from target.uv on; return the unfinished ones, at most `few`."""
+        count, rows = len(numbers), Rows.new(numbers)
+        begin(target.uv, count, rows, self.box)
+        for _ in range(MOST_STEPS):
+            if count <= few:
+                return numbers[:count]
+            jets = self.jets(rows.place[0, :count], rows.place[1, :count])
+            count = newton(
+                jets, count, rows, target, self.box, self.size, NORMAL_ERROR**2, self.noise**2
+            )
+        return numbers[:0]
+
+
+def refine(surface: Surface, spline: Spline, target: Target, threads: int | None = None) -> None:
+    """Move samples of a spline at unit normals to the surface.
+
+    Overwrites the parameters, points and curvatures where the normal of the surface agrees with the
+    prescribed one, up to NORMAL_ERROR, and K has the sign of target.signs. Elsewhere they stay
+    those of the spline: at parabolic and singular points, and if the solution is outside the domain
+    or more than three cells away. Next to a pole K may change its sign, since the spline has folds
+    there. target.state is overwritten for all samples.
+    """
+    target.state[:] = NOT_FOUND
+    charts = pole_charts(surface, spline)
+    next_to_poles = _refine_away(surface, spline, charts, target, threads)
+    for chart, rows in zip(charts, next_to_poles, strict=True):
+        _refine_at_pole(chart, spline, target, rows, threads)
+
+
+def _refine_away(
+    surface: Surface,
+    spline: Spline,
+    charts: list[PoleChart],
+    target: Target,
+    threads: int | None,
+) -> list[Indices]:
+    """Move the samples that are not next to poles; return the others for each chart."""
+    domain = Parameters.of_domain(surface, spline)
+
+    def work(first: int, last: int) -> tuple[Indices, list[Indices]]:
+        part = Target._make(x[first:last] for x in target)
+        at_poles = [np.flatnonzero(x.near(part.uv)) for x in charts]
+        numbers = np.arange(last - first)
+        if charts:
+            numbers = np.delete(numbers, np.concatenate(at_poles))
+        left = domain.solve(part, numbers, int(len(numbers) * FEW))
+        return first + left, [first + x for x in at_poles]
+
+    none = np.empty(0, np.int64)
+    results = [(none, [none for _ in charts])]
+    results += over_ranges(work, len(target.uv), ROWS_AT_A_TIME, threads)
+    left = np.concatenate([x for x, _ in results])
+    _on_rows(target, left, lambda x: domain.solve(x, np.arange(len(x.uv)), 0), threads)
+    return [np.concatenate([x[k] for _, x in results]) for k in range(len(charts))]
+
+
+def _on_rows(
+    target: Target, numbers: Indices, solve: Callable[[Target], object], threads: int | None
+) -> None:
+    """Call `solve` with copies of some rows; write the results into the arrays of all samples."""
+
+    def work(first: int, last: int) -> None:
+        rows = numbers[first:last]
+        part = Target._make(x[rows] for x in target)
+        solve(part)
+        target.state[rows] = part.state
+        found = part.state == FOUND
+        for array, values in zip(target[2:-1], part[2:-1], strict=True):
+            array[rows[found]] = values[found]
+
+    list(over_ranges(work, len(numbers), ROWS_AT_A_TIME, threads))
+
+
+def _refine_at_pole(
+    chart: PoleChart, spline: Spline, target: Target, numbers: Indices, threads: int | None
+) -> None:
+    """Move rows next to a pole in its chart, whatever the sign of K."""
+    parameters = Parameters.of_chart(chart, spline)
+
+    def solve(part: Target) -> None:
+        part.normals[:] *= chart.orientation
+        part.signs[:] = 0.0
+        part.uv[:] = chart.places(part.uv)
+        parameters.solve(part, np.arange(len(part.uv)), 0)
+        part.uv[:] = chart.parameters(part.uv)
+        # Not those of the chart: its finite differences have rounding errors.
+        found = part.state == FOUND
+        points, _, gaussian, mean = evaluate_on_surface(
+            chart.surface, spline, part.uv[found], threads=1
+        )
+        part.points[found], part.gaussian[found], part.mean[found] = points, gaussian, mean
+
+    _on_rows(target, numbers, solve, threads)
+
+
+def evaluate_on_surface(
+    surface: Surface, spline: Spline, uv: Array, threads: int | None = None
+) -> tuple[Array, Array, Array, Array]:
+    """Return points (k, 3), unit normals (k, 3), K (k,) and H (k,) at parameters (k, 2).
+
+    Normals and curvatures are 0 at singular points that are no poles.
+    """
+    count = len(uv)
+    points, normals = np.empty((count, 3)), np.empty((count, 3))
+    gaussian, mean = np.empty(count), np.empty(count)
+    charts = pole_charts(surface, spline)
+
+    def work(first: int, last: int) -> None:
+        part = slice(first, last)
+        jets = surface.jets(uv[part, 0].copy(), uv[part, 1].copy())
+        points[part] = jets[:, 0]
+        scales = np.array([spline.scale, *spline.frame[2:]])
+        evaluate_jets(jets, scales, normals[part], gaussian[part], mean[part])
+        for rows, n, K, H in near_poles(charts, spline, uv[part]):
+            normals[first + rows], gaussian[first + rows], mean[first + rows] = n, K, H
+
+    list(over_ranges(work, count, ROWS_AT_A_TIME, threads))
+    return points, normals, gaussian, mean
+
+
+def near_poles(
+    charts: list[PoleChart], spline: Spline, uv: Array
+) -> Iterator[tuple[Indices, Array, Array, Array]]:
+    """Yield the rows (k,) of parameters that need a chart, and unit normals, K and H there."""
+    for chart in charts:
+        rows = np.flatnonzero(chart.next_to(uv))
+        if len(rows):
+            s, t = chart.places(uv[rows]).T.copy()
+            n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
+            scales = np.array([spline.scale, chart.cell, chart.cell])
+            evaluate_jets(chart.jets(s, t), scales, n, K, H)
+            yield rows, n * chart.orientation, K, H * chart.orientation

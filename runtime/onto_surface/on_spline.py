@@ -1,0 +1,242 @@
+"""What samples lie on: a spline, or the surface that it approximates.
+
+Samples are searched on the spline. Those of the surface are then moved to it: at a prescribed
+normal to the point that has this normal, elsewhere to the point with the same parameters. Sizing
+functions and solid angles take the curvature of the surface from the Gauss points of the cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...generated.spline import SCALE
+from ..base.aliases import Array
+from ..base.memory import check_memory
+from ..base.threads import over_ranges
+from ..directions.regions import Cap
+from ..fitting.fit import check_range
+from ..proof.index import ProvedIndex
+from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
+from ..samples.report import SamplingReport, sampling_report
+from ..samples.samples import Samples
+from ..search.fill import fill
+from ..search.kernels.tile import fill_known
+from ..search.search import Hits
+from ..spline.developable import CellMeasure
+from ..spline.inside import count_of, samples_inside, with_uv
+from ..spline.kernels.forms import forms_of_jets, jets_on_spline, patches_at
+from ..spline.spline import Spline
+from ..surface.surface import Surface
+from .reach import InReach, reached
+
+__all__ = ["Fields", "FieldsOfSamples", "OnSpline", "grouped"]
+
+Fields = dict[str, NDArray[Any]]
+
+AT_A_TIME = 1 << 12
+# Normals of a spline at a pole are taken this part of the domain away from it.
+BESIDE_POLE = 1e-6
+
+
+class FieldsOfSamples(NamedTuple):
+    """Fields of samples, and how many of these are not on the surface."""
+
+    fields: Fields
+    unrefined: int | None = None
+
+    @property
+    def number(self) -> int:
+        """The number of samples."""
+        return count_of(self.fields)
+
+
+@dataclass(frozen=True, eq=False)
+class OnSpline:
+    """A spline as what is sampled; `surface` is for `OnSurface`.
+
+    Samples at normals are written to the fields in `memory` that are large enough. With an `index`
+    of the surface, all points with prescribed normals are found there. With a `reach`, the trim
+    leaves normals in it only.
+    """
+
+    on: ClassVar[str] = "spline"
+
+    spline: Spline
+    threads: int | None = None
+    surface: Surface | None = None
+    memory: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    index: ProvedIndex | None = None
+    reach: Cap | None = None
+
+    def used(
+        self,
+        dtype: DTypeLike,
+        threads: int | None,
+        memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+    ) -> Self:
+        """Return the same for one call: a number of threads, and memory for the samples.
+
+        Raises SurfaceError if points are beyond the range of `dtype`.
+        """
+        check_range(self.spline, dtype)
+        if threads == self.threads and not memory and not self.memory:
+            return self
+        return replace(self, threads=threads, memory=memory)
+
+    def within(self, reach: Cap | None) -> Self:
+        """Return the part whose normals are in a cap, or all of it."""
+        if reach is None:
+            return self
+        x = self.spline
+        trim = reached(x.trim, x.domain, x.boundary, InReach(self.normals, reach))
+        surface = None if self.surface is None else replace(self.surface, trim=trim)
+        return replace(self, spline=replace(x, trim=trim), surface=surface, reach=reach)
+
+    def normals(self, places: Array) -> Array:
+        """Return the unit normals (k, 3) at parameters (k, 2); 0 or NaN where there is none."""
+        places = places.copy()
+        for axis, ends in enumerate(self.spline.boundary):
+            low, high = self.spline.domain[axis]
+            off = BESIDE_POLE * (high - low)
+            low, high = low + off * (ends[0] == "pole"), high - off * (ends[1] == "pole")
+            places[:, axis] = np.clip(places[:, axis], low, high)
+        return self.spline.normals(*places.T)
+
+    @property
+    def measure(self) -> tuple[Array, Array]:
+        """Areas and signed solid angles of the patches, as `Spline.measure`."""
+        return self.spline.measure
+
+    @property
+    def cell_measure(self) -> CellMeasure:
+        """The same of the cells."""
+        return self.spline._cell_measure
+
+    @property
+    def distance(self) -> float:
+        """How far the points of what is sampled are from those of the spline, at most."""
+        return 0.0
+
+    # --- samples at normals -----------------------------------------------------------------------
+
+    def at_hits(
+        self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
+    ) -> FieldsOfSamples:
+        """Return the samples at hits, with the fields that are requested."""
+        wanted = with_uv(self.spline.trim, fields)
+        check_memory("stored", len(hits), bytes_of(set(wanted) - set(self.memory), dtype))
+        arrays = fill(self.spline, normals, hits, self.threads, wanted, dtype, self.memory)
+        return FieldsOfSamples(samples_inside(self.spline.trim, arrays, fields))
+
+    def at_hits_in_turn(
+        self,
+        normals: Array,
+        parts: Iterator[Hits],
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        size: int,
+    ) -> Iterator[FieldsOfSamples]:
+        """Yield at most `size` samples at a time, those at `parts` of all hits of these normals."""
+        for hits in grouped(parts, size):
+            yield self.at_hits(normals, hits, fields, dtype)
+
+    def report(
+        self,
+        normals: int,
+        density: float,
+        developable: int | None,
+        arrays: Fields,
+        **known: Any,  # noqa: ANN401
+    ) -> SamplingReport:
+        """Return the report of samples with some fields; see `sampling_report`."""
+        count, cells = count_of(arrays) if arrays else 0, self.cell_measure
+        return sampling_report(
+            self.spline, normals, count, density, developable, arrays, cells, on=self.on, **known
+        )
+
+    def samples(self, fields: Fields, report: SamplingReport) -> Samples:
+        """Return samples of fields with their report."""
+        return Samples(
+            **fields, report=report, spline=self.spline, surface=self.surface, offset_of=None
+        )
+
+    # --- samples that fill gaps -------------------------------------------------------------------
+
+    @property
+    def knows_jets(self) -> bool:
+        """Whether the derivatives of what is sampled are known, and not differences."""
+        return True
+
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return the 2-jets (k, 6, 3) of what is sampled, see `Surface.jets`."""
+        return self.jets_of_spline(u, v)
+
+    def jets_of_spline(self, u: Array, v: Array) -> Array:
+        """Return the 2-jets (k, 6, 3) of the spline."""
+        spline, jets = self.spline, np.empty((len(u), 6, 3))
+        jets_on_spline(spline.coefficients, spline.scale, spline.frame, self._in_cells(u, v), jets)
+        return jets
+
+    def at_parameters(
+        self, uv: Array, normals: Array, K: Array, fields: Sequence[str], dtype: DTypeLike
+    ) -> Fields:
+        """Return fields of samples at parameters (k, 2), with unit normals and the signs of K."""
+        count, spline = len(uv), self.spline
+        patches, places = np.empty(count, dtype=np.int64), np.empty((count, 2))
+        patches_at(*spline.cells, self._in_cells(*uv.T), patches, places)
+        filled = {x: new_field(x, count, dtype) for x in FLOAT_NAMES if x in fields}
+        here = np.arange(count)
+        fill_known(
+            spline.coefficients, spline.scale, normals, spline.frame,
+            here, here << 32 | patches, np.column_stack([places, K, places]),
+            *(filled[x] if x in filled else new_field(x, 0, dtype) for x in FLOAT_NAMES),
+        )  # fmt: skip
+        indices = {"normal_index": np.full(count, -1), "patch_index": patches}
+        return filled | {x: y for x, y in indices.items() if x in fields}
+
+    def forms(self, cells: Array) -> Array:
+        """Return the fundamental forms (k, 7) at places (k, 2) in cells; see `forms_of_jets`."""
+        found, frame = np.empty((len(cells), 7)), self.spline.frame
+        scales = np.array([self._size, *frame[2:]])
+        u, v = (frame[:2] + frame[2:] * cells).T.copy()
+
+        def work(first: int, last: int) -> None:
+            forms_of_jets(self.jets(u[first:last], v[first:last]), scales, found[first:last])
+
+        self._in_parts(work, len(cells))
+        return found
+
+    @property
+    def _size(self) -> float:
+        """The scaled length of a length 1."""
+        return SCALE * self.spline.scale
+
+    def _in_parts(self, work: Callable[[int, int], None], count: int) -> None:
+        for _ in over_ranges(work, count, AT_A_TIME, self.threads):
+            pass
+
+    def _in_cells(self, u: Array, v: Array) -> Array:
+        """Return parameters in cells from the corner of the domain (k, 2)."""
+        frame = self.spline.frame
+        return (np.stack([u, v], axis=1) - frame[:2]) / frame[2:]
+
+
+def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
+    """Yield consecutive hits in groups of `size`, and a last group with the remaining ones."""
+    group: list[Hits] = []
+    room = size
+    for hits in parts:
+        start = 0
+        while len(hits) - start >= room:
+            yield Hits.joined([*group, hits[start : start + room]])
+            start += room
+            group, room = [], size
+        group.append(hits[start:])
+        room -= len(group[-1])
+    yield Hits.joined(group)

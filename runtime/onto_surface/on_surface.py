@@ -1,0 +1,253 @@
+"""A surface as what is sampled: samples are moved to it from its spline."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ..base.checks import known_name
+from ..base.errors import InputError
+from ..base.kept import kept
+from ..fitting.fit import spline_of
+from ..samples.fields import FLAG_NAMES
+from ..samples.report import PLACES
+from ..search.search import Hits
+from ..spline.developable import CellMeasure
+from ..spline.inside import count_of, samples_inside
+from ..spline.spline import Spline
+from ..surface.derivatives import Differentiable
+from ..surface.surface import Surface
+from .kernels import nodes as kernels
+from .moved_samples import as_fields, moved_samples, part_of
+from .newton import evaluate_on_surface
+from .on_spline import Array, Fields, FieldsOfSamples, OnSpline
+from .pole_charts import PoleChart, pole_charts
+from .proved import index_of
+from .repeats import kept_once
+
+__all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
+
+# Samples in turn are looked at in groups of about this number, whether they repeat others.
+TOGETHER = 1 << 17
+
+
+def place_of_samples(surface: object, on: str | None) -> str:
+    """Return "surface" or "spline": where samples of a surface are to lie.
+
+    Raises UnknownNameError for another place, InputError if it is the surface and cannot be.
+    """
+    known = isinstance(surface, Surface) and surface.evaluable
+    if checked_place(on) is None:
+        return "surface" if known else "spline"
+    if on == "surface" and not known:
+        if isinstance(surface, Surface):
+            raise InputError(
+                f'on="surface" needs a surface that can be evaluated everywhere, and '
+                f"{surface.name!r} was given by points; its spline is all there is: leave out on=…."
+            )
+        if isinstance(surface, Spline):
+            raise InputError(
+                f'on="surface" needs the surface, not its spline: sample the Surface of which '
+                f"{surface.name!r} is a spline."
+            )
+    return str(on)
+
+
+def checked_place(on: str | None) -> str | None:
+    """Return "surface", "spline" or None; UnknownNameError otherwise."""
+    return None if on is None else known_name(on, PLACES, "place of samples")
+
+
+def geometry_of(
+    surface: Surface | Spline, cells: Sequence[int] | None, on: str | None, indexed: bool = False
+) -> OnSpline:
+    """Return what is sampled, with an index of the surface if it is `indexed` and can be.
+
+    Raises what `place_of_samples` and `spline_of` raise.
+    """
+    place = place_of_samples(surface, on)
+    spline = spline_of(surface, cells)
+    if place == "surface" and isinstance(surface, Surface):
+        if surface.boundary != spline.boundary:  # poles that the fit has found
+            surface = replace(surface, boundary=spline.boundary)
+        index = index_of(surface) if indexed else None
+        return OnSurface(spline, surface=surface, index=index)
+    return OnSpline(spline)
+
+
+@dataclass(frozen=True, eq=False)
+class OnSurface(OnSpline):
+    """A surface as what is sampled, and its spline, on which samples are searched."""
+
+    on: ClassVar[str] = "surface"
+
+    @property
+    def distance(self) -> float:
+        """How far the points of the surface are from those of the spline, at most: measured."""
+        misfit = self.spline.misfit
+        return 0.0 if misfit is None else misfit.distance
+
+    def normals(self, places: Array) -> Array:
+        """Return the unit normals (k, 3) at parameters (k, 2); 0 where there is none."""
+        assert self.surface is not None
+        return evaluate_on_surface(self.surface, self.spline, places.copy(), threads=1)[1]
+
+    @property
+    def measure(self) -> tuple[Array, Array]:
+        """Areas and signed solid angles of the patches, as `Spline.measure`.
+
+        The solid angle is that of the cell, in equal parts: K at its Gauss points. A function whose
+        derivatives are differences of many evaluations has that of its spline. They are kept with
+        the spline, which is that of one surface.
+        """
+        return kept(self.spline, "measure of the surface", self._measured)
+
+    def _measured(self) -> tuple[Array, Array]:
+        if not self.knows_jets:
+            return self.spline.measure
+        areas, inside = self.spline.measure[0], self.spline.inside
+        solid_angles = np.repeat(self._at_gauss_points.reshape(-1, 4).sum(axis=1) / 16.0, 4)
+        return areas, solid_angles if inside is None else solid_angles * inside.shares
+
+    @property
+    def cell_measure(self) -> CellMeasure:
+        """The same of the cells."""
+
+        def of_cells() -> CellMeasure:
+            return CellMeasure.of(self.measure, self.spline.cells)
+
+        return kept(self.spline, "measure of cells of the surface", of_cells)
+
+    @property
+    def _at_gauss_points(self) -> Array:
+        """K times the area of the cell (4 cells,) at its Gauss points; 0 at singular points."""
+        found, columns = np.empty(self.spline.patches), self.spline.cells[1]
+        ends = 0.5 + kernels.GAUSS * np.array([-0.5, 0.5])
+        u0, v0, du, dv = self.spline.frame
+
+        def work(first: int, last: int) -> None:
+            cell, node = np.divmod(np.arange(first, last), 4)
+            u = u0 + du * (cell // columns + ends[node // 2])
+            v = v0 + dv * (cell % columns + ends[node % 2])
+            kernels.signed_solid_angles(
+                self.jets(u, v), self._size, self.spline.frame, found[first:last]
+            )
+
+        self._in_parts(work, len(found))
+        return found
+
+    # --- samples at normals -----------------------------------------------------------------------
+
+    def at_hits(
+        self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
+    ) -> FieldsOfSamples:
+        """Return the samples at hits, with the fields that are requested.
+
+        Those that meet are one.
+        """
+        return as_fields(self._moved_once(normals, hits), fields, dtype)
+
+    def at_hits_in_turn(
+        self,
+        normals: Array,
+        parts: Iterator[Hits],
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        size: int,
+    ) -> Iterator[FieldsOfSamples]:
+        """Yield at most `size` samples at a time, those at `parts` of all hits of these normals.
+
+        Samples that meet have the same normal, so that whole normals are looked at together.
+        """
+        came, rest = False, list[Fields]()
+        for hits in (x for part in parts for x in part.whole_normals(TOGETHER)):
+            rest.append(self._moved_once(normals, hits))
+            if sum(map(count_of, rest)) < size:
+                continue
+            arrays = _joined(rest)
+            end = count_of(arrays) // size * size
+            for first in range(0, end, size):
+                yield as_fields(_rows(arrays, first, first + size), fields, dtype)
+            came, rest = True, [_rows(arrays, end, None)]
+        arrays = _joined(rest)
+        if count_of(arrays) or not came:
+            yield as_fields(arrays, fields, dtype)
+
+    def _moved_once(self, normals: Array, hits: Hits) -> Fields:
+        """Return all fields but the support of the samples at hits, those that meet as one."""
+        arrays = self._moved(normals, hits)
+        return part_of(arrays, self._kept_once(arrays))
+
+    def _moved(self, normals: Array, hits: Hits) -> Fields:
+        """Return all fields but the support of the samples at hits, those inside the trim."""
+        assert self.surface is not None
+        arrays = moved_samples(self.surface, self.spline, normals, hits, self.threads)
+        return samples_inside(self.spline.trim, arrays, tuple(arrays))
+
+    def _at_poles(self, arrays: Fields) -> NDArray[np.bool_]:
+        """Return which samples are next to a pole."""
+        at_poles = [chart.near(arrays["uv"]) for chart in self._charts]
+        return np.logical_or.reduce([np.zeros(len(arrays["uv"]), dtype=bool), *at_poles])
+
+    def _kept_once(self, arrays: Fields) -> NDArray[np.bool_]:
+        """Return which samples do not repeat another one."""
+        return kept_once(self.spline, arrays, self._at_poles(arrays))
+
+    @property
+    def _charts(self) -> list[PoleChart]:
+        assert self.surface is not None
+        return pole_charts(self.surface, self.spline)
+
+    # --- samples that fill gaps -------------------------------------------------------------------
+
+    @property
+    def knows_jets(self) -> bool:
+        """Whether the surface knows its derivatives: not if it is a function of a user."""
+        function = None if self.surface is None else self.surface.function
+        return isinstance(function, Differentiable) and function.differentiable
+
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return the 2-jets (k, 6, 3) of the surface."""
+        assert self.surface is not None
+        return self.surface.jets(u, v)
+
+    def at_parameters(
+        self, uv: Array, normals: Array, K: Array, fields: Sequence[str], dtype: DTypeLike
+    ) -> Fields:
+        """Return fields of samples at parameters (k, 2); at singular points, those of the spline.
+
+        There the normals and the signs of K are those given.
+        """
+        assert self.surface is not None
+        points, directions, gaussian, mean = evaluate_on_surface(
+            self.surface, self.spline, uv, self.threads
+        )
+        there: NDArray[np.bool_] = np.any(directions, axis=1)
+        arrays = super().at_parameters(uv, normals, K, fields, dtype)
+        found = {
+            "uv": uv,
+            "points": points,
+            "normals": directions,
+            "support": np.einsum("ij,ij->i", points, directions),
+            "gaussian_curvature": gaussian,
+            "mean_curvature": mean,
+        }
+        for name in set(arrays) & set(found):
+            arrays[name][there] = found[name][there]
+        return arrays | {name: there for name in FLAG_NAMES if name in fields}
+
+
+def _joined(parts: Sequence[Fields]) -> Fields:
+    """Return the fields of consecutive samples."""
+    if len(parts) == 1:
+        return parts[0]
+    return {name: np.concatenate([x[name] for x in parts]) for name in parts[0]}
+
+
+def _rows(arrays: Fields, first: int, last: int | None) -> Fields:
+    """Return some of the samples."""
+    return {name: x[first:last] for name, x in arrays.items()}

@@ -1,0 +1,142 @@
+"""Charts at the poles of a surface, where its own parameters are singular.
+
+At a pole the parameters are polar coordinates, an angle φ and a distance r. The surface is smooth
+in s = r cos φ, t = r sin φ.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..base.aliases import Array, Flags
+from ..spline.spline import Spline
+from ..surface.derivatives import differences, power_of_two
+from ..surface.surface import Surface
+from .kernels.refine import chart_jets, jet_of_pole
+
+__all__ = ["PoleChart", "pole_charts"]
+
+
+# The spline is inaccurate, and may have folds, within four cells of a pole; its samples are up to a
+# cell away from those of the surface. With one cell samples are lost; with more than three only
+# rounding errors change.
+POLE_CELLS = 6
+# Within this part r of the domain from a pole, its 2-jet is continued. The error of that is of
+# order r; derivatives by the angle have errors of up to ε/r² by cancellation.
+NEAR = 2.0**-20
+
+
+@dataclass(frozen=True, eq=False)
+class PoleChart:
+    """The chart at one pole.
+
+    Parameter `angle` (0 or 1) runs around the pole; the other one is `end` there and `other` at the
+    opposite side of the domain.
+    """
+
+    surface: Surface
+    angle: int
+    end: float
+    other: float
+    cells: int  # along the other parameter
+
+    @property
+    def inward(self) -> float:
+        """The sign with which the other parameter grows with the distance from the pole."""
+        return math.copysign(1.0, self.other - self.end)
+
+    @property
+    def orientation(self) -> float:
+        """The sign of x_u × x_v relative to x_s × x_t."""
+        return -self.inward if self.angle == 0 else self.inward
+
+    @property
+    def cell(self) -> float:
+        """The size of a cell towards the pole."""
+        return abs(self.other - self.end) / self.cells
+
+    @property
+    def turn(self) -> float:
+        """The change of φ with its parameter."""
+        low, high = self.surface.domain[self.angle]
+        return 2.0 * math.pi / (high - low)
+
+    def near(self, uv: Array) -> Flags:
+        """Return which parameters (k, 2) lie in the cells around the pole."""
+        cells = min(POLE_CELLS, self.cells // 2)
+        return self._distances(uv) < cells * self.cell
+
+    def next_to(self, uv: Array) -> Flags:
+        """Return which parameters (k, 2) are so close to the pole that they need the chart.
+
+        Differences along a small circle around a pole are inaccurate, relative to its radius.
+        """
+        if self.surface.differences is not None:
+            return self.near(uv)
+        return self._distances(uv) <= NEAR * abs(self.other - self.end)
+
+    def places(self, uv: Array) -> Array:
+        """Return s and t (k, 2)."""
+        phi = (uv[:, self.angle] - self.surface.domain[self.angle][0]) * self.turn
+        r = self._distances(uv)
+        return np.stack([r * np.cos(phi), r * np.sin(phi)], axis=1)
+
+    def parameters(self, places: Array) -> Array:
+        """Return the parameters (k, 2) of s and t, clipped to the domain."""
+        low, high = self.surface.domain[self.angle]
+        phi = np.arctan2(places[:, 1], places[:, 0])
+        phi[phi < 0.0] += 2.0 * math.pi
+        r = np.minimum(np.hypot(places[:, 0], places[:, 1]), abs(self.other - self.end))
+        uv = np.empty((len(places), 2))
+        uv[:, self.angle] = np.clip(low + phi / self.turn, low, high)
+        uv[:, 1 - self.angle] = self.end + self.inward * r
+        return uv
+
+    def jets(self, s: Array, t: Array) -> Array:
+        """Return 2-jets (k, 6, 3) by s and t."""
+        if self.surface.differences is not None:
+            step = power_of_two(self.surface.differences.step * abs(self.other - self.end))
+            return differences(self._evaluate, s, t, (step, step))[0]
+        uv = self.parameters(np.stack([s, t], axis=1))
+        chart = np.empty((len(uv), 6, 3))
+        phi = (uv[:, self.angle] - self.surface.domain[self.angle][0]) * self.turn
+        chart_jets(
+            self.surface.jets(uv[:, 0].copy(), uv[:, 1].copy()), phi, self._distances(uv),
+            self.angle, self.turn, self.inward, NEAR * abs(self.other - self.end), self._at_pole,
+            chart,
+        )  # fmt: skip
+        return chart
+
+    def _evaluate(self, s: Array, t: Array) -> Array:
+        """Return points (k, 3) at s and t."""
+        assert self.surface.differences is not None
+        u, v = self.parameters(np.stack([s, t], axis=1)).T.copy()
+        return self.surface.differences.function(u, v)
+
+    @cached_property
+    def _at_pole(self) -> Array:
+        """The 2-jet (1, 6, 3) of the pole."""
+        low, high = self.surface.domain[self.angle]
+        uv = np.full((2, 3), self.end)
+        uv[self.angle] = low + (high - low) * np.array([0.0, 0.125, 0.25])
+        pole = np.empty((1, 6, 3))
+        jet_of_pole(self.surface.jets(uv[0], uv[1]), self.angle, self.inward, pole)
+        return pole
+
+    def _distances(self, uv: Array) -> Array:
+        return np.abs(uv[:, 1 - self.angle] - self.end)
+
+
+def pole_charts(surface: Surface, spline: Spline) -> list[PoleChart]:
+    """Return the charts at the poles of a surface, for its spline."""
+    charts = []
+    for axis in (0, 1):
+        ends, cells = spline.domain[axis], spline.cells[axis]
+        for k in (0, 1):
+            if spline.boundary[axis][k] == "pole":
+                charts.append(PoleChart(surface, 1 - axis, ends[k], ends[1 - k], cells))
+    return charts

@@ -1,0 +1,148 @@
+"""Points of a surface at given normals, all of them, with a proof."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ..base.memory import check_memory
+from ..base.threads import over_ranges
+from ..domain.trim import Trim
+from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
+from ..proof.kernels.cells import Work
+from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places
+from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, row_shape
+from ..samples.report import UndecidedNormal
+from ..spline.inside import samples_inside, with_uv
+from ..spline.kernels.forms import patches_at
+from ..spline.spline import Spline
+from ..surface.surface import Surface
+from ..tape.kernels.points import Tape
+from .newton import near_poles
+from .on_spline import Fields, FieldsOfSamples
+from .pole_charts import pole_charts
+
+__all__ = ["Proof", "index_of", "proof_of", "proved_samples"]
+
+PLACES_AT_A_TIME = 1 << 14
+
+
+class Proof(NamedTuple):
+    """For how many normals all points are known, and where other normals may have further ones."""
+
+    proved: int
+    undecided: tuple[UndecidedNormal, ...]
+
+
+def index_of(
+    surface: Surface, threads: int | None = None, cells: tuple[int, int] = CELLS
+) -> ProvedIndex | None:
+    """Return the index of a surface; None if its derivatives have no bounds, next to poles, too."""
+    if surface.tape is None:
+        return None
+    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, cells, threads)
+    return index if index is not None and len(index.unbounded) == 0 else None
+
+
+def proved_samples(
+    surface: Surface,
+    spline: Spline,
+    index: ProvedIndex,
+    normals: NDArray[np.float64],
+    fields: Sequence[str],
+    dtype: DTypeLike,
+    threads: int | None,
+) -> tuple[FieldsOfSamples, Proof]:
+    """Return fields of all points that have unit normals (S, 3), and the proof.
+
+    They come in the order of normals, then of the patches of the spline, then of u and v.
+    """
+    found = _by_patch(index.query(normals, threads), spline)
+    check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
+    wanted = with_uv(spline.trim, fields)
+    arrays = _arrays(surface, spline, index.tape, normals, found, wanted, threads)
+    arrays = samples_inside(spline.trim, arrays, fields)
+    kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
+    return FieldsOfSamples(kept, 0), proof_of(normals, found.undecided, spline.trim)
+
+
+def _by_patch(found: ProvedPlaces, spline: Spline) -> ProvedPlaces:
+    """Return places in the order of normals, then of patches.
+
+    They are sorted by u, and so by rows of cells: only those of one row may have to be exchanged.
+    """
+    frame, numbers = spline.frame, found.numbers
+    row = np.clip((found.places[:, 0] - frame[0]) / frame[2], 0, spline.cells[0] - 1).astype(int)
+    same = np.flatnonzero((row[1:] == row[:-1]) & (numbers[1:] == numbers[:-1]))
+    if len(same) == 0:
+        return found
+    some = np.flatnonzero(np.isin(numbers, numbers[same]))
+    patches, local = np.empty(len(some), np.int64), np.empty((len(some), 2))
+    patches_at(*spline.cells, (found.uv[some] - frame[:2]) / frame[2:], patches, local)
+    places = found.places.copy()
+    places[some] = found.places[some[np.lexsort((patches, numbers[some]))]]
+    return found._replace(places=places)
+
+
+def _arrays(
+    surface: Surface,
+    spline: Spline,
+    tape: Tape,
+    normals: NDArray[np.float64],
+    found: ProvedPlaces,
+    fields: Sequence[str],
+    threads: int | None,
+) -> Fields:
+    """Return the fields that are wanted."""
+    numbers, places = found.numbers, found.places
+    count = len(numbers)
+    rooms = SampleFields(
+        *(
+            np.empty((count if x in fields else 0, *row_shape(x)), dtype_of(x, np.float64))
+            for x in SampleFields._fields
+        )
+    )
+    K, H = rooms.gaussian_curvature, rooms.mean_curvature
+    scales, frame = np.array([spline.scale, *spline.frame[2:]]), spline.frame
+    charts = pole_charts(surface, spline)
+
+    def work(first: int, last: int) -> None:
+        scratch = Work.new(len(tape.operations))
+        fill_places(
+            tape, scratch, numbers, places, first, last, normals, scales, frame, spline.cells,
+            np.empty(CURVATURES), rooms,
+        )  # fmt: skip
+        for rows, _, gaussian, mean in near_poles(charts, spline, places[first:last, :2]):
+            if len(K) > 0:
+                K[first + rows] = np.copysign(gaussian, places[first + rows, 4])
+            if len(H) > 0:
+                H[first + rows] = mean
+
+    list(over_ranges(work, count, PLACES_AT_A_TIME, threads))
+    arrays = {name: x for name, x in rooms._asdict().items() if name in fields}
+    flags = {name: np.ones(count, dtype=np.bool_) for name in FLAG_NAMES}
+    return arrays | flags | {"normal_index": numbers}
+
+
+def proof_of(
+    normals: NDArray[np.float64], open_: Undecided, trim: Trim | None, face: int | None = None
+) -> Proof:
+    """Return the proof for unit normals (S, 3), of which some are open; on a face of a part."""
+    open_ = _not_outside(trim, open_, normals)
+    undecided = tuple(
+        UndecidedNormal(number, tuple(box), KINDS[kind], border, face)
+        for number, box, kind, border in zip(*(x.tolist() for x in open_), strict=True)
+    )
+    return Proof(len(normals) - len(np.unique(open_.numbers)), undecided)
+
+
+def _not_outside(trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]) -> Undecided:
+    """Return the boxes that may have points inside a trim; they may meet its border, too."""
+    if trim is None or not len(open_.numbers):
+        return open_
+    sides = trim.sides(open_.boxes, normals[open_.numbers])
+    open_ = open_._replace(border=open_.border | (sides == 0))
+    return Undecided._make(x[sides >= 0] for x in open_)

@@ -1,0 +1,77 @@
+"""Arrays of balls: midpoints with radii that bound their errors, rounding included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.aliases import Array
+
+__all__ = ["Ball"]
+
+
+# The relative rounding error of a midpoint, and a factor for that of a radius (a few operations).
+UNIT, WIDER = 2.0**-53, 1.0 + 2.0**-48
+TINY = 1e-290  # above the error of an underflow
+
+
+@dataclass(frozen=True, eq=False)
+class Ball:
+    """Enclosures [middle − radius, middle + radius]; operations return enclosures as well."""
+
+    middle: Array
+    radius: Array
+    __array_ufunc__ = None  # arrays leave operations to balls
+
+    @classmethod
+    def of(cls, value: Ball | Array | float) -> Ball:
+        """Return exact numbers as balls."""
+        if isinstance(value, Ball):
+            return value
+        return cls(np.asarray(value, np.float64), np.zeros_like(value, np.float64))
+
+    @property
+    def largest(self) -> Array:
+        """The largest absolute values."""
+        return np.abs(self.middle) + self.radius
+
+    @property
+    def least(self) -> Array:
+        """The smallest absolute values."""
+        return np.maximum(np.abs(self.middle) - self.radius, 0.0)
+
+    def __neg__(self) -> Ball:
+        return Ball(-self.middle, self.radius)
+
+    def __add__(self, other: Ball | Array | float) -> Ball:
+        y = Ball.of(other)
+        middle = self.middle + y.middle
+        return Ball(middle, (self.radius + y.radius + UNIT * np.abs(middle)) * WIDER)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Ball | Array | float) -> Ball:
+        return self + -Ball.of(other)
+
+    def __rsub__(self, other: Ball | Array | float) -> Ball:
+        return -self + other
+
+    def __mul__(self, other: Ball | Array | float) -> Ball:
+        y = Ball.of(other)
+        middle = self.middle * y.middle
+        with np.errstate(invalid="ignore"):  # 0 times what is unknown is unknown
+            radius = np.abs(self.middle) * y.radius + self.radius * y.largest
+        radius = np.where(np.isnan(radius), np.inf, radius)
+        return Ball(middle, (radius + UNIT * np.abs(middle)) * WIDER + TINY)
+
+    __rmul__ = __mul__
+
+    def __rtruediv__(self, other: Ball | Array | float) -> Ball:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            middle = 1.0 / self.middle
+            radius = self.radius / (np.abs(self.middle) * self.least)
+            radius = (radius + UNIT * np.abs(middle)) * WIDER + TINY
+        unknown = ~np.isfinite(radius)
+        inverse = Ball(np.where(unknown, 0.0, middle), np.where(unknown, np.inf, radius))
+        return inverse * other

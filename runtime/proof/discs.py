@@ -1,0 +1,360 @@
+"""The discs around the poles of a surface: bounds of it as a graph over its tangent plane.
+
+The parameters at a pole p are u around it and r, which is 0 at it. The surface has a tangent plane
+there, with coordinates q1 and q2 in which x_r (u, 0) is as near to a circle as it can be; h is the
+height over it. By Taylor's theorem the quotients of `generated.jet.graph_at_pole` are derivatives
+at some r between 0 and the r of a place: those of x, and of x_u, or of the spline (x − p) / r.
+That h_r (u, 0) = 0, and that the surface has no creases, is checked at some places only.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ...generated.jet import graph_at_pole, graph_slopes
+from ..base.aliases import Array
+from ..base.formula_calls import python_function
+from ..domain.domain import Domain
+from ..search.kernels.pieces import REST_S, REST_T
+from ..tape.kernels.balls import BALL
+from ..tape.kernels.points import Tape
+from ..tape.kernels.rounding import rounding_of_boxes
+from ..tape.tapes import bounds_over_boxes, jets_of, moved_tape
+from .ball import Ball
+from .kernels.cells import EPS, WIDE, Cells, write_one_cone
+from .kernels.discs import Disc
+from .lines import jumps_of, lines_of
+from .polar_tapes import PolarTapes, polar_tapes
+from .spline_quotient import mapped_spline
+
+__all__ = ["PoleDisc", "pole_disc"]
+
+
+SECTORS = 512
+# Bounds of quotients of splines need narrower sectors: there is a power of u in them for each knot
+# span. Their values at the pole are exact, so that smaller rings are not needed.
+NARROW, RINGS, RINGS_OF_QUOTIENTS = 4, 8, 2
+# Bounds hold up to this distance, relative to the radius of the disc.
+WHOLE = 2.0
+# Discs that are this many times smaller than a row of cells are tried.
+SMALLEST = 2.0**-8
+# The Hessian may change by this part of it in a disc.
+CHANGE = 0.4
+# Bounds have to go on beyond a disc by this factor.
+BEYOND = 1.25
+# Creases are looked for at these parts of the radius.
+PARTS = (0.25, 0.5, 1.0)
+# Angles of tangents with the tangent plane, and of normals on both sides of a line, are roundings
+# up to this size.
+SMOOTH = 1e-9
+# Taylor coefficients: U1R2 is that of u r², …
+ONE, U1, R1, U2, U1R1, R2, _, U2R1, U1R2, _ = range(10)
+
+
+@dataclass(frozen=True, eq=False)
+class PoleDisc:
+    """The disc around a pole: its radius, its tape by u and r, bounds, and its cell."""
+
+    radius: float
+    tape: Tape
+    disc: Disc
+    cell: Cells
+
+
+class Bounds(NamedTuple):
+    """Bounds up to some r: of the Hessian (3, k) by q1 and q2, and the largest of other things.
+
+    `q` are the least and the largest length of (q1, q2) / r. `slope` is that of the derivatives of
+    h; `by_q` are those of r u and of r by q1 and q2; `along` those of the derivatives of q1 and q2
+    by u, over r, and by r.
+    """
+
+    hessian: list[Ball]
+    q: tuple[float, float]
+    slope: float
+    by_q: tuple[float, float]
+    along: tuple[float, float]
+
+    def changes(self, middle: Array) -> Array:
+        """Return how far the Hessian may be from another one (3,)."""
+        pairs = zip(self.hessian, middle.tolist(), strict=True)
+        return np.array([(np.abs(x.middle - y) + x.radius).max() for x, y in pairs])
+
+
+@dataclass(frozen=True, eq=False)
+class Pole:
+    """A pole: its tapes, whose coordinates are q1, q2 and h, and what u is around it.
+
+    The columns of `basis` are the derivatives of x by q1, q2 and h. `tilt` is the largest
+    derivative of h at the pole, or its jump on lines where the surface may have creases.
+    """
+
+    tapes: PolarTapes
+    around: tuple[float, float]
+    basis: Array
+    tilt: float
+
+    @classmethod
+    def of(
+        cls, tapes: PolarTapes, around: tuple[float, float], turned: float, radius: float
+    ) -> Pole | None:
+        """Return a pole; None if the surface has no tangent plane there, or creases up to a radius.
+
+        `turned` is the sign of x_u × x_r relative to the oriented normal.
+        """
+        u = _middles(around)
+        jets = jets_of(tapes.tape, u, np.zeros(SECTORS))
+        point, rows = (np.zeros(3), jets[:, 0])
+        if tapes.slope is not None:
+            point, rows = jets[0, 0], jets[:, 2]
+        sizes = np.linalg.norm(rows, axis=1)
+        if not (sizes.min() > 0.0 and sizes.max() < math.inf):
+            return None
+        frame = _frame(rows, turned)
+        if frame is None:
+            return None
+        moved = _moved(tapes, frame, -frame @ point)
+        if moved is None:
+            return None
+        basis = np.linalg.inv(frame).astype(np.float64)
+        pole = cls(moved, around, basis, 0.0)
+        tilt = max(np.abs(rows @ frame[2]).max(), pole._jump(radius))
+        is_smooth = tilt <= SMOOTH * np.linalg.norm(pole.basis[:, :2], axis=0).min()
+        return replace(pole, tilt=float(tilt)) if is_smooth else None
+
+    def _jump(self, radius: float) -> float:
+        """Return by how much derivatives of h differ on both sides of lines, up to a radius."""
+        low, high = self.around
+        inner = jumps_of(self.tapes.tape, 0, low, high)
+        step = 4.0 * np.spacing(max(abs(low), abs(high)))
+        sides = np.append(inner - step, high - step), np.append(inner + step, low + step)
+        one, other = (
+            np.concatenate([self.slopes(u, np.full_like(u, radius * part)) for part in PARTS])
+            for u in sides
+        )
+        return float(np.abs(one - other).max())
+
+    def slopes(self, u: Array, r: Array) -> Array:
+        """Return the derivatives (k, 2) of h by q1 and q2, at r > 0."""
+        jets = jets_of(self.tapes.tape, u, r)
+        around, away = jets[:, 1] / r[:, None], jets[:, 2]
+        if self.tapes.slope is None:
+            around, away = jets[:, 1], jets[:, 0] + r[:, None] * jets[:, 2]
+        values = python_function(graph_slopes)(
+            around[:, 0], around[:, 1], away[:, 0], away[:, 1], around[:, 2], away[:, 2]
+        )
+        return np.stack(values[4:], axis=1)
+
+    def bounds(self, reach: float) -> Bounds:
+        """Return bounds for r up to `reach`, in all sectors."""
+        count = SECTORS * (NARROW if self.tapes.slope is None else 1)
+        lines = lines_of(self.tapes.tape, 0, np.array(self.around), count)
+        middles, half = 0.5 * (lines[1:] + lines[:-1]), 0.5 * np.diff(lines)
+        centres = np.column_stack([middles, np.full_like(middles, 0.5 * reach)])
+        widths = np.column_stack([half, centres[:, 1]])
+        x = _Coefficients.of(self.tapes.tape, centres, widths)
+        if self.tapes.slope is None:
+            r = Ball(centres[:, 1], widths[:, 1])
+            (o1, o2, h1), a = x[U1], [2.0 * y for y in x[U2]]
+            e1, e2, _ = (y + r * z for y, z in zip(x[ONE], x[R1], strict=True))
+            b = [y + r * z for y, z in zip(x[U1], x[U1R1], strict=True)]
+            c = [2.0 * y + 2.0 * (r * z) for y, z in zip(x[R1], x[R2], strict=True)]
+            h1, h2, h11, h22 = x[U1R1][2], 2.0 * x[R1][2], 2.0 * x[U2R1][2], c[2]
+            q1, q2, _ = x[ONE]
+        else:
+            slope = _Coefficients.of(self.tapes.slope, centres, widths)
+            (o1, o2, _), (e1, e2, _), (q1, q2, _) = x[U1R1], x[R1], x[R1]
+            a, b, c = ([f * y for y in x[k]] for f, k in ((2.0, U2R1), (1.0, U1R1), (2.0, R2)))
+            h1, h2, h11, h22 = x[U1R2][2], c[2], slope[U1R2][2], c[2]
+        *inverse, G1, G2 = python_function(graph_slopes)(o1, o2, e1, e2, h1, h2)
+        hessian = python_function(graph_at_pole)(
+            *inverse, G1, G2, a[0], a[1], b[0], b[1], c[0], c[1], h11, 2.0 * h1, h22,
+            Ball(centres[:, 1], widths[:, 1]),
+        )  # fmt: skip
+        i11, i12, i21, i22 = inverse
+        return Bounds(
+            list(hessian),
+            (np.hypot(q1.least, q2.least).min(), _length(q1, q2)),
+            _length(G1, G2) * reach,
+            (_length(i11, i12), _length(i21, i22)),
+            (_length(o1, o2), _length(e1, e2)),
+        )
+
+    def noise(self, reach: float, bounds: Bounds) -> tuple[float, float]:
+        """Return n0 and n1: computed derivatives of h have errors up to n0 + n1 / r."""
+        tape = self.tapes.tape
+        middles, radii, errors = np.empty((3, BALL * (len(tape.operations) + 1)))
+        low, high = self.around
+        box = np.array([[0.5 * (low + high), 0.5 * reach]])
+        widths, found = np.array([[0.5 * (high - low), 0.5 * reach]]), np.empty((1, 6, 3))
+        rounding_of_boxes(
+            tape, box, widths * (1.0 + 1e-12), middles, radii, errors, np.empty((2, 4)), found
+        )
+        by_u, by_r = bounds.by_q
+        condition = by_u * bounds.along[0] + by_r * bounds.along[1]
+        # Of x, x_u and x_r: the errors of h, and those of q1 and q2 times the slope.
+        of_q = np.linalg.norm(found[0, :3, :2], axis=1)
+        value, around, away = (found[0, :3, 2] + bounds.slope * of_q).tolist()
+        plane = self.basis[:, :2]
+        size = np.abs(plane).max() * np.linalg.cond(plane)
+        own = 64.0 * EPS * (condition**2 * bounds.slope + size) + 2.0 * self.tilt
+        if self.tapes.slope is None:
+            return own + by_u * around + by_r * (value + reach * away), 0.0
+        return own + by_r * away, by_u * around
+
+
+class _Coefficients:
+    """Bounds of the Taylor coefficients of x, y and z over boxes."""
+
+    def __init__(self, bounds: Array) -> None:
+        self._bounds = bounds
+
+    @classmethod
+    def of(cls, tape: Tape, centres: Array, widths: Array) -> _Coefficients:
+        """Return those of a tape."""
+        return cls(bounds_over_boxes(tape, centres, widths, 3))
+
+    def __getitem__(self, k: int) -> list[Ball]:
+        return [Ball(self._bounds[:, 0, k, axis], self._bounds[:, 1, k, axis]) for axis in range(3)]
+
+
+def pole_disc(tape: Tape, domain: Domain, angle: int, end: float, radius: float) -> PoleDisc | None:
+    """Return a disc around a pole of at most some radius; None if the surface is not smooth there.
+
+    Parameter number `angle` runs around the pole, the other one is `end` there.
+    """
+    if not _is_point(tape, domain, angle, end):
+        return None
+    inward = 1.0 if end == domain[1 - angle][0] else -1.0
+    tapes = polar_tapes(tape, angle, end, inward)
+    if tapes is None:
+        return None
+    size = min(radius, tapes.most / WHOLE)
+    pole = Pole.of(tapes, domain[angle], inward if angle == 0 else -inward, size)
+    if pole is None:
+        return None
+    while size >= SMALLEST * radius:
+        disc = _disc(pole, size, np.array([end, inward, float(angle)]))
+        if disc is not None:
+            return disc
+        size *= 0.5
+    return None
+
+
+def _disc(pole: Pole, size: float, place: Array) -> PoleDisc | None:
+    """Return a disc; None if bounds are too wide."""
+    count = RINGS_OF_QUOTIENTS if pole.tapes.slope is None else RINGS
+    whole, last = (pole.bounds(WHOLE * size * 0.5**k) for k in (0, count - 1))
+    unit = size * whole.q[1]
+    beyond = WHOLE * whole.q[0] / whole.q[1]
+    if not beyond >= BEYOND:
+        return None
+    middle = np.array([0.5 * (x.middle.min() + x.middle.max()) for x in last.hessian])
+    if not _is_steady(whole, middle):
+        return None
+    rings = [whole, *(pole.bounds(WHOLE * size * 0.5**k) for k in range(1, count - 1)), last]
+    changes = [x.changes(middle) for x in rings]
+    normal = pole.basis[:, 2]
+    hot = np.concatenate(
+        [*(unit**2 * middle[:, None] * normal), unit * pole.basis[:, 0], unit * pole.basis[:, 1]]
+    )
+    change = unit**2 * np.array(changes)[:, :, None] * np.abs(normal) * (1.0 + 1e-9)
+    noise = unit * np.array(pole.noise(WHOLE * size, whole))
+    cell = _cell(hot, change, noise[0])
+    if cell is None:
+        return None
+    low, high = pole.around
+    u = low + (high - low) * np.arange(SECTORS + 1) / SECTORS
+    jets = jets_of(pole.tapes.tape, u, np.zeros(SECTORS + 1))
+    rows = jets[:, 0 if pole.tapes.slope is None else 2]
+    angles = np.unwrap(np.arctan2(rows[:, 1], rows[:, 0]))
+    sense = math.copysign(1.0, angles[-1] - angles[0])
+    if not (np.diff(sense * angles) > 0.0).all() or abs(np.ptp(angles) - 2.0 * math.pi) > 1e-6:
+        return None
+    frame = np.array(
+        [
+            noise[0], noise[1] / size, size, low, high - low, *place, unit, beyond, *whole.by_q,
+            float(pole.tapes.slope is None), sense,
+        ]
+    )  # fmt: skip
+    table = np.column_stack([sense * angles, np.hypot(rows[:, 0], rows[:, 1])])
+    disc = Disc(hot[None], change, frame, np.ascontiguousarray(pole.basis.T), table)
+    return PoleDisc(size, pole.tapes.tape, disc, cell)
+
+
+def _middles(around: tuple[float, float]) -> Array:
+    """Return the middles of the sectors."""
+    low, high = around
+    return low + (high - low) * (np.arange(SECTORS) + 0.5) / SECTORS
+
+
+def _is_point(tape: Tape, domain: Domain, angle: int, end: float) -> bool:
+    """Say whether a side is one point, at some places."""
+    u = _middles(domain[angle])[:: SECTORS // 16]
+    places = u, np.full_like(u, end)
+    jets = jets_of(tape, *(places if angle == 0 else places[::-1]))
+    slack = SMOOTH * np.abs(jets[:, 2 - angle]).max()
+    return bool(max(np.ptp(jets[:, 0], axis=0).max(), np.abs(jets[:, 1 + angle]).max()) <= slack)
+
+
+def _frame(rows: Array, turned: float) -> Array | None:
+    """Return the rows of q1, q2 and h for the directions x_r (k, 3) around a pole.
+
+    The first two make them as near to unit vectors as they can be. None if there are no such rows.
+    """
+    normal = turned * np.cross(np.roll(rows, -1, axis=0), rows).sum(axis=0)
+    size = np.linalg.norm(normal)
+    if not size > 0.0:
+        return None
+    normal /= size
+    first = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    first /= np.linalg.norm(first)
+    plane = np.stack([first, np.cross(normal, first)])
+    flat = rows @ plane.T
+    sizes, axes = np.linalg.eigh(flat.T @ flat / len(flat))
+    if not sizes[0] > SMOOTH * sizes[1]:
+        return None
+    rounded = axes @ np.diag(1.0 / np.sqrt(2.0 * sizes)) @ axes.T
+    return np.vstack([rounded @ plane, normal])
+
+
+def _moved(tapes: PolarTapes, frame: Array, shift: Array) -> PolarTapes | None:
+    """Return tapes after an affine map."""
+    if tapes.slope is None:
+        tape = mapped_spline(tapes.tape, frame)
+        return None if tape is None else replace(tapes, tape=tape)
+    tape = moved_tape(tapes.tape, frame, shift, None)
+    slope = moved_tape(tapes.slope, frame, np.zeros(3), None)
+    return None if tape is None or slope is None else replace(tapes, tape=tape, slope=slope)
+
+
+def _length(x: Ball, y: Ball) -> float:
+    """Return the largest length of vectors x, y."""
+    return float(np.hypot(x.largest, y.largest).max())
+
+
+def _is_steady(bounds: Bounds, middle: Array) -> bool:
+    """Say whether the Hessian is near another one (3,), which is not singular."""
+    y11, y12, y22 = middle.tolist()
+    hessian = np.array([[y11, y12], [y12, y22]])
+    if not np.isfinite(hessian).all() or np.linalg.det(hessian) == 0.0:
+        return False
+    a, b, c = bounds.changes(middle).tolist()
+    return bool((np.abs(np.linalg.inv(hessian)) @ np.array([a + b, b + c])).max() < CHANGE)
+
+
+def _cell(hot: Array, changes: Array, noise: float) -> Cells | None:
+    """Return a disc as a cell with a cone of normals; None if that is wide."""
+    if not noise < math.inf:
+        return None
+    cell = Cells.new(1)
+    cell.hot[0, :15] = hot
+    a, b, c = np.linalg.norm(changes[1], axis=1)  # in the disc itself
+    pad = noise + 2.0**-48 * np.abs(hot).max()
+    cell.hot[0, REST_S], cell.hot[0, REST_T] = a + b + pad, b + c + pad
+    write_one_cone(cell)
+    return cell if cell.cone[0, 3] < WIDE else None

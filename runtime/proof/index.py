@@ -1,0 +1,462 @@
+"""All points of a surface with given normals, each exactly once, with a proof.
+
+A surface whose coordinates are a tape (`runtime.tape.kernels.points`) has bounds of its
+derivatives over boxes of its parameters. An index cuts its domain into cells with a cone of normals
+each. For a normal, cells are excluded by bounds, or have one point by a contraction, or are cut.
+What stays open lies in small boxes, which are listed.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.aliases import Array
+from ..base.threads import over_ranges
+from ..domain.domain import Boundary, Domain
+from ..search.index import listed, ordered
+from ..search.kernels.lists import NUMBER, Lists
+from ..search.kernels.pieces import CHORD, CONE, EVERYTHING, WIDTH, Pieces
+from ..search.kernels.search import CELLS as KIND
+from ..search.kernels.search import Found as Pairs
+from ..search.kernels.search import Memory, search
+from ..tape.kernels.points import LANES, Tape
+from .discs import PoleDisc, pole_disc
+from .kernels.answers import BORDER, BOX, KINDS, Answers, merge_places
+from .kernels.cells import OPEN, REACH, WIDE, Cells, Work, cut_cells
+from .kernels.discs import decide_discs
+from .kernels.places import Boxes, decide_normals
+from .kernels.search import PLACE, Found, Index, Tiles, evaluate_pairs
+from .kernels.sorting import Sorted, count_places, order_places, put_places, start_normals
+from .lines import lines_of
+
+__all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
+
+
+# How often irregular cells are cut into four, and cells without a narrow cone of normals.
+LEVELS = (2, 5)
+CELLS = (64, 64)
+# Cells along u and v that are looked at first, whether there are normals.
+PROBES = 4
+# Base cells, normals and hard normals that are worked on at a time.
+CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
+# Room for cells, for pairs of normals and cells, and for what is found at a time, in the beginning.
+CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
+# Cells without a cone of normals are in all bins: they are this part of the domain at most.
+MOST_OPEN = 0.25
+
+
+class Undecided(NamedTuple):
+    """Boxes of parameters in which the points with a normal are not known.
+
+    numbers (k,) int64 are those of normals; boxes (k, 4) are u₀, u₁, v₀, v₁; kinds (k,) int64 are
+    positions in `KINDS`; border (k,) bool says whether a box touches an open side of the domain.
+    """
+
+    numbers: NDArray[np.int64]
+    boxes: NDArray[np.float64]
+    kinds: NDArray[np.int64]
+    border: NDArray[np.bool_]
+
+
+class ProvedPlaces(NamedTuple):
+    """The points with given normals, in the order of the normals, then of u and v.
+
+    numbers (k,) int64 are those of normals. A row of places (k, 6) holds u, v, how far the exact
+    ones may be from them, each, a number with the sign of the Gaussian curvature, and 1 if the
+    exact parameters may be outside of the domain, by at most the radius, else 0. All other points
+    with these normals are in the boxes of `undecided`, or in the boxes of the index that are
+    `unbounded`.
+    """
+
+    numbers: NDArray[np.int64]
+    places: NDArray[np.float64]
+    undecided: Undecided
+
+    @property
+    def uv(self) -> NDArray[np.float64]:
+        """The parameters (k, 2)."""
+        return self.places[:, :2]
+
+    @property
+    def radius(self) -> NDArray[np.float64]:
+        """How far the exact parameters may be from them (k, 2)."""
+        return self.places[:, 2:4]
+
+    @property
+    def sign(self) -> NDArray[np.int8]:
+        """The signs (k,) of the Gaussian curvature."""
+        return np.where(self.places[:, 4] > 0.0, 1, -1).astype(np.int8)
+
+    @property
+    def border(self) -> NDArray[np.bool_]:
+        """Whether the exact parameters may be outside of the domain (k,)."""
+        return self.places[:, 5] > 0.0
+
+
+class Places(NamedTuple):
+    """Places in no order: rows (k, 6), and the numbers (k,) of their normals."""
+
+    rows: NDArray[np.float64]
+    numbers: NDArray[np.int64]
+
+
+class Rooms(NamedTuple):
+    """Work arrays of one thread."""
+
+    work: Work
+    memory: Memory
+    tiles: Tiles
+    boxes: Boxes
+    pairs: list[Pairs]
+    found: list[Found]
+    answers: list[Answers]
+
+
+@dataclass(frozen=True, eq=False)
+class ProvedIndex:
+    """The index of a surface: immutable, and shared by threads.
+
+    `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v, 0 if there is none. A mirrored
+    parameter has no period here: normals change their sides at its ends. Boxes (m, 4) of parameters
+    in `unbounded`, u₀, u₁, v₀, v₁, are where nothing is known: derivatives have no bounds there.
+    """
+
+    tape: Tape
+    domain: NDArray[np.float64]
+    index: Index
+    pieces: Pieces
+    lists: Lists
+    discs: tuple[PoleDisc, ...]
+    unbounded: NDArray[np.float64]
+    _rooms: deque[Rooms] = field(default_factory=deque, repr=False)
+
+    @classmethod
+    def of(
+        cls,
+        tape: Tape,
+        domain: Domain,
+        boundary: Boundary,
+        cells: tuple[int, int] = CELLS,
+        threads: int | None = None,
+    ) -> ProvedIndex | None:
+        """Return the index of a surface; None if it has no normals, as a line has none.
+
+        Parameters
+        ----------
+        tape : Tape
+            The coordinates as functions of the parameters.
+        domain : ((u0, u1), (v0, v1)) of float
+            The rectangle of the parameters.
+        boundary : pair of pairs of str
+            The boundary conditions of u and of v, as those of `Surface`.
+        cells : (int, int), default (64, 64)
+            How many cells there are along u and v before they are cut; the answers do not depend
+            on it, but for what is undecided.
+        threads : int, optional
+            The number of threads. By default one for each core.
+
+        Returns
+        -------
+        ProvedIndex or None
+            The index; None if more than a share MOST_OPEN of the cells has no cone of normals.
+
+        """
+        periods = (
+            high - low if ends[0] == "periodic" else 0.0
+            for (low, high), ends in zip(domain, boundary, strict=True)
+        )
+        box = np.array([*domain[0], *domain[1], *periods])
+        discs, inside, poles = _discs(tape, domain, boundary, cells)
+        lines = [lines_of(tape, k, inside[k], cells[k]) for k in (0, 1)]
+        if _has_no_normals(tape, lines):
+            return None
+        cut = _cut(tape, lines, LEVELS, threads)
+        blind = cut.noise[:, REACH] == 0.0
+        u, v, h_u, h_v = cut.place[blind].T
+        unbounded = np.vstack([poles, np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])])
+        cut = Cells(*(x[~blind] for x in cut))
+        sizes = cut.place[:, 2] * cut.place[:, 3]
+        if sizes[cut.cone[:, 3] >= OPEN].sum() > MOST_OPEN * sizes.sum():
+            return None
+        both = Cells(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
+        index = Index(both, len(cut.place))
+        pieces = _pieces_of(index)
+        return cls(tape, box, index, pieces, listed(pieces.cones), discs, unbounded)
+
+    def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
+        """Return all points with unit normals (S, 3).
+
+        The answer for a normal depends neither on the other ones nor on the number of threads.
+        """
+        normals = np.ascontiguousarray(normals, np.float64)
+        parts, hard = self._search(normals, threads)
+        answers: list[Answers] = []
+        if len(hard) > 0:
+            answers = self._decide(normals, hard, threads)
+            slow, unknown = self._merged(answers, parts, len(normals))
+            parts.append(slow)
+            answers.extend(unknown)
+        return ProvedPlaces(*_sorted(parts, len(normals)), _undecided(answers))
+
+    def _search(
+        self, normals: NDArray[np.float64], threads: int | None
+    ) -> tuple[list[Places], NDArray[np.int64]]:
+        """Return what is found at once, and hard pairs (k, 2) of normals and cells."""
+        order = ordered(normals, self.lists, threads)
+        nothing = Places(np.empty((0, PLACE)), np.empty(0, np.int64)), np.empty((0, 2), np.int64)
+
+        def work(first: int, last: int) -> list[tuple[Places, NDArray[np.int64]]]:
+            numbers, count, parts, start = order[first:last] & NUMBER, last - first, [], 0
+            # Normals of a range side by side, since those of a bin are read for each of its cells.
+            some = np.take(normals, numbers, axis=0)
+            keys = (order[first:last] & ~NUMBER) | np.arange(count)
+            with self._room() as rooms:
+                while start < count:
+                    start, needed = search(
+                        KIND, self.pieces, self.lists, some, keys, start, count, rooms.memory,
+                        rooms.pairs[0],
+                    )  # fmt: skip
+                    parts.append(self._evaluated(some, numbers, rooms))
+                    if needed > len(rooms.pairs[0].certain):
+                        rooms.pairs[0] = Pairs.new(needed)
+            return parts
+
+        ranges = over_ranges(work, len(order), NORMALS_AT_A_TIME, threads)
+        places, hard = zip(nothing, *(x for parts in ranges for x in parts), strict=True)
+        return list(places), np.concatenate(hard)
+
+    def _evaluated(
+        self, normals: NDArray[np.float64], numbers: NDArray[np.int64], rooms: Rooms
+    ) -> tuple[Places, NDArray[np.int64]]:
+        """Return what is found of the pairs of normals and cells in a room; see `_search`.
+
+        `numbers` (k,) are those of the normals (k, 3) in the query.
+        """
+        certain, undecided = rooms.pairs[0].counts
+        keys = rooms.pairs[0].certain[:certain]
+        while not evaluate_pairs(
+            self.index.cells, self.tape, rooms.work, normals, keys, rooms.tiles, rooms.found[0]
+        ):
+            room = rooms.found[0]
+            rooms.found[0] = Found.new(2 * len(room.numbers), 2 * len(room.hard))
+        found = rooms.found[0]
+        places, hard = found.counts
+        others = rooms.pairs[0].undecided[:undecided]
+        left = np.concatenate(
+            [found.hard[:hard], np.stack([others >> 32, others & NUMBER], axis=1)]
+        )
+        left[:, 0] = numbers[left[:, 0]]
+        return Places(found.places[:places].copy(), numbers[found.numbers[:places]]), left
+
+    def _decide(
+        self, normals: NDArray[np.float64], hard: NDArray[np.int64], threads: int | None
+    ) -> list[Answers]:
+        """Return what is found in hard pairs of normals and cells."""
+        hard = hard[np.lexsort((hard[:, 1], hard[:, 0]))]
+        in_discs = hard[hard[:, 1] >= self.index.discs]
+        hard = hard[hard[:, 1] < self.index.discs]
+        which, groups = np.unique(hard[:, 0], return_index=True)
+        groups = np.append(groups, len(hard))
+
+        def decide(room: Answers, rooms: Rooms, first: int, last: int) -> np.int64:
+            return decide_normals(
+                self.tape, rooms.work, self.index, normals, hard, groups, first, last,
+                self.domain, rooms.boxes, room,
+            )  # fmt: skip
+
+        answers = self._answered(decide, len(which), threads)
+        for k, pole in enumerate(self.discs):
+            numbers = in_discs[in_discs[:, 1] == self.index.discs + k, 0]
+            work = Work.new(len(pole.tape.operations))
+
+            def of_disc(
+                room: Answers, _: Rooms, first: int, last: int, pole: PoleDisc = pole,
+                work: Work = work, numbers: NDArray[np.int64] = numbers,
+            ) -> np.int64:  # fmt: skip
+                return decide_discs(
+                    pole.tape, work, pole.disc, normals, numbers, first, last, self.domain, room
+                )
+
+            answers += self._answered(of_disc, len(numbers), 1)
+        return answers
+
+    def _merged(
+        self,
+        answers: list[Answers],
+        parts: list[Places],
+        count: int,
+    ) -> tuple[Places, list[Answers]]:
+        """Return the places of answers, each once, and boxes that may have two.
+
+        `parts` are those that were found at once; there are `count` normals.
+        """
+        slow = np.concatenate([x.places for x in answers])
+        of_slow = np.concatenate([x.numbers for x in answers])
+        order = np.lexsort((slow[:, 1], slow[:, 0], of_slow))
+        slow, of_slow = slow[order], of_slow[order]
+        which, groups = np.unique(of_slow, return_index=True)
+        groups = np.append(groups, len(slow))
+        asked = np.zeros(count, np.bool_)
+        asked[which] = True
+        near = [Places(x.rows[asked[x.numbers]], x.numbers[asked[x.numbers]]) for x in parts]
+        fast, of_fast = (np.concatenate(x) for x in zip(*near, strict=True))
+        order = np.argsort(of_fast, kind="stable")
+        fast, of_fast = fast[order], of_fast[order]
+        starts = np.append(np.searchsorted(of_fast, which), len(fast))
+        keep = np.zeros(len(slow), np.bool_)
+
+        def merge(room: Answers, _: Rooms, first: int, last: int) -> np.int64:
+            return merge_places(
+                slow, of_slow, groups, first, last, fast, starts, self.domain, keep, room
+            )
+
+        unknown = self._answered(merge, len(which), 1)
+        columns = np.append(np.arange(BOX), BORDER)
+        return Places(np.take(slow[keep], columns, axis=1), of_slow[keep]), unknown
+
+    def _answered(
+        self, step: Callable[[Answers, Rooms, int, int], np.int64], count: int, threads: int | None
+    ) -> list[Answers]:
+        """Return the answers of a step that takes a range, and returns how far it had room."""
+
+        def work(first: int, last: int) -> list[Answers]:
+            answers = []
+            with self._room() as rooms:
+                while first < last:
+                    room = rooms.answers[0]
+                    after = int(step(room, rooms, first, last))
+                    if after == first:
+                        rooms.answers[0] = Answers.new(2 * len(room.kinds))
+                    else:
+                        answers.append(_taken(room))
+                    first = after
+            return answers
+
+        return [x for part in over_ranges(work, count, HARD_AT_A_TIME, threads) for x in part]
+
+    @contextmanager
+    def _room(self) -> Iterator[Rooms]:
+        """Yield work arrays that no other thread uses."""
+        try:
+            rooms = self._rooms.pop()
+        except IndexError:
+            rooms = Rooms(
+                Work.new(len(self.tape.operations)),
+                Memory.new(int(np.diff(self.lists.starts).max())), Tiles.new(),
+                Boxes.new(len(self.index.cells.place)), [Pairs.new(PAIRS)],
+                [Found.new(ROOM, ROOM)], [Answers.new(ROOM)],
+            )  # fmt: skip
+        yield rooms
+        self._rooms.append(rooms)
+
+
+def _discs(
+    tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]
+) -> tuple[tuple[PoleDisc, ...], Array, Array]:
+    """Return discs around poles, the rest of the domain (2, 2), and poles without a disc.
+
+    These are boxes (k, 4). Open ends that are a smooth pole have discs, too.
+    """
+    discs, inside, unknown = [], np.array(domain, dtype=np.float64), []
+    for axis, ends in enumerate(boundary):
+        low, high = domain[axis]
+        row = (high - low) / cells[axis]
+        for k, end in enumerate(ends):
+            if end not in ("pole", "open") or boundary[1 - axis][0] != "periodic":
+                continue
+            disc = pole_disc(tape, domain, 1 - axis, domain[axis][k], row)
+            if disc is not None:
+                discs.append(disc)
+                inside[axis, k] += disc.radius if k == 0 else -disc.radius
+            elif end == "pole":
+                sides = [list(x) for x in domain]
+                sides[axis] = [domain[axis][k]] * 2
+                unknown.append([*sides[0], *sides[1]])
+    return tuple(discs), inside, np.array(unknown).reshape(-1, 4)
+
+
+def _has_no_normals(tape: Tape, lines: list[NDArray[np.float64]]) -> bool:
+    """Return whether cells have no cones of normals, as those of a line: seen at a few small ones.
+
+    Otherwise all cells of a line are cut as often as can be, which takes seconds.
+    """
+    few = [np.unique(np.linspace(0, len(x) - 2, PROBES).round()).astype(int) for x in lines]
+    ends = [
+        np.stack([x[k], x[k] + (x[k + 1] - x[k]) / 2 ** LEVELS[1]])
+        for x, k in zip(lines, few, strict=True)
+    ]
+    cells = _cut(tape, [x.T.ravel() for x in ends], (0, 0), 1)
+    return bool(((cells.cone[:, 3] >= OPEN) & (cells.noise[:, REACH] > 0.0)).all())
+
+
+def _cut(
+    tape: Tape, lines: list[NDArray[np.float64]], most: tuple[int, int], threads: int | None
+) -> Cells:
+    """Return the cells of a grid, cut as often as `LEVELS` say."""
+    levels, deepest = np.array(most), 3 * max(most) + 2
+    count = (len(lines[0]) - 1) * (len(lines[1]) - 1)
+
+    def work(first: int, last: int) -> list[Cells]:
+        state = np.array([first, 0, 0])
+        stack, tile, room = np.empty((LANES * deepest, 5)), Cells.new(LANES), Cells.new(CELL_ROOM)
+        arrays, parts = Work.new(len(tape.operations)), []
+        while state[0] < last or state[1] > 0:
+            cut_cells(tape, arrays, lines[0], lines[1], state, last, levels, stack, tile, room)
+            parts.append(Cells(*(x[: state[2]].copy() for x in room)))
+        return parts
+
+    parts = [x for y in over_ranges(work, count, CELLS_AT_A_TIME, threads) for x in y]
+    return Cells(*(np.concatenate(x) for x in zip(*parts, strict=True)))
+
+
+def _pieces_of(index: Index) -> Pieces:
+    """Return the cells as pieces of a search; discs and cells without a narrow cone are wide."""
+    cells = index.cells
+    cones = np.zeros((len(cells.cone), CONE))
+    cones[:, : CHORD + 1], cones[:, WIDTH] = cells.cone, 1.0
+    cones[cells.cone[:, CHORD] >= WIDE, WIDTH] = EVERYTHING
+    cones[index.discs :, WIDTH] = EVERYTHING
+    return Pieces(cones, cells.hot)
+
+
+def _taken(room: Answers) -> Answers:
+    """Return a copy of the answers in a room."""
+    places, boxes = room.counts
+    return Answers(
+        room.places[:places].copy(), room.numbers[:places].copy(), room.open_boxes[:boxes].copy(),
+        room.kinds[:boxes].copy(), room.open_numbers[:boxes].copy(), room.counts.copy(),
+    )  # fmt: skip
+
+
+def _sorted(parts: list[Places], count: int) -> Sorted:
+    """Return places in the order of `count` normals."""
+    starts = np.zeros(count + 1, np.int64)
+    room = Sorted.new(sum(len(x.numbers) for x in parts))
+    for part in parts:
+        count_places(part.numbers, starts)
+    start_normals(starts)
+    for part in parts:
+        put_places(part.rows, part.numbers, starts, room)
+    order_places(room)
+    return room
+
+
+def _undecided(answers: list[Answers]) -> Undecided:
+    """Return the undecided boxes of answers, in the order of their normals."""
+    if not answers:
+        none = np.empty(0, np.int64)
+        return Undecided(none, np.empty((0, 4)), none, np.empty(0, np.bool_))
+    numbers = np.concatenate([x.open_numbers for x in answers])
+    boxes, kinds = (
+        np.concatenate(x) for x in zip(*((y.open_boxes, y.kinds) for y in answers), strict=True)
+    )
+    order = np.lexsort((boxes[:, 2], boxes[:, 0], numbers))
+    boxes = boxes[order]
+    return Undecided(numbers[order], boxes[:, :4].copy(), kinds[order], boxes[:, 4] > 0.0)

@@ -1,0 +1,475 @@
+"""Cells of the parameters of a surface, with proved bounds of its derivatives.
+
+Each cell has parameters s and t of its own, which are −1 … 1 on it: u = u₀ + h_u s, v = v₀ + h_v t.
+Derivatives are those by s and t, so that all of a cell have one unit, and those of n·x for a unit
+normal n are in that unit, too. `symbolic/proved.py` says what the bounds are for.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....generated.proved import contraction, normal_ordinates, remainders
+from ....generated.vectors import Patch, Vector
+from ...directions.kernels.vectors import dot, length, set_row
+from ...machine_code.jit import inline, jit, loop
+from ...search.kernels.pieces import REST_S, REST_T
+from ...tape.kernels.balls import BALL, evaluate_boxes
+from ...tape.kernels.points import LANES, POINT, UU, UV, VV, U, V, evaluate_points
+from ...tape.kernels.rounding import rounding_of_points
+
+__all__ = [
+    "EPS",
+    "FIRST_S",
+    "FIRST_T",
+    "OPEN",
+    "REACH",
+    "SECOND",
+    "WIDE",
+    "Cells",
+    "cut_cells",
+    "inverse_of",
+    "linear_forms_of",
+    "patch_of",
+    "thirds_of",
+    "write_cells",
+    "write_one_cone",
+]  # fmt: skip
+
+# Twice the unit of rounding.
+EPS = 2.0**-52
+# Bounds hold beyond the sides of a cell, so that neighbours share the points near a common side.
+INFLATED = 1.0 + 1.0 / 16.0
+# The columns of `hot`: five vectors of the patch, then what it leaves out.
+HOT = 17
+# The columns of `noise`: of derivatives by s and t, of second derivatives; then how far bounds go.
+FIRST_S, FIRST_T, SECOND, REACH = range(4)
+# The chord of a cone: from here on its half angle is too wide to tell n from −n; no bound at all.
+WIDE, OPEN = 1.3, 2.1
+# A normal that is a bound of the cell has a smaller contraction than this in a regular cell.
+REGULAR = 0.8
+# A Hessian whose determinant is smaller than this, relative to its entries, is singular.
+FLAT = 1e-9
+
+
+class Cells(NamedTuple):
+    """Bounds over cells; all arrays have one row for each.
+
+    place (k, 4): u₀, v₀, h_u, h_v.
+    hot (k, 17): the vectors a, b, c, d, e of the patch that osculates at the centre, and bounds of
+    what it leaves out of x_s and x_t.
+    thirds (k, 24): x_sss, x_sst, x_stt, x_ttt, then how far they may be from these.
+    noise (k, 4): the rounding of x_s and x_t, and of second derivatives; the largest |s|, |t| for
+    which all bounds hold, 0 if there are none.
+    cone (k, 4): the axis of a cone that holds the normals of the cell, and its chord, the distance
+    of its border on the sphere from the axis.
+    """
+
+    place: NDArray[np.float64]
+    hot: NDArray[np.float64]
+    thirds: NDArray[np.float64]
+    noise: NDArray[np.float64]
+    cone: NDArray[np.float64]
+
+    @classmethod
+    def new(cls, count: int) -> Cells:
+        """Return room for some cells."""
+        return cls(*(np.zeros((count, columns)) for columns in (4, HOT, 24, 4, 4)))
+
+
+class Work(NamedTuple):
+    """Work arrays for tapes: registers of points and of boxes, and the places of a tile of them."""
+
+    registers: NDArray[np.float64]
+    middles: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    errors: NDArray[np.float64]
+    ends: NDArray[np.float64]
+    centres: NDArray[np.float64]
+    half_widths: NDArray[np.float64]
+    u: NDArray[np.float64]
+    v: NDArray[np.float64]
+    levels: NDArray[np.float64]
+
+    @classmethod
+    def new(cls, rows: int) -> Work:
+        """Return work arrays for tapes of some rows."""
+        middles, radii, errors = np.zeros((3, BALL * (rows + 1)))
+        centres, half_widths = np.zeros((2, LANES, 2))
+        u, v, levels = np.zeros((3, LANES))
+        registers, ends = np.zeros(POINT * rows), np.zeros((2, 4))
+        return cls(registers, middles, radii, errors, ends, centres, half_widths, u, v, levels)
+
+
+@inline
+def gap_of(u, v, h_u, h_v):
+    """Return how far the sides of neighbouring cells may be apart by rounding."""
+    return 8.0 * EPS * (1.0 + max(abs(u) / h_u, abs(v) / h_v))
+
+
+@inline
+def patch_of(hot, j):
+    """Return the patch that osculates the surface at the centre of cell j."""
+    return Patch(
+        Vector(hot[j, 0], hot[j, 1], hot[j, 2]),
+        Vector(hot[j, 3], hot[j, 4], hot[j, 5]),
+        Vector(hot[j, 6], hot[j, 7], hot[j, 8]),
+        Vector(hot[j, 9], hot[j, 10], hot[j, 11]),
+        Vector(hot[j, 12], hot[j, 13], hot[j, 14]),
+        Vector(0.0, 0.0, 0.0),
+    )
+
+
+@inline
+def linear_forms_of(patch, n):
+    """Return A, B, C, P, Q of a patch and a normal."""
+    return dot(patch.a, n), dot(patch.b, n), dot(patch.c, n), dot(patch.d, n), dot(patch.e, n)
+
+
+@inline
+def thirds_of(thirds, j, n):
+    """Return the third derivatives of n·x and how far they may be from these."""
+    x, y, z = abs(n.x), abs(n.y), abs(n.z)
+    return (
+        thirds[j, 0] * n.x + thirds[j, 1] * n.y + thirds[j, 2] * n.z,
+        thirds[j, 3] * n.x + thirds[j, 4] * n.y + thirds[j, 5] * n.z,
+        thirds[j, 6] * n.x + thirds[j, 7] * n.y + thirds[j, 8] * n.z,
+        thirds[j, 9] * n.x + thirds[j, 10] * n.y + thirds[j, 11] * n.z,
+        thirds[j, 12] * x + thirds[j, 13] * y + thirds[j, 14] * z,
+        thirds[j, 15] * x + thirds[j, 16] * y + thirds[j, 17] * z,
+        thirds[j, 18] * x + thirds[j, 19] * y + thirds[j, 20] * z,
+        thirds[j, 21] * x + thirds[j, 22] * y + thirds[j, 23] * z,
+    )
+
+
+@inline
+def inverse_of(a, b, c, t0, t1, t2, t3, r0, r1, r2, r3, second):
+    """Return the inverse of the Hessian, and how far the product of both may be from 1.
+
+    This is a bound for the change of the Hessian over the cell, and one for rounding.
+    """
+    y11, y12, y22, q1, q2 = contraction(a, b, c, t0, t1, t2, t3, r0, r1, r2, r3)
+    i11, i12, i22 = abs(y11), abs(y12), abs(y22)
+    left, right = abs(a) + abs(b), abs(b) + abs(c)
+    most = max(i11 + i12, i12 + i22)
+    noise = 2.0 * second * most + 8.0 * EPS * max(
+        i11 * left + i12 * right, i12 * left + i22 * right
+    )
+    return y11, y12, y22, max(q1, q2) * (1.0 + 16.0 * EPS), noise
+
+
+@loop
+def write_cells(tape, work, reach, cells, count):
+    """Write bounds over the first `count` cells, at most LANES, whose places are written.
+
+    They go as far as `reach`, or else to the sides; a cell without bounds has the reach 0.
+    """
+    write_bounds(tape, work, reach, cells, count)
+    for j in range(count):
+        if cells.noise[j, REACH] == 0.0:
+            write_bounds(tape, work, 1.0, cells, count)
+            break
+    for j in range(count):
+        if cells.noise[j, REACH] == 0.0:
+            cells.cone[j, 0], cells.cone[j, 1], cells.cone[j, 2], cells.cone[j, 3] = (
+                0.0,
+                0.0,
+                1.0,
+                OPEN,
+            )
+            cells.hot[j, REST_S] = cells.hot[j, REST_T] = math.inf
+        else:
+            write_rest(cells, j)
+            write_cone(cells, j)
+
+
+@loop
+def write_rest(cells, j):
+    """Write what the patch of cell j leaves out of x_s and x_t."""
+    hot, noise, place = cells.hot, cells.noise, cells.place
+    patch = patch_of(hot, j)
+    # Neighbouring cells meet up to the rounding of their sides.
+    gap = gap_of(place[j, 0], place[j, 1], place[j, 2], place[j, 3])
+    t0, t1, t2, t3 = third_sizes(cells.thirds, j)
+    rest_s, rest_t = remainders(t0, t1, t2, t3)
+    a, b, c = length(patch.a), length(patch.b), length(patch.c)
+    second = 2.0 * noise[j, SECOND]
+    hot[j, REST_S] = (
+        rest_s * (1.0 + 4.0 * gap) + noise[j, FIRST_S] + second + gap * (a + b + length(patch.d))
+    )
+    hot[j, REST_T] = (
+        rest_t * (1.0 + 4.0 * gap) + noise[j, FIRST_T] + second + gap * (b + c + length(patch.e))
+    )
+
+
+@inline
+def third_sizes(thirds, j):
+    """Return bounds of the lengths of x_sss, x_sst, x_stt, x_ttt."""
+    return (
+        third_size(thirds, j, 0),
+        third_size(thirds, j, 3),
+        third_size(thirds, j, 6),
+        third_size(thirds, j, 9),
+    )
+
+
+@inline
+def third_size(thirds, j, k):
+    """Return the length of the largest components of a third derivative."""
+    return length(
+        Vector(
+            abs(thirds[j, k]) + thirds[j, 12 + k],
+            abs(thirds[j, k + 1]) + thirds[j, 13 + k],
+            abs(thirds[j, k + 2]) + thirds[j, 14 + k],
+        )
+    ) * (1.0 + 4.0 * EPS)
+
+
+@loop
+def write_bounds(tape, work, reach, cells, count):
+    """Write derivatives at centres, bounds as far as `reach`, and rounding.
+
+    Cells without bounds get the reach 0. Cells that have some stay as they are if `reach` is 1.
+    """
+    place = cells.place
+    # Where bounds end at the sides of cells, derivatives may jump there.
+    wide = reach + 8.0 * EPS if reach > 1.0 else 1.0 - 8.0 * EPS
+    for j in range(count):
+        for k in range(2):
+            work.centres[j, k], work.half_widths[j, k] = place[j, k], wide * place[j, 2 + k]
+        work.u[j], work.v[j] = place[j, 0], place[j, 1]
+    evaluate_points(tape, work.u, work.v, count, work.registers)
+    for j in range(count):
+        if reach > 1.0 or cells.noise[j, REACH] == 0.0:
+            write_patch(tape, work.registers, cells, j)
+    evaluate_boxes(
+        tape, 3, work.centres, work.half_widths, count, work.middles, work.radii, work.ends
+    )
+    for j in range(count):
+        if reach > 1.0 or cells.noise[j, REACH] == 0.0:
+            write_thirds(tape, work, cells, j)
+    rounding_of_points(
+        tape,
+        work.centres,
+        work.half_widths,
+        count,
+        work.middles,
+        work.radii,
+        work.errors,
+        work.ends,
+    )
+    for j in range(count):
+        if reach > 1.0 or cells.noise[j, REACH] == 0.0:
+            write_noise(tape, work.errors, reach, cells, j)
+
+
+@loop
+def write_patch(tape, registers, cells, j):
+    """Write the derivatives at the centre of cell j, lane j of registers."""
+    hot, h_u, h_v = cells.hot, cells.place[j, 2], cells.place[j, 3]
+    for x in range(3):
+        at = np.uint64(POINT * tape.outputs[x] + j)
+        hot[j, x] = 2.0 * h_u * h_u * registers[at + UU]
+        hot[j, 3 + x] = h_u * h_v * registers[at + UV]
+        hot[j, 6 + x] = 2.0 * h_v * h_v * registers[at + VV]
+        hot[j, 9 + x] = h_u * registers[at + U]
+        hot[j, 12 + x] = h_v * registers[at + V]
+
+
+@loop
+def write_thirds(tape, work, cells, j):
+    """Write the third derivatives in cell j, lane j of registers."""
+    h_u, h_v = cells.place[j, 2], cells.place[j, 3]
+    for k in range(4):
+        scale = h_u ** (3 - k) * h_v**k * (6.0 if k == 0 or k == 3 else 2.0)
+        for x in range(3):
+            at = np.uint64(BALL * tape.outputs[x] + (6 + k) * LANES + j)
+            middle = scale * work.middles[at]
+            cells.thirds[j, 3 * k + x] = middle
+            cells.thirds[j, 12 + 3 * k + x] = scale * work.radii[at] * (
+                1.0 + 8.0 * EPS
+            ) + 8.0 * EPS * abs(middle)
+
+
+@loop
+def write_noise(tape, errors, reach, cells, j):
+    """Write the rounding of derivatives, their scaling and products in cell j, lane j of errors."""
+    hot, noise = cells.hot, cells.noise
+    h_u, h_v = cells.place[j, 2], cells.place[j, 3]
+    first_s = first_t = second = 0.0
+    t0, t1, t2, t3 = third_sizes(cells.thirds, j)
+    for x in range(3):
+        at = np.uint64(BALL * tape.outputs[x] + j)
+        first_s += h_u * errors[at + U] + 4.0 * EPS * (
+            abs(hot[j, 9 + x]) + abs(hot[j, x]) + abs(hot[j, 3 + x])
+        )
+        first_t += h_v * errors[at + V] + 4.0 * EPS * (
+            abs(hot[j, 12 + x]) + abs(hot[j, 3 + x]) + abs(hot[j, 6 + x])
+        )
+        second += max(
+            2.0 * h_u * h_u * errors[at + UU] + 4.0 * EPS * abs(hot[j, x]),
+            h_u * h_v * errors[at + UV] + 4.0 * EPS * abs(hot[j, 3 + x]),
+            2.0 * h_v * h_v * errors[at + VV] + 4.0 * EPS * abs(hot[j, 6 + x]),
+        )
+    # The derivatives themselves change over the cell.
+    noise[j, FIRST_S] = first_s + 8.0 * EPS * (t0 + t1 + t2)
+    noise[j, FIRST_T] = first_t + 8.0 * EPS * (t1 + t2 + t3)
+    noise[j, SECOND] = second + 8.0 * EPS * (t0 + t1 + t2 + t3)
+    total = noise[j, FIRST_S] + noise[j, FIRST_T] + noise[j, SECOND] + t0 + t1 + t2 + t3
+    for x in range(15):
+        total += abs(hot[j, x])
+    noise[j, REACH] = reach if math.isfinite(total) else 0.0
+
+
+@inline
+def normal_error(patch, rest_s, rest_t):
+    """Return a bound of what a patch leaves out of x_s × x_t."""
+    along = length(patch.d) + length(patch.a) + length(patch.b)
+    across = length(patch.e) + length(patch.b) + length(patch.c)
+    return rest_s * (across + rest_t) + rest_t * along + 16.0 * EPS * along * across
+
+
+@loop
+def side_of(patch, rest_s, rest_t, n):
+    """Return 1 if all normals of a cell have positive products with n, −1 if negative, else 0."""
+    ordinates = normal_ordinates(patch)
+    error = normal_error(patch, rest_s, rest_t)
+    least, most = math.inf, -math.inf
+    for k in range(9):
+        height = dot(ordinates[k], n)
+        least, most = min(least, height), max(most, height)
+    return 1 if least > error else -1 if most < -error else 0
+
+
+@loop
+def write_cone(cells, j):
+    """Write the cone of the normals of cell j: that of Bernstein ordinates, each with an error."""
+    hot, cone = cells.hot, cells.cone
+    patch = patch_of(hot, j)
+    ordinates = normal_ordinates(patch)
+    axis = ordinates[4]
+    size = length(axis)
+    cone[j, 3] = OPEN
+    if size == 0.0:
+        set_row(cone, j, Vector(0.0, 0.0, 1.0))
+        return
+    axis = Vector(axis.x / size, axis.y / size, axis.z / size)
+    set_row(cone, j, axis)
+    error = normal_error(patch, hot[j, REST_S], hot[j, REST_T])
+    tangent = 0.0
+    for k in range(9):
+        height = dot(ordinates[k], axis)
+        if not height > error:
+            return
+        off = Vector(
+            ordinates[k].x - height * axis.x,
+            ordinates[k].y - height * axis.y,
+            ordinates[k].z - height * axis.z,
+        )
+        tangent = max(tangent, (length(off) + error) / (height - error))
+    cosine = 1.0 / math.sqrt(1.0 + tangent * tangent)
+    # 2 − 2 cos = 2 tan² cos² / (1 + cos); and the rounding of a squared distance of unit vectors.
+    square = 2.0 * (tangent * cosine) ** 2 / (1.0 + cosine)
+    cone[j, 3] = math.sqrt(square * (1.0 + 16.0 * EPS) + 32.0 * EPS)
+
+
+@jit
+def write_one_cone(cells):
+    """Write the cone of the normals of the first cell."""
+    write_cone(cells, 0)
+
+
+@loop
+def is_done(cells, j):
+    """Say whether a cell has at most one place for normals like its own, or is flat."""
+    if cells.noise[j, REACH] == 0.0 or cells.cone[j, 3] >= WIDE:
+        return False
+    patch = patch_of(cells.hot, j)
+    ordinates = normal_ordinates(patch)
+    for k in (4, 0, 2, 6, 8):
+        size = length(ordinates[k])
+        n = Vector(ordinates[k].x / size, ordinates[k].y / size, ordinates[k].z / size)
+        a, b, c, _, _ = linear_forms_of(patch, n)
+        if k == 4 and abs(a * c - b * b) <= FLAT * (a * a + b * b + c * c):
+            return True
+        t0, t1, t2, t3, r0, r1, r2, r3 = thirds_of(cells.thirds, j, n)
+        _, _, _, q, noise = inverse_of(
+            a, b, c, t0, t1, t2, t3, r0, r1, r2, r3, cells.noise[j, SECOND]
+        )
+        if not q + noise < REGULAR:
+            return False
+    return True
+
+
+@loop
+def copy_cell(cells, j, target, k):
+    """Copy cell j to row k of others."""
+    for x in range(4):
+        target.place[k, x], target.noise[k, x] = cells.place[j, x], cells.noise[j, x]
+        target.cone[k, x] = cells.cone[j, x]
+    for x in range(HOT):
+        target.hot[k, x] = cells.hot[j, x]
+    for x in range(24):
+        target.thirds[k, x] = cells.thirds[j, x]
+
+
+@jit
+def cut_cells(tape, work, lines_u, lines_v, state, last, levels, stack, tile, cells):
+    """Write the cells of the base cells of a grid, each cut into four until it is regular.
+
+    The lines of the grid are at these u (m,) and v (n,). `levels` are how often cells are cut, and
+    those that have no narrow cone of normals. `state` holds the next base cell, the number of cells
+    on the `stack` (…, 5), and the number of cells written; it ends at base cell `last` unless there
+    is no more room. `tile` are work arrays, of LANES cells.
+    """
+    count = 0
+    while count + LANES <= cells.place.shape[0] and (state[0] < last or state[1] > 0):
+        while state[1] < LANES and state[0] < last:
+            i, k = state[0] // (lines_v.size - 1), state[0] % (lines_v.size - 1)
+            u0, u1, v0, v1 = lines_u[i], lines_u[i + 1], lines_v[k], lines_v[k + 1]
+            u, v, h_u, h_v = 0.5 * (u0 + u1), 0.5 * (v0 + v1), 0.5 * (u1 - u0), 0.5 * (v1 - v0)
+            put_on_stack(stack, state, u, v, h_u, h_v, 0.0)
+            state[0] += 1
+        taken = min(state[1], LANES)
+        state[1] -= taken
+        for j in range(taken):
+            for x in range(4):
+                tile.place[j, x] = stack[state[1] + j, x]
+            work.levels[j] = stack[state[1] + j, 4]
+        write_cells(tape, work, INFLATED, tile, taken)
+        for j in range(taken):
+            most = levels[0] if tile.cone[j, 3] < WIDE else levels[1]
+            if work.levels[j] >= most or is_done(tile, j):
+                copy_cell(tile, j, cells, count)
+                count += 1
+                continue
+            u, v, h_u, h_v = (
+                tile.place[j, 0],
+                tile.place[j, 1],
+                0.5 * tile.place[j, 2],
+                0.5 * tile.place[j, 3],
+            )
+            for part in range(4):
+                put_on_stack(
+                    stack, state, u + (h_u if part & 1 else -h_u),
+                    v + (h_v if part & 2 else -h_v), h_u, h_v, work.levels[j] + 1.0,
+                )  # fmt: skip
+    state[2] = count
+
+
+@loop
+def put_on_stack(stack, state, u, v, h_u, h_v, level):
+    """Add a cell to the stack."""
+    top = state[1]
+    stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3], stack[top, 4] = (
+        u,
+        v,
+        h_u,
+        h_v,
+        level,
+    )
+    state[1] += 1

@@ -1,0 +1,327 @@
+"""All solutions for a normal in cells that the simple search left open: bisection, folds, doubles.
+
+The cells of a normal are bisected level by level. Remaining undecided solutions lie in a few small
+boxes, which are listed.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...directions.kernels.vectors import row_vector
+from ...machine_code.jit import jit, loop
+from ...tape.kernels.points import LANES, evaluate_points
+from .answers import (
+    BORDER,
+    COLUMNS,
+    CONTINUUM,
+    DOUBLE_KIND,
+    MULTIPLE,
+    SINGULAR,
+    add_open,
+    add_place,
+)
+from .cells import (
+    EPS,
+    FIRST_S,
+    FIRST_T,
+    SECOND,
+    WIDE,
+    Cells,
+    patch_of,
+    side_of,
+    third_sizes,
+    write_patch,
+)
+from .clusters import cluster
+from .folds import DOUBLE, NO_PLACE, at_fold
+from .pairs import (
+    DETERMINANT,
+    EDGE,
+    HARD,
+    HU,
+    HV,
+    NONE,
+    ONE,
+    RADIUS,
+    REACHED,
+    ROWS,
+    STATE,
+    U0,
+    V0,
+    bound_pairs,
+    compact,
+    improve_pairs,
+    load_box,
+    write_forms,
+)
+
+__all__ = ["Boxes", "decide_normals"]
+
+# The number of levels of bisection, and the levels after which folds are tested.
+DEEPEST, FOLDS = 24, (4, 8, 14, 19)
+# The boxes of a curve of solutions about double on each level. More boxes than MANY are a curve if
+# their number grows by GROWTH for TIMES levels; at most MOST cells, or MOST/4 boxes, are processed.
+MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
+# From this level on, rounding explains open boxes more than twice as many as on the level before.
+FINE = 10
+
+
+class Boxes(NamedTuple):
+    """Work arrays: boxes of a level, of the next one, their clusters, and the fates of these."""
+
+    now: NDArray[np.float64]
+    following: NDArray[np.float64]
+    hulls: NDArray[np.float64]
+    owner: NDArray[np.int64]
+    fates: NDArray[np.int64]
+    pairs: NDArray[np.float64]
+    numbers: NDArray[np.int64]
+    levels: NDArray[np.int64]
+    tile: Cells
+
+    @classmethod
+    def new(cls, cells: int) -> Boxes:
+        """Return work arrays for an index with this number of cells."""
+        most = 16 * MOST + cells
+        return cls(
+            np.empty((most, 3)), np.empty((most, 3)), np.empty((most, 4)), np.empty(most, np.int64),
+            np.empty(most, np.int64), np.zeros(ROWS * LANES), np.zeros(LANES, np.int64),
+            np.array(FOLDS), Cells.new(LANES),
+        )  # fmt: skip
+
+
+@loop
+def side_at(tape, work, tile, cells, j, u, v, r_u, r_v, n):
+    """Return the sign of the products of n and the normals in a part of cell j, 0 if unknown."""
+    work.u[0], work.v[0] = u, v
+    evaluate_points(tape, work.u, work.v, 1, work.registers)
+    tile.place[0, 0], tile.place[0, 1], tile.place[0, 2], tile.place[0, 3] = u, v, r_u, r_v
+    write_patch(tape, work.registers, tile, 0)
+    size_u, size_v = r_u / cells.place[j, 2], r_v / cells.place[j, 3]
+    rest_s, rest_t = rest_in(cells, j, size_u, size_v)
+    return side_of(patch_of(tile.hot, 0), rest_s, rest_t, n)
+
+
+@loop
+def rest_in(cells, j, size_u, size_v):
+    """Return the remainders of x_s, x_t beyond the patch in a part of cell j of this size."""
+    t0, t1, t2, t3 = third_sizes(cells.thirds, j)
+    square = max(size_u, size_v) ** 2
+    second = 2.0 * square * cells.noise[j, SECOND]
+    rest_s = size_u * (0.5 * square * (t0 + 2.0 * t1 + t2) + cells.noise[j, FIRST_S]) + second
+    rest_t = size_v * (0.5 * square * (t1 + 2.0 * t2 + t3) + cells.noise[j, FIRST_T]) + second
+    return rest_s, rest_t
+
+
+@loop
+def cut_boxes(tape, work, index, boxes, count, size, number, n, answers):
+    """Decide boxes of a level, write the next ones; return their number, −1 without room."""
+    cells, t = index.cells, boxes.pairs
+    following = 0
+    for first in range(0, count, LANES):
+        lanes = min(LANES, count - first)
+        for k in range(lanes):
+            u, v, j = boxes.now[first + k, 0], boxes.now[first + k, 1], int(boxes.now[first + k, 2])
+            load_box(t, k, cells, j, n, u, v, size)
+            boxes.numbers[k] = j
+            work.u[k], work.v[k] = u, v
+        evaluate_points(tape, work.u, work.v, lanes, work.registers)
+        write_forms(t, lanes, work.registers, tape.outputs)
+        bound_pairs(t, 0, lanes)
+        for k in range(lanes):
+            j = boxes.numbers[k]
+            if cells.cone[j, 3] < WIDE or t[np.uint64(k) + STATE] == NONE:
+                continue
+            place = boxes.tile.place
+            place[k, 2], place[k, 3] = size * cells.place[j, 2], size * cells.place[j, 3]
+            write_patch(tape, work.registers, boxes.tile, k)
+            rest_s, rest_t = rest_in(cells, j, size, size)
+            if side_of(patch_of(boxes.tile.hot, k), rest_s, rest_t, n) < 0:
+                t[np.uint64(k) + STATE] = NONE
+        following = keep_boxes(t, lanes, boxes, size, following)
+        kept = compact(t, lanes, boxes.numbers, boxes.numbers, work.u, work.v)
+        while kept > 0:
+            evaluate_points(tape, work.u, work.v, kept, work.registers)
+            improve_pairs(t, kept, work.registers, tape.outputs, work.u, work.v)
+            if not store_places(t, kept, work, boxes, number, answers):
+                return -1
+            following = keep_boxes(t, kept, boxes, size, following)
+            kept = compact(t, kept, boxes.numbers, boxes.numbers, work.u, work.v)
+    return following
+
+
+@loop
+def keep_boxes(t, lanes, boxes, size, following):
+    """Write the four parts of boxes that are not decided; return the number of all parts."""
+    for k in range(lanes):
+        i = np.uint64(k)
+        if t[i + STATE] != HARD:
+            continue
+        for part in range(4):
+            row = boxes.following[following]
+            row[0] = t[i + U0] + (0.5 if part & 1 else -0.5) * t[i + HU]
+            row[1] = t[i + V0] + (0.5 if part & 2 else -0.5) * t[i + HV]
+            row[2] = boxes.numbers[k]
+            following += 1
+    return following
+
+
+@loop
+def store_places(t, lanes, work, boxes, number, answers):
+    """Store the proved solutions of a tile of boxes; return whether there was room."""
+    if answers.counts[0] + lanes > answers.numbers.shape[0]:
+        return False
+    for k in range(lanes):
+        i = np.uint64(k)
+        if t[i + STATE] != ONE and t[i + STATE] != EDGE:
+            continue
+        at = answers.counts[0]
+        row = answers.places[at]
+        row[0], row[1], row[4] = work.u[k], work.v[k], t[i + DETERMINANT]
+        row[2], row[3] = t[i + RADIUS] * t[i + HU], t[i + RADIUS] * t[i + HV]
+        reach_u, reach_v = t[i + REACHED] * t[i + HU], t[i + REACHED] * t[i + HV]
+        row[5], row[6] = t[i + U0] - reach_u, t[i + U0] + reach_u
+        row[7], row[8] = t[i + V0] - reach_v, t[i + V0] + reach_v
+        row[BORDER] = float(boxes.numbers[k])  # until it is decided
+        answers.numbers[at] = number
+        answers.counts[0] = at + 1
+    return True
+
+
+@loop
+def use_folds(tape, work, index, boxes, count, size, domain, number, n, last, answers):
+    """Drop clusters of boxes that folds decide; after the `last` level, list and drop others.
+
+    Returns the number of boxes that are left, −1 if there was no room.
+    """
+    cells, tile = index.cells, boxes.tile
+    hulls = cluster(boxes.following, count, cells, size, domain[4:], boxes.hulls, boxes.owner)
+    for i in range(hulls):
+        u0, u1, v0, v1 = boxes.hulls[i, 0], boxes.hulls[i, 1], boxes.hulls[i, 2], boxes.hulls[i, 3]
+        tile.place[0, 0], tile.place[0, 1] = 0.5 * (u0 + u1), 0.5 * (v0 + v1)
+        tile.place[0, 2], tile.place[0, 3] = 0.5 * (u1 - u0), 0.5 * (v1 - v0)
+        boxes.fates[i] = at_fold(tape, work, tile, n)
+        if boxes.fates[i] == DOUBLE:
+            u, v, r_u, r_v = tile.place[0, 0], tile.place[0, 1], tile.place[0, 2], tile.place[0, 3]
+            if not add_open(
+                answers, number, u - r_u, u + r_u, v - r_v, v + r_v, DOUBLE_KIND, domain
+            ):
+                return -1
+        elif boxes.fates[i] != NO_PLACE and last:
+            kind = MULTIPLE
+            for k in range(count):
+                if boxes.owner[k] == i and cells.cone[int(boxes.following[k, 2]), 3] >= WIDE:
+                    kind = SINGULAR
+            if not add_open(answers, number, u0, u1, v0, v1, kind, domain):
+                return -1
+            boxes.fates[i] = NO_PLACE
+    left = 0
+    for k in range(count):
+        if boxes.fates[boxes.owner[k]] != NO_PLACE and boxes.fates[boxes.owner[k]] != DOUBLE:
+            for x in range(3):
+                boxes.following[left, x] = boxes.following[k, x]
+            left += 1
+    return left
+
+
+@loop
+def give_up(index, boxes, rows, count, size, domain, number, answers):
+    """List all boxes of rows as a continuum, or as singular; return whether there was room."""
+    cells = index.cells
+    hulls = cluster(rows, count, cells, size, domain[4:], boxes.hulls, boxes.owner)
+    for i in range(hulls):
+        kind = CONTINUUM
+        for k in range(count):
+            if boxes.owner[k] == i and cells.cone[int(rows[k, 2]), 3] >= WIDE:
+                kind = SINGULAR
+        hull = boxes.hulls[i]
+        if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
+            return False
+    return True
+
+
+@loop
+def bisect(tape, work, index, boxes, count, domain, number, n, answers):
+    """Find the solutions for a normal in whole cells; return whether there was room."""
+    size = 1.0
+    fold = growing = 0
+    if count > MOST:
+        return give_up(index, boxes, boxes.now, count, size, domain, number, answers)
+    for level in range(DEEPEST + 1):
+        if count > 4 * MOST or (count > MANY and growing >= TIMES):
+            return give_up(index, boxes, boxes.now, count, size, domain, number, answers)
+        following = cut_boxes(tape, work, index, boxes, count, size, number, n, answers)
+        size *= 0.5
+        if following < 0:
+            return False
+        last = level == DEEPEST or (level >= FINE and following > 2 * count)
+        if following > 0 and (last or (fold < boxes.levels.size and level == boxes.levels[fold])):
+            fold += 1
+            following = use_folds(
+                tape, work, index, boxes, following, size, domain, number, n, last, answers
+            )
+            if following < 0:
+                return False
+        if following == 0:
+            return True
+        growing = growing + 1 if following > GROWTH * count else 0
+        count = following
+        for k in range(count):
+            for x in range(3):
+                boxes.now[k, x] = boxes.following[k, x]
+    return True
+
+
+@loop
+def orient(tape, work, index, boxes, first, domain, number, n, answers):
+    """Remove solutions with the normal −n; list those that may have no normal as singular.
+
+    Return whether there was room.
+    """
+    cells = index.cells
+    kept = first
+    for at in range(first, answers.counts[0]):
+        row = answers.places[at]
+        j = int(row[BORDER])
+        side = 1
+        if cells.cone[j, 3] >= WIDE:
+            r_u, r_v = row[2] + 4.0 * EPS * abs(row[0]), row[3] + 4.0 * EPS * abs(row[1])
+            side = side_at(tape, work, boxes.tile, cells, j, row[0], row[1], r_u, r_v, n)
+        if side == 0 and not add_place(answers, number, row, SINGULAR, domain):
+            return False
+        if side > 0:
+            for x in range(COLUMNS):
+                answers.places[kept, x] = row[x]
+            kept += 1
+    answers.counts[0] = kept
+    return True
+
+
+@jit
+def decide_normals(tape, work, index, normals, hard, groups, first, last, domain, boxes, answers):
+    """Decide the hard pairs of the groups [first, last), each of one normal.
+
+    hard (…, 2) are numbers of normals (S, 3) and of cells; groups[g] is the start of a group.
+    `domain` (6) is u₀, u₁, v₀, v₁, and the periods of u and v or 0. Returns the next group, `last`
+    unless there was no more room for answers.
+    """
+    answers.counts[0] = answers.counts[1] = 0
+    for g in range(first, last):
+        start, open_start = answers.counts[0], answers.counts[1]
+        number = hard[groups[g], 0]
+        n = row_vector(normals, number)
+        count = groups[g + 1] - groups[g]
+        for k in range(count):
+            j = hard[groups[g] + k, 1]
+            place = index.cells.place
+            boxes.now[k, 0], boxes.now[k, 1], boxes.now[k, 2] = place[j, 0], place[j, 1], j
+        room = bisect(tape, work, index, boxes, count, domain, number, n, answers)
+        room = room and orient(tape, work, index, boxes, start, domain, number, n, answers)
+        if not room:
+            answers.counts[0], answers.counts[1] = start, open_start
+            return np.int64(g)
+    return np.int64(last)

@@ -1,0 +1,160 @@
+"""Lists of the pieces whose cones of normals meet the bins of the sphere.
+
+Bins are squares on the faces of a cube around the sphere, or on its face +z alone, to which a frame
+(3, 3), a linear map, brings a cap. They are numbered along a Morton curve on each face, so that the
+bins of a coarser level are those with the same leading bits.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....generated.vectors import Vector
+from ...directions.kernels.vectors import row_vector, set_row
+from ...machine_code.jit import inline, jit, loop
+from .bins import bin_index, cube_face, mapped
+from .pieces import CHORD, SLAB, WIDTH
+
+__all__ = ["FINEST", "NUMBER", "Lists", "list_pieces", "order_normals", "write_caps"]
+
+# The level of the bins by which normals are sorted.
+FINEST = np.int64(12)
+# The bits of a number in a key.
+NUMBER = (1 << 32) - 1
+# Cones with a larger chord are compared with all bins.
+WIDE = 0.5
+ZENITH = np.int64(4)  # the face +z
+
+
+class Lists(NamedTuple):
+    """The bins: a frame and its inverse (3, 3), the number of faces, how often these are halved.
+
+    `starts` (bins + 1,) are the starts of bins in `members`, the numbers of pieces.
+    """
+
+    frame: NDArray[np.float64]
+    inverse: NDArray[np.float64]
+    faces: int
+    level: int
+    starts: NDArray[np.int64]
+    members: NDArray[np.int32]
+
+
+@inline
+def spread_bits(x):
+    """Return a number with a zero before each of its 16 bits."""
+    x = (x | x << 8) & 0x00FF00FF
+    x = (x | x << 4) & 0x0F0F0F0F
+    x = (x | x << 2) & 0x33333333
+    return (x | x << 1) & 0x55555555
+
+
+@loop
+def bin_number(face, row, column, level):
+    """Return the number of a bin."""
+    return (face << 2 * level) + (spread_bits(row) << 1) + spread_bits(column)
+
+
+@jit
+def order_normals(normals, frame, faces, first, last, keys):
+    """Write bin << 32 | number of the normals first, …, last − 1; −1 for those outside of a cap."""
+    grid = np.int64(1) << FINEST
+    for k in range(first, last):
+        face, s, t = cube_face(mapped(frame, row_vector(normals, k)))
+        if faces == 1:
+            if face != ZENITH:
+                keys[k] = -1
+                continue
+            face = np.int64(0)
+        row, column = np.int64(bin_index(t, grid)), np.int64(bin_index(s, grid))
+        keys[k] = bin_number(np.int64(face), row, column, FINEST) << 32 | k
+
+
+@inline
+def face_of(faces, k):
+    """Return a face of the cube: all are used, or one."""
+    return ZENITH if faces == 1 else np.int64(k)
+
+
+@loop
+def direction(inverse, face, s, t):
+    """Return the unit vector at (s, t) of a face of the cube."""
+    axis, high = face >> 1, 1.0 if face & 1 == 0 else -1.0
+    x, y, z = (high, s, t) if axis == 0 else (t, high, s) if axis == 1 else (s, t, high)
+    n = mapped(inverse, Vector(x, y, z))
+    size = 1.0 / math.sqrt(n.x * n.x + n.y * n.y + n.z * n.z)
+    return Vector(n.x * size, n.y * size, n.z * size)
+
+
+@jit
+def write_caps(inverse, faces, level, caps):
+    """Write caps that hold the bins: their middles, and radii as chords."""
+    grid = np.int64(1) << level
+    half = 1.0 / grid
+    for k in range(faces):
+        face = face_of(faces, k)
+        for row in range(grid):
+            for column in range(grid):
+                s, t = (2 * column + 1) * half - 1.0, (2 * row + 1) * half - 1.0
+                middle = direction(inverse, face, s, t)
+                square = 0.0
+                for corner in range(4):
+                    x = half if corner & 1 else -half
+                    y = half if corner & 2 else -half
+                    n = direction(inverse, face, s + x, t + y)
+                    x, y, z = n.x - middle.x, n.y - middle.y, n.z - middle.z
+                    square = max(square, x * x + y * y + z * z)
+                at = bin_number(np.int64(k), row, column, level)
+                set_row(caps, at, middle)
+                caps[at, 3] = math.sqrt(square) * (1.0 + 1e-12) + 1e-15
+
+
+@inline
+def meets(cone, cap):
+    """Return whether a cone and its slab may have a direction in a cap."""
+    x, y, z = cone[0] - cap[0], cone[1] - cap[1], cone[2] - cap[2]
+    reach = cone[CHORD] + cap[3]
+    across = cone[SLAB] * cap[0] + cone[SLAB + 1] * cap[1] + cone[SLAB + 2] * cap[2]
+    return (x * x + y * y + z * z <= reach * reach) & (abs(across) <= cone[WIDTH] + cap[3])
+
+
+@jit
+def list_pieces(cones, caps, lists, stretch, least, starts):
+    """Count the pieces of each bin in `starts`, or list them if there is room in `members`.
+
+    `stretch` is the norm of the frame, `least` the least height of a direction on its face.
+    """
+    frame, _, faces, level, _, members = lists
+    grid = np.int64(1) << level
+    for j in range(cones.shape[0]):
+        cone = cones[j]
+        chord = cone[CHORD]
+        axis = mapped(frame, row_vector(cones, j))
+        for k in range(faces):
+            face = face_of(faces, k)
+            left, right, bottom, top = np.int64(0), grid - 1, np.int64(0), grid - 1
+            if chord < WIDE:
+                height = axis[face >> 1] if face & 1 == 0 else -axis[face >> 1]
+                if height + chord < least:
+                    continue
+                # The place s = x / height of a direction on the face moves by at most ds if the
+                # direction moves by the chord, since its height is at least `least` there.
+                x, y = axis[((face >> 1) + 1) % 3], axis[((face >> 1) + 2) % 3]
+                step = chord * stretch / (height * max(least, height - chord))
+                s, ds = x / height, step * math.sqrt((x / stretch) ** 2 + height * height)
+                t, dt = y / height, step * math.sqrt((y / stretch) ** 2 + height * height)
+                if abs(s) > 1.0 + ds or abs(t) > 1.0 + dt:
+                    continue
+                left, right = bin_index(s - ds, grid), bin_index(s + ds, grid)
+                bottom, top = bin_index(t - dt, grid), bin_index(t + dt, grid)
+            for row in range(bottom, top + 1):
+                for column in range(left, right + 1):
+                    b = bin_number(np.int64(k), np.int64(row), np.int64(column), level)
+                    if meets(cone, caps[b]):
+                        if members.size > 0:
+                            members[starts[b]] = j
+                        starts[b] += 1

@@ -1,0 +1,261 @@
+"""Pieces of a surface, each with a cone of its normals: patches of a spline, or cells of a surface.
+
+The normals of a patch are combinations of its control normals with positive weights. So a cone that
+holds the directions of these holds all normals: those within a distance, a chord, of an axis. Long
+thin images also lie between two parallel planes, a slab.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....generated.patch import control_normals
+from ....generated.spline import triangle
+from ....generated.vectors import Patch, Vector
+from ...base.tolerances import ANGLE_ERROR, FORM_ERROR, SHORT_CONTROL_NORMAL
+from ...directions.kernels.vectors import dot, length, row_vector, set_row
+from ...machine_code.jit import inline, jit, loop
+from ...spline.kernels.patch import vector_at
+from .cone import tangent_bounds
+
+__all__ = [
+    "BOUND",
+    "CHORD",
+    "CONE",
+    "EVERYTHING",
+    "REST_S",
+    "REST_T",
+    "SLAB",
+    "VECTORS",
+    "WIDTH",
+    "Coefficients",
+    "Pieces",
+    "write_net_pieces",
+    "write_pieces",
+]
+
+# Columns of cones: the axis, the chord; the direction of the slab, and half its width.
+CHORD, SLAB, WIDTH, CONE = 3, 4, 7, 8
+# Columns of patches: the vectors a, b, c, d, e, and the error of U, V, W; those of cells of a
+# surface have bounds of what the patch leaves out of x_s and x_t instead.
+BOUND, VECTORS = 15, 16
+REST_S, REST_T = 15, 16
+# The chord of a cone that holds all directions, and the width of a slab that does.
+EVERYTHING = 2.0
+# Cones with a chord above this are not used: weights add up to less than the cosine of their angle.
+WIDEST = 1.0
+# Chords and widths are wider than computed by this, relatively and absolutely: rounding of sums of
+# a few numbers of size 1.
+RELATIVE, ABSOLUTE = 1.0 + 1e-12, 1e-14
+
+
+class Coefficients(NamedTuple):
+    """The coefficients of a spline and their properties.
+
+    Coefficients mu (m, n, 3) with ghost coefficients, the power of two that scales them to about 1,
+    the rounding error of the scaled coordinates, and which sides of the domain are open (4,).
+    """
+
+    mu: NDArray[np.float64]
+    scale: float
+    noise: float
+    border: NDArray[np.bool_]
+
+
+class Pieces(NamedTuple):
+    """Cones with slabs (K, 8) and patches (K, 16 or more), see the columns above.
+
+    A slab of width EVERYTHING also says that the cone does not exclude the opposites of normals.
+    """
+
+    cones: NDArray[np.float64]
+    patches: NDArray[np.float64]
+
+    @classmethod
+    def new(cls, count: int) -> Pieces:
+        """Return room for pieces."""
+        return cls(np.empty((count, CONE)), np.empty((count, VECTORS)))
+
+
+@jit
+def write_pieces(spline, first, start, last, net, pieces):
+    """Write the patches of the cells start, …, last − 1; those of cell `first` are the first ones.
+
+    `net` (6, 4) is a work array.
+    """
+    mu, scale, noise, border = spline
+    rows, columns = mu.shape[0] - 2, mu.shape[1] - 2
+    for cell in range(start, last):
+        i, j = cell // columns, cell % columns
+        c = vector_at(mu, i + 1, j + 1)
+        sw, s, se = (
+            step_to(mu, i, j, c, scale),
+            step_to(mu, i + 1, j, c, scale),
+            step_to(mu, i + 2, j, c, scale),
+        )
+        w, e = step_to(mu, i, j + 1, c, scale), step_to(mu, i + 2, j + 1, c, scale)
+        nw, n, ne = (
+            step_to(mu, i, j + 2, c, scale),
+            step_to(mu, i + 1, j + 2, c, scale),
+            step_to(mu, i + 2, j + 2, c, scale),
+        )
+        spread = Vector(
+            max(abs(sw.x), abs(s.x), abs(se.x), abs(w.x), abs(e.x), abs(nw.x), abs(n.x), abs(ne.x)),
+            max(abs(sw.y), abs(s.y), abs(se.y), abs(w.y), abs(e.y), abs(nw.y), abs(n.y), abs(ne.y)),
+            max(abs(sw.z), abs(s.z), abs(se.z), abs(w.z), abs(e.z), abs(nw.z), abs(n.z), abs(ne.z)),
+        )
+        south = noise if j == 0 and border[0] else 0.0
+        east = noise if i == rows - 1 and border[1] else 0.0
+        north = noise if j == columns - 1 and border[2] else 0.0
+        west = noise if i == 0 and border[3] else 0.0
+        at = 4 * (cell - first)
+        put_piece(pieces, at, triangle(sw, s, se, w, e, n), spread, south, net)
+        put_piece(pieces, at + 1, triangle(se, e, ne, s, n, w), spread, east, net)
+        put_piece(pieces, at + 2, triangle(ne, n, nw, e, w, s), spread, north, net)
+        put_piece(pieces, at + 3, triangle(nw, w, sw, n, s, e), spread, west, net)
+
+
+@loop
+def step_to(mu, i, j, centre, scale):
+    """Return the coefficient (i, j) minus that of the cell, times `scale`."""
+    v = vector_at(mu, i, j)
+    return Vector(scale * (v.x - centre.x), scale * (v.y - centre.y), scale * (v.z - centre.z))
+
+
+@loop
+def put_piece(pieces, k, patch, spread, noise, net):
+    """Write a patch, its cone, and the error of U, V, W in it.
+
+    `spread` are the largest differences of its coefficients, `noise` is their rounding.
+    """
+    tangents = tangent_bounds(patch)
+    square = max(tangents.x, tangents.y, tangents.z)
+    square = square * square
+    control = control_normals(patch)
+    for m in range(6):
+        n = control[m]
+        size = length(n)
+        regular = size > SHORT_CONTROL_NORMAL * square
+        inverse = 1.0 / size if regular else 0.0
+        set_row(net, m, Vector(n.x * inverse, n.y * inverse, n.z * inverse))
+        net[m, 3] = ANGLE_ERROR * (1.0 + square * inverse) if regular else math.inf
+    cone = pieces.cones[k]
+    write_cone(net, cone)
+    x = min(abs(cone[0]) + cone[CHORD], 1.0)  # upper bounds of the components of normals
+    y = min(abs(cone[1]) + cone[CHORD], 1.0)
+    z = min(abs(cone[2]) + cone[CHORD], 1.0)
+    form = x * tangents.x + y * tangents.y + z * tangents.z
+    error = FORM_ERROR * (x * spread.x + y * spread.y + z * spread.z) + noise
+    write_patch(patch, 32.0 * error * (form + error), pieces.patches[k])
+
+
+@inline
+def write_patch(patch, bound, row):
+    """Write the vectors of a patch, and the error of U, V, W."""
+    write_vector(row, 0, patch.a)
+    write_vector(row, 3, patch.b)
+    write_vector(row, 6, patch.c)
+    write_vector(row, 9, patch.d)
+    write_vector(row, 12, patch.e)
+    row[BOUND] = bound
+
+
+@inline
+def write_vector(row, at, v):
+    """Write a vector to three columns."""
+    row[at], row[at + 1], row[at + 2] = v.x, v.y, v.z
+
+
+@jit
+def write_net_pieces(vectors, control, angles, bounds, net, pieces):
+    """Write the patches of nets; `net` (6, 4) is a work array.
+
+    They have vectors (T, 5, 3), control normals (T, 6, 3) with errors that are angles (T,), and
+    errors (T,) of U, V, W.
+    """
+    for k in range(angles.size):
+        for m in range(6):
+            n = row_vector(control[k], m)
+            size = length(n)
+            inverse = 1.0 / size if size > 0.0 else 0.0
+            set_row(net, m, Vector(n.x * inverse, n.y * inverse, n.z * inverse))
+            net[m, 3] = angles[k] + ANGLE_ERROR if size > 0.0 else math.inf
+        write_cone(net, pieces.cones[k])
+        v = vectors[k]
+        patch = Patch(
+            row_vector(v, 0),
+            row_vector(v, 1),
+            row_vector(v, 2),
+            row_vector(v, 3),
+            row_vector(v, 4),
+            Vector(0.0, 0.0, 0.0),
+        )
+        write_patch(patch, bounds[k], pieces.patches[k])
+
+
+@loop
+def write_cone(net, cone):
+    """Write the cone and the slab of unit control normals and their errors (6, 4), angles.
+
+    Errors of control normals that vanish are infinite; they add no direction to the cone.
+    """
+    x = y = z = far = worst = 0.0
+    regular = True
+    for m in range(6):
+        regular = regular and net[m, 3] < math.inf
+        worst = max(worst, net[m, 3] if net[m, 3] < math.inf else 0.0)
+        x, y, z = x + net[m, 0], y + net[m, 1], z + net[m, 2]
+    size = length(Vector(x, y, z))
+    inverse = 1.0 / size if size > 0.0 else 0.0
+    axis = Vector(x * inverse, y * inverse, z * inverse)
+    for m in range(6):
+        if net[m, 3] < math.inf:
+            n = row_vector(net, m)
+            far = max(far, (n.x - axis.x) ** 2 + (n.y - axis.y) ** 2 + (n.z - axis.z) ** 2)
+    chord = (math.sqrt(far) + 2.0 * worst) * RELATIVE + ABSOLUTE
+    cone[SLAB], cone[SLAB + 1], cone[SLAB + 2], cone[WIDTH] = 0.0, 0.0, 0.0, EVERYTHING
+    if size == 0.0 or chord > WIDEST:
+        cone[0], cone[1], cone[2], cone[CHORD] = 0.0, 0.0, 0.0, EVERYTHING
+        return
+    write_vector(cone, 0, axis)
+    cone[CHORD] = chord
+    if regular:
+        normal = thinnest(net, axis)
+        width = 0.0
+        for m in range(6):
+            width = max(width, abs(dot(row_vector(net, m), normal)))
+        write_vector(cone, SLAB, normal)
+        # A combination of unit vectors of the cone is at least as long as the cosine of its angle.
+        cone[WIDTH] = (width + worst) / (1.0 - 0.5 * chord * chord) * RELATIVE + ABSOLUTE
+
+
+@loop
+def thinnest(net, axis):
+    """Return the unit vector across an axis along which directions (6, 4) differ least."""
+    x, y, z = abs(axis.x), abs(axis.y), abs(axis.z)
+    if x <= y and x <= z:
+        p = Vector(0.0, axis.z, -axis.y)
+    elif y <= z:
+        p = Vector(-axis.z, 0.0, axis.x)
+    else:
+        p = Vector(axis.y, -axis.x, 0.0)
+    size = 1.0 / length(p)
+    p = Vector(p.x * size, p.y * size, p.z * size)
+    q = Vector(
+        axis.y * p.z - axis.z * p.y, axis.z * p.x - axis.x * p.z, axis.x * p.y - axis.y * p.x
+    )
+    xx = xy = yy = 0.0
+    for m in range(6):
+        n = row_vector(net, m)
+        s, t = dot(n, p), dot(n, q)
+        xx, xy, yy = xx + s * s, xy + s * t, yy + t * t
+    # Half the angle of (xx − yy, 2 xy) is the direction along which they differ most.
+    size = math.sqrt((xx - yy) ** 2 + 4.0 * xy * xy)
+    share = (xx - yy) / size if size > 0.0 else 1.0
+    c, s = math.sqrt(max(0.5 + 0.5 * share, 0.0)), math.sqrt(max(0.5 - 0.5 * share, 0.0))
+    s = -s if xy > 0.0 else s
+    return Vector(s * p.x + c * q.x, s * p.y + c * q.y, s * p.z + c * q.z)

@@ -1,0 +1,248 @@
+"""A tile: a batch of samples in rows of an array, for vectorized loops.
+
+The rows contain the normal, the coefficients around the patch and its position, and the results.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....generated.patch import sample
+from ....generated.spline import CORNERS, NEIGHBOURS, SCALE, triangle
+from ....generated.vectors import Vector
+from ...directions.kernels.vectors import STEP, dot, row_vector, set_row, whole_vectors
+from ...domain.kernels.patch_numbers import place_of
+from ...machine_code.jit import jit, long_vectors, loop
+from ...spline.kernels.patch import (
+    curvatures_of_patch,
+    normal_of_patch,
+    patch_vectors,
+    point_of_patch,
+    vector_at,
+)
+from .lists import NUMBER
+
+__all__ = ["NORMAL", "fill_known", "fill_tile", "load_patch", "new_tile", "put"]
+
+# The number of rows, of STEP numbers, and the starts of the parts of a tile. The starts are typed,
+# since Numba compiles a function anew for each literal number in its arguments.
+ROWS = 38
+ONE_ROW, TWO_ROWS = np.uint64(STEP), np.uint64(2 * STEP)
+NORMAL, COEFFICIENTS, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
+    np.int64(STEP * row) for row in (0, 3, 21, 30, 33, 34, 35, 36, 37)
+)
+NORMAL_INDEX, PATCH_INDEX, THREE_ROWS = np.int64(0), np.int64(STEP), np.int64(3 * STEP)
+# Rows and columns, from that of the coefficient before, of those that `triangle` takes.
+# Contiguous: machine code has other arrays by their address, and cannot be kept.
+AROUND = np.ascontiguousarray(NEIGHBOURS[:, [0, 1, 2, 3, 5, 7]] + 1, np.uint64)
+
+
+class Place(NamedTuple):
+    """The position of a patch: centre and number of its cell, its corners u = 1, v = 1 there."""
+
+    centre: Vector
+    cell_u: float
+    cell_v: float
+    u_s: float
+    u_t: float
+    v_s: float
+    v_t: float
+
+
+def new_tile() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the rows of a tile as one array, and two rows for indices."""
+    return np.zeros(ROWS * STEP), np.zeros(2 * STEP, np.int64)
+
+
+@loop
+def vector_in(tile, row, k):
+    """Return vector k in three rows of a tile from `row` on."""
+    at = np.uint64(row + k)  # unsigned: no check for negative indices
+    return Vector(tile[at], tile[at + ONE_ROW], tile[at + TWO_ROWS])
+
+
+@loop
+def put(tile, row, k, v):
+    """Write vector k to three rows of a tile from `row` on."""
+    at = np.uint64(row + k)
+    tile[at] = v.x
+    tile[at + ONE_ROW] = v.y
+    tile[at + TWO_ROWS] = v.z
+
+
+@loop
+def place_in(mu, i, j, turn):
+    """Return the position of a patch."""
+    return Place(
+        vector_at(mu, i + 1, j + 1),
+        i + 0.5,
+        j + 0.5,
+        CORNERS[turn, 0, 0],
+        CORNERS[turn, 0, 1],
+        CORNERS[turn, 1, 0],
+        CORNERS[turn, 1, 1],
+    )
+
+
+@loop
+def load_patch(mu, number, scale, tile, k):
+    """Write the coefficients around the patch of sample k of a tile, and the position."""
+    columns, patch = np.uint64(mu.shape[1] - 2), np.uint64(number)  # unsigned divisions are faster
+    cell, turn = patch >> np.uint64(2), patch & np.uint64(3)
+    i = cell // columns
+    j = cell - i * columns
+    place = place_in(mu, np.int64(i), np.int64(j), turn)
+    c = place.centre
+    for m in range(6):
+        p, q = i + AROUND[turn, m, 0], j + AROUND[turn, m, 1]
+        v = Vector(
+            scale * (mu[p, q, 0] - c.x), scale * (mu[p, q, 1] - c.y), scale * (mu[p, q, 2] - c.z)
+        )
+        put(tile, COEFFICIENTS + m * THREE_ROWS, k, v)
+    put(tile, PLACE, k, c)
+    tile[PLACE + 3 * STEP + k] = place.cell_u
+    tile[PLACE + 4 * STEP + k] = place.cell_v
+    tile[PLACE + 5 * STEP + k] = place.u_s
+    tile[PLACE + 6 * STEP + k] = place.u_t
+    tile[PLACE + 7 * STEP + k] = place.v_s
+    tile[PLACE + 8 * STEP + k] = place.v_t
+
+
+@loop
+def on_surface(place, frame, size, n, u, v, x, K, H):
+    """Return point, parameters, support and curvatures of a sample in the unit of the surface."""
+    unit = 1.0 / size
+    point = Vector(
+        place.centre.x + x.x * unit, place.centre.y + x.y * unit, place.centre.z + x.z * unit
+    )
+    s = frame[0] + frame[2] * (place.cell_u + u * place.u_s + v * place.v_s)
+    t = frame[1] + frame[3] * (place.cell_v + u * place.u_t + v * place.v_t)
+    return point, s, t, dot(n, point), K * size * size, H * size
+
+
+@loop
+def evaluate_tile(tile, count, frame, size, curved):
+    """Evaluate `count` samples of a tile; the loop has no branches, so that it is vectorized.
+
+    If `curved` is None, curvatures are left out, at compile time.
+    """
+    long_vectors()
+    frame = (frame[0], frame[1], frame[2], frame[3])
+    for k in range(count):
+        n = vector_in(tile, NORMAL, k)
+        patch = triangle(
+            vector_in(tile, COEFFICIENTS, k),
+            vector_in(tile, COEFFICIENTS + 3 * STEP, k),
+            vector_in(tile, COEFFICIENTS + 6 * STEP, k),
+            vector_in(tile, COEFFICIENTS + 9 * STEP, k),
+            vector_in(tile, COEFFICIENTS + 12 * STEP, k),
+            vector_in(tile, COEFFICIENTS + 15 * STEP, k),
+        )
+        place = Place(
+            vector_in(tile, PLACE, k),
+            tile[PLACE + 3 * STEP + k],
+            tile[PLACE + 4 * STEP + k],
+            tile[PLACE + 5 * STEP + k],
+            tile[PLACE + 6 * STEP + k],
+            tile[PLACE + 7 * STEP + k],
+            tile[PLACE + 8 * STEP + k],
+        )
+        u, v, x, _, K, H = sample(patch, n)
+        point, s, t, h, K, H = on_surface(place, frame, size, n, u, v, x, K, H)
+        put(tile, POINT, k, point)
+        tile[U + k] = s
+        tile[V + k] = t
+        tile[SUPPORT + k] = h
+        if curved is not None:
+            tile[GAUSSIAN + k] = K
+            tile[MEAN + k] = H
+
+
+@loop
+def store(k, point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean):
+    """Write the fields of sample k that are not empty."""
+    if len(points) > 0:
+        set_row(points, k, point)
+    if len(directions) > 0:
+        set_row(directions, k, n)
+    if len(uv) > 0:
+        uv[k, 0] = s
+        uv[k, 1] = t
+    if len(support) > 0:
+        support[k] = h
+    if len(gaussian) > 0:
+        gaussian[k] = K
+    if len(mean) > 0:
+        mean[k] = H
+
+
+@loop
+def fill_tile(
+    tile, indices, count, start, scale, frame,
+    points, directions, uv, support, gaussian, mean, normal_index, patch_index,
+):  # fmt: skip
+    """Evaluate and store `count` samples of a tile, from number `start` on."""
+    # The last vector is filled up with samples that are not stored.
+    full = whole_vectors(count)
+    if len(gaussian) + len(mean) > 0:
+        evaluate_tile(tile, full, frame, SCALE * scale, True)
+    elif len(points) + len(uv) + len(support) > 0:
+        evaluate_tile(tile, full, frame, SCALE * scale, None)
+    write_vectors(tile, POINT, count, start, points)
+    write_vectors(tile, NORMAL, count, start, directions)
+    if len(uv) > 0:
+        write_numbers(tile, U, count, start, uv[:, 0])
+        write_numbers(tile, V, count, start, uv[:, 1])
+    write_numbers(tile, SUPPORT, count, start, support)
+    write_numbers(tile, GAUSSIAN, count, start, gaussian)
+    write_numbers(tile, MEAN, count, start, mean)
+    write_numbers(indices, NORMAL_INDEX, count, start, normal_index)
+    write_numbers(indices, PATCH_INDEX, count, start, patch_index)
+
+
+@loop
+def write_vectors(tile, row, count, start, field):
+    """Write the vectors in three rows of a tile to a field, from number `start` on."""
+    if len(field) > 0:
+        for k in range(count):
+            set_row(field, np.uint64(start + k), vector_in(tile, row, k))
+
+
+@loop
+def write_numbers(tile, row, count, start, field):
+    """Write the numbers in a row of a tile to a field, from number `start` on."""
+    if len(field) > 0:
+        for k in range(count):
+            field[np.uint64(start + k)] = tile[np.uint64(row + k)]
+
+
+@jit
+def fill_known(
+    mu, scale, normals, frame, which, keys, local,
+    points, directions, uv, support, gaussian, mean,
+):  # fmt: skip
+    """Fill the samples which[0], which[1], … at known parameters; see `fill_samples`.
+
+    keys (k,) are their numbers of normals << 32 | patch. local (k, 5) holds u, v, the
+    sign of K, and the parameters at which curvatures are evaluated: u, v, or a nearby point if that
+    is singular.
+    """
+    columns = mu.shape[1] - 2
+    frame = (frame[0], frame[1], frame[2], frame[3])
+    for row in range(which.size):
+        i, j, turn = place_of(keys[row] & NUMBER, columns)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        u, v = local[row, 3], local[row, 4]
+        _, K, H = curvatures_of_patch(patch, normal_of_patch(patch, u, v), u, v)
+        K = math.copysign(K, local[row, 2])
+        u, v = local[row, 0], local[row, 1]
+        n = row_vector(normals, keys[row] >> 32)
+        x = point_of_patch(patch, u, v)
+        place = place_in(mu, i, j, turn)
+        point, s, t, h, K, H = on_surface(place, frame, SCALE * scale, n, u, v, x, K, H)
+        k = np.uint64(which[row])
+        store(k, point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean)

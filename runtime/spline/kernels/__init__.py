@@ -1,0 +1,1 @@
+"""The loops that Numba compiles for the spline."""

@@ -1,0 +1,57 @@
+"""The patch that osculates a surface at a point, from its 2-jet; normals and curvatures there."""
+
+from __future__ import annotations
+
+import math
+
+from ....generated.jet import at_jet
+from ....generated.vectors import Patch, Vector
+from ...base.tolerances import VANISHING
+from ...directions.kernels.vectors import dot, set_row
+from ...machine_code.jit import inline, jit
+
+__all__ = ["evaluate_jets", "is_regular", "jet_vector", "patch_of_jet"]
+
+
+@inline
+def jet_vector(jets, k, i, factor):
+    """Return a vector of a 2-jet, times a factor."""
+    return Vector(factor * jets[k, i, 0], factor * jets[k, i, 1], factor * jets[k, i, 2])
+
+
+@inline
+def patch_of_jet(jets, k, size, du, dv):
+    """Return the patch that osculates `size` times the surface, in cells of the parameters."""
+    along_u = size * du
+    along_v = size * dv
+    return Patch(
+        jet_vector(jets, k, 3, along_u * du),
+        jet_vector(jets, k, 4, along_u * dv),
+        jet_vector(jets, k, 5, along_v * dv),
+        jet_vector(jets, k, 1, along_u),
+        jet_vector(jets, k, 2, along_v),
+        jet_vector(jets, k, 0, size),
+    )
+
+
+@inline
+def is_regular(patch, L, K):
+    """Say whether a patch, whose normal has the length L, determines its direction and K."""
+    largest = max(dot(patch.d, patch.d), dot(patch.e, patch.e))
+    return VANISHING * largest < L and abs(K) < math.inf
+
+
+@jit
+def evaluate_jets(jets, scales, normals, gaussian, mean):
+    """Write unit normals (k, 3), K (k,) and H (k,) from 2-jets (k, 6, 3); 0 at singular points.
+
+    `scales` = (size, du, dv): `size` times the surface has cells du × dv of about the size 1.
+    """
+    size, du, dv = scales
+    for k in range(jets.shape[0]):
+        patch = patch_of_jet(jets, k, size, du, dv)
+        L, n, K, H = at_jet(patch)
+        regular = is_regular(patch, L, K)
+        set_row(normals, k, n if regular else Vector(0.0, 0.0, 0.0))
+        gaussian[k] = K * size * size if regular else 0.0
+        mean[k] = H * size if regular else 0.0

@@ -1,0 +1,101 @@
+"""The patches of a spline: their positions on the grid, and their vectors.
+
+The patches are numbered cell by cell: cell = i n + j, and in each cell south, east, north, west,
+which are 0 to 3 quarter turns of the southern one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ....generated.patch import curvature_at, envelope, tangents
+from ....generated.spline import NEIGHBOURS, triangle
+from ....generated.vectors import Patch, Vector
+from ...directions.kernels.vectors import length, set_row
+from ...domain.kernels.patch_numbers import place_of
+from ...machine_code.jit import inline, jit, loop
+
+__all__ = [
+    "curvatures_of_patch",
+    "normal_of_patch",
+    "normals_at",
+    "patch_of",
+    "patch_vectors",
+    "point_of_patch",
+    "vector_at",
+]
+
+# The indices of neighbours in NEIGHBOURS; typed, as each literal would be compiled on its own.
+SOUTHWEST, SOUTH, SOUTHEAST, WEST, EAST, NORTH = (np.int64(k) for k in (0, 1, 2, 3, 5, 7))
+
+
+@inline
+def vector_at(mu, i, j):
+    """Return an entry of an array (m, n, 3) of vectors."""
+    return Vector(mu[i, j, 0], mu[i, j, 1], mu[i, j, 2])
+
+
+@loop
+def neighbour(mu, i, j, turn, k, centre, scale):
+    """Return neighbour k minus the coefficient (i, j), times `scale`."""
+    p = i + NEIGHBOURS[turn, k, 0]
+    q = j + NEIGHBOURS[turn, k, 1]
+    return Vector(
+        scale * (mu[p, q, 0] - centre.x),
+        scale * (mu[p, q, 1] - centre.y),
+        scale * (mu[p, q, 2] - centre.z),
+    )
+
+
+@loop
+def patch_vectors(mu, i, j, turn, scale) -> Patch:
+    """Return the vectors of the patch of the coefficient (i, j), times SCALE * scale.
+
+    p is relative to the coefficient.
+    """
+    centre = vector_at(mu, i, j)
+    return triangle(
+        neighbour(mu, i, j, turn, SOUTHWEST, centre, scale),
+        neighbour(mu, i, j, turn, SOUTH, centre, scale),
+        neighbour(mu, i, j, turn, SOUTHEAST, centre, scale),
+        neighbour(mu, i, j, turn, WEST, centre, scale),
+        neighbour(mu, i, j, turn, EAST, centre, scale),
+        neighbour(mu, i, j, turn, NORTH, centre, scale),
+    )
+
+
+@inline
+def patch_of(mu, scale, number) -> Patch:
+    """Return the vectors of a patch by its number; see `patch_vectors`."""
+    i, j, turn = place_of(number, mu.shape[1] - 2)
+    return patch_vectors(mu, i + 1, j + 1, turn, scale)
+
+
+@loop
+def point_of_patch(patch, u, v):
+    """Return the point of a patch at (u, v)."""
+    return envelope(patch, u, v)
+
+
+@loop
+def normal_of_patch(patch, u, v):
+    """Return the unnormalized oriented normal of a patch at (u, v)."""
+    _, _, N = tangents(patch, u, v)
+    return N
+
+
+@loop
+def curvatures_of_patch(patch, N, u, v):
+    """Return the unit normal, K and H of a patch at (u, v), with the normal N there."""
+    size = length(N)
+    n = Vector(N.x / size, N.y / size, N.z / size)
+    K, H = curvature_at(patch, n, u, v)
+    return n, K, H
+
+
+@jit
+def normals_at(mu, scale, patches, places, normals):
+    """Write the unnormalized oriented normals (k, 3) of patches (k,) at parameters (k, 2)."""
+    for k in range(patches.size):
+        patch = patch_of(mu, scale, patches[k])
+        set_row(normals, k, normal_of_patch(patch, places[k, 0], places[k, 1]))

@@ -1,0 +1,1 @@
+"""The loops that Numba compiles for surfaces of the catalogue."""

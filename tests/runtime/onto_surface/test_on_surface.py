@@ -1,0 +1,317 @@
+"""Samples on the surface, and not only on the spline that approximates it."""
+
+import pickle
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.onto_surface import on_surface
+from gaussmap.runtime.onto_surface.on_surface import geometry_of
+from scipy.spatial import KDTree
+
+from ...products import covering
+from ...refusals import refused
+from ...shapes import egg, egg_surface
+
+CELLS = (12, 12)
+NORMAL_ERROR = 1e-12  # radians
+FIELDS_ON_SPLINE = (
+    "points", "normals", "uv", "support", "gaussian_curvature", "mean_curvature", "normal_index",
+    "patch_index",
+)  # fmt: skip
+FIELDS_ON_SURFACE = (*FIELDS_ON_SPLINE, "on_surface")
+
+
+def normals_at(surface: gm.Surface, uv: np.ndarray) -> np.ndarray:
+    jets = surface.derivatives(*uv.T)
+    vectors = np.cross(jets[:, 1], jets[:, 2])
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def sines(normals: np.ndarray, others: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(np.cross(normals, others), axis=1)
+
+
+def curvature_of_torus(v: np.ndarray) -> np.ndarray:
+    return np.cos(v) / (0.35 * (1.0 + 0.35 * np.cos(v)))
+
+
+REQUESTS: list[dict[str, Any]] = [
+    {"normals": gm.icosphere(6)},
+    {"count": 300},
+    {"count": 300, "density": "gauss"},
+    {"count": 300, "density": 0.5},
+    {"angle": 15.0},
+    {"coverage": 0.2},
+]
+
+
+MIXED: list[dict[str, Any]] = [{"normals": gm.icosphere(4)}, {"count": 60}]
+UNIFORM_TOO: list[dict[str, Any]] = [{"density": "uniform"}, {}]
+
+
+@pytest.mark.parametrize("request_", REQUESTS, ids=[*"abcdef"])
+def test_samples_are_on_the_surface(request_):
+    torus = gm.surfaces.torus()
+    samples = gm.sample(torus, **request_, cells=CELLS, on="surface")
+    there = samples.on_surface
+    assert there is not None
+    # The only normals without an isolated point: along the axis, where K = 0 on circles.
+    along = np.abs(samples.normals[:, 2]) > 1.0 - 1e-6
+    assert (there | along).all()
+    assert samples.report.on == "surface"
+    assert samples.report.unrefined == (~there).sum()
+    assert samples.surface is torus
+    u, v = samples.uv[there].T
+    np.testing.assert_allclose(samples.points[there], torus.evaluate(u, v), atol=1e-15)
+    normals = samples.normals[there]
+    assert sines(normals, normals_at(torus, samples.uv[there])).max() < NORMAL_ERROR + 1e-15
+    np.testing.assert_allclose(
+        samples.gaussian_curvature[there], curvature_of_torus(v), rtol=1e-7, atol=1e-7
+    )
+    np.testing.assert_allclose(
+        samples.support[there], np.sum(samples.points[there] * normals, axis=1), atol=1e-15
+    )
+    if request_.get("density") != "gauss" and "normals" in request_:
+        np.testing.assert_array_equal(samples.normals, gm.icosphere(6)[samples.normal_index])
+
+
+def test_samples_of_the_spline_are_those_of_the_spline_itself():
+    torus = gm.surfaces.torus()
+    samples = gm.sample(torus, 200, cells=CELLS, on="spline")
+    others = gm.sample(gm.fit(torus, CELLS), 200)
+    assert samples.report == others.report
+    assert samples.report.on == "spline"
+    assert samples.report.unrefined is samples.on_surface is samples.surface is None
+    assert samples.fields == FIELDS_ON_SPLINE
+    for name, array in samples.arrays().items():
+        np.testing.assert_array_equal(array, getattr(others, name))
+
+
+@pytest.mark.usefixtures("unproved")
+def test_the_same_normals_have_the_same_samples_as_on_the_spline():
+    normals = gm.icosphere(8)
+    on_surface, on_spline = (
+        gm.sample("catenoid", normals=normals, cells=(16, 16), on=on)
+        for on in ("surface", "spline")
+    )
+    np.testing.assert_array_equal(on_surface.normal_index, on_spline.normal_index)
+    np.testing.assert_array_equal(on_surface.patch_index, on_spline.patch_index)
+    moved = np.linalg.norm(on_surface.points - on_spline.points, axis=1)
+    assert 0.0 < moved.max() < 0.1
+
+
+@covering(
+    fields=[("points",), ("uv", "on_surface"), ("gaussian_curvature",)],
+    dtype=[np.float32, np.float64],
+)
+def test_chosen_fields_are_those_of_all(fields, dtype):
+    for request_ in MIXED:
+        every = gm.sample("torus", **request_, cells=CELLS, on="surface")
+        some = gm.sample("torus", **request_, cells=CELLS, fields=fields, dtype=dtype, on="surface")
+        proved = ("uv_radius",) if every.report.proved is not None else ()
+        assert every.fields == FIELDS_ON_SURFACE + proved
+        assert some.fields == fields
+        assert some.dtype == dtype or fields == ("on_surface",)
+        assert some.report.unrefined == every.report.unrefined
+        for name in fields:
+            expected = getattr(every, name)
+            expected = expected if expected.dtype == np.bool_ else expected.astype(dtype)
+            np.testing.assert_array_equal(getattr(some, name), expected)
+
+
+def test_the_measure_of_an_opaque_function_is_that_of_its_spline():
+    """Derivatives of a function of floats are differences of many evaluations."""
+    places = []
+
+    def opaque(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        places.append(np.size(u))
+        return egg(np.asarray(u, dtype=float), np.asarray(v, dtype=float))
+
+    domain = ((0, 2 * np.pi), (-np.pi / 2, np.pi / 2))
+    surface = gm.Surface.from_callable(opaque, domain, periodic=(True, "pole"))
+    assert surface.tape is None
+    geometry = geometry_of(surface, (32, 16), "surface")
+    places.clear()
+    for found, expected in zip(geometry.measure, geometry.spline.measure, strict=True):
+        np.testing.assert_array_equal(found, expected)
+    assert geometry.cell_measure.developable_share(1.0) == 0.0
+    assert not places
+
+
+def test_angle_and_coverage_hold_for_the_surface():
+    """With so few cells that the spline is 0.009 and 1.6 degrees off."""
+    torus = gm.surfaces.torus()
+    u, v = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, (2, 20_000))
+    samples = gm.sample(torus, coverage=0.15, cells=(10, 10), on="surface")
+    distance = KDTree(samples.points).query(torus.evaluate(u, v))[0].max()
+    assert samples.report.coverage is not None
+    assert distance <= samples.report.coverage <= 0.15
+    assert distance <= samples.coverage() <= samples.report.coverage * 1.2
+    samples = gm.sample(torus, angle=12.0, cells=(10, 10), on="surface")
+    normals = normals_at(torus, np.stack([u, v], axis=1))
+    chord = KDTree(samples.normals).query(normals)[0].max()
+    assert samples.report.angle is not None
+    assert np.degrees(2.0 * np.arcsin(chord / 2.0)) <= samples.report.angle <= 12.0
+
+
+@pytest.mark.slow
+def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
+    """That is for surfaces that do not know their derivatives; others are covered by these."""
+    known = gm.surfaces.torus()
+    assert (gm.sample(known, coverage=0.05, cells=(6, 6)).report.coverage or 1.0) <= 0.05
+    torus = gm.Surface.from_callable(known.evaluate, known.domain, (True, True))
+    with pytest.warns(
+        gm.GaussmapWarning, match=r"coverage is 0\.\d+ instead of the requested 0\.05"
+    ):
+        samples = gm.sample(torus, coverage=0.05, cells=(6, 6))
+    report = samples.report
+    assert report.coverage is not None
+    assert report.fit_distance is not None
+    assert 0.05 < report.coverage <= 1.1 * 0.025 + 2.0 * report.fit_distance
+
+
+class TestPoles:
+    def test_every_normal_once(self):
+        surface, normals = egg_surface(), gm.directions.fibonacci(3000)
+        samples = gm.sample(surface, normals=normals, cells=(32, 16), on="surface")
+        np.testing.assert_array_equal(np.sort(samples.normal_index), np.arange(3000))
+        assert samples.report.unrefined == 0
+        assert (samples.gaussian_curvature > 0.0).all()
+        assert sines(samples.normals, normals_at(surface, samples.uv)).max() < 1e-11
+        again = gm.sample(surface, normals=normals, cells=(32, 16), on="spline")
+        assert len(again) > 3000
+
+    def test_densities_take_the_curvature_of_the_surface(self):
+        """The share of ∫ K² in the outermost cells; from the spline it is more than ten times."""
+        surface = egg_surface()
+        samples = gm.sample(surface, 3000, density=2, cells=(32, 32), on="surface")
+        v = np.pi * ((np.arange(640) + 0.5) / 640 - 0.5)
+        u = 2 * np.pi * (np.arange(64) + 0.5) / 64
+        jets = surface.derivatives(u[:, None], v)
+        x_u, x_v = jets[..., 1, :], jets[..., 2, :]
+        N = np.cross(x_u, x_v)
+        L, M, P = (np.sum(jets[..., k, :] * N, axis=-1) for k in (3, 4, 5))
+        square = np.sum(N * N, axis=-1)
+        K = (L * P - M * M) / square**2
+        weight = K**2 * np.sqrt(square)
+        outermost = np.abs(v) > np.pi / 2 * (1 - 2 / 32)
+        share = weight[:, outermost].sum() / weight.sum()
+        found = (np.abs(samples.uv[:, 1]) > np.pi / 2 * (1 - 2 / 32)).mean()
+        assert share / 1.5 < found < share * 1.5
+
+    @pytest.mark.slow
+    def test_gauss_bonnet(self):
+        for request_ in UNIFORM_TOO:
+            samples = gm.sample(egg_surface(), 8000, **request_, on="surface")
+            total = samples.weights() @ samples.gaussian_curvature
+            assert total == pytest.approx(4 * np.pi, rel=0.01)
+
+
+class TestStream:
+    def test_it_is_the_sampling(self):
+        whole = gm.sample("torus", 300, density="gauss", cells=CELLS, on="surface")
+        chunks = [*gm.sample_stream("torus", 300, chunk=70, cells=CELLS, on="surface")]
+        assert all(len(chunk) == 70 for chunk in chunks[:-1])
+        joined = gm.Samples.concatenate(chunks)
+        assert joined.report.on == "surface"
+        assert joined.report.unrefined == whole.report.unrefined
+        for name in FIELDS_ON_SURFACE:
+            np.testing.assert_array_equal(getattr(joined, name), getattr(whole, name))
+
+    def test_samples_next_to_poles_come_once(self):
+        surface, normals = egg_surface(), gm.directions.fibonacci(500)
+        whole = gm.sample(surface, normals=normals, cells=(16, 16), on="surface")
+        chunks = [
+            *gm.sample_stream(surface, normals=normals, chunk=40, cells=(16, 16), on="surface")
+        ]
+        assert max(map(len, chunks)) <= 40
+        joined = gm.Samples.concatenate(chunks)
+        np.testing.assert_array_equal(np.sort(joined.normal_index), np.arange(500))
+        np.testing.assert_array_equal(joined.points, whole.points)
+
+    def test_no_samples(self):
+        with pytest.warns(
+            gm.GaussmapWarning, match="none of the normals lies in its Gaussian image"
+        ):
+            chunks = [*gm.sample_stream("catenoid", normals=[[0, 0, 1]], cells=CELLS, on="surface")]
+        assert [len(chunk) for chunk in chunks] == [0]
+
+
+class TestArguments:
+    def test_splines_and_data_have_no_other_surface(self):
+        spline = gm.fit("torus", CELLS)
+        heights = np.hypot(*np.mgrid[-1:1:8j, -1:1:9j]) ** 3
+        grid = gm.Surface.from_grid(heights, spacing=(1, 1), name="hill")
+        refused("needs the surface, not its spline", gm.sample, spline, 10, on="surface")
+        refused("'hill' was given by points", gm.sample, grid, 10, on="surface")
+        assert gm.sample(grid, 50).report.on == gm.sample(spline, 50).report.on == "spline"
+
+    @pytest.mark.parametrize("on", ["surfaces", "", 1])
+    def test_other_places_are_refused(self, on):
+        for sampler in (gm.sample, gm.sample_stream):
+            with pytest.raises(gm.errors.UnknownNameError, match="there is no place of samples"):
+                sampler("torus", 10, on=on)
+
+    def test_whether_samples_are_on_the_surface_is_a_field_of_those_only(self):
+        with pytest.raises(
+            gm.errors.InputError, match="on_surface is a field of samples on the surface"
+        ):
+            gm.sample("torus", 10, fields=("points", "on_surface"), on="spline")
+
+    def test_many(self):
+        surfaces = ["torus", gm.fit("torus", CELLS)]
+        with pytest.warns(gm.GaussmapWarning, match="needs the surface, not its spline"):
+            (samples,) = gm.sample_many(surfaces, 50, on="surface", on_error="skip", progress=False)
+        assert samples.report.on == "surface"
+
+
+def test_samples_pickle_with_and_without_their_surface():
+    samples = gm.sample("torus", 50, cells=CELLS, on="surface")
+    other = pickle.loads(pickle.dumps(samples))
+    assert isinstance(other.surface, gm.Surface)
+    assert isinstance(samples.surface, gm.Surface)
+    expected = samples.surface.evaluate(0.1, 0.2)
+    np.testing.assert_array_equal(other.surface.evaluate(0.1, 0.2), expected)
+    waves = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, u * v], axis=-1), ((0, 1), (0, 1))
+    )
+    other = pickle.loads(pickle.dumps(gm.sample(waves, 50, cells=CELLS, on="surface")))
+    assert other.surface is None
+    assert other.on_surface.all()
+
+
+def test_where_the_surface_is_singular_samples_stay_on_the_spline():
+    """A cone: its apex is no place of a sample, and NaN does no harm next to it."""
+
+    def cone(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.stack([v * np.cos(u), v * np.sin(u), v], axis=-1)
+
+    surface = gm.Surface.from_callable(cone, ((0, 2 * np.pi), (0, 1)), (True, False), name="cone")
+    samples = gm.sample(surface, 200, cells=CELLS, on="surface")
+    assert len(samples) == 200
+    assert np.isfinite(samples.points).all()
+    assert np.isfinite(samples.normals).all()
+    np.testing.assert_allclose(np.linalg.norm(samples.normals, axis=1), 1.0, rtol=1e-12)
+
+
+@pytest.mark.compiled
+@pytest.mark.usefixtures("unproved")
+@pytest.mark.filterwarnings("ignore:.*could not be moved")
+@pytest.mark.parametrize("name", ["wavy_graph", "sphere"])
+def test_chunks_make_the_whole(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Samples that repeat others are left out, and yet chunks are full."""
+    monkeypatch.setattr(on_surface, "TOGETHER", 50)
+    surface = gm.surfaces.surface(name)
+    for asked in ({"count": 700}, {"normals": gm.fibonacci(300)}):
+        known: dict[str, Any] = {"cells": (8, 6), **asked}
+        whole = gm.sample(surface, density="gauss", threads=1, **known)
+        for size in (7, 100, 10**9):
+            chunks = list(gm.sample_stream(surface, chunk=size, **known))
+            assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
+            joined = gm.Samples.concatenate(chunks)
+            assert joined.fields == whole.fields
+            for field in whole.fields:
+                assert (getattr(joined, field) == getattr(whole, field)).all()
+            assert joined.report.unrefined == whole.report.unrefined

@@ -1,0 +1,511 @@
+"""Newton's method for samples on the surface: normals, marks, borders, poles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.runtime.onto_surface.newton import FOUND, Target, evaluate_on_surface, refine
+from gaussmap.runtime.onto_surface.repeats import kept_once
+from numpy.typing import NDArray
+
+from ...shapes import egg, klein
+
+Array = NDArray[np.float64]
+NORMAL_ERROR = 1e-12  # radians
+FULL = (0.0, 2.0 * np.pi)
+LATITUDES = (-np.pi / 2, np.pi / 2)
+MOTIONS = [(0.0, 1.0), (1e6, 1.0), (0.0, 1e9), (0.0, 1e-9)]
+
+
+def refined(
+    surface: gm.Surface, cells: tuple[int, int], normals: Array
+) -> tuple[Target, NDArray[np.int64]]:
+    """Return the samples after refinement, and the numbers of their normals."""
+    spline = gm.fit(surface, cells)
+    samples = gm.sample(spline, normals=normals)
+    target = Target(
+        samples.normals, np.sign(samples.gaussian_curvature), samples.uv, samples.points,
+        samples.gaussian_curvature, samples.mean_curvature, np.empty(len(samples), np.int8),
+    )  # fmt: skip
+    refine(surface, spline, target, 1)
+    return target, samples.normal_index
+
+
+def normals_of(surface: gm.Surface, uv: Array) -> Array:
+    jets = surface.derivatives(*uv.T)
+    normals = np.cross(jets[:, 1], jets[:, 2])
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def turned(seed: int) -> Array:
+    q = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+    return q * np.linalg.det(q)
+
+
+def blob(u: Array, v: Array) -> Array:
+    """Return points of a smooth surface with dents."""
+    n = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=-1)
+    return n * (1.0 + 0.12 * np.sin(2.0 * n @ [1.0, 2.0, 0.5] + 1.0))[..., None]
+
+
+def moved(f: Callable[[Array, Array], Array], seed: int, shift: float, factor: float) -> gm.Surface:
+    rotation = turned(seed)
+    return gm.Surface.from_callable(
+        lambda u, v: factor * (f(u, v) @ rotation.T) + shift, (FULL, LATITUDES), (True, "pole")
+    )
+
+
+def next_to(normal: Array) -> Array:
+    """Return a normal, and others 1e-14 to 0.1 radians beside it."""
+    across = np.linalg.svd(normal[None])[2][1:]
+    away = [10.0**k * (np.cos(k) * across[0] + np.sin(k) * across[1]) for k in range(-14, 0)]
+    return np.concatenate([normal[None], normal + np.array(away)])
+
+
+# --- regular points -------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(("shift", "factor"), MOTIONS)
+def test_normals_become_the_prescribed_ones(shift: float, factor: float) -> None:
+    torus = gm.surfaces.torus()
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = factor * turned(1), shift
+    surface = torus.transformed(matrix)
+    samples, _ = refined(surface, (24, 16), gm.fibonacci(300))
+    assert (samples.state == FOUND).all()
+    assert np.abs(normals_of(surface, samples.uv) - samples.normals).max() < NORMAL_ERROR
+    rounding = 1e-15 * (factor + shift)
+    assert np.abs(surface.evaluate(*samples.uv.T) - samples.points).max() < 2.0 * rounding
+    v, minor = samples.uv[:, 1], 0.35
+    K = np.cos(v) / (minor * (1.0 + minor * np.cos(v))) / factor**2
+    H = (1.0 + 2.0 * minor * np.cos(v)) / (2.0 * minor * (1.0 + minor * np.cos(v))) / factor
+    np.testing.assert_allclose(samples.gaussian, K, rtol=0.0, atol=1e-13 / factor**2 * 10.0)
+    np.testing.assert_allclose(samples.mean, H, rtol=1e-13)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_samples_of_a_coarse_spline_go_on_across_the_ends_of_a_period(sign: float) -> None:
+    """The parameters of this torus are uneven: those of its spline are up to a quarter cell off."""
+    torus = gm.surfaces.torus()
+
+    def uneven(u: Array, v: Array) -> Array:
+        u, v = (sign * x + 0.5 * np.sin(sign * x + 1.0) + 0.3 for x in (u, v))
+        return np.asarray(torus.function(u, v))
+
+    surface = gm.Surface.from_callable(uneven, (FULL, FULL), (True, True))
+    samples, numbers = refined(surface, (7, 7), gm.fibonacci(2000))
+    assert (np.bincount(numbers) == 2).all()
+    assert (samples.state == FOUND).all()
+    assert ((samples.uv >= 0.0) & (samples.uv <= 2.0 * np.pi)).all()
+    assert np.abs(normals_of(surface, samples.uv) - samples.normals).max() < 2.0 * NORMAL_ERROR
+
+
+@pytest.mark.compiled
+def test_most_samples_of_a_spline_that_is_much_too_coarse_are_moved() -> None:
+    """Of 2,392 points of the spline, some have no place on the surface that is near."""
+    surface = gm.Surface.from_callable(blob, (FULL, LATITUDES), (True, "pole"))
+    samples, _ = refined(surface, (8, 6), gm.fibonacci(2000))
+    found = samples.state == FOUND
+    assert 0.95 < found.mean() < 1.0
+    there = found & (np.abs(samples.uv[:, 1]) < 1.4)
+    off = normals_of(surface, samples.uv[there]) - samples.normals[there]
+    assert np.abs(off).max() < 2.0 * NORMAL_ERROR
+
+
+@pytest.mark.compiled
+@pytest.mark.filterwarnings("ignore:.*could not be moved")
+@pytest.mark.parametrize(("amplitude", "frequency"), [(0.2, 3.0), (0.1, 8.0)])
+def test_curvatures_are_those_of_the_stored_parameters(amplitude: float, frequency: float) -> None:
+    """K and H of z = a sin f x cos f y, in closed form."""
+    surface = gm.surfaces.wavy_graph(amplitude=amplitude, frequency=frequency)
+    samples = gm.sample(surface, 3000, density="gauss", cells=(48, 48))
+    there = samples.on_surface
+    assert there is not None
+    x, y = frequency * samples.uv[there].T
+    z_x = amplitude * frequency * np.cos(x) * np.cos(y)
+    z_y = -amplitude * frequency * np.sin(x) * np.sin(y)
+    z_xx, z_xy = (
+        -amplitude * frequency**2 * z for z in (np.sin(x) * np.cos(y), np.cos(x) * np.sin(y))
+    )
+    W = 1.0 + z_x**2 + z_y**2
+    K = (z_xx**2 - z_xy**2) / W**2
+    H = -((2.0 + z_x**2 + z_y**2) * z_xx - 2.0 * z_x * z_y * z_xy) / (2.0 * W**1.5)
+    largest = np.abs(samples.principal_curvatures).max()
+    assert np.abs(samples.gaussian_curvature[there] - K).max() < 1e-14 * largest**2
+    assert np.abs(samples.mean_curvature[there] - H).max() < 1e-14 * largest
+    points = surface.evaluate(*samples.uv[there].T)
+    np.testing.assert_allclose(samples.points[there], points, rtol=0.0, atol=1e-15)
+
+
+def test_curvatures_of_a_graph() -> None:
+    """K and H of 2z = ax² + by² where its normals are prescribed."""
+    a, b = 1.5, -0.7
+    paraboloid = gm.Surface.from_callable(
+        lambda x, y: np.stack([x, y, 0.5 * (a * x * x + b * y * y)], axis=-1), ((-1, 1), (-1, 1))
+    )
+    normals = np.array([[0.3, 0.1, 1.0], [-0.2, 0.5, 1.0], [0.0, 0.0, 1.0]])
+    target, numbers = refined(paraboloid, (4, 4), normals)
+    assert sorted(numbers) == [0, 1, 2]
+    x, y = -normals[numbers, 0] / a, -normals[numbers, 1] / b
+    np.testing.assert_allclose(target.uv, np.stack([x, y], axis=1), rtol=0.0, atol=1e-14)
+    W = 1.0 + (a * x) ** 2 + (b * y) ** 2
+    H = -(a * (1.0 + (b * y) ** 2) + b * (1.0 + (a * x) ** 2)) / (2.0 * W**1.5)
+    np.testing.assert_allclose(target.gaussian, a * b / W**2, rtol=10 * NORMAL_ERROR)
+    np.testing.assert_allclose(target.mean, H, rtol=10 * NORMAL_ERROR)
+
+
+@pytest.mark.compiled
+def test_curvatures_of_a_sphere() -> None:
+    samples = gm.sample("sphere", normals=gm.fibonacci(500), cells=(24, 24))
+    np.testing.assert_allclose(samples.gaussian_curvature, 1.0, rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(samples.mean_curvature, 1.0, rtol=0.0, atol=1e-13)
+
+
+@pytest.mark.usefixtures("unproved")
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_next_to_singular_points_normals_are_those_that_are_prescribed() -> None:
+    """A spindle cyclide, with two conical points."""
+    a, b, c, d = 1.0, math.sqrt(0.75), 0.5, 1.5
+
+    def spindle(u: Array, v: Array) -> Array:
+        x, y, r = np.cos(u), np.cos(v), a - c * np.cos(u) * np.cos(v)
+        z = b * np.sin(v) * (c * x - d)
+        return np.stack(
+            [(d * (c - a * x * y) + b * b * x) / r, b * np.sin(u) * (a - d * y) / r, z / r], axis=-1
+        )
+
+    surface = gm.Surface.from_callable(spindle, (FULL, FULL), (True, True))
+    with pytest.warns(gm.GaussmapWarning, match="could not be moved"):
+        samples = gm.sample(surface, normals=gm.icosphere(20), cells=(32, 32))
+    there = samples.on_surface
+    assert there is not None
+    off = np.abs(normals_of(surface, samples.uv[there]) - samples.normals[there])
+    assert off.max() < 1e-9
+    # That of a conical point, whose derivatives are rounding, would be about 1e33.
+    assert np.abs(samples.gaussian_curvature[there]).max() < 1e8
+
+
+@pytest.mark.compiled
+def test_numerical_derivatives_give_the_same_samples() -> None:
+    torus = gm.surfaces.torus()
+    numerical = gm.Surface.from_callable(torus.function, torus.domain, (True, True))
+    exact, _ = refined(torus, (16, 16), gm.fibonacci(100))
+    found, _ = refined(numerical, (16, 16), gm.fibonacci(100))
+    assert (found.state == FOUND).all()
+    np.testing.assert_allclose(found.uv, exact.uv, rtol=0.0, atol=1e-11)
+    np.testing.assert_allclose(found.gaussian, exact.gaussian, rtol=0.0, atol=1e-7)
+
+
+@pytest.mark.compiled
+def test_samples_without_a_place_on_the_surface_stay_on_the_spline() -> None:
+    """The border of the spline has other normals than that of the surface."""
+    helicoid, normals = gm.surfaces.helicoid(), gm.fibonacci(3000)
+    spline = gm.fit(helicoid, (6, 6))
+    samples = gm.sample(spline, normals=normals)
+    found, _ = refined(helicoid, (6, 6), normals)
+    outside = found.state != FOUND
+    assert 0 < outside.sum() < 0.02 * len(outside)
+    np.testing.assert_array_equal(found.uv[outside], samples.uv[outside])
+    np.testing.assert_array_equal(found.points[outside], samples.points[outside])
+    assert (np.abs(np.abs(found.uv[outside]) - [1.0, np.pi]).min(axis=1) < 0.1).all()
+
+
+def test_a_place_at_the_very_border_is_inside() -> None:
+    surface = gm.surfaces.enneper()
+    ends = [-1.0, -0.4, 0.3, 1.0]
+    uv = np.array([(u, v) for u in ends for v in (-1.0, 1.0)])
+    normals = normals_of(surface, uv)
+    state = np.empty(len(uv), np.int8)
+    _, _, K, H = evaluate_on_surface(surface, gm.fit(surface, (16, 16)), uv)
+    start = np.clip(uv + 0.003, -1.0, 1.0)
+    target = Target(normals, np.sign(K), start, np.empty((len(uv), 3)), K.copy(), H, state)
+    refine(surface, gm.fit(surface, (16, 16)), target, 1)
+    assert (state == FOUND).all()
+    np.testing.assert_allclose(start, uv, rtol=0.0, atol=1e-11)
+
+
+@pytest.mark.compiled
+def test_flat_points_are_reached_as_far_as_normals_tell() -> None:
+    """Newton's method converges to the flat point slowly; its normal is right long before."""
+    surface = gm.surfaces.monkey_saddle()
+    samples, _ = refined(surface, (9, 9), np.array([[0.0, 0.0, 1.0]]))
+    found = samples.state == FOUND
+    assert np.abs(normals_of(surface, samples.uv[found]) - [0.0, 0.0, 1.0]).max() < NORMAL_ERROR
+    assert np.abs(samples.uv).max() < 0.2
+
+
+def test_a_curvature_of_zero_keeps_its_sign() -> None:
+    """At the flat point of a monkey saddle, where two samples may begin."""
+    surface = gm.surfaces.monkey_saddle()
+    signs, none = np.array([1.0, -1.0]), np.zeros((2, 3))
+    upwards = none + np.array([0.0, 0.0, 1.0])
+    target = Target(
+        upwards, signs, np.zeros((2, 2)), none.copy(), np.ones(2), np.ones(2),
+        np.empty(2, np.int8),
+    )  # fmt: skip
+    refine(surface, gm.fit(surface, (9, 9)), target, 1)
+    assert (target.state == FOUND).all()
+    assert (target.gaussian == 0.0).all()
+    np.testing.assert_array_equal(np.signbit(target.gaussian), [False, True])
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("on", ["spline", "surface"])
+def test_aligned_normals_have_the_sum_of_signs_by_the_sign_bit(on: str) -> None:
+    """Along the axis of a torus whole circles are parabolic: K is 0 there, or its rounding."""
+    normals = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 3), axis=-1).reshape(-1, 3)
+    normals = normals[normals.any(axis=1)]
+    samples = gm.sample("torus", normals=normals, cells=(16, 16), on=on)
+    K = samples.gaussian_curvature
+    assert (np.bincount(samples.normal_index, np.copysign(1, K), len(normals)) == 0).all()
+    assert not samples.report.unrefined
+    if on == "spline":
+        assert (np.signbit(K) & (K == 0.0)).any()
+        assert np.sign(K).sum() != 0
+
+
+@pytest.mark.compiled
+def test_the_seam_of_a_moebius_band_is_no_way_through() -> None:
+    band = gm.surfaces.moebius_band()
+    samples, _ = refined(band, (48, 12), gm.fibonacci(2000))
+    found = samples.state == FOUND
+    assert found.mean() > 0.9
+    assert (normals_of(band, samples.uv[found]) * samples.normals[found]).sum(axis=1).min() > 0.5
+    assert np.abs(normals_of(band, samples.uv[found]) - samples.normals[found]).max() < NORMAL_ERROR
+
+
+# --- samples that meet ----------------------------------------------------------------------------
+
+
+TORUS = gm.fit("torus", (16, 16))
+
+
+def kept(*samples: tuple[float, float, float, int, bool], at_pole: bool = False) -> list[bool]:
+    """Return which samples of one normal are kept, of rows (u, v, K, patch, is on the surface)."""
+    u, v, K, patch, found = (np.array(x) for x in zip(*samples, strict=True))
+    arrays = {
+        "points": TORUS.evaluate(u, v), "uv": np.stack([u, v], axis=1), "gaussian_curvature": K,
+        "normal_index": np.full(len(u), 3), "patch_index": patch, "on_surface": found,
+    }  # fmt: skip
+    return kept_once(TORUS, arrays, np.full(len(u), at_pole)).tolist()
+
+
+# A place of the torus, the patch in which it is, and another one.
+HERE, ELSEWHERE = (1.23, 0.77), (1.23, 2.34)
+OWN, OTHER = gm.sample(TORUS, normals=TORUS.normals([1.23], [0.77])).patch_index[:1].tolist()[0], 7
+
+
+def test_samples_that_meet_are_one() -> None:
+    """The one that has left its patch goes, whatever the order, and the other side of its fold."""
+    assert kept((*HERE, 1.0, OWN, True), (*HERE, 1.0, OTHER, True)) == [True, False]
+    assert kept((*HERE, 1.0, OTHER, True), (*HERE, 1.0, OWN, True)) == [False, True]
+    close = (HERE[0] + 1e-7, HERE[1])
+    fold = [(*HERE, 1.0, OTHER, True), (*ELSEWHERE, -1.0, 0, False), (*close, 1.0, 5, True)]
+    assert kept(*fold) == [True, False, False]
+    assert kept(*fold, (*ELSEWHERE, -1.0, 9, False)) == [True, False, False, True]
+    # one whose K has the same sign is not the other side of the fold
+    assert kept(*fold[::2], (*ELSEWHERE, 1.0, 0, False)) == [True, False, True]
+
+
+def test_samples_on_both_sides_of_a_seam_meet() -> None:
+    ends = (0.0, 0.77, 1.0, OTHER, True), (2.0 * np.pi, 0.77, 1.0, OTHER, True)
+    assert kept(*ends) == [True, False]
+
+
+def test_samples_that_do_not_meet_are_kept() -> None:
+    assert all(kept((*HERE, 1.0, OWN, True), (*ELSEWHERE, 1.0, OTHER, True)))
+    assert all(kept((*HERE, 1.0, OWN, True), (*HERE, -1.0, OTHER, True)))
+    assert all(kept((*HERE, 1.0, OWN, True), (*HERE, 1.0, OTHER, False)))
+    assert all(kept((*HERE, 1.0, OWN, False), (*HERE, 0.0, OTHER, False)))
+
+
+def test_next_to_a_pole_parameters_do_not_matter_and_nothing_goes_along() -> None:
+    fold = (*HERE, 1.0, OWN, True), (*HERE, 1.0, OTHER, True), (*ELSEWHERE, -1.0, 0, False)
+    assert kept(*fold, at_pole=True) == [True, False, True]
+
+
+@pytest.mark.compiled
+def test_a_point_that_is_covered_twice_is_two_samples() -> None:
+    """A torus around which u goes twice: at one point the parameters are a turn apart."""
+    torus = gm.surfaces.torus()
+    twice = gm.Surface.from_callable(
+        lambda u, v: torus.evaluate(u % (2.0 * np.pi), v), ((0.0, 4.0 * np.pi), FULL), (True, True)
+    )
+    normals = gm.fibonacci(200)
+    samples = gm.sample(twice, normals=normals, cells=(40, 16))
+    assert (np.bincount(samples.normal_index) == 4).all()
+
+
+def repeated(samples: gm.Samples, periodic: tuple[bool, bool]) -> int:
+    """Return how many samples on the surface have the normal and parameters of another one."""
+    assert samples.on_surface is not None
+    there = np.flatnonzero(samples.on_surface)
+    there = there[np.argsort(samples.normal_index[there], kind="stable")]
+    number, count = samples.normal_index[there], 0
+    for k in range(1, int(np.bincount(number).max())):
+        away = np.abs(samples.uv[there[k:]] - samples.uv[there[:-k]])
+        away = np.where(periodic, np.minimum(away, np.abs(2.0 * np.pi - away)), away)
+        count += int(((number[k:] == number[:-k]) & (away < 1e-9).all(axis=1)).sum())
+    return count
+
+
+def knobby_torus(u: Array, v: Array) -> Array:
+    minor = 0.35 + 0.06 * np.sin(4.0 * u + 3.0 * v)
+    major = 1.0 + minor * np.cos(v)
+    return np.stack([major * np.cos(u), major * np.sin(u), minor * np.sin(v)], axis=-1)
+
+
+CURVED: dict[str, tuple[gm.Surface, tuple[bool, bool]]] = {
+    "figure 8": (gm.Surface.from_callable(klein, (FULL, FULL), (False, True)), (False, True)),
+    "knobby": (gm.Surface.from_callable(knobby_torus, (FULL, FULL), (True, True)), (True, True)),
+    "wavy": (gm.surfaces.wavy_graph(amplitude=0.1, frequency=8.0), (False, False)),
+}
+# Of the figure 8, one that was found twice at one place, with the default number of cells.
+TWICE = [0.04430118180966494, 0.19546534701936175, -0.9797094994971047]
+
+
+@pytest.mark.usefixtures("unproved")
+@pytest.mark.compiled
+@pytest.mark.filterwarnings("ignore:.*could not be moved")
+@pytest.mark.parametrize("cells", [(20, 20), None])
+@pytest.mark.parametrize("name", CURVED)
+@pytest.mark.quick_for("cells0")
+def test_no_sample_of_a_normal_is_repeated(name: str, cells: tuple[int, int] | None) -> None:
+    surface, periodic = CURVED[name]
+    normals = np.concatenate([[TWICE], gm.directions.random(3000, seed=3)])
+    on_spline, on_surface = (
+        gm.sample(surface, normals=normals, cells=cells, on=x) for x in ("spline", "surface")
+    )
+    assert repeated(on_surface, periodic) == 0
+    before, after = (
+        np.bincount(x.normal_index, np.copysign(1.0, x.gaussian_curvature), len(normals))
+        for x in (on_spline, on_surface)
+    )
+    np.testing.assert_array_equal(before, after)
+    stream = gm.sample_stream(surface, normals=normals, cells=cells, chunk=500)
+    joined = gm.Samples.concatenate(stream)
+    for field in on_surface.fields:
+        np.testing.assert_array_equal(getattr(joined, field), getattr(on_surface, field))
+
+
+@pytest.mark.usefixtures("unproved")
+@pytest.mark.compiled
+@pytest.mark.filterwarnings("ignore:.*could not be moved")
+@pytest.mark.parametrize("cells", [8, 16])
+def test_folds_of_a_coarse_spline_are_no_folds_of_the_surface(cells: int) -> None:
+    band, normals = gm.surfaces.moebius_band(), gm.fibonacci(3000)
+    folded = gm.sample(band, normals=normals, cells=(cells, cells), on="spline")
+    samples = gm.sample(band, normals=normals, cells=(cells, cells), on="surface")
+    assert samples.on_surface is not None
+    assert (samples.gaussian_curvature[samples.on_surface] < 0.0).all()
+    assert (folded.gaussian_curvature > 0.0).any()
+    there = samples.on_surface
+    assert np.bincount(samples.normal_index[there]).max() <= 2
+    before, after = (
+        np.bincount(x.normal_index, np.sign(x.gaussian_curvature), 3000) for x in (folded, samples)
+    )
+    np.testing.assert_array_equal(before, after)
+
+
+# --- poles ----------------------------------------------------------------------------------------
+
+
+def check_once(surface: gm.Surface, cells: int, normals: Array, euler: int = 1) -> gm.Samples:
+    samples = gm.sample(surface, normals=normals, cells=(cells, cells), on="surface")
+    assert samples.on_surface is not None
+    signs = np.sign(samples.gaussian_curvature)
+    totals = np.bincount(samples.normal_index, signs, minlength=len(normals))
+    assert (totals == euler).all()
+    return samples
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(("shift", "factor"), MOTIONS)
+def test_every_normal_of_an_egg_once(shift: float, factor: float) -> None:
+    surface = moved(egg, 2, shift, factor)
+    assert surface.differences is not None
+    normals = [gm.fibonacci(400), gm.icosphere(4)]
+    for end in LATITUDES:
+        normals.append(next_to(evaluate_on_surface(
+            surface, gm.fit(surface, (16, 16)), np.array([[0.0, end]])
+        )[1][0]))  # fmt: skip
+    wanted = np.concatenate(normals)
+    samples = check_once(surface, 20, wanted)
+    assert len(samples) == len(wanted)
+    assert samples.on_surface is not None
+    assert samples.on_surface.all()
+    assert (samples.gaussian_curvature > 0.0).all()
+    # Far from the origin, differences tell normals to ε |x|/step of a surface of size 1.
+    error = 1e-11 if shift == 0.0 else 1e-6
+    away = np.abs(np.abs(samples.uv[:, 1]) - np.pi / 2) > 1e-2
+    found = normals_of(moved(egg, 2, 0.0, 1.0), samples.uv[away])
+    assert np.abs(found - samples.normals[away]).max() < error
+
+
+@pytest.mark.compiled
+def test_poles_at_the_ends_of_u() -> None:
+    """The same surface with exchanged parameters has opposite normals."""
+    along_v = gm.Surface.from_callable(egg, (FULL, LATITUDES), (True, "pole"))
+    along_u = gm.Surface.from_callable(lambda v, u: egg(u, v), (LATITUDES, FULL), ("pole", True))
+    normals = gm.fibonacci(500)
+    first, second = check_once(along_v, 16, normals), check_once(along_u, 16, -normals)
+    order = np.argsort(first.normal_index), np.argsort(second.normal_index)
+    np.testing.assert_allclose(first.points[order[0]], second.points[order[1]], atol=1e-10)
+    np.testing.assert_allclose(
+        first.mean_curvature[order[0]], -second.mean_curvature[order[1]], atol=1e-6
+    )
+
+
+def test_curvatures_at_poles() -> None:
+    """K and H at the poles of an ellipsoid: c²/(a² b²) and c (a² + b²)/(2 a² b²)."""
+    a, b, c = 1.0, 0.6, 0.3
+    ellipsoid = gm.surfaces.ellipsoid(a=a, b=b, c=c)
+    away = np.array([0.0, 1e-14, 1e-10, 1e-8, 1e-6])
+    uv = np.stack([np.full(10, 0.7), np.concatenate([np.pi / 2 - away, away - np.pi / 2])], axis=1)
+    spline = gm.fit(ellipsoid, (16, 16))
+    _, normals, K, H = evaluate_on_surface(ellipsoid, spline, uv)
+    np.testing.assert_allclose(normals[:5, 2], 1.0, atol=1e-10)
+    np.testing.assert_allclose(normals[5:, 2], -1.0, atol=1e-10)
+    np.testing.assert_allclose(K, c**2 / (a * b) ** 2, rtol=1e-6)
+    np.testing.assert_allclose(H, c * (a * a + b * b) / (2.0 * a * a * b * b), rtol=1e-6)
+
+
+def test_curvature_at_any_distance_from_a_pole() -> None:
+    """A NURBS is an ellipsoid 5 from the origin: its derivatives by the angle are differences."""
+    a, b, c = 1.0, 0.7, 1.3
+    diagonal = math.sqrt(0.5)
+    circle = np.array(
+        [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]]
+    )
+    x, y = circle.T[:, :, None]
+    r, z = circle[[6, 7, 0, 1, 2]].T[:, None]
+    points = np.stack(np.broadcast_arrays(a * x * r + 5.0, b * y * r, c * z), axis=-1)
+    corner = np.where(np.arange(9) % 2, diagonal, 1.0)
+    ellipsoid = gm.Surface.from_nurbs(
+        (2, 2), ([0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], [0, 0, 0, 1, 1, 2, 2, 2]), points,
+        corner[:, None] * corner[:5], periodic=(True, "pole"),
+    )  # fmt: skip
+    away = 2.0 ** -np.arange(4.0, 50.0)
+    uv = np.stack([np.full(len(away), 0.7), 2.0 - away], axis=1)
+    _, normals, K, _ = evaluate_on_surface(ellipsoid, gm.fit(ellipsoid, (16, 16)), uv)
+    exact = np.square(np.square(normals * [a, b, c]).sum(axis=1) / (a * b * c))
+    np.testing.assert_allclose(K, exact, rtol=2.0**-14)
+
+
+@pytest.mark.slow
+@pytest.mark.compiled
+@pytest.mark.parametrize(("shift", "factor"), MOTIONS)
+@pytest.mark.parametrize("shape", [egg, blob])
+def test_every_normal_once(
+    shape: Callable[[Array, Array], Array], shift: float, factor: float
+) -> None:
+    normals = np.concatenate([gm.fibonacci(20_000), gm.icosphere(2)[:72]])
+    samples = check_once(moved(shape, 3, shift, factor), 64, normals)
+    assert shape is blob or len(samples) == len(normals)

@@ -1,0 +1,92 @@
+"""Support functions of patches: classification of normals, and branches at given normals.
+
+A branch is one patch at one of its normals: the point, the Hessian of the support function, and the
+curvatures.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ....generated import support_function
+from ....generated.patch import forms, parameters, tangents
+from ....generated.spline import SCALE
+from ....generated.support import hessian_at, parameters_at
+from ....generated.vectors import Vector
+from ....runtime.directions.kernels.vectors import dot, length, row_vector
+from ....runtime.domain.kernels.patch_numbers import place_of
+from ....runtime.machine_code.jit import jit
+from ....runtime.spline.kernels.patch import patch_vectors
+
+__all__ = [
+    "DOUBTFUL",
+    "INSIDE",
+    "OUTSIDE",
+    "branches_of_patch",
+    "classify",
+    "hessians_of_patches",
+]
+
+OUTSIDE = 0
+INSIDE = 1
+DOUBTFUL = 2
+
+# (patch, normals, u_values, v_values, points, hessians, K_values, H_values)
+branches_of_patch = jit(support_function.branch)
+
+
+@jit
+def classify(patch, bound, accurate, shortest, normals, kinds, uv):
+    """Write the kinds of the normals (k, 3) relative to a patch, and u, v (k, 2) if INSIDE.
+
+    `bound` is the rounding error of U, V, W. D must exceed `accurate`, and N `shortest`. Normals
+    have a length of about 1. Normals that rounding leaves undecided are DOUBTFUL.
+    """
+    for k in range(normals.shape[0]):
+        n = row_vector(normals, k)
+        D, U, V, W = forms(patch, n)
+        low = min(U, V, W)
+        high = max(U, V, W)
+        kinds[k] = OUTSIDE
+        if low < -bound and high > bound:
+            continue
+        kinds[k] = DOUBTFUL
+        if (low > bound or high < -bound) and abs(D) > accurate:
+            u, v = parameters(D, U, V)
+            _, _, N = tangents(patch, u, v)
+            towards = dot(n, N)
+            size = abs(N.x) + abs(N.y) + abs(N.z)
+            if abs(towards) > 0.25 * size and size > shortest:
+                kinds[k] = INSIDE if towards > 0.0 else OUTSIDE
+                uv[k, 0] = u
+                uv[k, 1] = v
+
+
+@jit
+def hessians_of_patches(mu, scale, patches, normals, known, hessians):
+    """Write the Hessians (k, 3, 3) of the support function at unit normals (k, 3) of patches (k,).
+
+    known (k, 2) are u, v where these are known more accurately than from the normal, which is then
+    that of the patch at u, v; else NaN.
+    """
+    columns = mu.shape[1] - 2
+    size = SCALE * scale
+    for k in range(patches.size):
+        i, j, turn = place_of(patches[k], columns)
+        patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
+        n = row_vector(normals, k)
+        u = known[k, 0]
+        v = known[k, 1]
+        if math.isnan(u):
+            u, v = parameters_at(patch, n)
+        else:
+            _, _, N = tangents(patch, u, v)
+            size_of_N = length(N)
+            n = Vector(N.x / size_of_N, N.y / size_of_N, N.z / size_of_N)
+        H = hessian_at(patch, n, u, v)
+        hessians[k, 0, 0] = H.H_xx / size
+        hessians[k, 1, 1] = H.H_yy / size
+        hessians[k, 2, 2] = H.H_zz / size
+        hessians[k, 0, 1] = hessians[k, 1, 0] = H.H_xy / size
+        hessians[k, 0, 2] = hessians[k, 2, 0] = H.H_xz / size
+        hessians[k, 1, 2] = hessians[k, 2, 1] = H.H_yz / size

@@ -1,1 +1,0 @@
-"""Compiled loops of the tools, as those of `runtime/kernels/`."""
