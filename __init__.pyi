@@ -8,7 +8,7 @@ from .runtime.base.errors import GaussmapWarning as GaussmapWarning
 from .runtime.directions import fibonacci as fibonacci
 from .runtime.directions import icosphere as icosphere
 from .runtime.fitting.fit import fit as fit
-from .runtime.gauss_map import GaussMap as GaussMap
+from .runtime.map import GaussMap as GaussMap
 from .runtime.sample import sample as sample
 from .runtime.samples.samples import Samples as Samples
 from .runtime.spline.spline import Spline as Spline

@@ -17,7 +17,7 @@ from ...runtime.base.kept import kept
 from ...runtime.directions.unit import as_normals
 from ...runtime.domain.domain import closes
 from ...runtime.domain.loops import Loops
-from ...runtime.gauss_map import GaussMap
+from ...runtime.map import GaussMap
 from ...runtime.onto_surface.on_spline import OnSpline
 from .curvature import Curvature
 from .image_curve import ImageCurve, Traced, followed, jets_of_spline
