@@ -144,6 +144,8 @@ def test_chunks_make_the_whole(name, threads, monkeypatch):
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_closing_ends_the_work(threads, monkeypatch):
+    monkeypatch.setattr(search, "RANGE", 4)
+    gm.sample(SPLINE, normals=gm.icosphere(8), threads=threads)  # its threads are kept
     monkeypatch.setattr(search, "NORMALS_AT_A_TIME", 8)
     searched = []
     kernel = search.search
@@ -171,6 +173,7 @@ def test_closing_ends_the_work(threads, monkeypatch):
 @pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, MemoryError])
 def test_an_error_ends_the_work(threads, error, monkeypatch):
     monkeypatch.setattr(search, "RANGE", 4)
+    gm.sample(SPLINE, normals=gm.icosphere(8), threads=threads)  # its threads are kept
     kernel = search.search
 
     def failing(*arguments):
