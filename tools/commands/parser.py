@@ -160,12 +160,12 @@ def _sample() -> Command:
     group = "contents of the file"
     default = f"all, with --edges {', '.join(EDGE_NAMES)}, too"
     prefixes = "Order the samples such that every prefix of them is well distributed."
-    edges = "Of a CAD part: add samples on its sharp edges, with the normals of both faces."
+    edges = "Add samples on the sharp edges of a CAD part, with the normals of both faces."
     return _command(
         "sample",
         "Sample a surface and write the samples to a file: points with normals, parameters and "
-        "curvatures. Samples are the points that have prescribed normals, and samples that fill "
-        "the gaps between these, such as where the surface is flat or developable.",
+        "curvatures. The samples are all points with prescribed normals, and others that fill the "
+        "gaps between these, as where the surface is flat or developable.",
         *_sampling(default_count=10_000),
         _output(".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .las or .laz"),
         Option("--edges", edges, group="the surface"),
@@ -188,7 +188,7 @@ def _mesh() -> Command:
     return _command(
         "mesh",
         "Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
-        "points on open boundaries and at poles; a CAD part gets as many vertices of its own.",
+        "points on open boundaries and at poles; the mesh of a CAD part has as many new vertices.",
         *_sampling(default_count=10_000),
         _output(".ply, .obj, .stl, .3mf, .vtk, .vtu, .vtp or .glb"),
         Option("--deviation DEGREES", deviation, number),
@@ -213,7 +213,7 @@ def _view() -> Command:
         "view",
         "Write a page with a surface and its normals, linked: for browsers, with the samples, and "
         "the unit sphere of their normals. Click a normal, and its preimages light up; click a "
-        "place, and the Gaussian image of the region around it lights up. Needs Plotly: pip "
+        "point, and the Gaussian image of the region around it lights up. Needs Plotly: pip "
         "install 'gaussmap[view]'. A page shows at most 50000 samples, and works without a "
         "network.",
         *_sampling(default_count=5_000),
@@ -240,8 +240,8 @@ def _batch() -> Command:
         "batch",
         "Sample many parts into a data set: by several processes, into a folder of Parquet files, "
         "points with normals and curvatures, and a manifest with the outcome for each part. A "
-        "part that fails does not end the run. If the run is stopped, the same command goes on "
-        "with what is missing. PARTS are surfaces and files as `gaussmap sample` takes them, "
+        "part that fails does not end the run. If the run is stopped, the same command resumes it. "
+        "PARTS are surfaces and files as `gaussmap sample` takes them, "
         "patterns and folders; the options hold for all of them. The exit code is 3 if parts "
         "failed. Needs pip install 'gaussmap[batch]'.",
         click.Argument(["parts"], nargs=-1, required=False, shell_complete=surfaces_and_files),
@@ -295,7 +295,7 @@ def _formulas() -> Command:
     )
     return _command(
         "formulas",
-        "List the formulas that the program computes with, or show one: that named NAME.",
+        "List the formulas that the program computes with, or show the formula NAME.",
         click.Argument(["name"], required=False, shell_complete=formula_names),
         Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
         Option("--tape", tape, exclusive=True),

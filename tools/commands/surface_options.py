@@ -47,12 +47,12 @@ def made_options(several: bool = False) -> list[Option]:
         "In which directions a grid of points or a formula is periodic: none (default), u, v or "
         "uv. Do not repeat the first row of a grid at the end."
     )
-    nodata = "The number that stands for missing data in a grid, such as -9999; NaN does anyway."
+    nodata = "The number that stands for missing data in a grid, such as -9999; NaN always does."
     spacing = "The grid spacing of elevations; DY < 0 if rows run from north to south."
     cells = "The cells of the spline along u and v (default: 64 64 or more, or those of the grid)."
     on = (
         "Where samples lie: on the surface itself (default) or on the spline that approximates it. "
-        "Of grids in files there is the spline only."
+        "A grid in a file has only the spline."
     )
     tolerance = "Instead of --cells: the largest distance of the spline from the surface or data."
     parameter = "A parameter of a surface of the catalogue; may be repeated."
