@@ -243,7 +243,7 @@ def _by_count(
     threads: int | None,
     progress: bool,
 ) -> tuple[NDArray[np.float64], Hits]:
-    """Return normals with about `count` samples, and the samples."""
+    """Return normals with about `count` samples, and their hits."""
     size, best, nearest = count, None, math.inf
     for _ in range(TRIES):
         normals = great_circle(axis, size)

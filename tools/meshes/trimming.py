@@ -144,7 +144,7 @@ class _Trim:
         return kept
 
     def _is_away(self, positions: Array, gaps: float) -> Flags:
-        """Return which positions are farther from the vertices of lines than their gaps."""
+        """Return which positions are more than `gaps` steps away from the vertices of lines."""
         if not self.lines:
             return np.ones(len(positions), dtype=bool)
         places, around = [], []
