@@ -5,15 +5,15 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.records import FaceRecord, Geometry
+
+from .made import FAILED, cylinder_faces, part
 
 
 @pytest.fixture
-def saved(made, tmp_path, monkeypatch):
+def saved(tmp_path, monkeypatch):
     """Save a part with a face that failed, and go to its folder."""
     monkeypatch.chdir(tmp_path)
-    failed = FaceRecord(Geometry("unknown"), reason="it has no surface")
-    made.part([*made.cylinder_faces(), failed]).save("part.npz")
+    part([*cylinder_faces(), FAILED]).save("part.npz")
     return "part.npz"
 
 

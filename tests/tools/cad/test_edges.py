@@ -10,35 +10,34 @@ from dataclasses import replace
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import box, box_edges
+from gaussmap.tools.cad.examples import box, box_edges, box_faces
 from gaussmap.tools.cad.part import Part
-from gaussmap.tools.cad.records import EdgeRecord, FaceRecord, Geometry
+from gaussmap.tools.cad.records import EdgeRecord
 from scipy.spatial import cKDTree
 
 from ...refusals import refused
+from .made import FAILED, TURN, cylinder_faces, face, identical, is_on, part, placement
 
 SIZES = np.array([1.0, 2.0, 3.0])
 
 
 @pytest.fixture(scope="module")
-def cylinder(made) -> Part:
+def cylinder() -> Part:
     """Return a cylinder, of whose circles the file has nine points each."""
-    u = np.linspace(0.0, made.TURN, 9)
-    circle = [np.cos(u), np.sin(u)]
+    u = np.linspace(0.0, TURN, 9)
     edges = [
-        EdgeRecord((0, k), np.stack([u, np.full(9, z), *circle], axis=1))
+        EdgeRecord((0, k), np.stack([u, np.full(9, z), np.cos(u), np.sin(u)], axis=1))
         for k, z in ((1, 0.0), (2, 2.0))
     ]
-    return made.part(made.cylinder_faces(), "cylinder", edges=edges)
+    return part(cylinder_faces(), "cylinder", edges=edges)
 
 
 def on_edges(samples: gm.Samples) -> gm.Samples:
     return samples[samples.kind == "edge"]
 
 
-def faces_of(samples: gm.Samples) -> np.ndarray:
-    """Return the two faces (k, 2) of samples on edges."""
-    return np.sort(np.stack([samples.face_index, samples.other_face_index], axis=1), axis=1)
+def pairs_of(samples: gm.Samples) -> set[tuple[int, int]]:
+    return set(zip(samples.face_index, samples.other_face_index, strict=True))
 
 
 def both_ways(samples: gm.Samples, part: Part) -> None:
@@ -47,13 +46,9 @@ def both_ways(samples: gm.Samples, part: Part) -> None:
         (samples.points, samples.normals, samples.uv, samples.face_index),
         (samples.points, samples.other_normals, samples.other_uv, samples.other_face_index),
     ):
-        for face in np.unique(faces):
-            rows, surface = faces == face, part.faces[face].surface
-            x, x_u, x_v = surface.jets(*uv[rows].T.copy()).transpose(1, 0, 2)[:3]
-            np.testing.assert_allclose(x, points[rows], atol=1e-13)
-            N = np.cross(x_u, x_v)
-            n = N / np.linalg.norm(N, axis=1, keepdims=True)
-            np.testing.assert_allclose(n, normals[rows], atol=1e-13)
+        for k in np.unique(faces):
+            rows = faces == k
+            is_on(part.faces[k].surface, uv[rows], points[rows], normals[rows])
 
 
 @pytest.mark.parametrize(
@@ -61,8 +56,7 @@ def both_ways(samples: gm.Samples, part: Part) -> None:
     [{"count": 60}, {"count": 60, "density": "uniform"}, {"coverage": 0.8}, {"angle": 30}],
 )
 def test_box(request_):
-    part = box(*SIZES)
-    samples, without = gm.sample(part, **request_, edges=True), gm.sample(part, **request_)
+    samples, without = (gm.sample(box(*SIZES), **request_, edges=x) for x in (True, False))
     count = len(without)
     for name, array in without.arrays().items():
         assert np.array_equal(array, getattr(samples, name)[:count])
@@ -82,19 +76,16 @@ def test_box(request_):
         assert np.array_equal(np.abs(normals).max(axis=1), np.ones(len(edge)))
         assert ((normals * (2.0 * edge.points / SIZES - 1.0)).sum(axis=1) == 1.0).all()
     assert np.array_equal((edge.normals * edge.other_normals).sum(axis=1), np.zeros(len(edge)))
-    both_ways(edge, part)
-    assert set(zip(edge.face_index, edge.other_face_index, strict=True)) == {
-        x.faces for x in box_edges(*SIZES)
-    }
+    both_ways(edge, box(*SIZES))
+    assert pairs_of(edge) == {x.faces for x in box_edges(*SIZES)}
     assert np.isnan(samples.other_normals[:count]).all()
     assert np.isnan(samples.other_uv[:count]).all()
     assert (samples.other_face_index[:count] == -1).all()
 
 
 def test_edges_are_as_dense_as_the_faces():
-    part = box(1.0, 1.0, 1.0)
     for count in (60, 600):
-        samples = gm.sample(part, count, edges=True)
+        samples = gm.sample(box(1.0, 1.0, 1.0), count, edges=True)
         # The neighbours of a hexagonal lattice of as many samples are so far apart.
         wanted = np.sqrt(2.0 / np.sqrt(3.0) * 6.0 / count)
         assert samples.report.edge_samples == 8 + 12 * (np.ceil(1.0 / wanted) - 1)
@@ -106,8 +97,8 @@ def test_circles_are_exact_though_the_file_has_few_points(cylinder):
     np.testing.assert_allclose(np.hypot(*edge.points[:, :2].T), 1.0, atol=1e-14)
     both_ways(edge, cylinder)
     assert set(edge.face_index) == {0}
-    for face, z in ((1, 0.0), (2, 2.0)):
-        ring = edge[edge.other_face_index == face]
+    for k, z in ((1, 0.0), (2, 2.0)):
+        ring = edge[edge.other_face_index == k]
         assert np.abs(ring.points[:, 2] - z).max() < 1e-14
         np.testing.assert_allclose(ring.normals[:, :2], ring.points[:, :2], atol=1e-13)
         np.testing.assert_allclose(ring.other_normals, [[0.0, 0.0, z - 1.0]] * len(ring))
@@ -143,89 +134,62 @@ def test_edges_have_samples_where_faces_have_none():
     )
 
 
-def test_no_edges(made):
-    samples = gm.sample(made.part(made.box_faces()), 20, edges=True)
+def test_no_edges():
+    samples = gm.sample(part(box_faces()), 20, edges=True)
     assert len(samples) == 20
     assert samples.report.edge_samples == 0
     assert set(samples.kind) == {"filling"}
     assert samples.other_normals.shape == (20, 3)
 
 
-def test_gaps_of_the_file_are_closed_and_wide_ones_have_no_samples(made):
+def test_gaps_of_the_file_are_closed_and_wide_ones_have_no_samples():
     edges, on_second = box_edges(*SIZES), np.array([0.0, 0.0, 1.0, 1.0])
     edges[0] = replace(edges[0], parameters=edges[0].parameters + 1e-6 * on_second)
     edges[1] = replace(edges[1], parameters=edges[1].parameters + 0.1 * on_second)
-    part = made.part(made.box_faces(*SIZES), edges=edges)
-    edge = on_edges(gm.sample(part, 60, edges=True))
-    both_ways(edge, part)
-    pairs = list(zip(edge.face_index, edge.other_face_index, strict=True))
-    assert edges[0].faces in pairs
-    assert edges[1].faces not in pairs
+    edge = on_edges(gm.sample(part(box_faces(*SIZES), edges=edges), 60, edges=True))
+    both_ways(edge, box(*SIZES))
+    assert edges[0].faces in pairs_of(edge)
+    assert edges[1].faces not in pairs_of(edge)
 
 
 @pytest.mark.parametrize(("angle", "sharp"), [(0.9, False), (1.1, True)])
-def test_tangent_faces_have_no_sharp_edge(made, angle, sharp):
+def test_tangent_faces_have_no_sharp_edge(angle, sharp):
     """A plane that goes on in a quarter of a cylinder, and meets another plane at an angle."""
-    plane = made.face("plane", made.placement(), (-1.0, 0.0), (0.0, 1.0), 1.0)
-    round_ = made.face(
-        "cylinder",
-        [*made.placement((0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), 1.0],
-        (0.0, np.pi / 2),
-        (0.0, 1.0),
-        np.pi / 2,
-    )
+    below = placement((0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     slope = np.radians(angle)
     along = (np.cos(slope), 0.0, np.sin(slope))
-    bent = made.face(
-        "plane", made.placement(z=(-along[2], 0.0, along[0]), x=along), (0.0, 1.0), (0.0, 1.0), 1.0
-    )
-    ends = np.array([0.0, 1.0])
-    edges = [
-        EdgeRecord((0, 1), np.stack([0 * ends, ends, 0 * ends, ends], axis=1)),
-        EdgeRecord((0, 2), np.stack([0 * ends, ends, 0 * ends, ends], axis=1)),
+    faces = [
+        face("plane", u=(-1.0, 0.0)),
+        face("cylinder", 1.0, u=(0.0, np.pi / 2), place=below),
+        face("plane", place=placement(z=(-along[2], 0.0, along[0]), x=along)),
     ]
-    samples = gm.sample(made.part([plane, round_, bent], edges=edges), 30, edges=True)
+    edges = [EdgeRecord((0, k), np.array([(0.0, x, 0.0, x) for x in (0.0, 1.0)])) for k in (1, 2)]
+    samples = gm.sample(part(faces, edges=edges), 30, edges=True)
     assert (samples.report.edge_samples > 0) == sharp
-    assert {tuple(x) for x in faces_of(on_edges(samples))} == ({(0, 2)} if sharp else set())
+    assert {tuple(sorted(x)) for x in pairs_of(on_edges(samples))} == ({(0, 2)} if sharp else set())
 
 
-def test_failed_faces_and_bad_numbers_cost_their_edges(made):
-    faces, edges = made.box_faces(*SIZES), box_edges(*SIZES)
-    faces[0] = FaceRecord(Geometry("unknown"), reason="it has no surface")
+def test_failed_faces_and_bad_numbers_cost_their_edges():
+    faces, edges = box_faces(*SIZES), box_edges(*SIZES)
+    faces[0] = FAILED
     last = next(k for k, x in enumerate(edges) if x.faces == (3, 5))
     edges[last] = EdgeRecord((3, 5), np.full((2, 4), np.nan))
     with pytest.warns(gm.GaussmapWarning, match="1 of 6 faces"):
-        edge = on_edges(gm.sample(made.part(faces, edges=edges), 40, edges=True))
-    pairs = set(zip(edge.face_index, edge.other_face_index, strict=True))
-    assert pairs == {x.faces for x in edges if 0 not in x.faces and x.faces != (3, 5)}
+        edge = on_edges(gm.sample(part(faces, edges=edges), 40, edges=True))
+    assert pairs_of(edge) == {x.faces for x in edges if 0 not in x.faces and x.faces != (3, 5)}
 
 
-def test_corners_of_solids_that_touch_are_two(made):
-    faces = made.box_faces(*SIZES)
-    edges = box_edges(*SIZES)
+def test_corners_of_solids_that_touch_are_two():
+    faces, edges = box_faces(*SIZES), box_edges(*SIZES)
     faces += [replace(x, solid_index=1) for x in faces]
     edges += [EdgeRecord((x.faces[0] + 6, x.faces[1] + 6), x.parameters) for x in edges]
-    edge = on_edges(gm.sample(made.part(faces, edges=edges), 4, edges=True))
+    edge = on_edges(gm.sample(part(faces, edges=edges), 4, edges=True))
     corners = ((edge.points == 0.0) | (edge.points == SIZES)).all(axis=1)
     assert np.bincount(edge.solid_index[corners]).tolist() == [8, 8]
 
 
 def test_threads_give_the_same(cylinder):
-    one, other = (gm.sample(cylinder, 80, threads=x, edges=True) for x in (1, 3))
-    for name, array in one.arrays().items():
-        assert array.tobytes() == getattr(other, name).tobytes()
-
-
-@pytest.mark.parametrize("name", ["a.npz", "a.ply"])
-@pytest.mark.parametrize("dtype", [np.float64, np.float32])
-def test_files(name, dtype, tmp_path):
-    samples = gm.sample(box(), 30, edges=True, dtype=dtype)
-    samples.write(tmp_path / name)
-    again = gm.read_samples(tmp_path / name)
-    assert (again.fields, again.report, again.dtype) == (samples.fields, samples.report, dtype)
-    for x, array in samples.arrays().items():
-        assert array.tobytes() == getattr(again, x).tobytes()
-    assert "40 of the samples are on sharp edges" in gm.sample(box(), 60, edges=True).summary()
+    identical(*(gm.sample(cylinder, 80, threads=x, edges=True) for x in (1, 3)))
 
 
 def test_some_fields(tmp_path):

@@ -1,8 +1,8 @@
-"""Files before they are read: their formats, whether they are whole, their damaged faces."""
+"""Files before they are read: formats, how many faces they say, whether they are whole, damage."""
 
 import pytest
 from gaussmap.tools.cad.damaged_step import prepared, without_damaged_faces
-from gaussmap.tools.cad.inspection import BadFileError, checked_format
+from gaussmap.tools.cad.inspection import BadFileError, checked_format, faces_said
 
 from ...refusals import refused
 
@@ -91,8 +91,7 @@ def test_a_face_with_numbers_that_are_not_finite_is_left_out(number):
 
 def test_a_number_that_is_not_finite_and_in_no_face_is_an_error():
     content = STEP.replace(b"ENDSEC;\nEND", b"#10=AXIS('',(nan));\nENDSEC;\nEND")
-    with pytest.raises(BadFileError, match="in #10"):
-        without_damaged_faces(content, {})
+    refused("in #10", without_damaged_faces, content, {}, error=BadFileError)
 
 
 def test_faces_that_refer_to_nothing_are_left_out():
@@ -121,3 +120,17 @@ def test_a_copy_is_made_of_files_with_damaged_faces_only(tmp_path):
     assert source.path != path
     assert source.path.read_bytes() == source.content
     assert len(source.lost) == 1
+
+
+SHELLS = b"""#1 = CLOSED_SHELL('a',(#2,#3,
+  #4)); #5 = OPEN_SHELL ( '' , ( #4 ) );
+#6 = ORIENTED_CLOSED_SHELL('',*,#1,.F.);"""
+ENTITIES = [(144, ""), (144, "label"), (128, ""), (128, ""), (510, "144"), (510, "")]
+IGES = "\n".join(f"{kind:8}{more:64}D{k:7}" for k, (kind, more) in enumerate(ENTITIES, 1)).encode()
+
+
+@pytest.mark.parametrize(
+    ("content", "form", "count"), [(SHELLS, "STEP", 3), (IGES, "IGES", 2), (SHELLS, "BREP", 0)]
+)
+def test_faces_are_counted_once(content, form, count):
+    assert faces_said(content, form) == count

@@ -3,58 +3,43 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import all_kinds, box
+from gaussmap.tools.cad.examples import all_kinds, box, box_faces
 from gaussmap.tools.cad.part import Part
-from gaussmap.tools.cad.records import FaceRecord, Geometry
 
-TURN = 2.0 * np.pi
-AXES = np.array([[2, 1, -2], [1, 2, 2], [2, -2, 1]]) / 3  # x, y and z of a frame
-
-
-def circle(radius: float, count: int = 1440) -> np.ndarray:
-    angles = np.linspace(0.0, TURN, count, endpoint=False)
-    return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+from ...refusals import refused
+from .made import AXES, FAILED, TURN, circle, face, part, placement
 
 
 @pytest.fixture(scope="module")
-def tube(made) -> Part:
+def tube() -> Part:
     """Return a tube of radii 1 and 2 and height 3, far from the origin; all loops turn left."""
-    place = made.placement((50.0, 70.0, -30.0))
-    sides = [
-        made.face(
-            "cylinder", [*place, r], (0.0, TURN), (0.0, 3.0), TURN * 3 * r, (TURN, 0.0),
-            reversed=r == 1.0, solid_index=0,
-        )
-        for r in (1.0, 2.0)
-    ]  # fmt: skip
-    ends = [
-        made.face(
-            "plane", made.placement((50.0, 70.0, z - 30.0)), (-2.0, 2.0), (-2.0, 2.0), 3 * np.pi,
-            loops=[circle(2.0), circle(1.0)], reversed=z == 0.0, solid_index=0,
-        )
-        for z in (0.0, 3.0)
-    ]  # fmt: skip
-    return made.part([*sides, *ends])
+    ends, more = (-2.0, 2.0), {"solid_index": 0}
+    bottom, top = (placement((50.0, 70.0, z - 30.0)) for z in (0.0, 3.0))
+    flat = {"area": 3 * np.pi, "loops": [circle(2.0), circle(1.0)], **more}
+    return part([
+        face("cylinder", 1.0, v=(0.0, 3.0), place=bottom, reversed=True, **more),
+        face("cylinder", 2.0, v=(0.0, 3.0), place=bottom, **more),
+        face("plane", u=ends, v=ends, place=bottom, reversed=True, **flat),
+        face("plane", u=ends, v=ends, place=top, **flat),
+    ])  # fmt: skip
 
 
 @pytest.fixture(scope="module")
-def slanted(made) -> Part:
+def slanted() -> Part:
     """Return a cylinder of radius 1 that is cut off at z = 2 + x/2, seen in another frame."""
     x, _, z = AXES
     place, count = np.concatenate([np.zeros(3), AXES.ravel()]), 720
     u = np.linspace(0.0, TURN, count)
     border = np.concatenate([[(0.0, 0.0), (TURN, 0.0)], np.stack([u, 2 + np.cos(u) / 2], 1)[::-1]])
     # u and v along the axes of the ellipse, the first of length 1/cos of its slope.
-    slope = np.sqrt(1.25)
-    top = np.concatenate([2 * z, (x + z / 2) / slope, AXES[1], (z - x / 2) / slope])
-    ellipse = circle(1.0, count) * [slope, 1.0]
-    side = made.face(
-        "cylinder", [*place, 1.0], (0.0, TURN), (0.0, 2.5), 4 * np.pi, (TURN, 0.0), loops=[border]
-    )
-    ends = (-1.0, 1.0), (-1.0, 1.0)
-    floor = made.face("plane", place, *ends, np.pi, loops=[circle(1.0)], reversed=True)
-    roof = made.face("plane", top, (-slope, slope), (-1, 1), slope * np.pi, loops=[ellipse])
-    return made.part([side, floor, roof])
+    slope, ends = np.sqrt(1.25), (-1.0, 1.0)
+    top = placement(2 * z, (z - x / 2) / slope, (x + z / 2) / slope)
+    ellipse, area = circle(1.0, count) * [slope, 1.0], np.pi
+    return part([
+        face("cylinder", 1.0, v=(0.0, 2.5), place=place, area=4 * np.pi, loops=[border]),
+        face("plane", u=ends, v=ends, place=place, area=area, loops=[circle()], reversed=True),
+        face("plane", u=(-slope, slope), v=ends, place=top, area=slope * area, loops=[ellipse]),
+    ])  # fmt: skip
 
 
 def test_volume_of_a_tube(tube):
@@ -66,30 +51,31 @@ def test_volume_below_a_curved_border(slanted):
     assert slanted.volume == pytest.approx(2 * np.pi, rel=1e-6)
 
 
-@pytest.mark.parametrize("kind", ["sphere", "torus"])
-def test_volumes_of_closed_faces(made, kind):
-    place = made.placement((5.0, 7.0, -3.0))
-    sphere = [*place, 2.0], (0.0, TURN), (-TURN / 4, TURN / 4), 16 * np.pi, (TURN, 0.0)
-    torus = [*place, 2.0, 0.5], (0.0, TURN), (0.0, TURN), TURN**2, (TURN, TURN)
-    part = made.part([made.face(kind, *(sphere if kind == "sphere" else torus))])
-    volume = {"sphere": 32 * np.pi / 3, "torus": np.pi**2}[kind]
-    assert part.volume == pytest.approx(volume, rel=1e-12)
+@pytest.mark.parametrize(
+    ("kind", "sizes", "volume"),
+    [("sphere", [2.0], 32 * np.pi / 3), ("torus", [2.0, 0.5], np.pi**2)],
+)
+def test_volumes_of_closed_faces(kind, sizes, volume):
+    closed = part([face(kind, *sizes, place=placement((5.0, 7.0, -3.0)))])
+    assert closed.volume == pytest.approx(volume, rel=1e-12)
 
 
-def test_volumes_that_are_not_known(made):
-    with pytest.raises(gm.errors.SurfaceError, match="its faces enclose no solids"):
-        _ = all_kinds().volume
-    failed = FaceRecord(Geometry("unknown"), reason="it has no surface")
-    with pytest.raises(gm.errors.SurfaceError, match="some of its faces cannot be used"):
-        _ = made.part([*made.box_faces(), failed]).volume
+@pytest.mark.parametrize(
+    ("given", "reason"),
+    [
+        (all_kinds(), "its faces enclose no solids"),
+        (part([*box_faces(), FAILED]), "some of its faces cannot be used"),
+    ],
+)
+def test_volumes_that_are_not_known(given, reason):
+    refused(reason, lambda: given.volume, error=gm.errors.SurfaceError)
 
 
-def test_bounds_of_a_tilted_torus(made):
+def test_bounds_of_a_tilted_torus():
     """Largest inside the face: there is no border near it."""
-    place = np.concatenate([[1.0, 2.0, 3.0], AXES.ravel(), [2.0, 0.5]])
-    part = made.part([made.face("torus", place, (0, TURN), (0, TURN), TURN**2, (TURN, TURN))])
+    tilted = part([face("torus", 2.0, 0.5, place=[1.0, 2.0, 3.0, *AXES.ravel()])])
     extent = 2.0 * np.sqrt(1.0 - AXES[2] ** 2) + 0.5
-    np.testing.assert_allclose(part.bounds - [1, 2, 3], [-extent, extent], atol=1e-12)
+    np.testing.assert_allclose(tilted.bounds - [1, 2, 3], [-extent, extent], atol=1e-12)
 
 
 def test_bounds_at_a_border(slanted):
@@ -100,9 +86,9 @@ def test_bounds_at_a_border(slanted):
     np.testing.assert_allclose(slanted.bounds, [low, np.maximum(roof, floor)], atol=1e-5)
 
 
-@pytest.mark.parametrize("part", [box(), all_kinds()], ids=lambda x: x.name)
-def test_samples_are_within_the_bounds(part):
-    points, (low, high) = gm.sample(part, 2_000).points, part.bounds
+@pytest.mark.parametrize("given", [box(), all_kinds()], ids=lambda x: x.name)
+def test_samples_are_within_the_bounds(given):
+    points, (low, high) = gm.sample(given, 2_000).points, given.bounds
     assert (points >= low - 1e-9).all()
     assert (points <= high + 1e-9).all()
     assert (np.ptp(points, axis=0) >= 0.9 * (high - low)).all()

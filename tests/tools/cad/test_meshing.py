@@ -11,26 +11,50 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad import meshing
-from gaussmap.tools.cad.examples import all_kinds, box
+from gaussmap.tools.cad.examples import all_kinds, box, box_faces
 from gaussmap.tools.cad.face_pieces import FacePiece
 from gaussmap.tools.cad.mesh_spacing import TurnedPiece
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.part_mesh import PartMesh
 
 from ...refusals import refused
+from .made import (
+    TURN,
+    ball,
+    bezier,
+    circle,
+    cylinder,
+    edge,
+    face,
+    face_normals,
+    is_on,
+    moved,
+    noted,
+    part,
+    rectangle,
+    round_side,
+    side,
+)
 
 SIZES = np.array([1.0, 2.0, 3.0])
 
 
-def meshed(part: Part, count: int, prefer: Literal["shape", "normals"] = "shape") -> PartMesh:
-    mesh = gm.sample(part, count).mesh(prefer=prefer)
+Way = Literal["shape", "normals"]
+
+
+def meshed(part: Part, count: int, prefer: Way = "shape", **how) -> PartMesh:
+    mesh = gm.sample(part, count, **how).mesh(prefer=prefer)
     assert isinstance(mesh, PartMesh)
+    assert len(mesh.vertices) == count
     return mesh
 
 
-def sound(mesh: PartMesh, count: int) -> PartMesh:
-    """Check what holds of each mesh, open or closed, of smooth faces and enough vertices."""
-    assert len(mesh.vertices) == count
+def sound(
+    part: Part, count: int, prefer: Way = "shape", *, euler: int, closed: bool = False, **how
+) -> PartMesh:
+    """Return a mesh, and check what holds of each, of smooth faces and enough vertices."""
+    mesh = meshed(part, count, prefer, **how)
+    assert (mesh.closed, mesh.euler_characteristic) == (closed, euler)
     assert (np.bincount(mesh.triangles.ravel(), minlength=count) > 0).all()
     assert (mesh.sample_index == -1).all()
     assert mesh.angles.max() < 60.0  # and so none is inverted
@@ -44,9 +68,7 @@ def sound(mesh: PartMesh, count: int) -> PartMesh:
 
 @pytest.mark.parametrize("count", [8, 9, 20, 21, 100, 1000, 1001])
 def test_a_box(count):
-    mesh = sound(meshed(box(*SIZES), count), count)
-    assert mesh.closed
-    assert mesh.euler_characteristic == 2
+    mesh = sound(box(*SIZES), count, euler=2, closed=True)
     assert len(mesh.boundary_edges) == 0
     assert mesh.volume == pytest.approx(6.0, rel=1e-12)
     assert (mesh.angles < 1e-6).all()
@@ -76,14 +98,10 @@ def test_triangles_of_a_box_are_even():
 
 
 @pytest.mark.parametrize("count", [200, 2000])
-def test_a_cylinder_is_exact_though_its_circles_have_few_points(made, count):
+def test_a_cylinder_is_exact_though_its_circles_have_few_points(count):
     """A circle of a plane is a cubic of nine points; the seam and both circles are shared."""
-    part = made.cylinder()
-    mesh = sound(meshed(part, count), count)
-    assert mesh.closed
-    assert mesh.euler_characteristic == 2
-    assert mesh.volume == pytest.approx(part.volume, rel=20.0 / count)
-    assert mesh.volume < part.volume
+    mesh, whole = sound(cylinder(), count, euler=2, closed=True), cylinder().volume
+    assert whole > mesh.volume == pytest.approx(whole, rel=20.0 / count)
     side = mesh.face_index == 0
     points = mesh.vertices[mesh.triangles]
     radii = np.hypot(points[..., 0], points[..., 1])
@@ -98,10 +116,8 @@ def test_a_cylinder_is_exact_though_its_circles_have_few_points(made, count):
 
 
 @pytest.mark.parametrize("count", [60, 150, 1500])
-def test_a_ball_has_one_vertex_at_each_pole(made, count):
-    mesh = sound(meshed(made.ball(2.0), count), count)
-    assert mesh.closed
-    assert mesh.euler_characteristic == 2
+def test_a_ball_has_one_vertex_at_each_pole(count):
+    mesh = sound(ball(2.0), count, euler=2, closed=True)
     np.testing.assert_allclose(np.linalg.norm(mesh.vertices, axis=1), 2.0, atol=1e-14)
     at_pole = np.abs(mesh.vertices[mesh.triangles][..., 2]) == 2.0
     away = np.abs(mesh.corner_normals - mesh.vertices[mesh.triangles] / 2.0).max(axis=2)
@@ -113,105 +129,80 @@ def test_a_ball_has_one_vertex_at_each_pole(made, count):
 
 
 def test_faces_of_all_kinds_are_open():
-    part = all_kinds()
-    mesh = sound(meshed(part, 2000), 2000)
+    faces = all_kinds().faces
+    mesh = sound(all_kinds(), 2000, euler=len(faces))  # disks
     assert mesh.smallest_angles.min() > 17.0  # 11.5 if vertices of thin triangles do not move
     assert np.quantile(mesh.smallest_angles, 0.01) > 25.0  # 21.8
-    assert not mesh.closed
     assert np.isnan(mesh.volume)
-    assert mesh.euler_characteristic == len(part.faces)  # disks
-    assert set(mesh.face_index.tolist()) == set(range(len(part.faces)))
+    assert set(mesh.face_index.tolist()) == set(range(len(faces)))
     border = {tuple(x) for x in mesh.boundary_edges.tolist()}
     lines = {tuple(sorted(x)) for y in mesh.lines for x in np.stack([y[:-1], y[1:]], 1).tolist()}
     assert border == lines
     assert "edges on borders" in mesh.summary()
-    for face in part.faces:
-        here = mesh.face_index == face.index
+    for known in faces:
+        here = mesh.face_index == known.index
         corners = mesh.triangles[here]
-        x, x_u, x_v = face.surface.jets(*mesh.uv[corners].reshape(-1, 2).T.copy())[:, :3].transpose(
-            1, 0, 2
-        )
-        np.testing.assert_allclose(x, mesh.vertices[corners].reshape(-1, 3), atol=1e-13)
-        N = np.cross(x_u, x_v)
-        n = N / np.linalg.norm(N, axis=1, keepdims=True)
-        np.testing.assert_allclose(n, mesh.corner_normals[here].reshape(-1, 3), atol=1e-12)
+        points, normals = mesh.vertices[corners], mesh.corner_normals[here]
+        is_on(known.surface, mesh.uv[corners], points, normals, of_normals=1e-12)
 
 
 def test_open_shells():
-    part = box(*SIZES).select(index=[0, 1, 2, 4, 5])
-    mesh = sound(meshed(part, 300), 300)
-    assert not mesh.closed
-    assert mesh.euler_characteristic == 1
+    mesh = sound(box(*SIZES).select(index=[0, 1, 2, 4, 5]), 300, euler=1)
     on_border = mesh.vertices[mesh.boundary_edges]
     assert (on_border[..., 1] == SIZES[1]).all()  # of the face that is missing
 
 
-def test_a_hole(made):
+def test_a_hole():
     """A plate with a hole, of two loops: none of the triangles is in the hole."""
-    square = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]
-    hole = [(1.0, 1.0), (1.0, 3.0), (3.0, 3.0), (3.0, 1.0)]
+    ends, hole = (0.0, 4.0), (1.0, 3.0)
+    loops = [rectangle(ends, ends), rectangle(hole, hole)[[0, 3, 2, 1]]]
     edges, wires = [], []
-    for first, loop in ((0, square), (4, hole)):
+    for first, loop in zip((0, 4), loops, strict=True):
         wires.append([(first + k, 0, False) for k in range(4)])
         for k in range(4):
-            ends = loop[k], loop[(k + 1) % 4]
-            edges.append(made.edge((0,), [made.side(ends)], (first + k, first + (k + 1) % 4)))
-    loops = [np.array(square), np.array(hole)]
-    face = made.face(
-        "plane", made.placement(), (0.0, 4.0), (0.0, 4.0), 12.0, loops=loops, wires=wires
-    )
-    vertices = np.array([(*x, 0.0) for x in square + hole])
-    part = made.part([face], "plate", False, edges=edges, vertices=vertices)
-    mesh = sound(meshed(part, 300), 300)
-    assert mesh.euler_characteristic == 0
-    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
-    assert np.cross(b - a, c - a)[:, 2].sum() / 2.0 == pytest.approx(12.0, rel=1e-12)
+            sides = [side(loop[[k, (k + 1) % 4]])]
+            edges.append(edge((0,), sides, (first + k, first + (k + 1) % 4)))
+    plate = face("plane", u=ends, v=ends, area=12.0, loops=loops, wires=wires)
+    vertices = np.pad(np.concatenate(loops), [(0, 0), (0, 1)])
+    mesh = sound(part([plate], "plate", False, edges=edges, vertices=vertices), 300, euler=0)
+    assert face_normals(mesh)[:, 2].sum() == pytest.approx(12.0, rel=1e-12)
 
 
-def ring(made, inner: float) -> Part:
+def ring(inner: float) -> Part:
     """Return a flat ring of radii 1 and `inner`, whose circles begin at opposite sides."""
-    u = np.linspace(0.0, made.TURN, 33)
-    edges, loops, wires = [], [], []
-    for k, (radius, start) in enumerate(((1.0, 0.0), (inner, np.pi))):
-        circle = radius * np.stack([np.cos(u + start), np.sin(u + start)], axis=1)
-        slopes = made.TURN * np.stack([-circle[:, 1], circle[:, 0]], axis=1)
-        edges.append(made.edge((0,), [made.side(circle, slopes)], (k, k)))
-        turn = np.linspace(0.0, made.TURN, 1440, endpoint=False)
-        loops.append(radius * np.stack([np.cos(turn), np.sin(turn)], axis=1))
-        wires.append([(k, 0, k == 1)])
-    ends, area = (-1.0, 1.0), np.pi * (1.0 - inner**2)
-    face = made.face("plane", made.placement(), ends, ends, area, loops=loops, wires=wires)
+    radii, ends = (1.0, inner), (-1.0, 1.0)
+    edges = [
+        edge((0,), [round_side(radius, 33, start)], (k, k))
+        for k, (radius, start) in enumerate(zip(radii, (0.0, np.pi), strict=True))
+    ]
+    loops, wires = [circle(x) for x in radii], [[(0, 0, False)], [(1, 0, True)]]
+    area = np.pi * (1.0 - inner**2)
+    flat = face("plane", u=ends, v=ends, area=area, loops=loops, wires=wires)
     vertices = np.array([(1.0, 0.0, 0.0), (-inner, 0.0, 0.0)])
-    return made.part([face], "ring", False, edges=edges, vertices=vertices)
+    return part([flat], "ring", False, edges=edges, vertices=vertices)
 
 
 @pytest.mark.parametrize("inner", [0.9, 0.995, 0.999])
-def test_edges_are_divided_until_they_do_not_cross(made, inner):
+def test_edges_are_divided_until_they_do_not_cross(inner):
     """The polygons of two circles that are close cross each other unless they are fine."""
-    part = ring(made, inner)
-    mesh = meshed(part, 600)
-    assert len(mesh.vertices) == 600
-    assert mesh.failed == {}
-    assert mesh.euler_characteristic == 0
-    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
-    across = np.cross(b - a, c - a)[:, 2] / 2.0
-    assert across.min() > 0.0
-    assert across.sum() == pytest.approx(part.area, rel=0.02)
+    mesh = meshed(ring(inner), 600)
+    assert (mesh.failed, mesh.euler_characteristic) == ({}, 0)
+    areas = face_normals(mesh)[:, 2]
+    assert areas.min() > 0.0
+    assert areas.sum() == pytest.approx(ring(inner).area, rel=0.02)
 
 
-def test_counts_below_what_edges_need_are_refused(made):
-    for part in (box(*SIZES), made.cylinder(), all_kinds()):
-        said = refused("vertices for its edges", gm.sample(part, 4).mesh)
-        least = int(said.split(" needs at least ")[1].split()[0].replace(",", ""))
-        assert len(meshed(part, least).vertices) == least
-        refused(f"needs at least {least:,} vertices", gm.sample(part, least - 1).mesh)
+@pytest.mark.parametrize("whole", [box(*SIZES), cylinder(), all_kinds()], ids=lambda x: x.name)
+def test_counts_below_what_edges_need_are_refused(whole):
+    said = refused("vertices for its edges", gm.sample(whole, 4).mesh)
+    least = int(said.split(" needs at least ")[1].split()[0].replace(",", ""))
+    meshed(whole, least)
+    refused(f"needs at least {least:,} vertices", gm.sample(whole, least - 1).mesh)
 
 
-def test_counts_with_faults_are_refused_with_one_that_has_none(made):
-    part = ring(made, 0.99)
-    refused(r"30 vertices would lack .* 36 are enough", gm.sample(part, 30).mesh)
-    assert len(meshed(part, 36).vertices) == 36
-    assert meshed(part, 36).failed == {}
+def test_counts_with_faults_are_refused_with_one_that_has_none():
+    refused(r"30 vertices would lack .* 36 are enough", gm.sample(ring(0.99), 30).mesh)
+    assert meshed(ring(0.99), 36).failed == {}
 
 
 # --- what fails -----------------------------------------------------------------------------------
@@ -230,26 +221,17 @@ def crossed_box() -> Part:
 
 def test_a_face_whose_border_crosses_itself_is_missing():
     """The other faces are there, and the mesh never says that it is closed."""
-    whole = crossed_box()
     with pytest.warns(gm.GaussmapWarning, match="lacks 1 face of 6: of face 5 .* crosses itself"):
-        mesh = gm.sample(whole, 400).mesh()
+        mesh = meshed(crossed_box(), 400)
     assert list(mesh.failed) == [5]
-    assert not mesh.closed
     assert set(mesh.face_index.tolist()) == {0, 1, 2, 3, 4}
-    assert mesh.euler_characteristic == 1
+    assert (mesh.closed, mesh.euler_characteristic) == (False, 1)
     assert "1 face missing" in mesh.summary()
-    assert len(mesh.vertices) == 400
 
 
 def test_larger_counts_are_tried_up_to_a_bound(monkeypatch):
     """The edges of a box need 8 vertices: counts below 16 times that are tried."""
-    tried, meshed = [], meshing.mesh_and_soundness
-
-    def noted(part, whole, count, failed, spaced):
-        tried.append(count)
-        return meshed(part, whole, count, failed, spaced)
-
-    monkeypatch.setattr(meshing, "mesh_and_soundness", noted)
+    tried = noted(monkeypatch, meshing, "mesh_and_soundness", lambda given, _: given[2])
     with pytest.warns(gm.GaussmapWarning, match="crosses itself"):
         gm.sample(crossed_box(), 60).mesh()
     assert tried == [60, 72, 87, 105, 126]
@@ -257,20 +239,14 @@ def test_larger_counts_are_tried_up_to_a_bound(monkeypatch):
 
 def test_edges_are_divided_again_as_long_as_triangles_point_inward(monkeypatch):
     """But not more often than that: here, an edge never gets better."""
-    rounds, wrong = [], meshing.wrong_edges
-
-    def noted(sampled, mesh, edges):
-        rounds.append(len(mesh.lines[0]))
-        return wrong(sampled, mesh, edges)
-
-    monkeypatch.setattr(meshing, "wrong_edges", noted)
+    rounds = noted(monkeypatch, meshing, "wrong_edges", lambda given, _: len(given[1].lines[0]))
     monkeypatch.setattr(
         meshing, "inverted_triangles",
         lambda mesh: np.isin(mesh.triangles, mesh.lines[0][:2]).sum(axis=1).argmax()[None],
     )  # fmt: skip
     monkeypatch.setattr(meshing, "REFILLS", 1)
     with pytest.warns(gm.GaussmapWarning, match="has 1 triangle pointing inward, .* on face 0 "):
-        assert len(meshed(box(*SIZES), 150).vertices) == 150
+        meshed(box(*SIZES), 150)
     assert len(rounds) == 15
     assert rounds[-1] > rounds[0]
 
@@ -287,7 +263,7 @@ def test_vertices_of_triangles_that_point_inward_are_replaced(monkeypatch):
 
     monkeypatch.setattr(meshing, "inverted_triangles", one_inside)
     with pytest.warns(gm.GaussmapWarning, match="pointing inward"):
-        assert len(meshed(box(*SIZES), 300).vertices) == 300
+        meshed(box(*SIZES), 300)
     tried = list({id(x): x for x in meshes}.values())[:-1]  # the last one is what is returned
     assert len(tried) == 8
     for old, mesh in zip(bad, tried[1:], strict=False):
@@ -300,21 +276,23 @@ def test_edges_without_places_leave_their_faces_out():
     side, _ = whole.faces[2].wires[0][1]
     whole.arrays["side_points"][whole.arrays["side_point_starts"][side]] = np.nan
     with pytest.warns(gm.GaussmapWarning, match="lacks 1 face of 6: face 2 .* are not known"):
-        mesh = gm.sample(whole, 100).mesh()
+        mesh = meshed(whole, 100)
     assert list(mesh.failed) == [2]
     assert len(mesh.boundary_edges)
 
 
-def test_parts_without_loops_of_edges(made):
-    refused("read the CAD file again", gm.sample(made.part(made.box_faces()), 100).mesh)
-
-
-def test_no_samples_have_no_mesh():
-    refused("there are no samples", gm.sample(box(), 60)[:0].mesh)
-
-
-def test_parts_do_not_have_angles():
-    refused("angle=", gm.sample(box(), 100).mesh, angle=10.0)
+@pytest.mark.parametrize(
+    ("samples", "arguments", "match"),
+    [
+        (lambda: gm.sample(part(box_faces()), 100), {}, "read the CAD file again"),
+        (lambda: gm.sample(box(), 60)[:0], {}, "there are no samples"),
+        (lambda: gm.sample(box(), 100), {"angle": 10.0}, "angle="),
+        (lambda: gm.sample(box(), 30, density=1.0), {}, '"balanced" or "uniform", .* have "power"'),
+        (lambda: gm.sample(box(), 30, density=0.5), {}, '"balanced" or "uniform", .* have "power"'),
+    ],
+)
+def test_what_has_no_mesh(samples, arguments, match):
+    refused(match, samples().mesh, **arguments)
 
 
 # --- triangles close to the normals ---------------------------------------------------------------
@@ -327,8 +305,7 @@ def inner(mesh: PartMesh) -> np.ndarray:
 
 @pytest.mark.parametrize("count", [8, 9, 100, 1001])
 def test_planes_have_no_vertices_inside(count):
-    mesh = sound(meshed(box(*SIZES), count, "normals"), count)
-    assert mesh.closed
+    mesh = sound(box(*SIZES), count, "normals", euler=2, closed=True)
     assert mesh.volume == pytest.approx(6.0, rel=1e-12)
     assert len(inner(mesh)) == 0
     steps = [np.linalg.norm(np.diff(mesh.vertices[x], axis=0), axis=1) for x in mesh.lines]
@@ -340,22 +317,21 @@ def test_planes_have_no_vertices_inside(count):
 def test_meshes_by_normals_do_not_depend_on_the_unit(size):
     """Straight edges count by their share of the size: they leave vertices for what turns."""
 
-    def part(size: float) -> Part:
-        sheet = [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0.3]]]
-        wall = [[[0, 0, -1], [0, 0, 0]], [[1, 0, -1], [1, 0, 0]]]
-        nets = (size * np.array(x, dtype=np.float64) for x in (sheet, wall))
-        return gm.Part([gm.Surface.from_nurbs((1, 1), ([0, 0, 1, 1],) * 2, x) for x in nets])
-
-    one, other = (meshed(part(x), 200, "normals") for x in (1.0, size))
+    sheets = (
+        np.array([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0.3]]]),
+        np.array([[[0, 0, -1.0], [0, 0, 0]], [[1, 0, -1], [1, 0, 0]]]),
+    )
+    one, other = (
+        meshed(gm.Part([bezier(factor * x) for x in sheets]), 200, "normals")
+        for factor in (1.0, size)
+    )
     assert [len(x) for x in other.lines] == [len(x) for x in one.lines]
 
 
 @pytest.mark.parametrize("count", [50, 2000])
-def test_cylinders_have_vertices_on_their_circles_only(made, count):
+def test_cylinders_have_vertices_on_their_circles_only(count):
     """Their rows are rulings: a regular polygon of as many corners as vertices allow."""
-    part = made.cylinder()
-    mesh = sound(meshed(part, count, "normals"), count)
-    assert mesh.closed
+    mesh = sound(cylinder(), count, "normals", euler=2, closed=True)
     assert len(inner(mesh)) == 0
     heights = mesh.vertices[:, 2]
     assert (np.isin(heights, [0.0, 2.0])).all()
@@ -363,38 +339,34 @@ def test_cylinders_have_vertices_on_their_circles_only(made, count):
     assert abs(2 * corners - count) <= 1
     side = mesh.face_index == 0
     assert mesh.angles[side].max() == pytest.approx(180.0 / corners, rel=0.05)
-    assert mesh.angles[side].max() < 0.6 * meshed(part, count).angles.max()
-    polygon = corners * np.sin(2.0 * np.pi / corners)
+    assert mesh.angles[side].max() < 0.6 * meshed(cylinder(), count).angles.max()
+    polygon = corners * np.sin(TURN / corners)
     assert mesh.volume == pytest.approx(polygon, rel=1e-2 if count < 100 else 1e-5)
 
 
-def test_balls_by_normals(made):
-    mesh = sound(meshed(made.ball(2.0), 1000, "normals"), 1000)
-    assert mesh.closed
+def test_balls_by_normals():
+    mesh = sound(ball(2.0), 1000, "normals", euler=2, closed=True)
     np.testing.assert_allclose(np.linalg.norm(mesh.vertices, axis=1), 2.0, atol=1e-14)
     assert np.median(mesh.angles) < 4.5  # √(4π / 1000) · .58 rad are 3.7°
 
 
-def weighted(mesh: PartMesh) -> float:
+def mean_angle(mesh: PartMesh) -> float:
     """Return the mean angle by area."""
-    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
-    return float(np.average(mesh.angles, weights=np.linalg.norm(np.cross(b - a, c - a), axis=1)))
+    return float(np.average(mesh.angles, weights=np.linalg.norm(face_normals(mesh), axis=1)))
 
 
 def test_faces_of_all_kinds_by_normals():
-    part, count = all_kinds(), 1000
-    mesh = sound(meshed(part, count, "normals"), count)
-    assert mesh.euler_characteristic == len(part.faces)  # disks
-    kinds = np.array([x.kind for x in part.faces])
+    kinds = np.array([x.kind for x in all_kinds().faces])
+    mesh = sound(all_kinds(), 1000, "normals", euler=len(kinds))  # disks
     ruled = np.isin(kinds, ["plane", "cylinder", "cone"])
     owners = mesh.face_index[np.isin(mesh.triangles, inner(mesh)).any(axis=1)]
     assert not ruled[owners].any()
     assert set(kinds[owners]) >= {"sphere", "torus"}
-    assert weighted(mesh) < 1.95
-    assert weighted(meshed(part, count)) < 2.3
+    assert mean_angle(mesh) < 1.95
+    assert mean_angle(meshed(all_kinds(), 1000)) < 2.3
     for kind in ("cylinder", "cone", "torus", "sphere"):
         here = np.isin(mesh.face_index, np.flatnonzero(kinds == kind))
-        assert mesh.angles[here].mean() < 3.0 * weighted(mesh)
+        assert mesh.angles[here].mean() < 3.0 * mean_angle(mesh)
 
 
 def arcs(radius: float, others: float, shift: float) -> gm.Surface:
@@ -402,62 +374,50 @@ def arcs(radius: float, others: float, shift: float) -> gm.Surface:
     root = np.sqrt(0.5)
     circle = radius * np.array([(1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)])
     points = np.stack([circle, others * circle + [0.0, 0.0, shift]], axis=1)
-    weights = [[1.0, 1.0], [root, root], [1.0, 1.0]]
-    return gm.Surface.from_nurbs((2, 1), ([0, 0, 0, 1, 1, 1], [0, 0, 1, 1]), points, weights)
+    return bezier(points, [[1.0, 1.0], [root, root], [1.0, 1.0]])
 
 
-def steps_of_arcs(
-    *surfaces: gm.Surface, prefer: Literal["shape", "normals"] = "normals", count: int = 200
-) -> list[int]:
-    """Return the numbers of steps of all edges that are not straight."""
-    mesh = gm.sample(gm.Part(surfaces), count).mesh(prefer=prefer)
-    assert isinstance(mesh, PartMesh)
-    return [len(x) - 1 for x in mesh.lines if np.ptp(mesh.vertices[x][:, 2]) < 1e-9 and len(x) > 2]
-
-
-def test_small_cylinders_are_at_most_three_times_as_coarse_as_the_mean():
-    """The least mean angle has 29 times as large angles where the area is 850 times as small."""
-    small = arcs(1e-3, 1.0, 1.0).transformed(np.eye(4) + np.outer([0, 0, 1, 0], [0, 0, 0, 3.0]))
-    with pytest.warns(gm.GaussmapWarning, match="nearly coincide"):
-        numbers = steps_of_arcs(arcs(1.0, 1.0, 1.0), small)
+@pytest.mark.parametrize(
+    ("other", "prefer", "count", "ratio"),
+    [
+        # The least mean angle has 29 times as large angles where the area is 850 times as small.
+        pytest.param(arcs(1e-3, 1.0, 1.0), "normals", 200, 3.0, id="small cylinders",
+                     marks=pytest.mark.filterwarnings("ignore:.*nearly coincide")),
+        # Of radii r, steps h have the distance h²/8r; if that is even, arcs have steps as √r.
+        pytest.param(arcs(0.5, 1.0, 1.0), "shape", 2000, np.sqrt(2.0), id="even distances"),
+        pytest.param(arcs(1.0, 0.5, 0.0), "normals", 200, 2.0, id="borders of planes"),
+    ],
+)  # fmt: skip
+def test_steps_of_arcs(other, prefer, count, ratio):
+    """The arcs of a cylinder, and above it others that are smaller, or the borders of a plane."""
+    both = gm.Part([arcs(1.0, 1.0, 1.0), moved(other, (0.0, 0.0, 3.0))])
+    mesh = meshed(both, count, prefer)
+    level = [x for x in mesh.lines if np.ptp(mesh.vertices[x][:, 2]) < 1e-9]
+    numbers = [len(x) - 1 for x in level if len(x) > 2]  # the others are straight
     assert len(numbers) == 4
-    assert max(numbers) == pytest.approx(3.0 * min(numbers), rel=0.1)
+    rel = 0.06 if prefer == "shape" else 0.1
+    assert max(numbers) == pytest.approx(ratio * min(numbers), rel=rel)
 
 
-def test_distances_of_even_meshes_are_even():
-    """Of radii r, steps h have the distance h²/8r; if that is even, arcs have steps as √r."""
-    small = arcs(0.5, 1.0, 1.0).transformed(np.eye(4) + np.outer([0, 0, 1, 0], [0, 0, 0, 3.0]))
-    numbers = steps_of_arcs(arcs(1.0, 1.0, 1.0), small, prefer="shape", count=2000)
-    assert len(numbers) == 4
-    assert max(numbers) == pytest.approx(np.sqrt(2.0) * min(numbers), rel=0.06)
-
-
-def test_even_meshes_are_flipped_to_the_normals_where_no_angle_becomes_small(made, monkeypatch):
-    part, count = made.cylinder(), 1000
-    mesh = sound(meshed(part, count), count)
+def test_even_meshes_are_flipped_to_the_normals_where_no_angle_becomes_small(monkeypatch):
+    mesh = sound(cylinder(), 1000, euler=2, closed=True)
     assert np.quantile(mesh.smallest_angles, 0.01) > 24.0
     monkeypatch.setattr("gaussmap.tools.cad.meshing.ENOUGH", 89.0)  # which no triangle has
-    by_shape = meshed(part, count)
+    by_shape = meshed(cylinder(), 1000)
     assert by_shape.smallest_angles.mean() > mesh.smallest_angles.mean() + 1.0
     assert mesh.angles.mean() < 0.95 * by_shape.angles.mean()
 
 
-def test_borders_of_planes_turn_by_twice_the_angle_of_cylinders():
-    ring = arcs(1.0, 0.5, 0.0).transformed(np.eye(4) + np.outer([0, 0, 1, 0], [0, 0, 0, 3.0]))
-    numbers = steps_of_arcs(arcs(1.0, 1.0, 1.0), ring)
-    assert len(numbers) == 4
-    assert max(numbers) == pytest.approx(2.0 * min(numbers), rel=0.1)
+def arch(height: float) -> gm.Surface:
+    """Return a surface that is arched along both parameters."""
+    curve = [(0.0, 0.0), (0.5, height), (1.0, 0.0)]
+    return bezier([[(x, y, z + w) for y, w in curve] for x, z in curve])
 
 
-def test_faces_that_turn_by_little_are_not_ruled():
+@pytest.mark.parametrize(("height", "is_ruled"), [(1e-4, False), (1e-9, True)])
+def test_faces_that_turn_by_little_are_not_ruled(height, is_ruled):
     """An arch of 1e-4 rad has vertices inside, and one of 1e-9 rad has none."""
-    for height, is_ruled in ((1e-4, False), (1e-9, True)):
-        curve = [(0.0, 0.0), (0.5, height), (1.0, 0.0)]
-        heights = [[(x, y, z + w) for y, w in curve] for x, z in curve]
-        arch = gm.Surface.from_nurbs((2, 2), ([0, 0, 0, 1, 1, 1],) * 2, heights)
-        mesh = gm.sample(gm.Part([arch]), 40).mesh(prefer="normals")
-        assert isinstance(mesh, PartMesh)
-        assert (len(inner(mesh)) == 0) == is_ruled
+    assert (len(inner(meshed(gm.Part([arch(height)]), 40, "normals"))) == 0) == is_ruled
 
 
 def test_normals_of_waves_are_seen():
@@ -467,48 +427,41 @@ def test_normals_of_waves_are_seen():
     def waves(u, v):
         return np.stack([u, v, slope / (10.0 * np.pi) * np.sin(10.0 * np.pi * u + 0.7)], axis=-1)
 
-    part = gm.Part([gm.Surface.from_callable(waves, ((0.0, 1.0), (0.0, 1.0)))])
-    turned = TurnedPiece.of(FacePiece.of(part.faces[0]), 0)
+    wavy = gm.Part([gm.Surface.from_callable(waves, ((0.0, 1.0), (0.0, 1.0)))])
+    turned = TurnedPiece.of(FacePiece.of(wavy.faces[0]), 0)
     assert turned.lengths[0][-1] == pytest.approx(20.0 * np.arctan(slope), rel=0.05)
 
 
-def test_a_parameter_along_which_normals_do_not_turn_counts_a_little(made):
+def test_a_parameter_along_which_normals_do_not_turn_counts_a_little():
     """Otherwise a cylinder would have no area in its plane."""
-    turned = TurnedPiece.of(FacePiece.of(made.cylinder().faces[0]), 0)
-    assert turned.lengths[0][-1] == pytest.approx(2.0 * np.pi, rel=1e-3)
+    turned = TurnedPiece.of(FacePiece.of(cylinder().faces[0]), 0)
+    assert turned.lengths[0][-1] == pytest.approx(TURN, rel=1e-3)
     assert turned.lengths[1][-1] == pytest.approx(1e-3 * turned.lengths[0][-1], rel=1e-12)
 
 
 def test_faces_whose_normals_are_the_same_do_not_share_vertices():
     """Planes of two faces are apart: each of both has vertices as if it were alone."""
-    curve = [(0.0, 0.0), (0.5, 0.8), (1.0, 0.0)]
-    heights = [[(x, y, z + w) for y, w in curve] for x, z in curve]
-    arch = gm.Surface.from_nurbs((2, 2), ([0, 0, 0, 1, 1, 1],) * 2, heights)
-    shifted = arch.transformed(np.eye(4) + np.outer([1, 0, 0, 0], [0, 0, 0, 5.0]))
-    mesh = meshed(gm.Part([arch, shifted]), 400, "normals")
+    mesh = meshed(gm.Part([arch(0.8), moved(arch(0.8), (5.0, 0.0, 0.0))]), 400, "normals")
     inside = mesh.vertices[inner(mesh)][:, 0]
     assert len(inside) > 100
     assert (inside > 2.0).mean() == pytest.approx(0.5, abs=0.05)
 
 
-def test_sizes_grow_slowly_from_edges(made):
+def test_sizes_grow_slowly_from_edges():
     """The edges of disks of a low cylinder are several times as fine as the inside needs."""
-    mesh = sound(meshed(made.cylinder(height=0.02), 1500), 1500)
+    mesh = sound(cylinder(height=0.02), 1500, euler=2, closed=True)
     flat = mesh.face_index > 0
     assert 24.0 < np.quantile(mesh.smallest_angles[flat], 0.05) < 28.0  # 4 without growth
     corners = mesh.vertices[mesh.triangles[flat]]
     lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     inside = np.linalg.norm(corners.mean(axis=1)[:, :2], axis=1) < 0.6
-    assert lengths[inside].mean() > 6.0 * 2.0 * np.pi / (len(mesh.lines[0]) - 1)
+    assert lengths[inside].mean() > 6.0 * TURN / (len(mesh.lines[0]) - 1)
 
 
 def test_steps_along_edges_are_even_whatever_their_parameters():
     """Along u, the point moves with the speed 3 u²."""
     points = [[(x, y, 0.0) for y in (0.0, 1.0)] for x in (0.0, 0.0, 0.0, 1.0)]
-    knots = [0.0] * 4 + [1.0] * 4, [0.0, 0.0, 1.0, 1.0]
-    part = gm.Part([gm.Surface.from_nurbs((3, 1), knots, points)])
-    mesh = gm.sample(part, 1500, density="uniform").mesh()
-    assert isinstance(mesh, PartMesh)
+    mesh = meshed(gm.Part([bezier(points)]), 1500, density="uniform")
     for line in mesh.lines:
         lengths = np.linalg.norm(np.diff(mesh.vertices[line], axis=0), axis=1)
         assert lengths.max() < 1.03 * lengths.min()
@@ -517,33 +470,27 @@ def test_steps_along_edges_are_even_whatever_their_parameters():
 # --- density --------------------------------------------------------------------------------------
 
 
-def test_meshes_follow_the_density_of_samples(made):
+def test_meshes_follow_the_density_of_samples():
     """Of a cylinder, disks have more vertices if the density is uniform."""
-    part, count = made.cylinder(height=0.2), 1500
     flat = []
     for density in ("balanced", "uniform"):
-        mesh = gm.sample(part, count, density=density).mesh()
-        assert isinstance(mesh, PartMesh)
-        assert sound(mesh, count).closed
+        mesh = sound(cylinder(height=0.2), 1500, euler=2, closed=True, density=density)
         flat.append((np.hypot(*mesh.vertices[:, :2].T) < 0.9).sum())
     assert flat[1] > 1.2 * flat[0]
-    share = flat[1] / count
-    assert share == pytest.approx(2.0 * 0.81 / (2.0 + 2.0 * 0.2), rel=0.15)
+    assert flat[1] / 1500 == pytest.approx(2.0 * 0.81 / (2.0 + 2.0 * 0.2), rel=0.15)
 
 
-@pytest.mark.parametrize("how", [{"density": 1.0}, {"density": 0.5}])
-def test_other_densities_are_refused(how):
-    samples = gm.sample(all_kinds(), 300, **how)
-    refused(r'"balanced" or "uniform", .* have "power"', samples.mesh)
-    assert len(samples.mesh(prefer="normals").vertices) == 300
+@pytest.mark.parametrize("density", [1.0, 0.5])
+def test_meshes_by_normals_are_made_of_other_densities(density):
+    meshed(all_kinds(), 300, "normals", density=density)
 
 
 # --- files ----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb", "vtu"])
-def test_files(made, tmp_path, suffix):
-    mesh = meshed(made.cylinder(), 300)
+def test_files(tmp_path, suffix):
+    mesh = meshed(cylinder(), 300)
     path = tmp_path / f"part.{suffix}"
     mesh.write(path)
     if suffix == "vtu":
@@ -564,8 +511,8 @@ def test_files(made, tmp_path, suffix):
         assert again.volume == pytest.approx(mesh.volume, rel=1e-5)
 
 
-def test_obj_files_have_a_normal_at_each_corner(made, tmp_path):
-    mesh = meshed(made.cylinder(), 300)
+def test_obj_files_have_a_normal_at_each_corner(tmp_path):
+    mesh = meshed(cylinder(), 300)
     mesh.write(tmp_path / "part.obj")
     rows = [x.split() for x in (tmp_path / "part.obj").read_text().splitlines()]
     vertices = np.array([x[1:] for x in rows if x[0] == "v"], float)

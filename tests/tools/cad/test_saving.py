@@ -1,5 +1,7 @@
 """Parts in files: the same again, and one sentence for anything else."""
 
+# pyright: reportOptionalMemberAccess=false, reportArgumentType=false
+
 import io
 import json
 import pickle
@@ -11,48 +13,53 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad.earlier import OF_SECOND
-from gaussmap.tools.cad.examples import box, box_edges
+from gaussmap.tools.cad.examples import box, box_edges, box_faces
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import EdgeRecord, FaceRecord, Geometry, Net
 from gaussmap.tools.cad.saving import write_arrays
 
 from ...refusals import refused
+from .made import FAILED, UNIT, cylinder_faces, identical, net, part, rectangle
+
+CURVE = net([[1.0, 0, 0], [1, 0, 2]], knots=[0.0, 0.0, 1.0, 1.0])
 
 
-def nurbs(m: int, n: int, rational: bool) -> Net:
+def of_random(m: int, n: int, rational: bool) -> Net:
     rng = np.random.default_rng(0)
     knots = tuple(np.r_[[0.0] * 3, np.linspace(0, 1, k - 1)[1:-1], [1.0] * 3] for k in (m, n))
     weights = rng.uniform(1, 2, (m, n)) if rational else None
     return Net((2, 2), knots, rng.normal(size=(m, n, 3)), weights)
 
 
-def curve() -> Net:
-    return Net((1,), (np.array([0.0, 0.0, 1.0, 1.0]),), np.array([[1.0, 0, 0], [1, 0, 2]]))
-
-
 @pytest.fixture
-def everything(made) -> Part:
+def everything() -> Part:
     """Return a part with each kind of record."""
-    square = [made.rectangle(0, 1, 0, 1), made.rectangle(0.2, 0.4, 0.2, 0.4)]
-    basis = Geometry("nurbs", net=nurbs(4, 5, True))
+    square = [rectangle(UNIT, UNIT), rectangle((0.2, 0.4), (0.2, 0.4))]
+    basis = Geometry("nurbs", net=of_random(4, 5, True))
     geometries = [
-        Geometry("nurbs", net=nurbs(3, 4, False)),
+        Geometry("nurbs", net=of_random(3, 4, False)),
         Geometry("offset", np.array([0.5]), basis=Geometry("offset", np.array([0.1]), basis=basis)),
-        Geometry("revolution", np.array([0.0, 0, 0, 0, 0, 1]), net=curve()),
-        Geometry("extrusion", np.array([0.0, 1, 0]), net=curve()),
-        Geometry("unknown"),
+        Geometry("revolution", np.array([0.0, 0, 0, 0, 0, 1]), net=CURVE),
+        Geometry("extrusion", np.array([0.0, 1, 0]), net=CURVE),
     ]
     faces = [FaceRecord(x, ((0, 1), (0, 1)), loops=square, area=1.0) for x in geometries]
-    faces[-1] = FaceRecord(geometries[-1], reason="it has no surface")
     edges = [
         EdgeRecord((0, 2), np.arange(12.0).reshape(3, 4), vertices=(1, 0)),
         EdgeRecord((0, 0), np.zeros((2, 4)), np.ones((2, 4)), degenerate=True),
     ]
-    box = made.box_faces()
-    box[0] = replace(box[0], wires=[[(0, 0, True), (1, 1, False)], [(1, 0, True)]])
-    return made.part(
-        [*box, *faces], "all", False, solid_names=["bolt"], edges=edges, vertices=np.eye(3)[:2]
-    )
+    first, *others = box_faces()
+    first = replace(first, wires=[[(0, 0, True), (1, 1, False)], [(1, 0, True)]])
+    given = {"solid_names": ["bolt"], "edges": edges, "vertices": np.eye(3)[:2]}
+    return part([first, *others, *faces, FAILED], "all", False, **given)
+
+
+def again(given: Part, path) -> Part:
+    given.save(path / "part.npz")
+    return gm.read_part(path / "part.npz")
+
+
+def is_refused(match: str, path) -> None:
+    refused(match, gm.read_part, path, error=gm.errors.FileError)
 
 
 def same(one: Part, other: Part) -> bool:
@@ -63,9 +70,7 @@ def same(one: Part, other: Part) -> bool:
 
 
 def test_read_again(everything, tmp_path):
-    everything.save(tmp_path / "part.npz")
-    again = gm.read_part(tmp_path / "part.npz")
-    assert same(everything, again)
+    assert same(everything, again(everything, tmp_path))
     assert same(everything, pickle.loads(pickle.dumps(everything)))
 
 
@@ -76,12 +81,10 @@ def test_wires_of_faces(everything):
 
 
 @pytest.fixture
-def first_version(made, tmp_path):
-    """Write a box as version 1 has, and return its arrays."""
-    arrays = dict(box().arrays)
-    edges = box_edges()
-    about = {**box().about, "version": 1}
-    arrays = {name: x for name, x in arrays.items() if name not in OF_SECOND}
+def first_version():
+    """Return the arrays of a box as version 1 has them."""
+    edges, about = box_edges(), {**box().about, "version": 1}
+    arrays = {name: x for name, x in box().arrays.items() if name not in OF_SECOND}
     arrays["about"] = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
     arrays["edge_faces"] = np.array([x.faces for x in edges])
     arrays["edge_points"] = np.concatenate([x.parameters for x in edges])
@@ -91,121 +94,100 @@ def first_version(made, tmp_path):
 
 def test_the_first_version_is_read(first_version, tmp_path):
     np.savez(tmp_path / "first.npz", **first_version)
-    part = gm.read_part(tmp_path / "first.npz")
-    assert part.about["version"] == 2
-    assert all(x.wires == () for x in part.faces)
-    samples, wanted = (gm.sample(x, 60, edges=True) for x in (part, box()))
-    for name, array in samples.arrays().items():
-        assert array.tobytes() == getattr(wanted, name).tobytes()
-    part.save(tmp_path / "second.npz")
-    assert same(part, gm.read_part(tmp_path / "second.npz"))
-
-
-@pytest.mark.parametrize(
-    ("name", "change"),
-    [("edge_point_starts", lambda x: x[::-1].copy()), ("edge_point_starts", lambda x: x[1:]),
-     ("edge_points", lambda x: x[:, :3]), ("edge_faces", lambda x: x + 10**6),
-     ("edge_faces", lambda x: x.astype(np.float64))],
-)  # fmt: skip
-def test_damaged_arrays_of_the_first_version(first_version, tmp_path, name, change):
-    np.savez(tmp_path / "part.npz", **{**first_version, name: change(first_version[name])})
-    with pytest.raises(gm.errors.FileError, match=r"part\.npz' is damaged"):
-        gm.read_part(tmp_path / "part.npz")
+    first = gm.read_part(tmp_path / "first.npz")
+    assert first.about["version"] == 2
+    assert all(x.wires == () for x in first.faces)
+    identical(*(gm.sample(x, 60, edges=True) for x in (first, box())))
+    assert same(first, again(first, tmp_path))
 
 
 def test_geometries_are_unpacked(everything):
     faces = everything.faces[6:]
     assert [x.kind for x in faces] == ["nurbs", "offset", "revolution", "extrusion", "unknown"]
-    net, wanted = faces[0].geometry.net, nurbs(3, 4, False)
-    assert net is not None
-    assert net.weights is None
-    assert net.degrees == (2, 2)
-    assert np.array_equal(net.points, wanted.points)
-    assert all(map(np.array_equal, net.knots, wanted.knots))
     inner = faces[1].geometry.basis
-    assert inner is not None
     assert inner.numbers.tolist() == [0.1]
-    assert inner.basis is not None
-    deep, wanted = inner.basis.net, nurbs(4, 5, True)
-    assert deep is not None
-    assert deep.weights is not None
-    assert wanted.weights is not None
-    assert np.array_equal(deep.weights, wanted.weights)
-    line = faces[2].geometry.net
-    assert line is not None
-    assert line.degrees == (1,)
-    assert np.array_equal(line.points, curve().points)
+    nets = faces[0].geometry.net, inner.basis.net, faces[2].geometry.net
+    for found, wanted in zip(
+        nets, (of_random(3, 4, False), of_random(4, 5, True), CURVE), strict=True
+    ):
+        assert found.degrees == wanted.degrees
+        assert np.array_equal(found.points, wanted.points)
+        assert all(map(np.array_equal, found.knots, wanted.knots))
+        assert (found.weights is None) == (wanted.weights is None)
+        assert found.weights is None or np.array_equal(found.weights, wanted.weights)
     assert [x.shape for x in faces[0].loops] == [(4, 2), (4, 2)]
     assert faces[4].loops == ()
 
 
-def test_what_a_part_says(everything, made):
-    assert (len(everything), everything.unit, everything.metres, everything.oriented) == (
-        11,
-        "mm",
-        1e-3,
-        False,
-    )
+def test_what_a_part_says(everything):
+    said = len(everything), everything.unit, everything.metres, everything.oriented
+    assert said == (11, "mm", 1e-3, False)
     assert everything.area == pytest.approx(22 + 4)
     assert [x.index for x in everything.failed] == [10]
-    with pytest.raises(gm.errors.SurfaceError, match="face 10 of 'all' cannot be used: it has no"):
-        everything.failed[0].surface  # noqa: B018
+    unusable, error = "face 10 of 'all' cannot be used: it has no", gm.errors.SurfaceError
+    refused(unusable, lambda: everything.failed[0].surface, error=error)
     (solid,) = everything.solids
     assert (solid.name, solid.faces.tolist(), solid.area) == ("bolt", list(range(6)), 22.0)
     first = everything.faces[0]
     assert (first.name, first.color, first.solid_index, first.reversed) == ("side", None, 0, True)
-    assert made.part(made.cylinder_faces()).faces[0].color == (1.0, 0.5, 0.0)
+    assert part(cylinder_faces()).faces[0].color == (1.0, 0.5, 0.0)
 
 
-def test_no_faces(made, tmp_path):
-    everything = made.part([], "empty")
-    everything.save(tmp_path / "part.npz")
-    again = gm.read_part(tmp_path / "part.npz")
-    assert len(again) == 0
-    assert again.faces == () == again.solids
-    assert again.area == 0.0
+def test_no_faces(tmp_path):
+    empty = again(part([], "empty"), tmp_path)
+    assert (len(empty), empty.faces, empty.solids, empty.area) == (0, (), (), 0.0)
 
 
 def test_numbers_that_are_not_finite_fail_one_face(everything, tmp_path):
     everything.arrays["net_points"][0, 0] = np.nan  # of face 6
     everything.arrays["net_points"][-1, 3] = np.inf  # of the basis of the basis of face 7
     everything.arrays["numbers"][0] = np.nan
-    everything.save(tmp_path / "part.npz")
-    failed = gm.read_part(tmp_path / "part.npz").failed
+    failed = again(everything, tmp_path).failed
     assert [x.index for x in failed] == [0, 6, 7, 10]
     assert failed[0].reason == "its numbers are not finite"
 
 
-@pytest.mark.parametrize(
-    ("name", "change"),
-    [
-        ("number_starts", lambda x: x[::-1].copy()),
-        ("number_starts", lambda x: x + 1),
-        ("kind", lambda x: x + 50),
-        ("kind", lambda x: x.astype(np.float64)),
-        ("basis", lambda x: np.where(x < 0, x, 0)),
-        ("net", lambda x: np.where(x < 0, x, 10**6)),
-        ("net_degrees", lambda x: x + 10**9),
-        ("net_shapes", lambda x: x + 1),
-        ("knots", lambda x: x[1:]),
-        ("side_faces", lambda x: x + 10**6),
-        ("side_point_starts", lambda x: np.r_[x[:1], x[1:-1] + 1, x[-1:]]),
-        ("edge_vertices", lambda x: x + 10**6),
-        ("wire_sides", lambda x: x + 1),
-        ("wire_sides", lambda x: x + 10**6),
-        ("solid_index", lambda x: x + 10**6),
-        ("area", lambda x: x[1:]),
-        ("domain", lambda x: x.reshape(-1, 4)),
-        ("reversed", lambda x: x.astype(object)),
-        ("about", lambda x: x[1:]),
-        ("about", lambda x: np.frombuffer(b'{"format": "no"}', dtype=np.uint8)),
-    ],
-)
-def test_damaged_arrays(everything, tmp_path, name, change):
-    arrays = {**everything.arrays, name: change(everything.arrays[name])}
-    write_arrays(arrays, tmp_path / "part.npz")
-    with pytest.raises(gm.errors.FileError, match=r"part\.npz' (is damaged|is no part|comes from)"):
-        gm.read_part(tmp_path / "part.npz")
+DAMAGE = [
+    ("number_starts", lambda x: x[::-1].copy()),
+    ("number_starts", lambda x: x + 1),
+    ("kind", lambda x: x + 50),
+    ("kind", lambda x: x.astype(np.float64)),
+    ("basis", lambda x: np.where(x < 0, x, 0)),
+    ("net", lambda x: np.where(x < 0, x, 10**6)),
+    ("net_degrees", lambda x: x + 10**9),
+    ("net_shapes", lambda x: x + 1),
+    ("knots", lambda x: x[1:]),
+    ("side_faces", lambda x: x + 10**6),
+    ("side_point_starts", lambda x: np.r_[x[:1], x[1:-1] + 1, x[-1:]]),
+    ("edge_vertices", lambda x: x + 10**6),
+    ("wire_sides", lambda x: x + 1),
+    ("wire_sides", lambda x: x + 10**6),
+    ("solid_index", lambda x: x + 10**6),
+    ("area", lambda x: x[1:]),
+    ("domain", lambda x: x.reshape(-1, 4)),
+    ("reversed", lambda x: x.astype(object)),
+    ("about", lambda x: x[1:]),
+    ("about", lambda x: np.frombuffer(b'{"format": "no"}', dtype=np.uint8)),
+    # those of the first version only
+    ("edge_point_starts", lambda x: x[::-1].copy()),
+    ("edge_point_starts", lambda x: x[1:]),
+    ("edge_points", lambda x: x[:, :3]),
+    ("edge_faces", lambda x: x + 10**6),
+    ("edge_faces", lambda x: x.astype(np.float64)),
+]
+
+
+@pytest.mark.parametrize(("name", "change"), DAMAGE)
+def test_damaged_arrays(everything, first_version, tmp_path, name, change):
+    is_first = name in first_version and name not in everything.arrays
+    arrays = first_version if is_first else everything.arrays
+    damaged = {**arrays, name: change(arrays[name])}
+    if is_first:
+        np.savez(tmp_path / "part.npz", **damaged)
+    else:
+        write_arrays(damaged, tmp_path / "part.npz")
+    wrong = "(is damaged)" if is_first else "(is damaged|is no part|comes from)"
+    is_refused(rf"part\.npz' {wrong}", tmp_path / "part.npz")
 
 
 def test_truncated_foreign_and_missing_files(everything, tmp_path):
@@ -213,14 +195,11 @@ def test_truncated_foreign_and_missing_files(everything, tmp_path):
     whole = (tmp_path / "part.npz").read_bytes()
     for length in (0, 3, 1000, len(whole) // 2, len(whole) - 1):
         (tmp_path / "cut.npz").write_bytes(whole[:length])
-        with pytest.raises(gm.errors.FileError, match=r"cut\.npz' is damaged"):
-            gm.read_part(tmp_path / "cut.npz")
+        is_refused(r"cut\.npz' is damaged", tmp_path / "cut.npz")
     np.savez(tmp_path / "other.npz", a=np.arange(3))
-    with pytest.raises(gm.errors.FileError, match="is no part that gaussmap saved: it lacks"):
-        gm.read_part(tmp_path / "other.npz")
-    refused("cannot be read", gm.read_part, tmp_path / "none.npz", error=gm.errors.FileError)
-    with pytest.raises(gm.errors.UnknownNameError):
-        gm.read_part(tmp_path / "part.step")
+    is_refused("is no part that gaussmap saved: it lacks", tmp_path / "other.npz")
+    is_refused("cannot be read", tmp_path / "none.npz")
+    refused("", gm.read_part, tmp_path / "part.step", error=gm.errors.UnknownNameError)
 
 
 def test_flipped_bytes_never_crash(everything, tmp_path):
@@ -249,5 +228,4 @@ def test_an_array_that_says_it_is_huge(everything, tmp_path):
     with zipfile.ZipFile(tmp_path / "huge.npz", "w") as new:
         for name, content in members.items():
             new.writestr(name, content)
-    with pytest.raises(gm.errors.FileError, match=r"is damaged: 'numbers\.npy'"):
-        gm.read_part(tmp_path / "huge.npz")
+    is_refused(r"is damaged: 'numbers\.npy'", tmp_path / "huge.npz")

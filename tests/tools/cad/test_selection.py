@@ -2,109 +2,116 @@
 
 import json
 import pickle
+from dataclasses import replace
 
 import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad.edges import between_two
 from gaussmap.tools.cad.examples import all_kinds, box
-from gaussmap.tools.cad.records import FaceRecord, Geometry
 
 from ...products import covering
 from ...refusals import refused
-
-TURN = 2.0 * np.pi
+from .made import AXES, FAILED, TURN, UNIT, cylinder_faces, face, part, rectangle
 
 
 def indices(part) -> list[int]:
     return [x.source_index for x in part.faces]
 
 
-def test_conditions(made):
-    failed = FaceRecord(Geometry("unknown"), reason="it has no surface", area=np.nan)
-    part = made.part([*made.cylinder_faces(), failed])
-    assert indices(part.select(kind="plane")) == [1, 2]
-    assert indices(part.select(kind=("unknown", "cylinder"))) == [0, 3]
-    assert indices(part.select(color="#ff8000")) == [0]  # 0x80 is 128, and 0.5 is 127.5
-    assert indices(part.select(color=(1.0, 0.5, 0.0))) == [0]
-    assert indices(part.select(index=[3, 1])) == [1, 3]
-    assert indices(part.select(kind="plane", normal=((0, 0, -3), 1.0))) == [1]
-    message = r"conditions; the kinds of its faces are: 2 plane, 1 cylinder, 1 unknown\.$"
-    with pytest.raises(gm.errors.InputError, match=message):
-        part.select(kind="plane", color="#ff8000")
+@pytest.fixture(scope="module")
+def failing() -> gm.Part:
+    """Return a cylinder with a face that failed."""
+    return part([*cylinder_faces(), replace(FAILED, area=np.nan)])
+
+
+@pytest.mark.parametrize(
+    ("conditions", "found"),
+    [
+        ({"kind": "plane"}, [1, 2]),
+        ({"kind": ("unknown", "cylinder")}, [0, 3]),
+        ({"color": "#ff8000"}, [0]),  # 0x80 is 128, and 0.5 is 127.5
+        ({"color": (1.0, 0.5, 0.0)}, [0]),
+        ({"index": [3, 1]}, [1, 3]),
+        ({"kind": "plane", "normal": ((0, 0, -3), 1.0)}, [1]),
+    ],
+)
+def test_conditions(failing, conditions, found):
+    assert indices(failing.select(**conditions)) == found
 
 
 def test_names():
-    part = all_kinds()
-    part.about["face_names"] = {"2": "slot 1", "7": "slot 2", "8": "Slot 3"}
-    assert indices(part.select(name="slot*")) == [2, 7]
-    assert indices(part.select(name="slot 2")) == [7]
+    kinds = all_kinds()
+    kinds.about["face_names"] = {"2": "slot 1", "7": "slot 2", "8": "Slot 3"}
+    assert indices(kinds.select(name="slot*")) == [2, 7]
+    assert indices(kinds.select(name="slot 2")) == [7]
 
 
 def test_a_selection_of_a_selection_knows_the_first_part():
-    part = box().select(index=[1, 3, 5]).select(index=[0, 2])
-    assert indices(part) == [1, 5]
-    assert indices(pickle.loads(pickle.dumps(part))) == [1, 5]
-    assert [x.index for x in part.faces] == [0, 1]
+    some = box().select(index=[1, 3, 5]).select(index=[0, 2])
+    assert indices(some) == [1, 5]
+    assert indices(pickle.loads(pickle.dumps(some))) == [1, 5]
+    assert [x.index for x in some.faces] == [0, 1]
 
 
-def test_all_normals_of_a_face_have_to_be_within_the_angle(made):
-    quarter = made.face(
-        "cylinder", [*made.placement(), 1.0], (0.0, TURN / 4), (0.0, 2.0), TURN / 2, (TURN, 0.0)
-    )
-    part = made.part([quarter], oriented=False)
-    toward = (np.cos(TURN / 8), np.sin(TURN / 8), 0.0)
-    assert len(part.select(normal=(toward, 45.001))) == 1
-    for axis, angle in ((toward, 44.9), ((1, 0, 0), 89.0), ((-1, -1, 0), 170.0)):
-        refused("no face", part.select, normal=(axis, angle))
+QUARTER = face("cylinder", 1.0, u=(0.0, TURN / 4), v=(0.0, 2.0))
+# A cap of 30° around the north pole of a sphere, as a circle of parameters would be cut.
+CAP = face("sphere", 2.0, v=(TURN / 6, TURN / 4))
+NARROW = face("sphere", 2.0, area=1.0, loops=[rectangle((1.0, 1.2), (-0.1, 0.1))])
 
 
-def test_the_trim_counts_and_poles_do_not_hurt(made):
-    # A cap of 30° around the north pole of a sphere, as a circle of parameters would be cut.
-    place, u, v = [*made.placement(), 2.0], (0.0, TURN), (TURN / 6, TURN / 4)
-    cap = made.face("sphere", place, u, v, 1.0, (TURN, 0.0))
-    assert len(made.part([cap]).select(normal=((0, 0, 1), 30.001))) == 1
-    refused("no face", made.part([cap]).select, normal=((0, 0, 1), 29.9))
-    narrow = made.face(
-        "sphere", place, (0.0, TURN), (-TURN / 4, TURN / 4), 1.0, (TURN, 0.0),
-        loops=[np.array([(1.0, -0.1), (1.2, -0.1), (1.2, 0.1), (1.0, 0.1)])],
-    )  # fmt: skip
-    middle = (np.cos(1.1), np.sin(1.1), 0.0)
-    assert len(made.part([narrow]).select(normal=(middle, 9.0))) == 1
+def toward(angle: float) -> tuple[float, float, float]:
+    return np.cos(angle), np.sin(angle), 0.0
+
+
+@pytest.mark.parametrize(
+    ("given", "normal", "is_found"),
+    [
+        (QUARTER, (toward(TURN / 8), 45.001), True),
+        (QUARTER, (toward(TURN / 8), 44.9), False),
+        (QUARTER, ((1, 0, 0), 89.0), False),
+        (QUARTER, ((-1, -1, 0), 170.0), False),
+        (CAP, ((0, 0, 1), 30.001), True),
+        (CAP, ((0, 0, 1), 29.9), False),
+        (NARROW, (toward(1.1), 9.0), True),
+    ],
+)
+def test_all_normals_inside_of_the_trim_have_to_be_within_the_angle(given, normal, is_found):
+    """Poles do not hurt."""
+    alone = part([given], oriented=False)
+    if is_found:
+        assert len(alone.select(normal=normal)) == 1
+    else:
+        refused("no face", alone.select, normal=normal)
 
 
 def test_samples_and_edges_of_a_selection():
-    part = box(1.0, 2.0, 3.0).select(index=[0, 2, 5])
-    assert (part.unit, part.solids[0].name, part.area) == ("mm", "box", 6 + 3 + 2)
-    assert between_two(part)[0].tolist() == [[0, 1], [0, 2], [1, 2]]
-    assert len(part.arrays["edge_vertices"]) == 9  # six borders, too
-    on_faces = part.arrays["side_faces"][part.arrays["wire_sides"]]
+    some = box().select(index=[0, 2, 5])
+    assert (some.unit, some.solids[0].name, some.area) == ("mm", "box", 6 + 3 + 2)
+    assert between_two(some)[0].tolist() == [[0, 1], [0, 2], [1, 2]]
+    assert len(some.arrays["edge_vertices"]) == 9  # six borders, too
+    on_faces = some.arrays["side_faces"][some.arrays["wire_sides"]]
     assert on_faces.tolist() == [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2]
-    samples = gm.sample(part, 60, edges=True)
-    assert samples.report is not None
-    assert samples.report.edge_samples
-    whole = box(1.0, 2.0, 3.0)
-    for face in part.faces:
-        own = samples.points[samples.face_index == face.index]
-        dimensions = whole.faces[face.source_index].dimensions
+    samples = gm.sample(some, 60, edges=True)
+    assert (samples.report.edge_samples or 0) > 0
+    for own_face in some.faces:
+        own = samples.points[samples.face_index == own_face.index]
+        dimensions = box().faces[own_face.source_index].dimensions
         assert np.abs((own - dimensions["point"]) @ dimensions["normal"]).max() <= 1e-15
 
 
-def test_solids_are_numbered_anew(made):
-    faces = [made.cylinder_faces(), made.cylinder_faces(2.0)]
-    records = [x for k in (0, 1) for x in faces[k]]
-    for k, record in enumerate(records):
-        object.__setattr__(record, "solid_index", k // 3)
-    part = made.part(records, solid_names=["a", "b"]).select(index=[4, 5])
-    assert [x.name for x in part.solids] == ["b"]
-    assert part.solids[0].faces.tolist() == [0, 1]
+def test_solids_are_numbered_anew():
+    two = cylinder_faces() + [replace(x, solid_index=1) for x in cylinder_faces(2.0)]
+    some = part(two, solid_names=["a", "b"]).select(index=[4, 5])
+    assert [x.name for x in some.solids] == ["b"]
+    assert some.solids[0].faces.tolist() == [0, 1]
 
 
-def test_open_ends_of_solids_have_no_volume(made):
-    part = made.part(made.cylinder_faces())
-    assert part.volume == pytest.approx(TURN, rel=1e-4)
-    with pytest.raises(gm.errors.SurfaceError, match="enclose no solids"):
-        _ = part.select(kind="plane").volume
+def test_open_ends_of_solids_have_no_volume():
+    whole = part(cylinder_faces())
+    assert whole.volume == pytest.approx(TURN, rel=1e-4)
+    error = gm.errors.SurfaceError
+    refused("enclose no solids", lambda: whole.select(kind="plane").volume, error=error)
 
 
 def test_a_selection_is_saved(tmp_path):
@@ -115,12 +122,12 @@ def test_a_selection_is_saved(tmp_path):
 
 @pytest.mark.parametrize("bad", ["no list", ["a", "b"], [1], [1.5, 2], {"1": 2}])
 def test_source_indices_of_files_are_checked(tmp_path, bad):
-    part = box().select(index=[1, 4])
-    about = part.about | {"source_indices": bad}
-    part.arrays["about"] = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
-    part.save(tmp_path / "part.npz")
-    with pytest.raises(gm.errors.FileError, match="'about' is not what it should be"):
-        gm.read_part(tmp_path / "part.npz")
+    some = box().select(index=[1, 4])
+    about = some.about | {"source_indices": bad}
+    some.arrays["about"] = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
+    some.save(tmp_path / "part.npz")
+    wrong, error = "'about' is not what it should be", gm.errors.FileError
+    refused(wrong, gm.read_part, tmp_path / "part.npz", error=error)
 
 
 @pytest.mark.parametrize(
@@ -141,8 +148,13 @@ def test_source_indices_of_files_are_checked(tmp_path, bad):
     ],
 )
 def test_errors(condition, message):
-    with pytest.raises((gm.errors.InputError, gm.errors.UnknownNameError), match=message):
-        box().select(**condition)
+    error = gm.errors.UnknownNameError if condition == {"kind": "hole"} else gm.errors.InputError
+    refused(message, box().select, **condition, error=error)
+
+
+def test_where_no_face_is_found_the_kinds_are_listed(failing):
+    message = r"conditions; the kinds of its faces are: 2 plane, 1 cylinder, 1 unknown\.$"
+    refused(message, failing.select, kind="plane", color="#ff8000")
 
 
 # --- dimensions -----------------------------------------------------------------------------------
@@ -153,28 +165,26 @@ def test_errors(condition, message):
     is_reversed=[False, True],
     **{
         "kind, more, u, v": [
-            ("plane", [], (0.0, 1.0), (0.0, 1.0)),
+            ("plane", [], UNIT, UNIT),
             ("cylinder", [2.0], (0.5, 3.0), (-1.0, 1.0)),
-            ("cone", [2.0, 0.3], (0.5, 3.0), (0.0, 1.0)),
-            ("cone", [2.0, -0.3], (0.5, 3.0), (0.0, 1.0)),
+            ("cone", [2.0, 0.3], (0.5, 3.0), UNIT),
+            ("cone", [2.0, -0.3], (0.5, 3.0), UNIT),
             ("cone", [2.0, 0.3], (0.5, 3.0), (-9.0, -8.0)),  # beyond the apex
             ("sphere", [3.0], (0.5, 3.0), (-0.5, 1.0)),
             ("torus", [3.0, 0.5], (0.5, 3.0), (0.5, 6.0)),
         ]
     },
 )
-def test_dimensions_are_those_of_points_and_normals(made, kind, more, u, v, is_reversed, handed):
-    axes = np.array([[2, 1, -2], [1, 2, 2], [2, -2, 1]]) / 3
-    numbers = [5.0, -2.0, 1.0, *axes[0], *(handed * axes[1]), *axes[2], *more]
-    part = made.part([made.face(kind, numbers, u, v, 1.0, reversed=is_reversed)], oriented=False)
-    (face,) = part.faces
-    samples, known = gm.sample(part, 50), face.dimensions
+def test_dimensions_are_those_of_points_and_normals(kind, more, u, v, is_reversed, handed):
+    place = [5.0, -2.0, 1.0, *AXES[0], *(handed * AXES[1]), *AXES[2]]
+    alone = part([face(kind, *more, u=u, v=v, place=place, reversed=is_reversed)], oriented=False)
+    samples, known = gm.sample(alone, 50), alone.faces[0].dimensions
     points, normals = samples.points, samples.normals
     if kind == "plane":
         assert np.allclose(normals, known["normal"], atol=1e-14)
         assert np.allclose((points - known["point"]) @ known["normal"], 0.0, atol=1e-14)
         return
-    centre = known.get("point", known.get("apex", known.get("centre")))
+    (centre,) = (known[x] for x in ("point", "apex", "centre") if x in known)
     across = points - centre
     height = across @ known.get("axis", np.zeros(3))
     radial = across - height[:, None] * known.get("axis", np.zeros(3))
@@ -192,19 +202,17 @@ def test_dimensions_are_those_of_points_and_normals(made, kind, more, u, v, is_r
     assert inward.all() if known["hollow"] else not inward.any()
 
 
-def test_other_kinds_have_none(made):
+def test_other_kinds_have_none():
     assert all_kinds().faces[5].dimensions == {}
-    flat = [*made.placement(), 2.0, 0.0]  # a cone that does not widen
-    assert made.part([made.face("cone", flat, (0, 1), (0, 1), 1.0)]).faces[0].dimensions == {}
+    assert part([face("cone", 2.0, 0.0)]).faces[0].dimensions == {}  # it does not widen
 
 
 # --- the command ----------------------------------------------------------------------------------
 
 
-def test_faces_of_a_kind(made, tmp_path, capsys, main):
+def test_faces_of_a_kind(failing, tmp_path, capsys, main):
     path = str(tmp_path / "part.npz")
-    failed = FaceRecord(Geometry("unknown"), reason="it has no surface", area=np.nan)
-    made.part([*made.cylinder_faces(), failed]).save(path)
+    failing.save(path)
     assert main(["faces", path, "--kind", "plane", "--kind", "unknown"]) == 0
     assert [x.split()[0] for x in capsys.readouterr().out.splitlines()] == ["1", "2", "3"]
     assert main(["faces", path, "--kind", "cylinder", "--json"]) == 0

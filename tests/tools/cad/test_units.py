@@ -2,23 +2,25 @@
 
 import numpy as np
 import pytest
-from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
+from gaussmap.tools.cad.records import FaceRecord, Geometry
 from gaussmap.tools.cad.units import with_unit
 
-CURVE = Net((1,), (np.array([0.0, 0.0, 5.0, 5.0]),), np.array([(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)]))
-PLACE = [1.0, 2.0, 3.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+from .made import net, placement
+
+CURVE = net([(1.0, 2.0, 3.0), (4.0, 5.0, 6.0)], knots=[0.0, 0.0, 5.0, 5.0])
+PLACE = placement((1.0, 2.0, 3.0))
 
 
 @pytest.mark.parametrize(
     ("geometry", "numbers", "parameters"),
     [
-        (Geometry("plane", np.array(PLACE)), (0, 1, 2), (2.0, 2.0)),
+        (Geometry("plane", PLACE), (0, 1, 2), (2.0, 2.0)),
         (Geometry("cylinder", np.array([*PLACE, 7.0])), (0, 1, 2, 12), (1.0, 2.0)),
         (Geometry("cone", np.array([*PLACE, 7.0, 0.5])), (0, 1, 2, 12), (1.0, 2.0)),
         (Geometry("sphere", np.array([*PLACE, 7.0])), (0, 1, 2, 12), (1.0, 1.0)),
         (Geometry("torus", np.array([*PLACE, 7.0, 0.5])), (0, 1, 2, 12, 13), (1.0, 1.0)),
-        (Geometry("revolution", np.array(PLACE[:6]), CURVE), (0, 1, 2), (1.0, 1.0)),
-        (Geometry("extrusion", np.array(PLACE[3:6]), CURVE), (), (1.0, 2.0)),
+        (Geometry("revolution", PLACE[:6], CURVE), (0, 1, 2), (1.0, 1.0)),
+        (Geometry("extrusion", PLACE[3:6], CURVE), (), (1.0, 2.0)),
     ],
 )
 def test_lengths_are_multiplied_and_angles_are_not(geometry, numbers, parameters):
