@@ -11,12 +11,11 @@ pytest.importorskip("OCP")
 
 from gaussmap.tools.cad.damaged_step import prepared
 from gaussmap.tools.cad.opencascade.parts import part_record
-from OCP.BRep import BRep_Builder
+from gaussmap.tools.cad.part import part_of
 from OCP.BRepTools import BRepTools
 from OCP.IGESControl import IGESControl_Writer
 from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
-from OCP.TopoDS import TopoDS_Compound
 
 
 def written(shape, path: Path, unit: str = "MM") -> Path:
@@ -38,14 +37,6 @@ def written(shape, path: Path, unit: str = "MM") -> Path:
     return path
 
 
-def compound(*shapes):
-    made, builder = TopoDS_Compound(), BRep_Builder()
-    builder.MakeCompound(made)
-    for shape in shapes:
-        builder.Add(made, shape)
-    return made
-
-
 @pytest.fixture
 def write(tmp_path, capfd):
     """Write a shape to a file of the test; the writer prints."""
@@ -65,6 +56,12 @@ def read(tmp_path):
         return part_record(prepared(path, tmp_path), path.name, unit)
 
     return read
+
+
+@pytest.fixture
+def part_with(write, read):
+    """Make the part of a shape."""
+    return lambda shape, unit=None: part_of(read(write(shape, "part.brep"), unit))
 
 
 def in_loops(uv: np.ndarray, loops) -> np.ndarray:
