@@ -10,11 +10,12 @@ from gaussmap.tools.cad.faces import face_surface, own_parameters
 from gaussmap.tools.cad.records import Geometry, Net
 
 from ...refusals import refused
+from .made import TURN, net, normals_of, nurbs, rectangle
 
-TURN = 2.0 * math.pi
 OPEN, PERIODIC = ("open", "open"), ("periodic", "periodic")
 Z = np.array([0.36, 0.48, 0.8])
 X = np.array([0.8, -0.6, 0.0])
+FRAME = np.array([X, np.cross(Z, X), Z])  # the rows x, y and z
 ORIGIN = np.array([1.0, -2.0, 0.5])
 KNOTS = np.array([0.0, 0, 0, 0, 1, 2, 2, 2, 2])
 ROUND = math.sqrt(0.5)
@@ -22,29 +23,29 @@ CIRCLE = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), 
 
 
 def placed(*more, left_handed=False):
-    y = np.cross(Z, X) * (-1.0 if left_handed else 1.0)
-    return np.concatenate([ORIGIN, X, y, Z, more])
+    signs = np.array([[1.0], [-1.0 if left_handed else 1.0], [1.0]])
+    return np.concatenate([ORIGIN, *(signs * FRAME), more])
 
 
 def curve(weights=None):
     t = np.linspace(0.0, 2.0, 5)
-    points = np.stack([2.0 + np.sin(2 * t), 0.3 * t**2, 2.0 * t], axis=1)
-    return Net((3,), (KNOTS,), points, weights)
+    return net(np.stack([2.0 + np.sin(2 * t), 0.3 * t**2, 2.0 * t], axis=1), weights, KNOTS)
 
 
-def circle(centre=(3.0, 0.0, 0.0), normal_axis=1, count=9):
-    """Return a circle of radius 1 as NURBS over [0, 4], with double knots."""
-    axes = [k for k in range(3) if k != normal_axis]
-    points = np.tile(np.array(centre), (count, 1))
-    points[:, axes] += CIRCLE
-    knots = np.array([0.0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4])
-    return Net((2,), (knots,), points, np.array([1, ROUND] * 4 + [1]))
+def circle():
+    """Return a circle of radius 1 as NURBS over [0, 4], with double knots, around x = 3."""
+    points = np.array([3.0, 0.0, 0.0]) + CIRCLE @ np.eye(3)[[0, 2]]
+    knots = [0.0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
+    return net(points, np.array([1, ROUND] * 4 + [1]), knots)
 
 
 def waves():
     x, y = np.meshgrid(np.arange(5.0), np.arange(5.0), indexing="ij")
-    points = np.stack([x, y, np.sin(x + 0.5 * y)], axis=2)
-    return Geometry("nurbs", net=Net((3, 3), (KNOTS, KNOTS), points, 1.0 + 0.1 * x * y))
+    return nurbs(np.stack([x, y, np.sin(x + 0.5 * y)], axis=2), 1.0 + 0.1 * x * y, KNOTS)
+
+
+def offset(distance: float, basis: Geometry) -> Geometry:
+    return Geometry("offset", np.array([distance]), basis=basis)
 
 
 WEIGHTS = np.array([1.0, 2.0, 1.0, 0.5, 1.0])
@@ -60,32 +61,19 @@ GEOMETRIES = {
     "revolution": (Geometry("revolution", AXIS, curve(WEIGHTS)), ((0.5, 4), (0.2, 2.0))),
     "extrusion": (Geometry("extrusion", Z, curve(WEIGHTS)), ((0.2, 2.0), (-1, 2))),
 }
-DISTANCE, TWICE = 0.02, np.array([0.03])
+DISTANCE = 0.02
+SPINDLE = Geometry("torus", placed(0.4, 1.5, left_handed=True))
 OFFSETS = {
-    name: (Geometry("offset", np.array([DISTANCE]), basis=basis), domain)
-    for name, (basis, domain) in GEOMETRIES.items()
+    name: (offset(DISTANCE, basis), domain) for name, (basis, domain) in GEOMETRIES.items()
 } | {
-    "twice": (
-        Geometry("offset", TWICE, basis=Geometry("offset", np.array([-0.1]), basis=waves())),
-        ((0.1, 1.9), (0.2, 2.0)),
-    ),
-    "spindle, left-handed": (
-        Geometry(
-            "offset", np.array([0.2]), basis=Geometry("torus", placed(0.4, 1.5, left_handed=True))
-        ),
-        ((0.5, 4), (-1, 1)),
-    ),
-}  # fmt: skip
+    "twice": (offset(0.03, offset(-0.1, waves())), ((0.1, 1.9), (0.2, 2.0))),
+    "spindle, left-handed": (offset(0.2, SPINDLE), ((0.5, 4), (-1, 1))),
+}
 
 
 def places(domain, count=60):
     low, high = np.array(domain, dtype=float).T
     return low + (high - low) * (0.02 + 0.96 * np.random.default_rng(2).random((count, 2)))
-
-
-def normals_of(jets):
-    normals = np.cross(jets[:, 1], jets[:, 2])
-    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
 def area_of(surface, count=400):
@@ -134,41 +122,46 @@ def test_offsets_are_at_their_distance_along_the_normals(name):
     assert np.allclose(normals_of(moved), normals_of(jets), atol=1e-13)
 
 
-def test_elementary_surfaces_are_where_their_numbers_say():
-    local = {name: face_surface(*GEOMETRIES[name]) for name in ("cylinder", "cone", "torus")}
-    for name, surface in local.items():
-        u, v = places(surface.domain).T
-        from_origin = surface.evaluate(u, v) - ORIGIN
-        y = np.cross(Z, X)
-        angles = np.arctan2(from_origin @ y, from_origin @ X)
-        assert np.allclose(np.cos(angles - u), 1.0)
-        radius = np.hypot(from_origin @ y, from_origin @ X)
-        wanted = {
-            "cylinder": (1.5 + 0 * v, v),
-            "cone": (1.5 - v * math.sin(0.4), v * math.cos(0.4)),
-            "torus": (1.5 + 0.4 * np.cos(v), 0.4 * np.sin(v)),
-        }[name]
-        assert np.allclose((radius, from_origin @ Z), wanted, atol=1e-14)
+@pytest.mark.parametrize(
+    ("name", "radius", "height"),
+    [
+        ("cylinder", lambda v: 1.5 + 0 * v, lambda v: v),
+        ("cone", lambda v: 1.5 - v * math.sin(0.4), lambda v: v * math.cos(0.4)),
+        ("torus", lambda v: 1.5 + 0.4 * np.cos(v), lambda v: 0.4 * np.sin(v)),
+    ],
+)
+def test_elementary_surfaces_are_where_their_numbers_say(name, radius, height):
+    surface = face_surface(*GEOMETRIES[name])
+    u, v = places(surface.domain).T
+    x, y, z = FRAME @ (surface.evaluate(u, v) - ORIGIN).T
+    assert np.allclose(np.cos(np.arctan2(y, x) - u), 1.0)
+    assert np.allclose((np.hypot(x, y), z), (radius(v), height(v)), atol=1e-14)
 
 
 # --- ends -----------------------------------------------------------------------------------------
 
+ROUNDED, SOUTH = (0.3, 0.3 + TURN - 1e-9), (-math.pi / 2, 1.0)
 
-def test_whole_turns_close_and_poles_are_poles():
-    turn, half = (0.3, 0.3 + TURN - 1e-9), (-math.pi / 2, 1.0)
-    sphere = face_surface(Geometry("sphere", placed(1.0)), (turn, half))
-    assert sphere.boundary == (PERIODIC, ("pole", "open"))
-    assert sphere.domain == ((0.3, 0.3 + TURN), (-math.pi / 2, 1.0))
-    misfit = gm.fit(sphere, (12, 6)).misfit
-    assert misfit
-    assert misfit.distance < 0.02
-    sector = face_surface(Geometry("sphere", placed(1.0)), ((0, 2), half))
-    assert sector.boundary == (OPEN, OPEN)
-    assert gm.fit(sector, (12, 6)).apexes == 1
-    torus = face_surface(Geometry("torus", placed(1.0, 0.3)), (turn, (1.0, 1.0 + TURN)))
-    assert torus.boundary == (PERIODIC, PERIODIC)
-    cone = face_surface(Geometry("cone", placed(0.0, 0.5)), (turn, (0.0, 1.0)))
-    assert (cone.boundary, gm.fit(cone, (24, 4)).apexes) == ((PERIODIC, OPEN), 1)
+
+@pytest.mark.parametrize(
+    ("kind", "sizes", "u", "v", "boundary", "cells", "apexes"),
+    [
+        ("sphere", [1.0], ROUNDED, SOUTH, (PERIODIC, ("pole", "open")), (12, 6), 0),
+        ("sphere", [1.0], (0, 2), SOUTH, (OPEN, OPEN), (12, 6), 1),
+        ("torus", [1.0, 0.3], ROUNDED, (1.0, 1.0 + TURN), (PERIODIC, PERIODIC), (12, 6), 0),
+        ("cone", [0.0, 0.5], ROUNDED, (0.0, 1.0), (PERIODIC, OPEN), (24, 4), 1),
+    ],
+)
+def test_whole_turns_close_and_poles_are_poles(kind, sizes, u, v, boundary, cells, apexes):
+    surface = face_surface(Geometry(kind, placed(*sizes)), (u, v))
+    assert surface.boundary == boundary
+    fitted = gm.fit(surface, cells)
+    assert fitted.apexes == apexes
+    if u == ROUNDED:
+        assert surface.domain[0] == (0.3, 0.3 + TURN)
+    if kind == "sphere" and u == ROUNDED:
+        assert surface.domain[1] == SOUTH
+        assert fitted.misfit.distance < 0.02
 
 
 def test_a_band_that_turns_twice_is_open_and_has_its_area():
@@ -210,14 +203,9 @@ def test_extrusions_of_closed_curves_close():
 
 def test_the_profile_of_a_vase_has_a_pole_on_the_axis():
     points = np.array([(0.0, 0, 0), (1, 0, 0), (2, 0, 1), (1, 0, 2), (1.5, 0, 3)])
-    geometry = Geometry("revolution", AXIS, Net((3,), (KNOTS,), ORIGIN + points @ frame()))
+    geometry = Geometry("revolution", AXIS, net(ORIGIN + points @ FRAME, knots=KNOTS))
     vase = face_surface(geometry, ((0.0, TURN), (0.0, 2.0)))
     assert gm.fit(vase, (24, 24)).boundary == (PERIODIC, ("pole", "open"))
-
-
-def frame():
-    """Return the rows x, y, z of a frame whose last axis is Z."""
-    return np.array([X, np.cross(Z, X), Z])
 
 
 # --- kinks, trims, normals ------------------------------------------------------------------------
@@ -225,31 +213,30 @@ def frame():
 
 def kinked():
     """Return a polygon of three sides as a NURBS curve, with kinks at 1 and 2."""
-    points = np.array([(1.0, 0, 0), (2, 0, 0), (2, 0, 1), (1, 0, 2)])
-    return Net((1,), (np.array([0.0, 0, 1, 2, 3, 3]),), points)
+    points = [(1.0, 0, 0), (2, 0, 0), (2, 0, 1), (1, 0, 2)]
+    return net(points, knots=[0.0, 0, 1, 2, 3, 3])
 
 
 @pytest.mark.parametrize("kind", ["revolution", "extrusion", "offset"])
 def test_kinks_cut_surfaces_into_pieces(kind):
-    axis = 1 if kind != "extrusion" else 0
-    geometry = Geometry("revolution", np.array([0, 0, 0, 0, 0, 1.0]), kinked())
-    domain = (0.0, TURN), (0.0, 3.0)
+    geometry, axis = Geometry("revolution", np.eye(6)[5], kinked()), int(kind != "extrusion")
     if kind == "extrusion":
-        geometry, domain = Geometry("extrusion", np.array([0.0, 1, 0]), kinked()), domain[::-1]
+        geometry = Geometry("extrusion", np.array([0.0, 1, 0]), kinked())
     if kind == "offset":
-        geometry = Geometry("offset", np.array([0.1]), basis=geometry)
-    pieces = face_surface(geometry, domain).pieces()
+        geometry = offset(0.1, geometry)
+
+    def domain(low):
+        return ((0.0, TURN), (low, 3.0)) if axis else ((low, 3.0), (0.0, TURN))
+
+    pieces = face_surface(geometry, domain(0.0)).pieces()
     assert [x.domain[axis] for x in pieces] == [(0.0, 1.0), (1.0, 2.0), (2.0, 3.0)]
     at_kink = [1.0, 1.0]
     sides = [x.derivatives(*((0.5, at_kink) if axis else (at_kink, 0.5))) for x in pieces[:2]]
     turned = (normals_of(sides[0]) * normals_of(sides[1])).sum(axis=1)
     assert np.allclose(turned, 0.0, atol=1e-14)
     # Faces end at kinks, up to the rounding of a file; what is beyond is no piece.
-    ends = ((0.0, TURN), (1.0 - 1e-9, 3.0)) if axis else ((1.0 - 1e-9, 3.0), (0.0, TURN))
-    assert [x.domain[axis] for x in face_surface(geometry, ends).pieces()] == [
-        (1.0, 2.0),
-        (2.0, 3.0),
-    ]
+    ended = face_surface(geometry, domain(1.0 - 1e-9)).pieces()
+    assert [x.domain[axis] for x in ended] == [(1.0, 2.0), (2.0, 3.0)]
 
 
 def test_only_loops_that_cut_something_off_are_a_trim():
@@ -266,8 +253,7 @@ def test_only_loops_that_cut_something_off_are_a_trim():
 @pytest.mark.parametrize("name", ["plane", "torus", "left-handed", "nurbs", "revolution"])
 def test_reversed_faces_have_opposite_normals(name):
     geometry, domain = GEOMETRIES[name]
-    (u0, u1), (v0, v1) = domain
-    corner = np.array([(u0, v0), (u1, v0), (u1, v1)])
+    corner = rectangle(*domain)[:3]
     forward, back = (face_surface(geometry, domain, [corner], is_reversed=x) for x in (False, True))
     uv = places(domain)
     other = own_parameters(back, uv, is_reversed=True)
@@ -294,15 +280,22 @@ def test_surfaces_of_faces_are_pickled(name):
     assert np.array_equal(copy.trim.contains(uv), surface.trim.contains(uv))
 
 
-def test_what_is_no_surface_is_refused():
-    refused("'unknown' has no surface", face_surface, Geometry("unknown"), ((0, 1), (0, 1)))
-    refused("outside its surface", face_surface, waves(), ((0, 1), (7, 8)))
-    refused("empty or infinite", face_surface, GEOMETRIES["plane"][0], ((0, 0), (0, 1)))
+@pytest.mark.parametrize(
+    ("geometry", "domain", "said"),
+    [
+        (Geometry("unknown"), ((0, 1), (0, 1)), "'unknown' has no surface"),
+        (waves(), ((0, 1), (7, 8)), "outside its surface"),
+        (GEOMETRIES["plane"][0], ((0, 0), (0, 1)), "empty or infinite"),
+    ],
+)
+def test_what_is_no_surface_is_refused(geometry, domain, said):
+    refused(said, face_surface, geometry, domain)
 
 
 def test_a_whole_domain_ends_at_the_last_knot():
     # low + (high - low) is beyond it, in the last digits of low
     ends = (-6.589091811, 1.421085e-14)
-    net = Net((1, 2), (np.repeat(ends, 2), np.repeat([0.0, 1], 3)), np.eye(3)[np.mgrid[:2, :3][1]])
-    surface = face_surface(Geometry("nurbs", net=net), (ends, (0, 1)))
+    knots = np.repeat(ends, 2), np.repeat([0.0, 1], 3)
+    sheet = Geometry("nurbs", net=Net((1, 2), knots, np.eye(3)[np.mgrid[:2, :3][1]]))
+    surface = face_surface(sheet, (ends, (0, 1)))
     assert surface.domain == (ends, (0.0, 1.0))

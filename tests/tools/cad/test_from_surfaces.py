@@ -3,23 +3,25 @@
 import itertools
 import pickle
 import re
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.cad.examples import all_kinds
 from gaussmap.tools.cad.part_mesh import PartMesh
 from gaussmap.tools.cad.surface_geometry import geometry_of_surface
 
 from ...products import covering
 from ...refusals import refused
+from .made import BEZIER, TURN, UNIT, bezier, circle, moved, rectangle
 
-TURN = 2.0 * np.pi
-BEZIER = [0, 0, 0, 1, 1, 1]
+SURFACES, SURFACE_ERROR = gm.surfaces, gm.errors.SurfaceError
 
 
 def bilinear(a, b, c, d, **more) -> gm.Surface:
     """Return the surface with corners a at (0, 0), b at (1, 0), c at (1, 1) and d at (0, 1)."""
-    return gm.Surface.from_nurbs((1, 1), ([0, 0, 1, 1],) * 2, [[a, d], [b, c]], **more)
+    return bezier([[a, d], [b, c]], **more)
 
 
 def cube(size: float = 1.0) -> list[gm.Surface]:
@@ -64,14 +66,8 @@ def ring(u, v, *, flipped=False) -> gm.Surface:
 
 def strip(u, v, name: str = "strip") -> gm.Surface:
     """Return a part of a Möbius band."""
-    band = gm.surfaces.moebius_band()
+    band = SURFACES.moebius_band()
     return gm.Surface.from_callable(band.function, (u, v), name=name)
-
-
-def moved(surface: gm.Surface, shift, scale: float = 1.0) -> gm.Surface:
-    matrix = np.diag([scale, scale, scale, 1.0])
-    matrix[:3, 3] = shift
-    return surface.transformed(matrix)
 
 
 def is_outward(part, centre) -> bool:
@@ -79,37 +75,126 @@ def is_outward(part, centre) -> bool:
     return bool((np.einsum("ij,ij->i", samples.points - centre, samples.normals) > 0.0).all())
 
 
-def mesh_of(samples: gm.Samples) -> PartMesh:
+SAID = {
+    "vertices": lambda x: len(x.arrays["vertices"]),
+    "edges": lambda x: len(x.arrays["edge_vertices"]),
+    "points": lambda x: int(x.arrays["edge_degenerate"].sum()),
+    "solids": lambda x: len(x.solids),
+    "reversed": lambda x: [face.reversed for face in x.faces],
+    "in_solids": lambda x: [face.solid_index for face in x.faces],
+}
+
+
+def says(part, **wanted: Any) -> None:
+    """Check what a part says of itself."""
+    found = {x: SAID[x](part) if x in SAID else getattr(part, x) for x in wanted}
+    assert found == wanted
+
+
+def mesh_of(samples: gm.Samples, euler: int, *, closed: bool) -> PartMesh:
+    """Return a mesh with as many vertices as there are samples."""
     mesh = samples.mesh()
     assert isinstance(mesh, PartMesh)
+    made = len(mesh.vertices), mesh.closed, mesh.euler_characteristic
+    assert made == (len(samples), closed, euler)
     return mesh
 
 
 # --- edges ----------------------------------------------------------------------------------------
 
+NONE, THREE_FLIPPED = pytest.approx(0.0, abs=1e-14), ("3 surfaces are flipped: 0, 2, 4.",)
+POLAR = (("u", "v"), ((0, "2*pi"), (0, 1)), (True, False))
+
+
+SHEET = gm.Surface.from_sympy(("u", "v", "u*v/4"), ("u", "v"), ((0, 2), (0, 2)))
+
+
+def trimmed_sheet() -> list[gm.Surface]:
+    """Return a sheet with a hole, and the disk in it from the other side."""
+    hole = 1.0 + circle(0.5, 100)
+    plate = SHEET.trimmed([hole, rectangle((0, 2), (0, 2))[[0, 3, 2, 1]]])
+    return [plate, SHEET.flipped().trimmed([(2.0, 0.0) - hole * (1, -1)])]
+
+
+def half_torus(low: float, high: float) -> gm.Surface:
+    return SURFACES.torus().trimmed([rectangle((low, high), (0, TURN))])
+
+
+def polygon(corners: int) -> list[gm.Surface]:
+    square = bilinear((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
+    return [square.trimmed([0.5 + circle(0.4, corners)])]
+
+
+def case(surfaces, euler: int, **wanted: Any):
+    """Return surfaces, the Euler characteristic of their mesh, and what their part says."""
+    return surfaces, euler, wanted
+
+
+UNIT_CUBE = {"volume": pytest.approx(1.0, rel=1e-14), "area": pytest.approx(6.0, rel=1e-14)}
+PARTS = {
+    "a cube": case(
+        cube(), 2, closed=True, open_edges=0, gap=0.0, oriented=True, vertices=8, edges=12,
+        warnings=THREE_FLIPPED, reversed=[True, False] * 3, **UNIT_CUBE,
+    ),
+    # A side that is a point is no border; the seam of the disk is elsewhere.
+    "a cone and a disk": case(
+        [
+            gm.Surface.from_sympy(("v*cos(u)", "v*sin(u)", "1 - v"), *POLAR),
+            gm.Surface.from_sympy(("v*cos(u + 1)", "v*sin(u + 1)", "0*u"), *POLAR),
+        ],
+        2, closed=True, points=2, volume=pytest.approx(np.pi / 3.0, rel=1e-12),
+    ),
+    # Of an octagon the border turns by 45° at its corners; of 16 points, by 22.5°, it is smooth.
+    "an octagon": case(polygon(8), 1, vertices=8),
+    "a polygon of 16 corners": case(polygon(16), 1, vertices=1),
+    "a trimmed sheet": case(
+        trimmed_sheet(), 1, open_edges=4, edges=5, gap=NONE, reversed=[False, True], closed=False
+    ),
+    "trimmed halves": case([half_torus(0, 3).flipped(), half_torus(3, TURN)], 0, closed=True),
+    "a trimmed half": case([half_torus(0, 3)], 0, closed=False, open_edges=2),
+} | {
+    name: case(
+        [moved(x, shift, scale) for x in cube()], 2, closed=True, warnings=THREE_FLIPPED,
+        volume=pytest.approx(scale**3, rel=1e-9),
+    )
+    for name, scale, shift in (("small", 1e-12, 0.0), ("large", 1e12, 0.0), ("far", 1.0, 1e6))
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_edges_are_found(name):
+    surfaces, euler, wanted = PARTS[name]
+    part = gm.Part(surfaces)
+    says(part, **wanted)
+    mesh_of(gm.sample(part, 200), euler, closed=part.closed)
+
 
 def test_six_squares_are_a_cube():
     part = gm.Part(cube(), name="cube")
     assert repr(part) == "Part(cube: 6 faces, 1 solid)"
-    assert (part.closed, part.open_edges, part.gap, part.oriented) == (True, 0, 0.0, True)
-    assert (len(part.arrays["vertices"]), len(part.arrays["edge_vertices"])) == (8, 12)
-    assert part.warnings == ("3 surfaces are flipped: 0, 2, 4.",)
-    assert [x.reversed for x in part.faces] == [True, False] * 3
-    np.testing.assert_allclose([part.area, part.volume], [6.0, 1.0], rtol=1e-14)
     assert is_outward(part, (0.5, 0.5, 0.5))
-    with_edges = gm.sample(part, 60, edges=True)
-    assert (with_edges.report.edge_samples or 0) > 0
+    assert (gm.sample(part, 60, edges=True).report.edge_samples or 0) > 0
+
+
+def test_trims_do_not_change_areas():
+    assert gm.Part(trimmed_sheet()).area == pytest.approx(gm.Part([SHEET]).area, rel=1e-9)
+
+
+def test_an_edge_of_three_faces():
+    a, b = (0, 0, 0), (1, 0, 0)
+    sheets = [bilinear(a, b, (1, *x), (0, *x)) for x in ((1, 0), (-1, 1), (-1, -1))]
+    warnings = ("there is 1 edge of more than two faces.",)
+    says(gm.Part(sheets), warnings=warnings, open_edges=9, closed=False, solids=0)
 
 
 @pytest.mark.compiled
 def test_wavy_patches_are_a_closed_body():
     part = gm.Part(globe())
-    assert (part.closed, len(part.solids), part.gap < 1e-14) == (True, 1, True)
+    says(part, closed=True, solids=1, gap=NONE)
     assert is_outward(part, 0.0)
     samples = gm.sample(part, 600)
-    mesh = mesh_of(samples)
-    assert (len(samples), mesh.closed, mesh.euler_characteristic) == (600, True, 2)
-    assert mesh.volume == pytest.approx(part.volume, rel=0.02)
+    mesh = mesh_of(samples, 2, closed=True)
+    assert (len(samples), mesh.volume) == (600, pytest.approx(part.volume, rel=0.02))
     curvature = (samples.gaussian_curvature * samples.weights()).sum()
     assert curvature == pytest.approx(4.0 * np.pi, rel=0.02)
 
@@ -127,13 +212,13 @@ def test_wavy_patches_are_a_closed_body():
 @pytest.mark.quick_for("meeting in T")
 def test_a_torus_in_pieces_is_sampled_as_in_one(pieces):
     part = gm.Part([ring(u, v, flipped=flipped) for u, v, flipped in pieces])
-    assert (part.closed, part.gap < 1e-14) == (True, True)
+    says(part, closed=True, gap=NONE)
     whole = gm.sample(ring((0, TURN), (0, TURN)), 1000)
     samples = gm.sample(part, 1000)
     assert samples.coverage() < 1.15 * whole.coverage()
     assert samples.normal_deviation().space < 1.2 * whole.normal_deviation().space
-    mesh = mesh_of(samples)
-    assert (mesh.closed, mesh.euler_characteristic, len(mesh.vertices)) == (True, 0, 1000)
+    assert len(samples) == 1000
+    mesh_of(samples, 0, closed=True)
 
 
 @pytest.mark.parametrize("weight", [3.0, 100.0])
@@ -144,13 +229,9 @@ def test_a_common_border_may_have_two_parametrizations(weight):
     right = np.stack([curve[::-1] - [0, k, 0] for k in range(3)])
     weights = np.tile([1.0, weight, weight**2], (3, 1))
     knots = BEZIER, 7.0 * np.array(BEZIER) - 2.0
-    part = gm.Part([
-        gm.Surface.from_nurbs((2, 2), (BEZIER, BEZIER), left),
-        gm.Surface.from_nurbs((2, 2), knots, right, weights),
-    ])  # fmt: skip
-    assert (part.open_edges, part.closed, part.gap < 1e-13) == (6, False, True)
-    mesh = mesh_of(gm.sample(part, 200))
-    assert (mesh.euler_characteristic, len(mesh.vertices)) == (1, 200)
+    part = gm.Part([bezier(left), gm.Surface.from_nurbs((2, 2), knots, right, weights)])
+    says(part, open_edges=6, closed=False, gap=pytest.approx(0.0, abs=1e-13))
+    mesh = mesh_of(gm.sample(part, 200), 1, closed=False)
     (shared,) = [k for k, x in enumerate(np.diff(part.arrays["edge_side_starts"])) if x == 2]
     x, y, z = mesh.vertices[mesh.lines[shared]].T
     np.testing.assert_allclose([y, z], [0.0 * x, x - x * x / 2.0], atol=1e-14)
@@ -162,92 +243,28 @@ def test_a_common_border_may_have_two_parametrizations(weight):
     np.testing.assert_allclose(cosines, 1.0, atol=1e-11)
 
 
-def test_a_side_that_is_a_point_is_no_border():
-    cone = gm.Surface.from_sympy(
-        ("v*cos(u)", "v*sin(u)", "1 - v"), ("u", "v"), ((0, "2*pi"), (0, 1)), (True, False)
-    )
-    disk = gm.Surface.from_sympy(  # the seam is elsewhere
-        ("v*cos(u + 1)", "v*sin(u + 1)", "0*u"), ("u", "v"), ((0, "2*pi"), (0, 1)), (True, False)
-    )
-    part = gm.Part([cone, disk])
-    assert (part.closed, int(part.arrays["edge_degenerate"].sum())) == (True, 2)
-    assert part.volume == pytest.approx(np.pi / 3.0, rel=1e-12)
-    mesh = mesh_of(gm.sample(part, 200))
-    assert (mesh.closed, mesh.euler_characteristic) == (True, 2)
-
-
-def test_trims_have_borders():
-    angles = np.linspace(0.0, TURN, 100, endpoint=False)
-    circle = 1.0 + 0.5 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    sheet = gm.Surface.from_sympy(("u", "v", "u*v/4"), ("u", "v"), ((0, 2), (0, 2)))
-    square = [(0, 0), (0, 2), (2, 2), (2, 0)]
-    plate, disk = (
-        sheet.trimmed([circle, square]),
-        sheet.flipped().trimmed([(2.0, 0.0) - circle * (1, -1)]),
-    )
-    part = gm.Part([plate, disk])
-    assert (part.open_edges, len(part.arrays["edge_vertices"]), part.gap < 1e-14) == (4, 5, True)
-    assert [x.reversed for x in part.faces] == [False, True]
-    assert part.area == pytest.approx(gm.Part([sheet]).area, rel=1e-9)
-    mesh = mesh_of(gm.sample(part, 200))
-    assert (mesh.euler_characteristic, len(mesh.vertices)) == (1, 200)
-    halves = [gm.surfaces.torus().trimmed([[(a, 0), (b, 0), (b, TURN), (a, TURN)]])
-              for a, b in ((0, 3), (3, TURN))]  # fmt: skip
-    assert gm.Part([halves[0].flipped(), halves[1]]).closed
-    assert (gm.Part([halves[0]]).open_edges, gm.Part([halves[0]]).closed) == (2, False)
-
-
-@pytest.mark.parametrize(("points", "corners"), [(8, 8), (16, 0)])
-def test_borders_have_corners_where_they_turn_by_30_degrees(points, corners):
-    """An octagon turns by 45° at its corners; of 16 points, by 22.5°, a border is smooth."""
-    angles = np.linspace(0.0, TURN, points, endpoint=False)
-    polygon = 0.5 + 0.4 * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    part = gm.Part([bilinear((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)).trimmed([polygon])])
-    assert len(part.arrays["edge_vertices"]) == max(corners, 1)
-
-
-def test_an_edge_of_three_faces():
-    a, b = (0, 0, 0), (1, 0, 0)
-    sheets = [bilinear(a, b, (1, *x), (0, *x)) for x in ((1, 0), (-1, 1), (-1, -1))]
-    part = gm.Part(sheets)
-    assert part.warnings == ("there is 1 edge of more than two faces.",)
-    assert (part.open_edges, part.closed, len(part.solids)) == (9, False, 0)
-
-
 # --- gaps -----------------------------------------------------------------------------------------
 
 
+def opened(gap: float) -> list[gm.Surface]:
+    """Return a cube whose last side is apart from the others."""
+    return [*cube()[:5], moved(cube()[5], (0.0, 0.0, gap))]
+
+
 def test_gaps_are_measured():
-    sides = cube()
-    sides[5] = moved(sides[5], (0.0, 0.0, 1e-3))
     with pytest.warns(gm.GaussmapWarning, match="nearly coincide, up to 0.001, and stay apart"):
-        part = gm.Part(sides)
-    assert (part.closed, part.oriented, part.open_edges, part.gap) == (False, False, 8, 0.0)
-    with pytest.raises(gm.errors.SurfaceError, match="enclose no solids"):
-        _ = part.volume
-    part = gm.Part(sides, tolerance=2e-3)
-    assert (part.closed, part.gap) == (True, pytest.approx(1e-3, rel=1e-9))
-    mesh = mesh_of(gm.sample(part, 200))
-    assert (mesh.closed, mesh.euler_characteristic) == (True, 2)
+        part = gm.Part(opened(1e-3))
+    says(part, closed=False, oriented=False, open_edges=8, gap=0.0)
+    refused("enclose no solids", lambda: part.volume, error=SURFACE_ERROR)
+    part = gm.Part(opened(1e-3), tolerance=2e-3)
+    says(part, closed=True, gap=pytest.approx(1e-3, rel=1e-9))
+    mesh_of(gm.sample(part, 200), 2, closed=True)
 
 
 @pytest.mark.parametrize(("gap", "is_near"), [(0.007, True), (0.014, False)])
 def test_edges_nearly_coincide_up_to_a_hundredth_of_their_length(gap, is_near, recwarn):
-    sides = cube()
-    sides[5] = moved(sides[5], (0.0, 0.0, gap))
-    assert gm.Part(sides).open_edges == 8
+    says(gm.Part(opened(gap)), open_edges=8)
     assert any("nearly coincide" in str(x.message) for x in recwarn) == is_near
-
-
-@pytest.mark.parametrize(
-    ("scale", "shift"), [(1e-12, 0.0), (1e12, 0.0), (1.0, 1e6)], ids=["small", "large", "far"]
-)
-def test_units_and_origins_do_not_matter(scale, shift):
-    part = gm.Part([moved(x, shift, scale) for x in cube()])
-    assert (part.closed, part.warnings) == (True, ("3 surfaces are flipped: 0, 2, 4.",))
-    assert part.volume == pytest.approx(scale**3, rel=1e-9)
-    mesh = mesh_of(gm.sample(part, 100))
-    assert (mesh.closed, mesh.euler_characteristic) == (True, 2)
 
 
 # --- orientation ----------------------------------------------------------------------------------
@@ -255,38 +272,36 @@ def test_units_and_origins_do_not_matter(scale, shift):
 
 def test_an_open_set_is_as_its_first_surface():
     pair = [ring((0, 2), (0, 3)), ring((2, 4), (0, 3), flipped=True)]
-    assert [x.reversed for x in gm.Part(pair).faces] == [False, True]
-    assert [x.reversed for x in gm.Part(pair[::-1]).faces] == [False, True]
-    assert gm.Part(pair).warnings == ("surface 1 ('ring') is flipped.",)
+    says(gm.Part(pair), reversed=[False, True], warnings=("surface 1 ('ring') is flipped.",))
+    says(gm.Part(pair[::-1]), reversed=[False, True])
 
 
 def test_one_surface():
-    part = gm.Part([gm.surfaces.sphere().flipped(), "plane"])  # two sets
-    assert [x.reversed for x in part.faces] == [True, False]
-    assert [(x.kind, x.name, x.solid_index) for x in part.faces] == [
-        ("sphere", "sphere", 0), ("plane", "plane", -1),
-    ]  # fmt: skip
-    assert (len(part.solids), part.oriented, part.closed) == (1, False, False)
+    part = gm.Part([SURFACES.sphere().flipped(), "plane"])  # two sets
+    kinds = [(x.kind, x.name) for x in part.faces]
+    assert kinds == [("sphere", "sphere"), ("plane", "plane")]
+    says(part, reversed=[True, False], in_solids=[0, -1], solids=1, oriented=False, closed=False)
     alone = part.select(index=[0])
-    assert (alone.closed, alone.area) == (True, pytest.approx(4.0 * np.pi, rel=1e-9))
+    says(alone, closed=True, area=pytest.approx(4.0 * np.pi, rel=1e-9))
     assert is_outward(alone, 0.0)
 
 
 def test_a_set_with_one_side_is_refused():
-    (low, high), v = gm.surfaces.moebius_band().domain
+    (low, high), v = SURFACES.moebius_band().domain
     ends = np.linspace(low, high, 4)
     strips = [strip((a, b), v, "band") for a, b in itertools.pairwise(ends)]
-    assert gm.Part(strips[:2]).open_edges == 6
-    for surfaces in (strips, [gm.surfaces.moebius_band()]):
+    says(gm.Part(strips[:2]), open_edges=6)
+    for surfaces in (strips, [SURFACES.moebius_band()]):
         refused("band'\\) closes a band that has one side", gm.Part, surfaces)
 
 
-def volume_of_ball(radius):
-    return 4.0 / 3.0 * np.pi * radius**3
+def volume_of_balls(*radii) -> Any:
+    """Return the volume of balls, less those with negative radii."""
+    return pytest.approx(4.0 / 3.0 * np.pi * np.power(radii, 3).sum(), rel=1e-9)
 
 
 def ball(radius, centre=(0.0, 0.0, 0.0), *, flipped=False):
-    surface = moved(gm.surfaces.sphere(), centre, radius)
+    surface = moved(SURFACES.sphere(), centre, radius)
     return surface.flipped() if flipped else surface
 
 
@@ -299,11 +314,10 @@ def test_a_closed_set_inside_another_is_a_hollow(flipped):
         ball(0.6, (5.0, 0.0, 0.0)),
     ]  # fmt: skip
     part = gm.Part(surfaces)
-    assert (part.closed, part.oriented, len(part.solids)) == (True, True, 4)
     # A ball in a hollow of the block, and two bodies beside it.
-    assert [x.solid_index for x in part.faces] == [0] * 6 + [2, 1] + [2] * 6 + [3]
-    volume = 125.125 - volume_of_ball(1.5) + volume_of_ball(1.0) + volume_of_ball(0.6)
-    assert part.volume == pytest.approx(volume, rel=1e-9)
+    in_solids = [0] * 6 + [2, 1] + [2] * 6 + [3]
+    volume = pytest.approx(125.125 + 4.0 / 3.0 * np.pi * (1.0 + 0.6**3 - 1.5**3), rel=1e-9)
+    says(part, closed=True, oriented=True, solids=4, in_solids=in_solids, volume=volume)
     hollow = gm.sample(part.select(index=[6]), 50)
     assert (np.einsum("kx,kx->k", hollow.points, hollow.normals) < 0.0).all()
     assert part.faces[6].dimensions["hollow"]
@@ -312,8 +326,7 @@ def test_a_closed_set_inside_another_is_a_hollow(flipped):
 @pytest.mark.parametrize(("wall", "shift"), [(1e-3, 0.0), (0.2, 0.2 - 1e-6)])
 def test_walls_may_be_thin(wall, shift):
     part = gm.Part([ball(1.0), ball(1.0 - wall, (shift, 0.0, 0.0))])
-    assert part.volume == pytest.approx(volume_of_ball(1.0) - volume_of_ball(1.0 - wall), rel=1e-9)
-    assert len(part.solids) == 1
+    says(part, volume=volume_of_balls(1.0, wall - 1.0), solids=1)
 
 
 @pytest.mark.parametrize(
@@ -322,8 +335,7 @@ def test_walls_may_be_thin(wall, shift):
     ids=["crossing", "outside", "in a corner of the box around it"],
 )
 def test_what_crosses_or_is_outside_is_no_hollow(other, centre):
-    part = gm.Part([ball(1.0), ball(other, centre)])
-    assert part.volume == pytest.approx(volume_of_ball(1.0) + volume_of_ball(other), rel=1e-9)
+    says(gm.Part([ball(1.0), ball(other, centre)]), volume=volume_of_balls(1.0, other))
 
 
 # --- kinds and units ------------------------------------------------------------------------------
@@ -331,7 +343,6 @@ def test_what_crosses_or_is_outside_is_no_hollow(other, centre):
 TILTED = 2.0 * np.linalg.qr(np.array([(3.0, 1, 2), (1, 4, 1), (2, -1, 5)]))[0]
 MIRROR = np.diag([1.0, -1.0, 1.0])
 SHEAR = np.array([(1.0, 0.5, 0.0), (0.0, 2.0, 0.3), (0.2, 0.0, 1.0)])
-SURFACES = gm.surfaces
 
 
 @covering(
@@ -393,30 +404,24 @@ def test_kinds_and_dimensions(surface, kind, sizes, matrix, is_flipped):
     ],
 )
 def test_kinds_after_affine_maps(surface, matrix, kind):
-    (face,) = gm.Part([gm.surfaces.surface(surface).transformed(matrix)]).faces
+    (face,) = gm.Part([SURFACES.surface(surface).transformed(matrix)]).faces
     assert face.kind == kind
 
 
 @pytest.mark.parametrize("is_reversed", [False, True])
-def test_faces_of_parts_keep_their_kinds(parts, is_reversed):
-    faces = [x for x in parts.all_kinds().faces if x.kind in ("plane", "cylinder", "cone", "sphere",
-                                                              "torus")]  # fmt: skip
-    surfaces = [x.surface.flipped() if is_reversed else x.surface for x in faces]
-    for given, old in zip(surfaces, faces, strict=True):
-        (face,) = gm.Part([given]).faces
+def test_faces_of_parts_keep_their_kinds(is_reversed):
+    elementary = ["plane", "cylinder", "cone", "sphere", "torus"]
+    for old in all_kinds().select(kind=elementary).faces:
+        (face,) = gm.Part([old.surface.flipped() if is_reversed else old.surface]).faces
         assert face.kind == old.kind
-        for name, value in old.dimensions.items():
-            if isinstance(value, float):
-                assert face.dimensions[name] == pytest.approx(value, rel=1e-12)
+        sizes = {x: value for x, value in old.dimensions.items() if isinstance(value, float)}
+        assert {x: face.dimensions[x] for x in sizes} == pytest.approx(sizes, rel=1e-12)
 
 
 def test_units(tmp_path):
-    part = gm.Part([gm.surfaces.cylinder(0.5)], unit="inch", name="tube")
-    assert (part.unit, part.metres, repr(part)) == (
-        "in",
-        0.0254,
-        "Part(tube: 1 face, 0 solids, in)",
-    )
+    part = gm.Part([SURFACES.cylinder(0.5)], unit="inch", name="tube")
+    assert repr(part) == "Part(tube: 1 face, 0 solids, in)"
+    says(part, unit="in", metres=0.0254)
     samples = gm.sample(part.select(kind="cylinder"), 20, coverage=0.5)
     assert re.search(r"within 0\.\d+ in of a sample; 1 face$", samples.summary())
     assert gm.GaussMap(part).points([[1, 0, 0]]).report.unit == "in"
@@ -437,9 +442,8 @@ def test_units(tmp_path):
 def test_nurbs_are_saved_moved_and_flipped(tmp_path):
     sides = [moved(x, (1.0, 2.0, 3.0), 2.0) for x in cube()]
     sides[2] = sides[2].flipped()
-    curve = np.array([(0, 0, 0), (1, 0, 1), (2, 0, 0)], dtype=np.float64)
-    points = np.stack([curve, np.add(curve, (0, 1, 0))], axis=1)
-    arch = gm.Surface.from_nurbs((2, 1), (BEZIER, [0, 0, 1, 1]), points, [[1, 1], [2, 2], [1, 1]])
+    points = [[(x, y, z) for y in (0, 1)] for x, z in ((0, 0), (1, 1), (2, 0))]
+    arch = bezier(points, [[1, 1], [2, 2], [1, 1]])
     for surface in (arch, arch.flipped(), moved(arch, (1, 2, 3), -2.0)):
         face = gm.Part([surface]).faces[0]
         u, v = np.random.default_rng(0).random((2, 10))
@@ -448,7 +452,7 @@ def test_nurbs_are_saved_moved_and_flipped(tmp_path):
     part.save(tmp_path / "part.npz")
     again = gm.read_part(tmp_path / "part.npz")
     assert [x.kind for x in again.faces] == ["nurbs"] * 6
-    assert (again.closed, again.warnings) == (True, ("2 surfaces are flipped: 0, 4.",))
+    says(again, closed=True, warnings=("2 surfaces are flipped: 0, 4.",))
     np.testing.assert_array_equal(gm.sample(again, 50).points, gm.sample(part, 50).points)
 
 
@@ -467,7 +471,7 @@ def test_a_file_cannot_hold_a_function(tmp_path):
 
 
 def test_prescribed_normals_and_reach():
-    part = gm.Part([gm.surfaces.sphere(), moved(gm.surfaces.torus(), (5.0, 0.0, 0.0))])
+    part = gm.Part([SURFACES.sphere(), moved(SURFACES.torus(), (5.0, 0.0, 0.0))])
     normal = np.array([[0.36, 0.48, 0.8]])
     found = gm.GaussMap(part).points(normal)
     np.testing.assert_array_equal(np.array(found.face_index), [0, 1, 1])
@@ -493,7 +497,7 @@ def test_a_grid_is_its_spline():
     heights = [np.stack([u + k, v, 0.2 * np.sin(3.0 * (u + k))], axis=-1) for k in (0, 1)]
     surfaces = [gm.Surface.from_grid(x) for x in heights]
     part = gm.Part(surfaces)
-    assert (part.open_edges, part.gap < 1e-14) == (6, True)
+    says(part, open_edges=6, gap=NONE)
     samples = gm.sample(part, 50)
     rows = samples.face_index == 1
     on_spline = gm.fit(surfaces[1]).evaluate(*samples.uv[rows].T)
@@ -508,26 +512,36 @@ def test_a_grid_is_its_spline():
     [
         ([], "must be a list of surfaces"),
         ("torus", "must be a list of surfaces"),
-        (gm.surfaces.torus(), "must be a list of surfaces"),
+        (SURFACES.torus(), "must be a list of surfaces"),
         (["torus", 1], "surface 1 must be a Surface, or the name of one, not 1"),
-        ([gm.surfaces.torus().trimmed(within=lambda u, v: u < 3)], "'torus' is trimmed by a pred"),
-        ([gm.surfaces.torus().trimmed([[(-1, 0), (1, 0), (1, 1)]])], "runs beyond its domain"),
+        ([SURFACES.torus().trimmed(within=lambda u, v: u < 3)], "'torus' is trimmed by a pred"),
+        ([SURFACES.torus().trimmed([[(-1, 0), (1, 0), (1, 1)]])], "runs beyond its domain"),
     ],
 )
 def test_what_is_no_list_of_surfaces(surfaces, message):
     refused(message, gm.Part, surfaces)
 
 
-def test_surfaces_that_cannot_be_used():
+def test_tolerances_are_positive():
     refused("tolerance must be a positive number", gm.Part, ["torus"], tolerance=0.0)
-    with pytest.raises(gm.errors.SurfaceError, match=r"face 0 \('torus'\).* no larger than the"):
-        gm.Part(["torus"], tolerance=100.0)
-    line = bilinear((0, 0, 0), (1, 0, 0), (1, 0, 0), (0, 0, 0), name="line")
-    refused("'line' has no area", gm.Part, [line], error=gm.errors.SurfaceError)
-    torn = gm.Surface.from_callable(
-        lambda u, v: np.stack([np.where(v > 0.9, np.nan, u), v, u], axis=-1), ((0, 1), (0, 1))
-    )
-    refused("not finite along its border", gm.Part, [torn], error=gm.errors.SurfaceError)
+
+
+LINE = bilinear((0, 0, 0), (1, 0, 0), (1, 0, 0), (0, 0, 0), name="line")
+TORN = gm.Surface.from_callable(
+    lambda u, v: np.stack([np.where(v > 0.9, np.nan, u), v, u], axis=-1), (UNIT, UNIT)
+)
+
+
+@pytest.mark.parametrize(
+    ("surface", "tolerance", "message"),
+    [
+        ("torus", 100.0, r"face 0 \('torus'\).* no larger than the"),
+        (LINE, None, "'line' has no area"),
+        (TORN, None, "not finite along its border"),
+    ],
+)
+def test_surfaces_that_cannot_be_used(surface, tolerance, message):
+    refused(message, gm.Part, [surface], tolerance=tolerance, error=SURFACE_ERROR)
 
 
 def test_a_list_in_place_of_a_surface_is_told_of_parts():

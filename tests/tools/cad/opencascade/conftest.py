@@ -64,18 +64,6 @@ def part_with(write, read):
     return lambda shape, unit=None: part_of(read(write(shape, "part.brep"), unit))
 
 
-def in_loops(uv: np.ndarray, loops) -> np.ndarray:
-    """Return which points are inside by the even-odd rule."""
-    inside = np.zeros(len(uv), dtype=np.bool_)
-    x, y = uv.T
-    for loop in loops:
-        for (x0, y0), (x1, y1) in zip(loop, np.roll(loop, -1, axis=0), strict=True):
-            between = (y0 > y) != (y1 > y)
-            step = (y[between] - y0) / (y1 - y0)
-            inside[between] ^= x[between] < (x1 - x0) * step + x0
-    return inside
-
-
 def points_of(geometry, uv: np.ndarray) -> np.ndarray:
     """Return the points of a surface by the formulas that `saving` gives."""
     from scipy.interpolate import BSpline, NdBSpline
