@@ -1,5 +1,7 @@
 """Surfaces of faces: exact derivatives, domains and their ends, trims, normals."""
 
+# pyright: reportOptionalMemberAccess=false
+
 import math
 import pickle
 
@@ -174,7 +176,6 @@ def test_a_band_that_turns_twice_is_open_and_has_its_area():
     assert band.boundary == (OPEN, OPEN)
     assert area_of(band) == pytest.approx(2.0 * 12.0 * width, rel=2e-3)
     # One turn on is the same point of the cylinder, but in another place of the band.
-    assert band.trim
     inside = band.trim.contains(np.array([(1.0, 0.35), (1.0 + TURN, 0.35), (1.0 + TURN, 1.6)]))
     assert inside.tolist() == [True, False, True]
 
@@ -260,8 +261,6 @@ def test_reversed_faces_have_opposite_normals(name):
     jets, turned = forward.jets(*uv.T), back.jets(*other.T)
     assert np.allclose(jets[:, 0], turned[:, 0], atol=1e-13)
     assert np.allclose(normals_of(jets), -normals_of(turned), atol=1e-12)
-    assert forward.trim
-    assert back.trim
     assert np.array_equal(forward.trim.contains(uv), back.trim.contains(other))
     assert np.allclose(own_parameters(back, other, is_reversed=True), uv, atol=1e-14)
     assert own_parameters(forward, uv, is_reversed=False) is uv
@@ -276,7 +275,6 @@ def test_surfaces_of_faces_are_pickled(name):
     surface.jets(*uv.T)
     copy = pickle.loads(pickle.dumps(surface))
     assert np.array_equal(copy.jets(*uv.T), surface.jets(*uv.T))
-    assert surface.trim
     assert np.array_equal(copy.trim.contains(uv), surface.trim.contains(uv))
 
 

@@ -1,41 +1,15 @@
 """Files before they are read: formats, how many faces they say, whether they are whole, damage."""
 
+from pathlib import Path
+
 import pytest
 from gaussmap.tools.cad.damaged_step import prepared, without_damaged_faces
 from gaussmap.tools.cad.inspection import BadFileError, checked_format, faces_said
 
 from ...refusals import refused
 
-STEP = b"""ISO-10303-21;
-HEADER;
-FILE_NAME('a (nan) part','',(''),(''),'','','');
-ENDSEC;
-DATA;
-#1=CLOSED_SHELL('',(#2,#3));
-#2=ADVANCED_FACE('top',(#4),#5,.T.);
-#3=ADVANCED_FACE('',(#6),#5,.T.);
-#4=FACE_BOUND('',#7,.T.);
-#5=PLANE('a;#99',#8);
-#6=FACE_BOUND('',#9,.T.);
-#7=POINT('',(1.,2.));
-#8=POINT('',(0.,0.));
-#9=POINT('',(3.,4.E+20)); /* #98 */
-ENDSEC;
-END-ISO-10303-21;
-"""
-BREP = b"""DBRep_DrawableShape
-
-CASCADE Topology V1
-TShapes 2
-Ve
-1e-07
-0 0 0
-*
-So
-+2 0 *
-
-+1 0
-"""
+HERE = Path(__file__).parent
+STEP, BREP = ((HERE / f"small.{x}").read_bytes() for x in ("step", "brep"))
 
 
 def iges(lines=(("S", 1), ("G", 1), ("D", 2), ("P", 1)), end=True) -> bytes:

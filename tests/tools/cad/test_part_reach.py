@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from gaussmap.tools.cad.examples import all_kinds, box
 
+from ...refusals import refused
+
 ROUNDING = 1e-9
 
 
@@ -62,11 +64,10 @@ def test_edges_are_reached_if_both_faces_are() -> None:
 
 
 def test_memory_for_samples_of_a_part_is_refused() -> None:
-    known = gm.GaussMap(all_kinds())
-    with pytest.raises(gm.errors.InputError, match=r"out=.* holds samples of one spline"):
-        known.points([[0, 0, 1]], out=known.points([[0, 0, 1]]))
+    known, normal = gm.GaussMap(all_kinds()), [[0, 0, 1]]
+    refused("out=.* holds samples of one spline", known.points, normal, out=known.points(normal))
 
 
 def test_a_part_without_normals_in_reach_is_refused() -> None:
-    with pytest.raises(gm.errors.SurfaceError, match="no normal of part"):
-        gm.sample(box(), 100, reach=((1, 1, 1), 10.0))
+    reach, error = ((1, 1, 1), 10.0), gm.errors.SurfaceError
+    refused("no normal of part", gm.sample, box(), 100, reach=reach, error=error)

@@ -4,7 +4,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
-TURN, QUARTER = 2.0 * np.pi, np.pi / 2.0
+from .made import HALF, TURN, moved, rectangle
+
+QUARTER = np.pi / 2.0
 ANGLES = np.linspace(0.1, 6.2, 50)
 TILT = np.linalg.qr(np.array([(3.0, 1, 2), (1, 4, 1), (2, -1, 5)]))[0]
 
@@ -17,14 +19,11 @@ def cut(surface: gm.Surface, u, v, matrix=None) -> gm.Surface:
 
 def halves(matrix=None, shift: float = 0.0, *, trimmed: bool = False) -> list[gm.Surface]:
     """Return two halves of a unit sphere, the second one moved; they meet in the plane y = 0."""
-    sphere, along = gm.surfaces.sphere(), (-QUARTER, QUARTER)
-    found = [cut(sphere, (0.0, np.pi), along), cut(sphere, (np.pi, TURN), along)]
-    if trimmed:
-        found = [sphere.trimmed([[(a, -QUARTER), (a + np.pi, -QUARTER), (a + np.pi, QUARTER),
-                                  (a, QUARTER)]]) for a in (0.0, np.pi)]  # fmt: skip
-    placed = np.eye(4)
-    placed[0, 3] = shift
-    found[1] = found[1].transformed(placed)
+    sphere, turns = gm.surfaces.sphere(), ((0.0, np.pi), (np.pi, TURN))
+    found = [
+        sphere.trimmed([rectangle(x, HALF)]) if trimmed else cut(sphere, x, HALF) for x in turns
+    ]
+    found[1] = moved(found[1], (shift, 0.0, 0.0))
     return found if matrix is None else [x.transformed(matrix) for x in found]
 
 
@@ -33,8 +32,8 @@ def meridian(angles=ANGLES) -> np.ndarray:
 
 
 def latitude(v: float) -> np.ndarray:
-    x, y, z = np.cos(ANGLES) * np.cos(v), np.sin(ANGLES) * np.cos(v), np.sin(v) + 0.0 * ANGLES
-    return np.stack([x, y, z], axis=1)
+    around = np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=1)
+    return np.column_stack([np.cos(v) * around, np.full(len(ANGLES), np.sin(v))])
 
 
 @pytest.mark.parametrize("trimmed", [False, True])
@@ -64,9 +63,8 @@ def test_where_curvature_changes_its_sign_both_faces_have_the_point():
     v, radius = 0.5, 0.5
     ball = cut(gm.surfaces.sphere(), (0, TURN), (-QUARTER, v))
     neck = gm.surfaces.torus((1.0 + radius) * np.cos(v), radius)
-    raised = np.eye(4)
-    raised[2, 3] = (1.0 + radius) * np.sin(v)
-    gauss_map = gm.GaussMap(gm.Part([ball, cut(neck, (0, TURN), (np.pi, np.pi + v), raised)]))
+    neck = moved(cut(neck, (0, TURN), (np.pi, np.pi + v)), (0.0, 0.0, (1.0 + radius) * np.sin(v)))
+    gauss_map = gm.GaussMap(gm.Part([ball, neck]))
     for angle, count in ((v - 1e-4, 2), (v, 2), (v + 1e-4, 0)):
         assert (gauss_map.count(latitude(angle)) == count).all()
         assert (gauss_map.degree(latitude(angle)) == 0).all()
@@ -79,9 +77,8 @@ def test_faces_may_be_apart_by_rounding(gap, count):
 
 
 def test_faces_that_only_touch_have_points_of_their_own():
-    matrix = np.diag([0.5, 0.5, 0.5, 1.0])
-    matrix[0, 3] = -0.5  # inside of the sphere, in contact with it at its edge
-    cap = cut(gm.surfaces.sphere(), (2.0, 4.0), (-1.0, 1.0), matrix)
+    # Inside of the sphere, in contact with it at its edge.
+    cap = moved(cut(gm.surfaces.sphere(), (2.0, 4.0), (-1.0, 1.0)), (-0.5, 0.0, 0.0), 0.5)
     samples = gm.GaussMap(gm.Part([*halves(), cap])).points([[-1.0, 0.0, 0.0]])
     assert np.asarray(samples.face_index).tolist() == [0, 2]
     np.testing.assert_allclose(samples.points, [[-1.0, 0.0, 0.0]] * 2, atol=1e-14)

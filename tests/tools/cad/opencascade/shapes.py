@@ -9,21 +9,14 @@ pytest.importorskip("OCP")
 
 from gaussmap.tools.cad.faces import own_parameters
 from gaussmap.tools.cad.opencascade.shapes import parts_of
+from OCP import BRepBuilderAPI, BRepPrimAPI
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common, BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex, BRepBuilderAPI_NurbsConvert
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
 from OCP.BRepGProp import BRepGProp
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
-from OCP.BRepPrimAPI import (
-    BRepPrimAPI_MakeBox,
-    BRepPrimAPI_MakeCone,
-    BRepPrimAPI_MakeCylinder,
-    BRepPrimAPI_MakeSphere,
-    BRepPrimAPI_MakeTorus,
-)
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Pnt2d, gp_Vec
 from OCP.GProp import GProp_GProps
 from OCP.IntTools import IntTools_FClass2d
@@ -39,28 +32,28 @@ def axes(at=ORIGIN, direction=UP):
 
 
 def box(*sizes, at=ORIGIN):
-    return BRepPrimAPI_MakeBox(gp_Pnt(*at), *sizes).Shape()
+    return BRepPrimAPI.BRepPrimAPI_MakeBox(gp_Pnt(*at), *sizes).Shape()
 
 
 def cylinder(radius, height, at=ORIGIN, direction=UP):
-    return BRepPrimAPI_MakeCylinder(axes(at, direction), radius, height).Shape()
+    return BRepPrimAPI.BRepPrimAPI_MakeCylinder(axes(at, direction), radius, height).Shape()
 
 
 def cone(radius=1.0, height=2.0, at=ORIGIN, top=0.0):
-    return BRepPrimAPI_MakeCone(axes(at), radius, top, height).Shape()
+    return BRepPrimAPI.BRepPrimAPI_MakeCone(axes(at), radius, top, height).Shape()
 
 
 def ball(radius=1.0, at=ORIGIN):
-    return BRepPrimAPI_MakeSphere(gp_Pnt(*at), radius).Shape()
+    return BRepPrimAPI.BRepPrimAPI_MakeSphere(gp_Pnt(*at), radius).Shape()
 
 
 def eighth(at=ORIGIN):
     """Return an eighth of a ball, with a corner at its pole."""
-    return BRepPrimAPI_MakeSphere(gp_Pnt(*at), 1.0, 0.0, np.pi / 2, np.pi / 2).Shape()
+    return BRepPrimAPI.BRepPrimAPI_MakeSphere(gp_Pnt(*at), 1.0, 0.0, np.pi / 2, np.pi / 2).Shape()
 
 
 def torus(radius, tube):
-    return BRepPrimAPI_MakeTorus(radius, tube).Shape()
+    return BRepPrimAPI.BRepPrimAPI_MakeTorus(radius, tube).Shape()
 
 
 def cut(shape, *tools):
@@ -80,7 +73,7 @@ def fused(shape, other):
 
 
 def as_nurbs(shape):
-    return BRepBuilderAPI_NurbsConvert(shape, True).Shape()
+    return BRepBuilderAPI.BRepBuilderAPI_NurbsConvert(shape, True).Shape()
 
 
 def compound(*shapes):
@@ -89,6 +82,22 @@ def compound(*shapes):
     for shape in shapes:
         builder.Add(made, shape)
     return made
+
+
+def vertex(*at):
+    return BRepBuilderAPI.BRepBuilderAPI_MakeVertex(gp_Pnt(*at)).Vertex()
+
+
+def edge(*given):
+    return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(*given).Edge()
+
+
+def wire(*edges):
+    return BRepBuilderAPI.BRepBuilderAPI_MakeWire(*edges).Wire()
+
+
+def face(*given):
+    return BRepBuilderAPI.BRepBuilderAPI_MakeFace(*given).Face()
 
 
 def faces_of(shape):
@@ -107,11 +116,11 @@ def loose_faces(shape):
 def rounded(shape, *radii, most=None):
     """Return a shape whose first edges are rounded."""
     fillet, seen = BRepFilletAPI_MakeFillet(shape), []
-    for edge in edges_of(shape):
-        if not any(edge.IsSame(x) for x in seen):
-            seen.append(edge)
-    for edge in seen[:most]:
-        fillet.Add(*radii, edge)
+    for found in edges_of(shape):
+        if not any(found.IsSame(x) for x in seen):
+            seen.append(found)
+    for chosen in seen[:most]:
+        fillet.Add(*radii, chosen)
     return fillet.Shape()
 
 
@@ -183,8 +192,7 @@ def evaluated(face, uv) -> tuple[np.ndarray, ...]:
 
 
 def distance(face, point) -> float:
-    vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*point)).Vertex()
-    return BRepExtrema_DistShapeShape(vertex, face).Value()
+    return BRepExtrema_DistShapeShape(vertex(*point), face).Value()
 
 
 def on_triangles(face, step: float, random, *, turn: float = 0.1, count: int = 400) -> np.ndarray:

@@ -11,17 +11,13 @@ pytest.importorskip("OCP")
 
 from gaussmap.tools.cad.faces import face_surface, own_parameters
 from gaussmap.tools.cad.opencascade.faces import FaceReader
-from OCP.BRepBuilderAPI import (
-    BRepBuilderAPI_MakeEdge,
-    BRepBuilderAPI_MakeFace,
-    BRepBuilderAPI_MakeWire,
-)
 from OCP.BRepLib import BRepLib
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
 from OCP.Geom import Geom_CylindricalSurface, Geom_Ellipse
 from OCP.Geom2d import Geom2d_Line
 from OCP.gp import gp_Ax1, gp_Ax3, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d
 
+from . import shapes
 from .shapes import axes, ball, box, cone, cut, cylinder, faces_of, states_of, torus
 
 PLACES = 500
@@ -38,14 +34,13 @@ def thread():
     """Return a band on a cylinder that goes around nearly twice."""
     surface = Geom_CylindricalSurface(gp_Ax3(), 4.0)
     corners = [(0.1, 0.0), (12.4, 2.5), (12.4, 2.9), (0.1, 0.4)]
-    wire = BRepBuilderAPI_MakeWire()
+    edges = []
     for first, last in zip(corners, corners[1:] + corners[:1], strict=True):
         step = np.subtract(last, first).tolist()
         line = Geom2d_Line(gp_Pnt2d(*first), gp_Dir2d(*step))
-        edge = BRepBuilderAPI_MakeEdge(line, surface, 0.0, math.hypot(*step)).Edge()
-        BRepLib.BuildCurves3d_s(edge)
-        wire.Add(edge)
-    return BRepBuilderAPI_MakeFace(surface, wire.Wire()).Shape()
+        edges.append(shapes.edge(line, surface, 0.0, math.hypot(*step)))
+        BRepLib.BuildCurves3d_s(edges[-1])
+    return shapes.face(surface, shapes.wire(*edges))
 
 
 def drilled(shape):
@@ -55,7 +50,7 @@ def drilled(shape):
 
 def ring():
     ellipse = Geom_Ellipse(axes((4.0, 0.0, 0.0), (0.2, 1.0, 0.1)), 2.0, 1.0)
-    edge = BRepBuilderAPI_MakeEdge(ellipse).Edge()
+    edge = shapes.edge(ellipse)
     axis = gp_Ax1(gp_Pnt(-1.0, 0.0, 0.0), gp_Dir(0.0, 0.1, 1.0))
     return BRepPrimAPI_MakeRevol(edge, axis, 4.0).Shape()
 

@@ -32,15 +32,11 @@ from gaussmap.tools.cad.opencascade.parts import part_record
 from gaussmap.tools.cad.opencascade.solids import gathered
 from gaussmap.tools.cad.part import part_of
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.BRepBuilderAPI import (
-    BRepBuilderAPI_MakeEdge,
-    BRepBuilderAPI_MakeFace,
-    BRepBuilderAPI_MakeWire,
-)
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeRevol
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Vec
 from OCP.TopoDS import TopoDS
 
+from . import shapes
 from .conftest import written
 from .shapes import (
     as_nurbs,
@@ -104,13 +100,13 @@ def turned_arc(centre, start, end):
     """Return what an arc of radius 1, and its chord or two lines, make about the z axis."""
     circle = gp_Circ(gp_Ax2(gp_Pnt(*centre), gp_Dir(0.0, -1.0, 0.0)), 1.0)
     places = [gp_Pnt(*x) for x in (start, end)]
-    edges = [BRepBuilderAPI_MakeEdge(circle, *places).Edge()]
+    edges = [shapes.edge(circle, *places)]
     corners = [places[1], *([gp_Pnt(0.0, 0.0, 0.0)] if end[2] == 0.0 else []), places[0]]
     for a, b in itertools.pairwise(corners):
-        edges.append(BRepBuilderAPI_MakeEdge(a, b).Edge())
-    wire = BRepBuilderAPI_MakeWire(*edges).Wire()
+        edges.append(shapes.edge(a, b))
+    wire = shapes.wire(*edges)
     axis = gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0))
-    return BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeFace(wire).Face(), axis).Shape()
+    return BRepPrimAPI_MakeRevol(shapes.face(wire), axis).Shape()
 
 
 def spike():

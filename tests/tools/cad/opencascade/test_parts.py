@@ -13,11 +13,6 @@ pytest.importorskip("OCP")
 from gaussmap.tools.cad.inspection import BadFileError
 from gaussmap.tools.cad.opencascade.shapes import sequence
 from OCP.BRep import BRep_Tool
-from OCP.BRepBuilderAPI import (
-    BRepBuilderAPI_MakeEdge,
-    BRepBuilderAPI_MakeFace,
-    BRepBuilderAPI_MakeVertex,
-)
 from OCP.BRepTools import BRepTools
 from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
@@ -29,6 +24,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool
 
 from ....refusals import refused
+from . import shapes
 from .conftest import points_of
 from .shapes import ball, box, compound, cut, cylinder, faces_of
 
@@ -97,7 +93,7 @@ def some_reversed(shape):
     found = []
     for k, face in enumerate(faces_of(shape)):
         bounds = BRepTools.UVBounds_s(face)
-        made = BRepBuilderAPI_MakeFace(BRep_Tool.Surface_s(face), *bounds, 1e-7).Face()
+        made = shapes.face(BRep_Tool.Surface_s(face), *bounds, 1e-7)
         found.append(made.Reversed() if k % 2 else made)
     return found
 
@@ -208,8 +204,8 @@ def test_numbers_that_are_none_cost_only_their_faces(number, write, read):
 @pytest.mark.parametrize(("joined", "points"), [(1, 0), (3, 2)])
 def test_files_without_faces_say_what_they_have(joined, points, suffix, write, read):
     ends = [gp_Pnt(float(k), 2.0 * k, k**2) for k in range(joined + 1)]
-    edges = [BRepBuilderAPI_MakeEdge(*x).Edge() for x in itertools.pairwise(ends)]
-    alone = [BRepBuilderAPI_MakeVertex(gp_Pnt(9.0, 9.0, k)).Vertex() for k in range(points)]
+    edges = [shapes.edge(*x) for x in itertools.pairwise(ends)]
+    alone = [shapes.vertex(9.0, 9.0, k) for k in range(points)]
     path = write(compound(*edges, *alone) if alone else edges[0], f"wires.{suffix}")
     held = "3 edges, 2 points" if points else "1 edge"
     refused(f"has no faces: {held}; a part needs", read, path, error=BadFileError)
@@ -258,7 +254,7 @@ PLANE = gp_Pln(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0))
     ],
 )
 def test_planes_without_boundary_and_faces_of_no_area_fail(ends, reason, write, read):
-    face = BRepBuilderAPI_MakeFace(PLANE, *ends).Face()
+    face = shapes.face(PLANE, *ends)
     part = read(write(compound(box(*SIZES), face), "part.brep"))
     assert [x.reason for x in part.faces if x.reason] == [reason]
     assert [x.geometry.kind for x in part.faces] == 6 * ["plane"] + ["unknown"]

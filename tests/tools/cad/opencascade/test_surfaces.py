@@ -9,24 +9,7 @@ pytest.importorskip("OCP")
 
 from gaussmap.tools.cad.faces import face_surface
 from gaussmap.tools.cad.opencascade.surfaces import geometry_of, periods_of
-from OCP.Geom import (
-    Geom_BezierSurface,
-    Geom_Circle,
-    Geom_ConicalSurface,
-    Geom_CylindricalSurface,
-    Geom_Ellipse,
-    Geom_Hyperbola,
-    Geom_Line,
-    Geom_OffsetCurve,
-    Geom_OffsetSurface,
-    Geom_Plane,
-    Geom_RectangularTrimmedSurface,
-    Geom_SphericalSurface,
-    Geom_SurfaceOfLinearExtrusion,
-    Geom_SurfaceOfRevolution,
-    Geom_ToroidalSurface,
-    Geom_TrimmedCurve,
-)
+from OCP import Geom
 from OCP.GeomConvert import GeomConvert
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Dir, gp_Pnt, gp_Vec
 from scipy.interpolate import BPoly
@@ -56,33 +39,33 @@ def bezier():
         for j in range(1, 5):
             points.SetValue(i, j, gp_Pnt(i, j, 0.3 * i * j - 0.2 * j * j))
             weights.SetValue(i, j, 1.0 + 0.1 * i + 0.05 * j)
-    return Geom_BezierSurface(points, weights)
+    return Geom.Geom_BezierSurface(points, weights)
 
 
 def spline(surface, u, v):
-    part = Geom_RectangularTrimmedSurface(surface, *u, *v)
+    part = Geom.Geom_RectangularTrimmedSurface(surface, *u, *v)
     return GeomConvert.SurfaceToBSplineSurface_s(part)
 
 
 def revolved(curve):
-    return Geom_SurfaceOfRevolution(curve, AXIS)
+    return Geom.Geom_SurfaceOfRevolution(curve, AXIS)
 
 
 def extruded(curve):
-    return Geom_SurfaceOfLinearExtrusion(curve, SLANTED)
+    return Geom.Geom_SurfaceOfLinearExtrusion(curve, SLANTED)
 
 
-ELLIPSE = Geom_Ellipse(ACROSS, 2.0, 1.0)
-CIRCLE = GeomConvert.CurveToBSplineCurve_s(Geom_Circle(ACROSS, 2.0))
-TORUS = Geom_ToroidalSurface(AXES, 5.0, 2.0)
+ELLIPSE = Geom.Geom_Ellipse(ACROSS, 2.0, 1.0)
+CIRCLE = GeomConvert.CurveToBSplineCurve_s(Geom.Geom_Circle(ACROSS, 2.0))
+TORUS = Geom.Geom_ToroidalSurface(AXES, 5.0, 2.0)
 SIDE = ((0.1, 6.0), (-1.0, 2.0))
 SURFACES = {
-    "plane": (Geom_Plane(AXES), ((-3.0, 2.0), (0.0, 5.0)), (0, 0)),
-    "plane, left-handed": (Geom_Plane(LEFT_HANDED), ((-3.0, 2.0), (0.0, 5.0)), (0, 0)),
-    "cylinder": (Geom_CylindricalSurface(AXES, 2.0), SIDE, (TURN, 0)),
-    "cylinder, left-handed": (Geom_CylindricalSurface(LEFT_HANDED, 2.0), SIDE, (TURN, 0)),
-    "cone": (Geom_ConicalSurface(AXES, 0.4, 2.0), SIDE, (TURN, 0)),
-    "sphere": (Geom_SphericalSurface(AXES, 2.0), ((0.0, 6.0), (-1.5, 1.5)), (TURN, 0)),
+    "plane": (Geom.Geom_Plane(AXES), ((-3.0, 2.0), (0.0, 5.0)), (0, 0)),
+    "plane, left-handed": (Geom.Geom_Plane(LEFT_HANDED), ((-3.0, 2.0), (0.0, 5.0)), (0, 0)),
+    "cylinder": (Geom.Geom_CylindricalSurface(AXES, 2.0), SIDE, (TURN, 0)),
+    "cylinder, left-handed": (Geom.Geom_CylindricalSurface(LEFT_HANDED, 2.0), SIDE, (TURN, 0)),
+    "cone": (Geom.Geom_ConicalSurface(AXES, 0.4, 2.0), SIDE, (TURN, 0)),
+    "sphere": (Geom.Geom_SphericalSurface(AXES, 2.0), ((0.0, 6.0), (-1.5, 1.5)), (TURN, 0)),
     "torus": (TORUS, ((0.0, 6.0), (0.0, 6.0)), (TURN, TURN)),
     "nurbs, Bézier": (bezier(), ((0.0, 1.0), (0.0, 1.0)), (0, 0)),
     "nurbs": (spline(TORUS, (0.5, 2.0), (1.0, 4.0)), ((0.5, 2.0), (1.0, 4.0)), (0, 0)),
@@ -90,24 +73,25 @@ SURFACES = {
         GeomConvert.SurfaceToBSplineSurface_s(TORUS), ((0.0, TURN), (0.0, TURN)), (TURN, TURN)
     ),
     "revolution, circle": (
-        revolved(Geom_Circle(ACROSS, 5.0)), ((0.0, 6.0), (0.0, 6.0)), (TURN, TURN)
+        revolved(Geom.Geom_Circle(ACROSS, 5.0)), ((0.0, 6.0), (0.0, 6.0)), (TURN, TURN)
     ),
     "revolution, arc": (
-        revolved(Geom_TrimmedCurve(Geom_Circle(ACROSS, 2.0), 5.0, 8.0)),
+        revolved(Geom.Geom_TrimmedCurve(Geom.Geom_Circle(ACROSS, 2.0), 5.0, 8.0)),
         ((0.0, 6.0), (5.0, 8.0)), (TURN, 0),
     ),
     "revolution, arc of a spline": (
-        revolved(Geom_TrimmedCurve(CIRCLE, 5.0, 8.0)), ((0.0, 6.0), (5.0, 8.0)), (TURN, 0)
+        revolved(Geom.Geom_TrimmedCurve(CIRCLE, 5.0, 8.0)), ((0.0, 6.0), (5.0, 8.0)), (TURN, 0)
     ),
     "revolution, skew line": (
-        revolved(Geom_Line(gp_Pnt(3.0, 0.0, 0.0), SLANTED)), ((0.0, 6.0), (-2.0, 7.0)), (TURN, 0)
+        revolved(Geom.Geom_Line(gp_Pnt(3.0, 0.0, 0.0), SLANTED)),
+        ((0.0, 6.0), (-2.0, 7.0)), (TURN, 0),
     ),
     "extrusion, ellipse": (extruded(ELLIPSE), ((0.0, 6.0), (-1.0, 5.0)), (TURN, 0)),
     "extrusion, hyperbola": (
-        extruded(Geom_Hyperbola(ACROSS, 2.0, 1.0)), ((-1.5, 2.5), (-1.0, 5.0)), (0, 0)
+        extruded(Geom.Geom_Hyperbola(ACROSS, 2.0, 1.0)), ((-1.5, 2.5), (-1.0, 5.0)), (0, 0)
     ),
     "extrusion, offset curve": (
-        extruded(Geom_OffsetCurve(ELLIPSE, 0.4, gp_Dir(0.2, 1.0, 0.1))),
+        extruded(Geom.Geom_OffsetCurve(ELLIPSE, 0.4, gp_Dir(0.2, 1.0, 0.1))),
         ((0.0, 6.0), (-1.0, 5.0)), (TURN, 0),
     ),
 }  # fmt: skip
@@ -144,8 +128,8 @@ def offset(name, distance):
     surface, domain, _ = SURFACES[name]
     inside = tuple((low + (high - low) / 9, high - (high - low) / 7) for low, high in domain)
     (u0, u1), (v0, v1) = inside
-    trimmed = Geom_RectangularTrimmedSurface(surface, u0, u1, v0, v1)
-    return Geom_OffsetSurface(trimmed, distance), inside
+    trimmed = Geom.Geom_RectangularTrimmedSurface(surface, u0, u1, v0, v1)
+    return Geom.Geom_OffsetSurface(trimmed, distance), inside
 
 
 # No left-handed plane: 7.9 moves it along x_u × x_v, as the manual says, and 8.0 to the other side.
@@ -191,8 +175,8 @@ def test_curves_that_are_no_nurbs_have_exact_derivatives():
 
 def test_an_offset_has_its_basis():
     surface, domain, _ = SURFACES["revolution, circle"]
-    trimmed = Geom_RectangularTrimmedSurface(surface, 1.0, 2.0, 1.0, 2.0)
-    geometry = geometry_of(Geom_OffsetSurface(trimmed, 0.25), domain)
+    trimmed = Geom.Geom_RectangularTrimmedSurface(surface, 1.0, 2.0, 1.0, 2.0)
+    geometry = geometry_of(Geom.Geom_OffsetSurface(trimmed, 0.25), domain)
     assert geometry.kind == "offset"
     assert geometry.numbers.tolist() == [0.25]
     assert geometry.basis is not None
