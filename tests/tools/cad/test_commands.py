@@ -5,15 +5,17 @@
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.cad.examples import box
 
 from .made import FAILED, cylinder_faces, part
 
 
 @pytest.fixture
 def saved(tmp_path, monkeypatch):
-    """Save a part with a face that failed, and go to its folder."""
+    """Save a box, and a part with a face that failed, and go to their folder."""
     monkeypatch.chdir(tmp_path)
     part([*cylinder_faces(), FAILED]).save("part.npz")
+    box().save("box.npz")
     return "part.npz"
 
 
@@ -50,6 +52,10 @@ def test_sample(saved, capsys, main):
         (["sample", "part.npz", "--on", "spline", "-o", "o.ply"], 'on="spline" is for surfaces'),
         (["sample", "part.npz", "-o", "part.npz"], "'part.npz' is read"),
         (["mesh", "part.npz", "-o", "o.ply"], "does not say how its edges go around its faces"),
+        (["mesh", "box.npz", "--count", "7", "-o", "o.stl"], "needs at least 8 vertices"),
+        (["sample", "torus", "--edges", "-o", "o.ply"], "edges=True is for CAD parts"),
+        (["faces", "part.npz", "--name", "slot*"], "no face"),
+        (["faces", "part.npz", "--kind", "hole"], "'hole'"),
         (["faces", "none.npz"], "'none.npz' cannot be read"),
         (["faces", "part.txt"], "is no STEP, IGES or BREP file"),
     ],

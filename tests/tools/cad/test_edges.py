@@ -223,5 +223,3 @@ def test_command_line(tmp_path, monkeypatch, capsys, main):
     assert (gm.read_samples("out.ply").kind == "edge").sum() == 40
     fields = ["--fields", "points,normals,other_normals", "--progressive"]
     assert main(["sample", "box.npz", "--count", "9", "--edges", "-o", "out.npz", *fields]) == 0
-    assert main(["sample", "torus", "--count", "9", "--edges", "-o", "out.ply"]) == 2
-    assert "edges=True is for CAD parts" in capsys.readouterr().err

@@ -218,7 +218,6 @@ def test_a_part_has_a_map(plates):
     assert (known.count(normals) == np.bincount(found.normal_index, minlength=40)).all()
     assert (known.count(normals) == 3).all()
     assert (known.degree(normals) == 1).all()  # of the sphere; the torus has 0
-    assert found.points.tobytes() == known.points(normals, threads=3).points.tobytes()
     refused(r"face\.surface", known.folds, error=gm.GaussmapError)
 
 

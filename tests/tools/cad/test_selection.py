@@ -230,5 +230,3 @@ def test_faces_of_a_kind(failing, tmp_path, capsys, main):
     }  # fmt: skip
     assert main(["faces", path, "--kind", "unknown", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["faces"][0]["area"] is None
-    assert main(["faces", path, "--name", "slot*"]) == 2
-    assert main(["faces", path, "--kind", "hole"]) == 2
