@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import gaussmap as gm
 import numpy as np
+from gaussmap.tools.cad.examples import all_kinds
 from gaussmap.tools.cad.part import Part, part_of
 from gaussmap.tools.cad.records import EdgeRecord, FaceRecord, Geometry, Net, PartRecord
 
@@ -150,6 +151,9 @@ def ball(radius: float = 1.0) -> Part:
     vertices = np.array([(0.0, 0.0, -radius), (0.0, 0.0, radius)])
     return part([whole], "ball", edges=[*poles, seam], vertices=vertices, solid_names=["one"])
 
+
+# Parts that no test changes: what is found out about their faces is kept with them.
+KINDS, CYLINDER = all_kinds(), cylinder()
 
 # --- what is measured -----------------------------------------------------------------------------
 

@@ -11,30 +11,15 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad import meshing
-from gaussmap.tools.cad.examples import all_kinds, box, box_faces
+from gaussmap.tools.cad.examples import box, box_faces
 from gaussmap.tools.cad.face_pieces import FacePiece
 from gaussmap.tools.cad.mesh_spacing import TurnedPiece
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.part_mesh import PartMesh
 
 from ...refusals import refused
-from .made import (
-    TURN,
-    ball,
-    bezier,
-    circle,
-    cylinder,
-    edge,
-    face,
-    face_normals,
-    is_on,
-    moved,
-    noted,
-    part,
-    rectangle,
-    round_side,
-    side,
-)
+from . import made
+from .made import CYLINDER, KINDS, TURN, ball, bezier, cylinder, face_normals, moved, noted
 
 SIZES = np.array([1.0, 2.0, 3.0])
 
@@ -100,7 +85,7 @@ def test_triangles_of_a_box_are_even():
 @pytest.mark.parametrize("count", [200, 2000])
 def test_a_cylinder_is_exact_though_its_circles_have_few_points(count):
     """A circle of a plane is a cubic of nine points; the seam and both circles are shared."""
-    mesh, whole = sound(cylinder(), count, euler=2, closed=True), cylinder().volume
+    mesh, whole = sound(CYLINDER, count, euler=2, closed=True), CYLINDER.volume
     assert whole > mesh.volume == pytest.approx(whole, rel=20.0 / count)
     side = mesh.face_index == 0
     points = mesh.vertices[mesh.triangles]
@@ -129,8 +114,8 @@ def test_a_ball_has_one_vertex_at_each_pole(count):
 
 
 def test_faces_of_all_kinds_are_open():
-    faces = all_kinds().faces
-    mesh = sound(all_kinds(), 2000, euler=len(faces))  # disks
+    faces = KINDS.faces
+    mesh = sound(KINDS, 2000, euler=len(faces))  # disks
     assert mesh.smallest_angles.min() > 17.0  # 11.5 if vertices of thin triangles do not move
     assert np.quantile(mesh.smallest_angles, 0.01) > 25.0  # 21.8
     assert np.isnan(mesh.volume)
@@ -143,7 +128,7 @@ def test_faces_of_all_kinds_are_open():
         here = mesh.face_index == known.index
         corners = mesh.triangles[here]
         points, normals = mesh.vertices[corners], mesh.corner_normals[here]
-        is_on(known.surface, mesh.uv[corners], points, normals, of_normals=1e-12)
+        made.is_on(known.surface, mesh.uv[corners], points, normals, of_normals=1e-12)
 
 
 def test_open_shells():
@@ -155,16 +140,16 @@ def test_open_shells():
 def test_a_hole():
     """A plate with a hole, of two loops: none of the triangles is in the hole."""
     ends, hole = (0.0, 4.0), (1.0, 3.0)
-    loops = [rectangle(ends, ends), rectangle(hole, hole)[[0, 3, 2, 1]]]
+    loops = [made.rectangle(ends, ends), made.rectangle(hole, hole)[[0, 3, 2, 1]]]
     edges, wires = [], []
     for first, loop in zip((0, 4), loops, strict=True):
         wires.append([(first + k, 0, False) for k in range(4)])
         for k in range(4):
-            sides = [side(loop[[k, (k + 1) % 4]])]
-            edges.append(edge((0,), sides, (first + k, first + (k + 1) % 4)))
-    plate = face("plane", u=ends, v=ends, area=12.0, loops=loops, wires=wires)
+            sides = [made.side(loop[[k, (k + 1) % 4]])]
+            edges.append(made.edge((0,), sides, (first + k, first + (k + 1) % 4)))
+    plate = made.face("plane", u=ends, v=ends, area=12.0, loops=loops, wires=wires)
     vertices = np.pad(np.concatenate(loops), [(0, 0), (0, 1)])
-    mesh = sound(part([plate], "plate", False, edges=edges, vertices=vertices), 300, euler=0)
+    mesh = sound(made.part([plate], "plate", False, edges=edges, vertices=vertices), 300, euler=0)
     assert face_normals(mesh)[:, 2].sum() == pytest.approx(12.0, rel=1e-12)
 
 
@@ -172,14 +157,14 @@ def ring(inner: float) -> Part:
     """Return a flat ring of radii 1 and `inner`, whose circles begin at opposite sides."""
     radii, ends = (1.0, inner), (-1.0, 1.0)
     edges = [
-        edge((0,), [round_side(radius, 33, start)], (k, k))
+        made.edge((0,), [made.round_side(radius, 33, start)], (k, k))
         for k, (radius, start) in enumerate(zip(radii, (0.0, np.pi), strict=True))
     ]
-    loops, wires = [circle(x) for x in radii], [[(0, 0, False)], [(1, 0, True)]]
+    loops, wires = [made.circle(x) for x in radii], [[(0, 0, False)], [(1, 0, True)]]
     area = np.pi * (1.0 - inner**2)
-    flat = face("plane", u=ends, v=ends, area=area, loops=loops, wires=wires)
+    flat = made.face("plane", u=ends, v=ends, area=area, loops=loops, wires=wires)
     vertices = np.array([(1.0, 0.0, 0.0), (-inner, 0.0, 0.0)])
-    return part([flat], "ring", False, edges=edges, vertices=vertices)
+    return made.part([flat], "ring", False, edges=edges, vertices=vertices)
 
 
 @pytest.mark.parametrize("inner", [0.9, 0.995, 0.999])
@@ -192,7 +177,7 @@ def test_edges_are_divided_until_they_do_not_cross(inner):
     assert areas.sum() == pytest.approx(ring(inner).area, rel=0.02)
 
 
-@pytest.mark.parametrize("whole", [box(*SIZES), cylinder(), all_kinds()], ids=lambda x: x.name)
+@pytest.mark.parametrize("whole", [box(*SIZES), CYLINDER, KINDS], ids=lambda x: x.name)
 def test_counts_below_what_edges_need_are_refused(whole):
     said = refused("vertices for its edges", gm.sample(whole, 4).mesh)
     least = int(said.split(" needs at least ")[1].split()[0].replace(",", ""))
@@ -284,7 +269,7 @@ def test_edges_without_places_leave_their_faces_out():
 @pytest.mark.parametrize(
     ("samples", "arguments", "match"),
     [
-        (lambda: gm.sample(part(box_faces()), 100), {}, "read the CAD file again"),
+        (lambda: gm.sample(made.part(box_faces()), 100), {}, "read the CAD file again"),
         (lambda: gm.sample(box(), 60)[:0], {}, "there are no samples"),
         (lambda: gm.sample(box(), 100), {"angle": 10.0}, "angle="),
         (lambda: gm.sample(box(), 30, density=1.0), {}, '"balanced" or "uniform", .* have "power"'),
@@ -331,7 +316,7 @@ def test_meshes_by_normals_do_not_depend_on_the_unit(size):
 @pytest.mark.parametrize("count", [50, 2000])
 def test_cylinders_have_vertices_on_their_circles_only(count):
     """Their rows are rulings: a regular polygon of as many corners as vertices allow."""
-    mesh = sound(cylinder(), count, "normals", euler=2, closed=True)
+    mesh = sound(CYLINDER, count, "normals", euler=2, closed=True)
     assert len(inner(mesh)) == 0
     heights = mesh.vertices[:, 2]
     assert (np.isin(heights, [0.0, 2.0])).all()
@@ -339,7 +324,7 @@ def test_cylinders_have_vertices_on_their_circles_only(count):
     assert abs(2 * corners - count) <= 1
     side = mesh.face_index == 0
     assert mesh.angles[side].max() == pytest.approx(180.0 / corners, rel=0.05)
-    assert mesh.angles[side].max() < 0.6 * meshed(cylinder(), count).angles.max()
+    assert mesh.angles[side].max() < 0.6 * meshed(CYLINDER, count).angles.max()
     polygon = corners * np.sin(TURN / corners)
     assert mesh.volume == pytest.approx(polygon, rel=1e-2 if count < 100 else 1e-5)
 
@@ -356,14 +341,14 @@ def mean_angle(mesh: PartMesh) -> float:
 
 
 def test_faces_of_all_kinds_by_normals():
-    kinds = np.array([x.kind for x in all_kinds().faces])
-    mesh = sound(all_kinds(), 1000, "normals", euler=len(kinds))  # disks
+    kinds = np.array([x.kind for x in KINDS.faces])
+    mesh = sound(KINDS, 1000, "normals", euler=len(kinds))  # disks
     ruled = np.isin(kinds, ["plane", "cylinder", "cone"])
     owners = mesh.face_index[np.isin(mesh.triangles, inner(mesh)).any(axis=1)]
     assert not ruled[owners].any()
     assert set(kinds[owners]) >= {"sphere", "torus"}
     assert mean_angle(mesh) < 1.95
-    assert mean_angle(meshed(all_kinds(), 1000)) < 2.3
+    assert mean_angle(meshed(KINDS, 1000)) < 2.3
     for kind in ("cylinder", "cone", "torus", "sphere"):
         here = np.isin(mesh.face_index, np.flatnonzero(kinds == kind))
         assert mesh.angles[here].mean() < 3.0 * mean_angle(mesh)
@@ -400,10 +385,10 @@ def test_steps_of_arcs(other, prefer, count, ratio):
 
 
 def test_even_meshes_are_flipped_to_the_normals_where_no_angle_becomes_small(monkeypatch):
-    mesh = sound(cylinder(), 1000, euler=2, closed=True)
+    mesh = sound(CYLINDER, 1000, euler=2, closed=True)
     assert np.quantile(mesh.smallest_angles, 0.01) > 24.0
     monkeypatch.setattr("gaussmap.tools.cad.meshing.ENOUGH", 89.0)  # which no triangle has
-    by_shape = meshed(cylinder(), 1000)
+    by_shape = meshed(CYLINDER, 1000)
     assert by_shape.smallest_angles.mean() > mesh.smallest_angles.mean() + 1.0
     assert mesh.angles.mean() < 0.95 * by_shape.angles.mean()
 
@@ -434,7 +419,7 @@ def test_normals_of_waves_are_seen():
 
 def test_a_parameter_along_which_normals_do_not_turn_counts_a_little():
     """Otherwise a cylinder would have no area in its plane."""
-    turned = TurnedPiece.of(FacePiece.of(cylinder().faces[0]), 0)
+    turned = TurnedPiece.of(FacePiece.of(CYLINDER.faces[0]), 0)
     assert turned.lengths[0][-1] == pytest.approx(TURN, rel=1e-3)
     assert turned.lengths[1][-1] == pytest.approx(1e-3 * turned.lengths[0][-1], rel=1e-12)
 
@@ -482,7 +467,7 @@ def test_meshes_follow_the_density_of_samples():
 
 @pytest.mark.parametrize("density", [1.0, 0.5])
 def test_meshes_by_normals_are_made_of_other_densities(density):
-    meshed(all_kinds(), 300, "normals", density=density)
+    meshed(KINDS, 300, "normals", density=density)
 
 
 # --- files ----------------------------------------------------------------------------------------
@@ -491,7 +476,7 @@ def test_meshes_by_normals_are_made_of_other_densities(density):
 @pytest.mark.parametrize("suffix", ["stl", "ply", "glb"])
 def test_trimesh_reads_a_closed_mesh(tmp_path, suffix):
     trimesh = pytest.importorskip("trimesh")
-    mesh, path = meshed(cylinder(), 300), tmp_path / f"part.{suffix}"
+    mesh, path = meshed(CYLINDER, 300), tmp_path / f"part.{suffix}"
     mesh.write(path)
     if suffix == "glb":
         (again,) = trimesh.load_scene(path, process=False).geometry.values()
@@ -505,12 +490,12 @@ def test_trimesh_reads_a_closed_mesh(tmp_path, suffix):
 
 
 def test_vtu_files(tmp_path):
-    meshed(cylinder(), 300).write(tmp_path / "part.vtu")
+    meshed(CYLINDER, 300).write(tmp_path / "part.vtu")
     assert (tmp_path / "part.vtu").stat().st_size
 
 
 def test_obj_files_have_a_normal_at_each_corner(tmp_path):
-    mesh = meshed(cylinder(), 300)
+    mesh = meshed(CYLINDER, 300)
     mesh.write(tmp_path / "part.obj")
     rows = [x.split() for x in (tmp_path / "part.obj").read_text().splitlines()]
     vertices, normals = (np.array([x[1:] for x in rows if x[0] == y], float) for y in ("v", "vn"))
@@ -520,14 +505,19 @@ def test_obj_files_have_a_normal_at_each_corner(tmp_path):
     np.testing.assert_allclose(normals[corners[..., 1]], mesh.corner_normals, atol=1e-9)
 
 
+@pytest.fixture(scope="module")
+def mesh_of_box() -> PartMesh:
+    return meshed(box(*SIZES), 100)
+
+
 @pytest.mark.parametrize(
     ("unit", "written", "factor"),
     [("um", "micron", 1.0), ("mm", "millimeter", 1.0), ("cm", "centimeter", 1.0),
      ("m", "meter", 1.0), ("in", "inch", 1.0), ("ft", "foot", 1.0), ("", "millimeter", 1.0),
      ("km", "millimeter", 1e6), ("yd", "millimeter", 914.4)],
 )  # fmt: skip
-def test_3mf_files_have_a_unit(tmp_path, unit, written, factor):
-    mesh = meshed(box(*SIZES), 100)
+def test_3mf_files_have_a_unit(mesh_of_box, tmp_path, unit, written, factor):
+    mesh = mesh_of_box
     assert mesh.unit == "mm"
     replace(mesh, unit=unit).write(tmp_path / "part.3mf")
     with zipfile.ZipFile(tmp_path / "part.3mf") as file:

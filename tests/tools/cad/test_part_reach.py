@@ -7,9 +7,10 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import all_kinds, box
+from gaussmap.tools.cad.examples import box
 
 from ...refusals import refused
+from .made import KINDS
 
 ROUNDING = 1e-9
 
@@ -25,7 +26,7 @@ def angles(normals: np.ndarray, axis: tuple[float, float, float]) -> np.ndarray:
 )
 @pytest.mark.quick_for("how2")
 def test_parts_have_samples_on_faces_that_can_be_reached(how: dict[str, Any]) -> None:
-    samples = gm.sample(all_kinds(), reach=((0, 0, 1), 60.0), **how)
+    samples = gm.sample(KINDS, reach=((0, 0, 1), 60.0), **how)
     assert angles(samples.normals, (0, 0, 1)).max() <= 60.0 + ROUNDING
     if "count" in how:
         assert len(samples) == how["count"]
@@ -41,7 +42,7 @@ def test_a_box_has_samples_on_its_top() -> None:
 @pytest.mark.slow
 def test_weights_and_deviation_are_those_of_what_is_in_reach() -> None:
     """Of a surface of revolution, of which a sixth is in reach."""
-    part, reach = all_kinds().select(kind="revolution"), ((1, 1, 1), 60.0)
+    part, reach = KINDS.select(kind="revolution"), ((1, 1, 1), 60.0)
     whole, some = gm.sample(part, 4000), gm.sample(part, 200, reach=reach)
     within = angles(whole.normals, (1, 1, 1)) <= 60.0
     assert some.weights().sum() == pytest.approx(whole.weights()[within].sum(), rel=0.02)
@@ -64,7 +65,7 @@ def test_edges_are_reached_if_both_faces_are() -> None:
 
 
 def test_memory_for_samples_of_a_part_is_refused() -> None:
-    known, normal = gm.GaussMap(all_kinds()), [[0, 0, 1]]
+    known, normal = gm.GaussMap(KINDS), [[0, 0, 1]]
     refused("out=.* holds samples of one spline", known.points, normal, out=known.points(normal))
 
 

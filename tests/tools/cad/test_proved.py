@@ -16,7 +16,7 @@ from gaussmap.tools.cad.examples import all_kinds
 from gaussmap.tools.cad.records import FaceRecord, Geometry
 
 from ...products import covering
-from .made import TURN, UNIT, circle, face, identical, net, nurbs, part, placement
+from .made import KINDS, TURN, UNIT, circle, face, identical, net, nurbs, part, placement
 
 
 def random_normals(count: int, seed: int = 0) -> np.ndarray:
@@ -409,7 +409,7 @@ def test_a_triangular_face():
 
 
 def test_the_kinds_that_are_proved():
-    samples = gm.GaussMap(all_kinds()).points(gm.fibonacci(500))
+    samples = gm.GaussMap(KINDS).points(gm.fibonacci(500))
     assert (samples.report.estimated_faces, samples.report.proved) == (0, 500)
     assert set(samples.face_index.tolist()) == {2, 4, 5, 6, 7, 9}
     assert np.isfinite(samples.uv_radius).all()

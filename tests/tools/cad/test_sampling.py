@@ -11,7 +11,7 @@ import re
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import all_kinds, box, box_faces
+from gaussmap.tools.cad.examples import box, box_faces
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import FaceRecord, Geometry, Net
 from gaussmap.tools.cad.results import PartSpace, space_of
@@ -20,7 +20,7 @@ from scipy.spatial import ConvexHull, cKDTree
 from ...products import covering
 from ...refusals import refused
 from . import made
-from .made import HALF, UNIT, circle, cylinder_faces, face, identical, noted, part, placement
+from .made import HALF, KINDS, UNIT, circle, cylinder_faces, face, identical, noted, part
 
 
 @pytest.fixture(scope="module")
@@ -33,10 +33,10 @@ def plates() -> Part:
     """Return a part with a hole, a sphere whose normals are reversed, a torus, and a tiny face."""
     loops = [made.rectangle(UNIT, UNIT), 0.5 + circle(0.3, 720)]
     plate = face("plane", loops=loops, area=1.0 - np.pi * 0.09)
-    at = [placement((0.5, 0.5, z)) for z in (1.0, 2.0)]
+    at = [made.placement((0.5, 0.5, z)) for z in (1.0, 2.0)]
     ball = face("sphere", 0.25, place=at[0], reversed=True, solid_index=0)
     ring = face("torus", 0.4, 0.1, place=at[1], solid_index=1)
-    tiny = face("plane", u=(0.0, 1e-4), v=(0.0, 2e-4), place=placement((3.0, 0.0, 0.0)))
+    tiny = face("plane", u=(0.0, 1e-4), v=(0.0, 2e-4), place=made.placement((3.0, 0.0, 0.0)))
     return part([plate, ball, ring, tiny], "plates", False)
 
 
@@ -140,7 +140,7 @@ def tips(width: float, power: int, lean: float, count: int) -> Part:
     loop = np.concatenate([sides[0], sides[1][1:-1]])
     ends = tuple(zip(loop.min(axis=0).tolist(), loop.max(axis=0).tolist(), strict=True))
     strip = FaceRecord(Geometry("nurbs", net=net), ends, loops=[loop], area=0.003)
-    return part([face("plane", place=placement((0, 0, -1.0))), strip])
+    return part([face("plane", place=made.placement((0, 0, -1.0))), strip])
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,10 @@ def test_an_angle_takes_few_samples_of_tiny_faces(kind, radius):
     quarter = (0.0, np.pi / 2)
     tiny, normals = face("sphere", radius, u=quarter, v=quarter), np.abs(gm.fibonacci(5000))
     if kind == "cylinder":
-        place, turn = placement((0.0, 0.0, -radius), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)), (HALF[0], 0)
+        place, turn = (
+            made.placement((0.0, 0.0, -radius), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+            (HALF[0], 0),
+        )
         angles = np.linspace(*turn, 2000)
         tiny = face(kind, radius, u=turn, place=place)
         normals = np.stack([0.0 * angles, -np.sin(angles), np.cos(angles)], axis=1)
@@ -349,7 +352,7 @@ def test_candidates_for_normals_are_no_more_than_asked(plates):
 
 
 def test_places_along_borders_are_inside_with_limits_of_their_face():
-    space = space_of(all_kinds(), 1)
+    space = space_of(KINDS, 1)
     lines = space.borders
     assert len(lines.pieces) > 1
     limits = np.split(lines.limits, lines.starts[1:-1])
@@ -365,7 +368,7 @@ def test_places_along_borders_are_inside_with_limits_of_their_face():
 def test_five_percent_of_a_count_go_where_normals_are_missing(monkeypatch):
     filling = pkgutil.resolve_name("gaussmap.runtime.density.filling")
     numbers = noted(monkeypatch, filling, "choose_apart", lambda given, _: given[4])
-    samples = gm.sample(all_kinds(), 300)
+    samples = gm.sample(KINDS, 300)
     assert numbers == [15]
     assert samples.normal_deviation().normal_space < 6.5
 
@@ -382,9 +385,9 @@ def test_candidates_for_missing_normals_are_dense_and_few(monkeypatch):
     """With normals twice as far apart, 2.6° are left; twice as near, there are 7 a sample."""
     by_normals = "cut_by_normals"
     numbers = noted(monkeypatch, PartSpace, by_normals, lambda _, cells: sum(map(len, cells)))
-    gm.sample(all_kinds(), 300)
+    gm.sample(KINDS, 300)
     assert numbers.pop() < 4 * 300
-    assert gm.sample(all_kinds(), 3000).normal_deviation().normal_space < 2.3
+    assert gm.sample(KINDS, 3000).normal_deviation().normal_space < 2.3
 
 
 def test_a_part_has_some_candidates_for_each_sample(cylinder, monkeypatch):
@@ -408,8 +411,8 @@ def test_the_widest_angle_on_a_sphere_is_found(count):
 
 def test_flat_faces_get_their_share():
     """The target density is 0.8 of the mean of κ² at least: a torus has more, a plane not."""
-    kinds = [x.kind for x in all_kinds().faces]
-    counts = np.bincount(gm.sample(all_kinds(), 1000).face_index, minlength=len(kinds))
+    kinds = [x.kind for x in KINDS.faces]
+    counts = np.bincount(gm.sample(KINDS, 1000).face_index, minlength=len(kinds))
     ratio = counts[kinds.index("torus")] / counts[kinds.index("plane")]
     assert ratio == pytest.approx(7.4, rel=0.1)
 
@@ -434,9 +437,9 @@ def test_dense_nets_have_one_first_cell_for_each_span(points, cells):
 
 def test_borders_are_measured_in_groups(monkeypatch):
     """What is found does not depend on the size of the groups."""
-    whole = space_of(made.cylinder(), 1).borders
+    whole = space_of(made.CYLINDER, 1).borders
     monkeypatch.setattr("gaussmap.runtime.density.space.PLACES_AT_A_TIME", 1000)
-    some = space_of(made.cylinder(), 1).borders
+    some = space_of(made.CYLINDER, 1).borders
     assert len(whole.rows) > 2000
     for name in ("pieces", "starts", "places", "rows", "limits"):
         np.testing.assert_array_equal(getattr(whole, name), getattr(some, name))
