@@ -1,4 +1,4 @@
-"""One quadratic Bézier triangle, given by numbers or symbols, and everything derived from it."""
+"""One quadratic Bézier triangle, given by numbers or symbols, and all that is derived from it."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ class BezierTriangle:
     b011; u belongs to b200, v to b020. Coordinates are numbers, SymPy expressions, or strings of
     these. A float is taken at its exact binary value, a string such as "0.1" at its decimal one.
 
-    Results are expressions in the components of `normal`, n_1, n_2, n_3 as in the paper (real
-    symbols, to be found as `patch.normal`) or the three symbols that are given. It need not have
-    length 1. Results that need the support function
-    raise ValueError if the patch has none, because it is developable.
+    Results are expressions in the components of `normal`, by default n_1, n_2, n_3 as in the paper
+    (real symbols, available as `patch.normal`), or the three given symbols. It need not have length
+    1. Results that need the support function raise ValueError if the patch is developable, and so
+    has none.
     """
 
     def __init__(
@@ -50,9 +50,9 @@ class BezierTriangle:
         control_points: Iterable[Iterable[object]],
         normal: Sequence[sp.Symbol] = PAPER_NORMAL,
     ) -> None:
-        """Raise ValueError unless there are six points of three real coordinates, three symbols.
+        """Raise ValueError unless given six points of three real coordinates, and three symbols.
 
-        Texts are read by `reading.read`, which runs nothing.
+        Texts are read by `reading.read`, which runs no code.
         """
         self.normal = _three_symbols(normal)
         reserved = {*normal, u, v}
@@ -64,7 +64,7 @@ class BezierTriangle:
         }
 
     def evaluate(self, formula: Formula) -> dict[str, sp.Expr]:
-        """Return the outputs of a formula for this patch; inputs but a … e, p stay symbols."""
+        """Return the outputs of a formula for this patch; other inputs stay symbols."""
         values = self._values | dict(zip(n.components, self.normal, strict=True))
         return {name: substitute(x, values) for name, x in formula.expanded().items()}
 
@@ -107,7 +107,7 @@ class BezierTriangle:
 
     @cached_property
     def orientation(self) -> sp.Expr:
-        """The cubic form c3(n): n is the oriented normal where it is positive."""
+        """The cubic form c3(n), which is positive if n is the oriented normal."""
         return sp.expand(self.evaluate(ORIENTATION)["c3_twice"] / 2)
 
     @cached_property
@@ -146,7 +146,7 @@ class BezierTriangle:
     ) -> tuple[sp.Matrix, sp.Matrix]:
         """Return the patch with a linear field of normals (Sect. 3): x(s,t) and n(s,t).
 
-        `field` are three vectors n_0, n_1, n_2 for n(s,t) = n_0 + s n_1 + t n_2, by default
+        `field` is three vectors n_0, n_1, n_2 for n(s,t) = n_0 + s n_1 + t n_2, by default
         (s, t, 1); s and t are real symbols of these names. The coordinates of x(s,t) are rational,
         and its normal has the direction of n(s,t). Raises ValueError without a support function.
         """
@@ -158,7 +158,7 @@ class BezierTriangle:
     ) -> sp.Matrix:
         """Return the exact offset at a distance, three rational expressions in s and t (Sect. 3).
 
-        `basis` are three orthonormal vectors e_1, e_2, e_3: the normal has the direction of
+        `basis` is three orthonormal vectors e_1, e_2, e_3: the normal has the direction of
         2s e_1 + 2t e_2 + (1 − s² − t²) e_3. The distance is a number, a SymPy expression or a text.
         Raises ValueError without a support function.
         """
@@ -168,7 +168,7 @@ class BezierTriangle:
         return sp.Matrix([substitute(y, values) for y in MOVED.expanded().values()])
 
     def _point_with(self, normal: Sequence[sp.Expr]) -> sp.Matrix:
-        """Return the point with a normal in s and t: quotients of polynomials."""
+        """Return the point with a normal that depends on s and t, as quotients of polynomials."""
         values = dict(zip(self.normal, normal, strict=True))
         quotients = (sp.fraction(component) for component in self.gradient)
         return sp.Matrix(
@@ -207,8 +207,8 @@ class BezierTriangle:
 def written_in_groups(quotient: sp.Expr, variables: Sequence[sp.Symbol]) -> sp.Expr:
     """Write a quotient of polynomials with rational coefficients as the paper writes (12).
 
-    Terms of the numerator with equal coefficients stand in brackets, largest groups of the highest
-    powers first, and the common factor of the denominator stands before it.
+    Terms of the numerator with equal coefficients are in brackets, largest groups of the highest
+    powers first, and the common factor of the denominator precedes it.
     """
     above, below = (sp.Poly(x, *variables) for x in sp.fraction(quotient))
     if not all(x.is_Rational for x in (*above.coeffs(), *below.coeffs())):
@@ -255,16 +255,16 @@ def _six_points(control_points: Iterable[Iterable[object]]) -> list[list[object]
 def _given_vectors(
     formula: Formula, names: Sequence[sp.Symbol], rows: Iterable[Iterable[object]]
 ) -> list[sp.Expr]:
-    """Return the outputs of a formula for three vectors that are given by numbers."""
+    """Return the outputs of a formula for three vectors of numbers."""
     numbers = [_exact(entry, set()) for row in rows for entry in row]
     values = dict(zip(flat(names), numbers, strict=True))
     return [substitute(output, values) for output in formula.expanded().values()]
 
 
 def _exact(value: object, reserved: set[sp.Symbol]) -> sp.Expr:
-    """Return a coordinate as SymPy sees it, without floating-point numbers.
+    """Return a coordinate as an exact SymPy expression, without floating-point numbers.
 
-    Raises ValueError unless it is real and finite (or a symbol) and leaves n, u, v alone.
+    Raises ValueError unless it is real and finite (or a symbol) and does not use n, u, v.
     """
     try:
         text = isinstance(value, str)

@@ -1,7 +1,7 @@
-"""The best cells of samples and meshes on a quadratic patch, and what they cost.
+"""Optimal cells of samples and meshes on a quadratic patch, and their errors.
 
 Over its tangent plane a surface is z = (κ₁ x² + κ₂ y²)/2, up to terms of third order, and its
-normal turns by its gradient (κ₁ x, κ₂ y). Everything here is exact for that patch.
+normal turns by the gradient (κ₁ x, κ₂ y). All formulas are exact for that patch.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Corner = Sequence[sp.Expr]
 
 
 def height(x: sp.Expr, y: sp.Expr) -> sp.Expr:
-    """Return z over a point of the tangent plane."""
+    """Return the height z over a point of the tangent plane."""
     return (kappa1 * x**2 + kappa2 * y**2) / 2
 
 
@@ -44,16 +44,16 @@ def gradient(corners: Sequence[Corner]) -> sp.Matrix:
 
 
 def turning(corners: Sequence[Corner], place: Corner) -> sp.Expr:
-    """Return the angle between the plane through three points and the normal at a place.
+    """Return the angle between the normal of the plane through three points and that at a point.
 
-    It is that of small angles: the difference of the gradients.
+    For small angles, it is the length of the difference of the gradients.
     """
     off = gradient(corners) - sp.Matrix([kappa1 * place[0], kappa2 * place[1]])
     return sp.sqrt(sp.simplify(off.dot(off)))
 
 
 def legs() -> tuple[sp.Expr, sp.Expr]:
-    """Return the sides of the rectangle of an area, along x and y, in which normals turn least.
+    """Return the sides, along x and y, of the rectangle of given area in which normals turn least.
 
     They turn most between the middle and a corner.
     """
@@ -75,13 +75,13 @@ def _hexagon() -> sp.Expr:
     return found
 
 
-# The angle in the best rectangle over sqrt(κ₁ κ₂ A): also that between the two triangles into which
-# a diagonal cuts it, and the normals at their corners.
+# The angle in the best rectangle over sqrt(κ₁ κ₂ A), which is also the angle between the normals of
+# the two triangles into which a diagonal cuts it, and the normals at their corners.
 ALIGNED = _aligned()
 # The angle in a regular hexagon over κ₁ sqrt(A), where κ₁ = κ₂. Equilateral triangles, of which two
 # have the area A, have the same circumradius.
 HEXAGON = _hexagon()
-# The distance between patch and equilateral triangle over κ₁ A, where κ₁ = κ₂: R²/2 in its middle.
+# The distance between patch and equilateral triangle over κ₁ A, where κ₁ = κ₂: R²/2 at its centre.
 CHORD = HEXAGON**2 / 2
 
 

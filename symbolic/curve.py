@@ -3,12 +3,12 @@
     p(t) = ½ a t² + b t + c,     a, b, c ∈ R²
 
 The normal is the tangent p_t turned clockwise by 90°: outward on a circle that is run through
-counter-clockwise. The curvature is positive there, as the mean curvature of a sphere with outward
-normals is, and negative where a curve is curved towards its normal.
+counter-clockwise. The curvature is positive there, like the mean curvature of a sphere with outward
+normals, and negative where a curve bends towards its normal.
 
-The spline has a piece between any two neighbouring integers and one coefficient for each piece; the
-coefficient is the middle control point of the arc there, and so its functional is that of an edge
-on the border of a surface (`edge_point`, `edge_point_from_vertices`).
+The spline has a piece between any two neighbouring integers and one coefficient for each piece, the
+middle control point of its arc; so its functional is that of an edge on the boundary of a surface
+(`edge_point`, `edge_point_from_vertices`).
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ POWER_FORM = _power_form()
 
 
 def eliminate() -> tuple[sp.Expr, sp.Expr]:
-    """Solve n·p_t = 0 for t; return t and the support function without n·c, in A = n·a, B = n·b."""
+    """Solve n·p_t = 0 for t; return t and the support function less n·c, in A = n·a, B = n·b."""
     h = A * t**2 / 2 + B * t
     (solution,) = sp.solve(sp.diff(h, t), t)
     return solution, sp.cancel(substitute(h, {t: solution}))
@@ -65,7 +65,7 @@ PARAMETER_OF_NORMAL, SUPPORT = eliminate()
 
 
 def _written(target: sp.Expr, derived: sp.Expr) -> sp.Expr:
-    """Return `target`, another writing of `derived` in t; ArithmeticError if they are not equal."""
+    """Return `target`, another form of `derived` in t; ArithmeticError if they are not equal."""
     if sp.cancel(substitute(target, {t: PARAMETER_OF_NORMAL}) - derived) != 0:
         raise ArithmeticError(f"{target} is not {derived}")
     return target
@@ -150,10 +150,10 @@ COEFFICIENTS = mu_l, mu_c, mu_r = plane_vectors(("mu_l", "mu_c", "mu_r"))
 
 
 def b_spline_net() -> sp.Matrix:
-    """Return the control ordinates (piece, place) of the uniform quadratic B-spline.
+    """Return the Bézier ordinates (piece, point) of the uniform quadratic B-spline.
 
-    Solved for: three pieces, C¹ at all four joints, translates summing to 1. Raises ArithmeticError
-    if that leaves more or less than one function.
+    It solves the conditions: three pieces, C¹ at all four joints, translates summing to 1. Raises
+    ArithmeticError unless exactly one function satisfies them.
     """
     net = sp.Matrix(3, 3, sp.symbols("o:9"))
     zero = sp.zeros(1, 3)
@@ -168,7 +168,7 @@ def b_spline_net() -> sp.Matrix:
 
 
 def _net() -> dict[sp.Symbol, sp.Expr]:
-    """Return the control points of an arc in its three coefficients."""
+    """Return the control points of an arc in terms of its three coefficients."""
     weights = b_spline_net()  # the B-spline of the left coefficient ends on this arc
     return {
         point: sp.Add(*(weights[2 - k, place] * mu for k, mu in enumerate(COEFFICIENTS)))
@@ -201,7 +201,7 @@ ARC = Formula.build(
 
 
 def _beyond_end() -> Formula:
-    """Solve the first control point of an arc, of value f, for the coefficient before it."""
+    """Solve for the coefficient before an arc, from its first control point f."""
     f, inside = scalar("f"), scalar("mu_c")
     (solution,) = sp.solve(NET[b20] - f, mu_l)
     return Formula.build(

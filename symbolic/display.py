@@ -1,4 +1,4 @@
-"""Formulas as people write them: plain text and LaTeX."""
+"""Formulas in mathematical notation: plain text and LaTeX."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Length(sp.Expr):
 
 GREEK = {"mu": r"\mu", "kappa": r"\kappa"}
 
-# What a program has to call by one name, as people write it.
+# Expressions in mathematical notation for the single names that programs use.
 AS_WRITTEN = {
     scalar("c3_twice"): 2 * scalar("c_3"),
     scalar("n_n"): cast(sp.Expr, Length(*vectors("n"))) ** 2,
@@ -39,7 +39,7 @@ AS_WRITTEN = {
 
 
 def text(definitions: Sequence[Definition]) -> str:
-    """Return definitions as plain text, one a line; long lines are continued."""
+    """Return definitions as plain text, one per line; long lines are continued."""
     lines = []
     for left, right in _equations(definitions):
         name = TextPrinter().doprint(left)
@@ -84,7 +84,7 @@ def latex_name(name: str, *, bold: bool = False) -> str:
 
 
 class ForPeople(PositiveFirst):
-    """For printers: the products of vectors."""
+    """A mixin for printers: products of vectors."""
 
     dot: str
     cross: str
@@ -109,12 +109,12 @@ class TextPrinter(ForPeople, StrPrinter):
     dot, cross, det = "·", " × ", "det"
 
     def opening(self, size: sp.Expr) -> str:
-        """Return what stands before a sum of terms with a common coefficient."""
+        """Return the text before a sum of terms with a common coefficient."""
         numerator = size.as_numer_denom()[0]
         return "(" if numerator == 1 else f"{numerator}*("
 
     def closing(self, size: sp.Expr) -> str:
-        """Return what stands after a sum of terms with a common coefficient."""
+        """Return the text after a sum of terms with a common coefficient."""
         denominator = size.as_numer_denom()[1]
         return ")" if denominator == 1 else f")/{denominator}"
 
@@ -133,11 +133,11 @@ class MathPrinter(ForPeople, LatexPrinter):
     dot, cross, det = r" \cdot ", r" \times ", r"\det"
 
     def opening(self, size: sp.Expr) -> str:
-        """Return what stands before a sum of terms with a common coefficient."""
+        """Return the text before a sum of terms with a common coefficient."""
         return rf"{self._print(size)} \bigl( "
 
     def closing(self, size: sp.Expr) -> str:
-        """Return what stands after a sum of terms with a common coefficient."""
+        """Return the text after a sum of terms with a common coefficient."""
         return r" \bigr)"
 
     def _print_Symbol(self, expr: sp.Symbol, style: str = "plain") -> str:
@@ -145,13 +145,13 @@ class MathPrinter(ForPeople, LatexPrinter):
 
 
 def _as_written(value: sp.Expr) -> sp.Expr:
-    """Return an expression as people write it."""
+    """Return an expression in mathematical notation."""
     squares = {x: Length(x.args[0]) ** 2 for x in value.atoms(Dot) if x.args[0] == x.args[1]}
     return substitute(value, {**AS_WRITTEN, **squares})
 
 
 def _equations(definitions: Sequence[Definition]) -> list[tuple[sp.Expr, sp.Expr]]:
-    """Return the two sides of definitions as people write them, without x = x."""
+    """Return the two sides of definitions in mathematical notation, without x = x."""
     pairs = ((_as_written(x), _as_written(value)) for x, value in definitions)
     return [(left, right) for left, right in pairs if left != right]
 
@@ -159,7 +159,7 @@ def _equations(definitions: Sequence[Definition]) -> list[tuple[sp.Expr, sp.Expr
 def _rows(
     printer: TextPrinter | MathPrinter, value: sp.Expr, width: int, size: Callable[[str], int]
 ) -> list[str]:
-    """Print a sum in rows that are about as long as `width`."""
+    """Print a sum in rows of about the length `width`."""
     rows = [""]
     for term in _signed_terms(printer, value):
         if rows[-1] and size(rows[-1]) + size(term) > width:
@@ -169,9 +169,9 @@ def _rows(
 
 
 def _signed_terms(printer: TextPrinter | MathPrinter, value: sp.Expr) -> list[str]:
-    """Print the terms of a sum; those with one coefficient, up to the sign, in brackets.
+    """Print the terms of a sum; terms with the same coefficient, up to sign, in brackets.
 
-    Two of several terms are left alone: the brackets would hide more than they save.
+    Two of several terms are not bracketed: brackets would hide more than they save.
     """
     groups: dict[sp.Expr, list[sp.Expr]] = {}
     terms = printer._as_ordered_terms(value) if value.is_Add else [value]
@@ -184,7 +184,7 @@ def _signed_terms(printer: TextPrinter | MathPrinter, value: sp.Expr) -> list[st
 
 
 def _bracketed(printer: TextPrinter | MathPrinter, terms: list[sp.Expr]) -> list[str]:
-    """Print terms with their signs; if there are several, their common coefficient once."""
+    """Print terms with their signs; the common coefficient of several terms is printed once."""
 
     def signed(term: sp.Expr) -> str:
         printed = printer.doprint(term)
@@ -204,5 +204,5 @@ def _coefficient(term: sp.Expr) -> sp.Number:
 
 
 def _typeset_length(source: str) -> int:
-    """Return about how many characters wide LaTeX is when typeset."""
+    """Return the approximate width of typeset LaTeX, in characters."""
     return len(re.sub(r"\\[a-zA-Z]+|[{}_^ \\]", "", source))

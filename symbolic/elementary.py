@@ -1,4 +1,4 @@
-"""The elementary functions that tapes have: Taylor coefficients, their extremes and roundings."""
+"""The elementary functions of tapes: Taylor coefficients, their extrema and roundings."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ __all__ = [
 
 x, y, w = scalar("x"), scalar("y"), scalar("w")
 HIGHEST = 3  # order of Taylor coefficients
-# Errors of functions of the C library, in units of 2⁻⁵³: two units of the last place, which is
-# assumed, and more than what glibc states.
+# Errors of functions of the C library, in units of 2⁻⁵³: two units in the last place, an
+# assumption, and more than glibc states.
 LIBRARY = 4
 
 
 class Function(NamedTuple):
-    """A function of x, and what its derivatives are written in.
+    """A function of x, and the terms in which its derivatives are written.
 
-    Their `values` are the value y of the function and, for some, a second one, w; `named` are terms
-    that several of them share. Where terms of derivatives cancel, the sums of their absolute values
-    are at most `cancelling`.
+    `values` are the value y of the function and, for some, a second one, w; `named` are terms that
+    several derivatives share. If terms of derivatives cancel, the sums of their absolute values are
+    at most `cancelling`.
     """
 
     of: Any
@@ -64,7 +64,7 @@ FUNCTIONS = {
         sp.atan(x), {1 + x**2: 1 / w}, {"w": 1 / (1 + x**2)}, cancelling=sp.Rational(5, 3)
     ),
 }
-# The numbers that stand for operations of tapes.
+# The codes of the operations of tapes.
 # A spline writes four rows, its own and those of three coordinates after it.
 BASIC = (
     "u",
@@ -106,9 +106,9 @@ def _taylor(function: Function) -> Parts:
 
 
 def _critical(function: Function) -> tuple[float, list[float]]:
-    """Return the distance of places where Taylor coefficients may have extremes, or 0, and places.
+    """Return the period of possible extrema of Taylor coefficients, or 0, and isolated ones.
 
-    The distance is that of the zeros of sin and cos. Singularities are places, too.
+    The period is the distance of the zeros of sin and cos. Singularities count as extrema.
     """
     if function.of.has(sp.sin, sp.cos):
         return float(sp.pi / 2), []
@@ -120,13 +120,13 @@ def _critical(function: Function) -> tuple[float, list[float]]:
 
 
 def _zeros(slope: Any, domain: Any) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return the zeros of a derivative; in exponentials SymPy finds them."""
+    """Return the zeros of a derivative; SymPy finds them after rewriting in exponentials."""
     quotient: Any = sp.together(slope.rewrite(sp.exp))
     return sp.solveset(quotient.as_numer_denom()[0], x, domain)
 
 
 def _roundings(expression: Any, known: Mapping[Any, int]) -> int:  # noqa: ANN401
-    """Return how many roundings a term of an expression goes through, with those of symbols."""
+    """Return the number of roundings of a term of an expression, including those of its symbols."""
     if expression in known:
         return known[expression]
     if expression.is_number:
@@ -144,7 +144,7 @@ def _roundings(expression: Any, known: Mapping[Any, int]) -> int:  # noqa: ANN40
 
 def _roundings_of(function: Function, formula: Formula) -> list[int]:
     """Return the roundings of the value of a function and of its Taylor coefficients."""
-    exact = function.of.is_Pow  # up to the roundings of products, quotients and roots
+    exact = function.of.is_Pow  # except for the roundings of products, quotients and roots
     value = _roundings(function.of, {x: 0}) if exact else LIBRARY
     known = {x: 0, y: value, w: value}
     for symbol, term in formula.definitions:
@@ -155,9 +155,9 @@ def _roundings_of(function: Function, formula: Formula) -> list[int]:
 def constants() -> str:
     """Return the codes of operations, and tables with a row for each function.
 
-    The tables hold the roundings of the value and of f1, f2, f3, each an error of 2⁻⁵³ relative to
-    the sum of the absolute values of their terms; the bounds of these sums where terms cancel; and
-    where values and coefficients have extremes.
+    The tables hold the number of roundings of the value and of f1, f2, f3, each an error of 2⁻⁵³
+    relative to the sum of the absolute values of their terms; the bounds of these sums if terms
+    cancel; and the extrema of values and coefficients.
     """
     critical = [_critical(function) for function in FUNCTIONS.values()]
     width = max(len(places) for _, places in critical)
@@ -180,7 +180,7 @@ def constants() -> str:
 
 # --- sine and cosine, quicker than those of the C library in loops --------------------------------
 
-# π/2 as a sum of numbers of PARTS bits, and a rest.
+# π/2 as a sum of numbers of PARTS bits, and a remainder.
 PARTS, PRECISION = (33, 33), 150
 
 
@@ -198,7 +198,7 @@ def _parts_of_quarter() -> list[Any]:
 def _horner(function: Any, first: int, last: int, result: Any = sp.S.Zero) -> Any:  # noqa: ANN401
     """Return the terms of a Taylor series from x^first to x^last over x^first, in z = x².
 
-    The result is that of the higher terms.
+    `result` is the sum of the higher terms.
     """
     for order in range(last, first - 1, -2):
         term = sp.diff(function, x, order).subs(x, 0) / sp.factorial(order)

@@ -39,7 +39,7 @@ __all__ = [
 TEMPLATES = Path(__file__).parent / "templates"
 PLACEHOLDER = re.compile(r"^(?P<indent> *)\{\{(?P<key>\w+)\}\}$", re.MULTILINE)
 WIDTH = 92
-# The tuples of several vectors or numbers: their argument's name, type, sentence and fields.
+# The tuples of several vectors or numbers: name of the argument, type, sentence and fields.
 Group = tuple[str, str, str, tuple[sp.Symbol, ...]]
 HESSIAN = tuple(scalar(f"H_{x}") for x in ("xx", "yy", "zz", "xy", "xz", "yz"))
 GROUPS: tuple[Group, ...] = (
@@ -47,7 +47,7 @@ GROUPS: tuple[Group, ...] = (
     ("arc", "Arc", "The vectors of a quadratic arc, as those of a patch.", plane_vectors("abc")),
     ("hessian", "Hessian", "The entries of a Hessian, a symmetric matrix.", HESSIAN),
 )
-# What an argument has to hold for a formula to take the whole tuple.
+# The fields that a formula must use to take the whole tuple as an argument.
 NEEDED = {
     "patch": set(vectors("abcde")),
     "arc": set(plane_vectors("ab")),
@@ -55,7 +55,7 @@ NEEDED = {
 }
 
 
-# The tuples of numbers: what they are called for each kind of symbol.
+# The names of the tuples of numbers for each kind of symbol.
 KINDS = {
     VectorSymbol: ("Vector", "A vector of R³."),
     PlaneVector: ("PlaneVector", "A vector of R²."),
@@ -65,7 +65,7 @@ KINDS = {
 
 
 def assignments(formula: Formula) -> list[str]:
-    """Return the straight-line code of a formula, one assignment a line."""
+    """Return the straight-line code of a formula, one assignment per line."""
     return [f"{x} = {source_of(value)}" for x, value in straight_line(formula).assignments]
 
 
@@ -76,9 +76,9 @@ def counts(formula: Formula) -> str:
 
 
 def arguments(formula: Formula) -> dict[str, tuple[sp.Symbol, ...]]:
-    """Return the arguments of the function of a formula, each with the inputs that it holds.
+    """Return the arguments of the function of a formula, each with the inputs that it contains.
 
-    An argument is a scalar or a vector, or a `Patch`, `Arc` or `Hessian` that holds several.
+    An argument is a scalar or a vector, or a `Patch`, `Arc` or `Hessian` of several of these.
     """
     result: dict[str, tuple[sp.Symbol, ...]] = {}
     for symbol in formula.inputs:
@@ -125,7 +125,7 @@ def unpacked(argument: str, symbols: Sequence[sp.Symbol]) -> list[str]:
 
 
 def grouped(symbols: Sequence[sp.Symbol]) -> list[tuple[Group | None, tuple[sp.Symbol, ...]]]:
-    """Return symbols in their order, those that fill a tuple together with its group."""
+    """Return symbols in their order; those that fill a tuple are together, with its group."""
     result: list[tuple[Group | None, tuple[sp.Symbol, ...]]] = []
     place = 0
     while place < len(symbols):
@@ -158,7 +158,7 @@ def _kind(symbol: sp.Symbol) -> str:
 
 
 def field(axis: str) -> str:
-    """Return a component as a name, which begins with no digit."""
+    """Return the name of a component, which does not begin with a digit."""
     return "value" if axis == "0" else axis
 
 

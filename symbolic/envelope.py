@@ -1,8 +1,8 @@
 """Any function h on the unit sphere, eqs. (5)-(7): its envelope, and the Hessian of its extension.
 
-Whatever a user writes for h off the sphere, the surface depends on its values on the sphere alone:
-it is that of the extension |n| h(n/|n|), which is homogeneous of degree 1. The gradient of this
-extension is eq. (5) with eq. (6), and its Hessian is derived here.
+The surface depends only on the values of h on the sphere, whatever its extension off the sphere: it
+is the envelope of |n| h(n/|n|), which is homogeneous of degree 1. The gradient of this extension is
+eq. (5) with eq. (6), and its Hessian is derived here.
 """
 
 from __future__ import annotations
@@ -59,13 +59,13 @@ TANGENTIAL = sp.eye(3) - n.column * n.column.T
 
 
 def _on_sphere(expression: sp.Expr) -> sp.Expr:
-    """Return a polynomial in n for |n| = 1 in its normal form, that of degree below 2 in n_z."""
+    """Return the normal form of a polynomial in n for |n| = 1, of degree below 2 in n_z."""
     n_z = n.components[2]
     return cast(sp.Expr, sp.rem(sp.expand(expression), dot(n.column, n.column) - 1, n_z))
 
 
 def derivatives_of_extension(function: sp.Expr, order: int) -> sp.Matrix:
-    """Differentiate |n| f(n/|n|) and put |n| = 1; `function` is f in the components of n."""
+    """Differentiate |n| f(n/|n|) and substitute |n| = 1; `function` is f in the components of n."""
     square = dot(n.column, n.column)
     length = sp.sqrt(square)
     extension = length * substitute(function, {s: s / length for s in n.components})
@@ -79,7 +79,7 @@ def derivatives_of_extension(function: sp.Expr, order: int) -> sp.Matrix:
 def _to_second_order() -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
     """Return a function with the value h, gradient dh, second derivatives h_xx … at c; and c = n.
 
-    No other function need be looked at: first and second derivatives see no more of it.
+    It suffices for all functions: first and second derivatives depend on no higher terms.
     """
     (c,) = vectors("c")
     step = n.column - c.column

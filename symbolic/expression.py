@@ -1,4 +1,4 @@
-"""A support function h(n) that a user gives: from the expression to a function of arrays."""
+"""A user's support function h(n): from the expression to a function of arrays."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ from .simplify import straight_line
 __all__ = ["NORMAL", "array_function", "is_homogeneous"]
 
 NORMAL = n.components
-# Longer expressions are not proved to be homogeneous; the general formula serves them too.
+# Longer expressions are not tested for homogeneity; the general formula holds for them as well.
 LONGEST_PROOF = 2000
-MOST_EXPANDED = 10_000  # terms that the proof may write down
+MOST_EXPANDED = 10_000  # terms to which the proof may expand
 ROUNDING = 1e-9  # relative to h
 GENERIC = sp.Rational(3, 7), sp.Rational(5, 11), sp.Rational(8, 13)
 
@@ -38,8 +38,8 @@ GENERIC = sp.Rational(3, 7), sp.Rational(5, 11), sp.Rational(8, 13)
 def array_function(h: sp.Expr, domain: Boolean | bool = True) -> str:
     """Return a Python module whose `evaluate` returns envelope and Hessian of h for many normals.
 
-    Its arguments are the components of unit normals, arrays (k,). It returns whether they lie in
-    the domain, the components of the points, and the six entries of the Hessians, arrays (k,) or
+    Its arguments are the components of unit normals, arrays (k,). It returns whether they are in
+    the domain, the components of the points, and the six entries of the Hessians, as arrays (k,) or
     constants.
 
     `h` and `domain` are in the real symbols n_x, n_y, n_z. Raises NotImplementedError for functions
@@ -62,8 +62,8 @@ def array_function(h: sp.Expr, domain: Boolean | bool = True) -> str:
 def branch(h: sp.Expr) -> Formula:
     """Return the formula of envelope and Hessian at a unit normal.
 
-    The gradient of what is homogeneous of degree 1 is the envelope already; anything else goes
-    through eqs. (5) and (6).
+    The gradient of a function that is homogeneous of degree 1 is the envelope; for others, eqs. (5)
+    and (6) are used.
     """
     gradient = [_derivative(h, axis) for axis in NORMAL]
     hessian = [_derivative(gradient[i], NORMAL[j]) for i, j in ENTRIES.values()]
@@ -100,10 +100,10 @@ def is_homogeneous(h: sp.Expr, gradient: Sequence[sp.Expr] | None = None) -> boo
 
 
 def _vanishes(defect: sp.Expr, h: sp.Expr) -> bool:
-    """Say whether the defect is rounding at a place: most that are not homogeneous go here.
+    """Return whether the defect at a point is rounding error: this excludes most other functions.
 
-    In float64, as evalf takes exponential time where sums and products are nested, and longer for
-    exp(exp(exp(n_x))).
+    The test is in float64, as evalf takes exponential time for nested sums and products, and longer
+    for exp(exp(exp(n_x))).
     """
     try:
         evaluate = sp.lambdify(NORMAL, [defect, h], modules="math", cse=True)
@@ -114,7 +114,7 @@ def _vanishes(defect: sp.Expr, h: sp.Expr) -> bool:
 
 
 def _expanded_terms(expression: sp.Expr) -> float:
-    """Return at least as many terms as the expression or an argument in it expands to."""
+    """Return an upper bound of the number of terms of the expanded expression or its arguments."""
     inner = [_expanded_terms(cast(sp.Expr, x)) for x in expression.args]
     if expression.is_Add:
         return sum(inner)
@@ -127,12 +127,12 @@ def _expanded_terms(expression: sp.Expr) -> float:
 
 
 def _derivative(expression: sp.Expr, by: sp.Symbol) -> sp.Expr:
-    """Differentiate, away from kinks such as that of |n_x|: there (7) has nothing to say."""
+    """Differentiate, away from kinks such as that of |n_x|, where (7) does not apply."""
     derivative = sp.diff(expression, by)
     kinks = dict.fromkeys(derivative.atoms(sp.DiracDelta), sp.S.Zero)
     return cast(sp.Expr, derivative.xreplace(kinks))
 
 
 def _exact(h: sp.Expr) -> sp.Expr:
-    """Take floats at their binary values, so that sums of them cancel as they should."""
+    """Replace floats by their exact binary values, so that their sums cancel exactly."""
     return cast(sp.Expr, h.xreplace({x: sp.Rational(x) for x in h.atoms(sp.Float)}))

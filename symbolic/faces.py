@@ -1,6 +1,6 @@
 """Faces of CAD parts: surfaces of revolution, offset surfaces, and normals of tori.
 
-The other kinds are surfaces of the catalogue that are placed in space, or rational.
+The other kinds of faces are rational, or surfaces of the catalogue moved in space.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ CURVE: tuple[VectorSymbol, ...] = vectors(("c", "c_v", "c_vv"))
 
 
 def _revolution() -> Content:
-    """Turn a curve c(v) about the z axis, and differentiate."""
+    """Rotate a curve c(v) about the z axis, and differentiate."""
     u, v = sp.symbols("u v", real=True)
     along = [sp.Function(f"c_{axis}")(v) for axis in "xyz"]
     turned = [
@@ -121,7 +121,7 @@ OFFSET_SIDE = Formula.build(
 
 
 def _quotient(field: Iterable[sp.Expr], longitude: sp.Expr, latitude: sp.Expr) -> sp.Expr:
-    """Divide a normal field by the unit vector at two angles; ValueError if they are not along."""
+    """Divide a normal field by the unit vector at two angles; ValueError if not parallel."""
     across = sp.cos(latitude)
     direction = sp.cos(longitude) * across, sp.sin(longitude) * across, sp.sin(latitude)
     quotients = {
@@ -154,7 +154,7 @@ def TORUS_NORMAL() -> Parts:
     "is the sine of the half angle, $y$ is $v$.",
 )
 def CONE_NORMAL() -> Parts:
-    """Turn a line about the z axis, and divide the normal by the unit vector along it."""
+    """Rotate a line about the z axis, and divide the normal by the unit vector along it."""
     u, v, angle, radius = sp.symbols("u v angle radius", real=True)
     across = radius + v * sp.sin(angle)
     position = sp.Matrix([across * sp.cos(u), across * sp.sin(u), v * sp.cos(angle)])

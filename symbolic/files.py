@@ -1,4 +1,4 @@
-"""The files of generated/: which formulas each of them holds, and how its templates are filled."""
+"""The files of generated/: the formulas of each file, and the values for its template."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ PROJECT = GENERATED.parent / "pyproject.toml"
 
 
 def derive() -> dict[str, str]:
-    """Return the texts of all generated files by their names."""
+    """Return the contents of all generated files by their names."""
     sources = {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
         "curve.py": curve_source(),
@@ -119,7 +119,7 @@ def formatted(source: str, name: str = "module.py") -> str:
 
 
 def mathematics(title: str, *parts: str) -> str:
-    """Return a file of formulas and constants, without a loop."""
+    """Return a file of formulas and constants, without loops."""
     imports = (
         "import math\n\nimport numpy as np\n\n"
         "from .vectors import Arc, Hessian, Patch, PlaneVector, Vector, inline"
@@ -133,7 +133,7 @@ def loops(title: str, *parts: str) -> str:
 
 
 def vectors_source() -> str:
-    """Return generated/vectors.py: what formulas take and return, and how they are compiled."""
+    """Return generated/vectors.py: types of arguments and results, and the decorator."""
     imports = "from typing import NamedTuple\n\nimport numba"
     decorator = (
         "# A formula is put into its callers before types are known, and not compiled by itself.\n"
@@ -144,7 +144,7 @@ def vectors_source() -> str:
 
 
 def _docstring(title: str) -> str:
-    """Return the docstring of a generated file: its title, who wrote it and how."""
+    """Return the docstring of a generated file: its title, and the command that wrote it."""
     how = f"make generate`, SymPy {sp.__version__}, float64, no fast-math"
     origin = f"Written by `{how}: do not edit, change symbolic/."
     return render("docstring.py", {"title": f'"""{title}', "origin": origin}).rstrip()
@@ -218,7 +218,7 @@ def rational_source() -> str:
 
 
 def spline_source() -> str:
-    """Return generated/spline.py: where patches are on the grid, and the formulas of fitting."""
+    """Return generated/spline.py: the patches on the grid, and the formulas of fitting."""
     return mathematics(
         "The C1 quadratic spline: the grid, and the formulas of symbolic/spline.py.",
         tables.grid(),
@@ -234,7 +234,7 @@ def support_source() -> str:
 
 
 def support_function_source() -> str:
-    """Return generated/support_function.py: that of a patch and its derivatives, over normals."""
+    """Return generated/support_function.py: the support function of a patch and its derivatives."""
     title = (
         "The support function of a patch, its gradient, its Hessian and the curvatures, at many "
         "normals."
@@ -287,9 +287,10 @@ def surface_tapes_source() -> str:
 
 
 def signatures_source() -> str:
-    """Return generated/surfaces_signatures.pyi: how the functions of gaussmap.surfaces are called.
+    """Return generated/surfaces_signatures.pyi: signatures of the functions of gaussmap.surfaces.
 
-    They are made at run time, from the catalogue; type checkers and completion read this file.
+    The functions are made at run time, from the catalogue; type checkers and completion read this
+    file.
     """
     title = "Signatures of gaussmap.surfaces for type checkers and completion; nothing runs this."
     functions = "\n\n".join(_signature(x) for x in surfaces.CATALOGUE.values())

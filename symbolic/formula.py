@@ -1,7 +1,7 @@
-"""The named formula: one object, from which the kernels are emitted and the LaTeX is printed.
+"""The named formula, an object from which kernels are emitted and LaTeX is printed.
 
-Formulas are written in the notation of vectors, so that they can be shown as people write them;
-what is computed are their components.
+Formulas are written in the notation of vectors, in which they are shown; computations use their
+components.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ Named = Iterable[tuple[str, sp.Expr]]
 
 
 class Content(NamedTuple):
-    """What a formula holds: its inputs, all its definitions, and which of them are outputs."""
+    """The content of a formula: its inputs, all its definitions, and those that are outputs."""
 
     inputs: tuple[sp.Symbol, ...]
     definitions: tuple[Definition, ...]
@@ -31,14 +31,14 @@ class Content(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """What a formula takes, computes on the way and is for."""
+    """The parts of a formula: inputs, intermediate terms and outputs, by name."""
 
     inputs: Iterable[sp.Symbol]
     outputs: Named
     terms: Named = ()
 
     def named(self) -> Content:
-        """Make symbols of names; what is a vector follows from the expression."""
+        """Make symbols of names: scalars or vectors, depending on the expression."""
         terms, outputs = (
             tuple((named(x, y), y) for x, y in row) for row in (self.terms, self.outputs)
         )
@@ -50,8 +50,8 @@ class Formula:
     """A straight-line computation with a name, a description and its place in the paper.
 
     `description` is a sentence or two, with mathematics between dollar signs. `definitions` are in
-    the order in which they are computed: each may use the inputs and what stands before it.
-    `outputs` are those of them that the formula is for; the others are named terms. All three are
+    the order of computation: each may use the inputs and earlier definitions. `outputs` are the
+    results among them; the others are named terms. `inputs`, `definitions` and `outputs` are
     derived when one of them is first read.
     """
 
@@ -71,7 +71,7 @@ class Formula:
         terms: Named = (),
         outputs: Named,
     ) -> Formula:
-        """Make a formula of names and expressions; what is a vector follows from the expression.
+        """Make a formula of names and expressions; a name is a vector if its expression is one.
 
         Raises ValueError if an expression is neither a scalar nor a vector, if a symbol is used
         before it is defined, or is defined twice.
@@ -97,7 +97,7 @@ class Formula:
 
     @property
     def inputs(self) -> tuple[sp.Symbol, ...]:
-        """The symbols that have to be given."""
+        """The symbols of the inputs."""
         return self._content.inputs
 
     @property
@@ -107,7 +107,7 @@ class Formula:
 
     @property
     def outputs(self) -> tuple[sp.Symbol, ...]:
-        """The symbols that the formula is for."""
+        """The symbols of the results."""
         return self._content.outputs
 
     def __eq__(self, other: object) -> bool:
@@ -136,7 +136,7 @@ class Formula:
         return replace(self, derive=lambda: content)
 
     def expanded(self) -> dict[str, sp.Expr]:
-        """Return each component of the outputs as one expression in those of the inputs."""
+        """Return each component of the outputs as an expression in components of the inputs."""
         values: dict[sp.Symbol, sp.Expr] = {}
         plain = self.in_components()
         for symbol, value in plain.definitions:
@@ -144,7 +144,7 @@ class Formula:
         return {symbol.name: values[symbol] for symbol in plain.outputs}
 
     def text(self) -> str:
-        """Return the definitions as plain text, one a line."""
+        """Return the definitions as plain text, one per line."""
         return text(self.definitions)
 
     def latex(self) -> str:
@@ -159,9 +159,9 @@ class Formula:
 def formula(
     name: str, description: str, *, source: str = BEYOND_THE_PAPER
 ) -> Callable[[Callable[[], Parts]], Formula]:
-    """Make a formula of the parts that a function derives: it is called when they are first read.
+    """Make a formula of the parts that a function derives, which is called at the first use.
 
-    This decorates the function, in whose place the formula stands.
+    This is a decorator: the formula replaces the function.
     """
 
     def decorate(parts: Callable[[], Parts]) -> Formula:
@@ -178,7 +178,7 @@ def compose(
     source: str,
     outputs: Iterable[sp.Symbol],
 ) -> Formula:
-    """Chain formulas into one: what an earlier part computes feeds the later ones.
+    """Chain formulas into one: results of earlier parts are inputs of later ones.
 
     Only the definitions that `outputs` need are kept. When it is read, ValueError is raised if two
     parts define a term differently, or none defines an output.

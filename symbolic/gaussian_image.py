@@ -64,7 +64,7 @@ p_u, p_v, N, q, n_t, N0, N1, N2, f1, f2, f3, x = vectors(
     source="Sect. 3.2",
 )
 def BOUNDARY_CONES() -> Parts:
-    """Take half the Hessians of U, V, W with respect to n, row by row, by the chain rule."""
+    """Compute half the Hessians of U, V, W with respect to n, row by row, by the chain rule."""
     forms = {"U": SOLUTION.U, "V": SOLUTION.V, "W": SOLUTION.D - SOLUTION.U - SOLUTION.V}
     pairs = list(zip(LINEAR_FORMS, VECTORS, strict=True))
     rows = {

@@ -56,15 +56,15 @@ def golden_parts(corner: sp.Matrix) -> list[tuple[int, int]]:
 def barycentric(face: tuple[int, int, int]) -> sp.Matrix:
     """Return the matrix that gives α, β, γ of n = α i + β j + γ k, with the corners of a face."""
     corners = sp.Matrix.hstack(*(CORNERS[x] for x in face)).applyfunc(lambda x: x.rewrite(sp.sqrt))
-    # In the field of the numbers a + b √5, which is much faster than with expressions.
+    # Arithmetic in the field of the numbers a + b √5 is much faster than with expressions.
     return DomainMatrix.from_Matrix(corners, extension=True).to_field().inv().to_Matrix()
 
 
 def frame(face: tuple[int, int, int]) -> sp.Matrix:
     """Return the linear map (3, 3) to 2γ − h, 2β − h and h = α + β + γ.
 
-    Divided by h, the first two reach from −1 to 1 on the face, and count the columns and the rows
-    of its lattice; h is the third, the height.
+    Divided by h, the first two range from −1 to 1 on the face, and give the columns and the rows of
+    its lattice; the third, h, is the height.
     """
     alpha, beta, gamma = (barycentric(face).row(k) for k in range(3))
     height = alpha + beta + gamma
@@ -74,8 +74,8 @@ def frame(face: tuple[int, int, int]) -> sp.Matrix:
 def face_radius() -> sp.Expr:
     """Return the tangent of the angle between the middle of a face and its corners.
 
-    Of all small triangles that cut a face into ν² the one in its middle looks largest from the
-    centre; its angle has a tangent ν times smaller.
+    Of the ν² small triangles of a face, the middle one subtends the largest angle at the centre;
+    the tangent of that angle is ν times smaller.
     """
     corners = [CORNERS[x].applyfunc(lambda x: x.rewrite(sp.sqrt)) for x in FACES[0]]
     middle = (corners[0] + corners[1] + corners[2]) / 3
@@ -89,7 +89,7 @@ def face_radius() -> sp.Expr:
 
 
 def tables() -> dict[str, tuple[str, Any]]:
-    """Return what algorithms need, by name: a sentence, and numbers correctly rounded."""
+    """Return the tables for algorithms, by name: a sentence, and correctly rounded numbers."""
     sides = [tuple(combinations(face, 2)) for face in FACES]
     owners = [next(k for k, pairs in enumerate(sides) if edge in pairs) for edge in EDGES]
     holders = [next(k for k, face in enumerate(FACES) if corner in face) for corner in range(12)]

@@ -102,18 +102,18 @@ CONTOUR = Formula.build(
 
 # --- poles ----------------------------------------------------------------------------------------
 #
-# At a pole the parameters are polar coordinates: an angle φ, in place of u, and the distance r from
-# the pole, in place of v. The surface is smooth in s = r cos φ, t = r sin φ.
+# At a pole the parameters u, v are polar coordinates: an angle φ, and the distance r from the pole.
+# The surface is smooth in s = r cos φ, t = r sin φ.
 
 x, y = scalar("x"), scalar("y")
-# The orders of the derivatives, by u or s and by v or t, that the vectors of a 2-jet are.
+# The orders of the derivatives, by u or s and by v or t, in a 2-jet.
 ORDERS = ((2, 0), (1, 1), (0, 2), (1, 0), (0, 1))
 
 
 def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """Return the 2-jet by φ and r of a surface with a 2-jet by s and t, at cos φ = x, sin φ = y.
+    """Return the 2-jet by φ and r of a surface from that by s and t, at cos φ = x, sin φ = y.
 
-    2-jets determine one another, so that the surface may be a quadratic patch.
+    One 2-jet determines the other, so that a quadratic patch can represent the surface.
     """
     phi, psi, radius = sp.symbols("phi psi radius", real=True)
     s = radius * sp.cos(psi) - r * sp.cos(phi)
@@ -138,7 +138,7 @@ def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
     "are the cosine and the sine of the angle.",
 )
 def POLAR_CHART() -> Parts:
-    """Write the 2-jet by s and t, and check it: by the chain rule it has to give that by φ and r.
+    """Write the 2-jet by s and t, and check by the chain rule that it gives the one by φ and r.
 
     Raises ArithmeticError if it does not.
     """
@@ -186,8 +186,9 @@ def AT_POLE() -> Parts:
     return Parts(inputs=known, outputs=[(z.name, solution[z]) for z in X])
 
 
-# Any parameters u around a pole and r, 0 at it, make the surface a graph h over its tangent plane,
-# with coordinates q1, q2. There q_u, q_uu and h_r, h_ur vanish with r, and h_u, h_uu with r².
+# With parameters u around a pole and r, which is 0 at it, the surface is a graph h over its tangent
+# plane with coordinates q1, q2. As r → 0, q_u, q_uu and h_r, h_ur vanish like r, and h_u, h_uu like
+# r².
 
 INVERSE = i11, i12, i21, i22 = tuple(scalar(z) for z in ("i11", "i12", "i21", "i22"))
 SLOPES = G1, G2 = scalar("G1"), scalar("G2")
@@ -224,7 +225,7 @@ GRAPH_SLOPES = Formula.build(
 def GRAPH_AT_POLE() -> Parts:
     """Write the second derivatives of a graph, and check them by the chain rule.
 
-    Raises ArithmeticError if it gives others.
+    Raises ArithmeticError if they differ.
     """
     A, B, C = (scalar(z) for z in "ABC")
     terms = {

@@ -1,4 +1,4 @@
-"""All formulas and surfaces: a page for a code host and a complete LaTeX document."""
+"""All formulas and surfaces as a Markdown page for code hosts and as a LaTeX document."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ ENDS = {
 
 @dataclass(frozen=True)
 class Entry:
-    """What is shown of a formula or a surface; in sentences and facts `$` encloses LaTeX."""
+    """The presentation of a formula or a surface; in sentences and facts `$` encloses LaTeX."""
 
     formula: Formula
     sentence: str
@@ -75,7 +75,7 @@ class Entry:
 
 
 def parts_of(formula: Formula) -> list[str]:
-    """Return the names of the formulas of which one is a part."""
+    """Return the names of the formulas that contain this formula."""
     return wholes(formula, (x for section in FORMULAS.values() for x in section))
 
 
@@ -154,7 +154,7 @@ def _formula(formula: Formula) -> Entry:
 
 
 def _surface(surface: surfaces.ParametricSurface) -> Entry:
-    """Return the entry of a surface: position, domain, parameters, and how u and v end."""
+    """Return the entry of a surface: position, domain, parameters, and boundary conditions."""
 
     def latex(expression: sp.Expr) -> str:
         return latex_of(expression, fold_short_frac=True, mul_symbol=r" \, ")
@@ -183,7 +183,7 @@ def _surface(surface: surfaces.ParametricSurface) -> Entry:
 
 
 def _functions(entry: Entry, found: Mapping[str, list[str]]) -> str:
-    """Say which generated functions a formula is, and what it is a part of."""
+    """Return a fact: the generated functions of a formula, and the formulas that contain it."""
     own = ", ".join(f"`{x}`" for x in found.get(entry.name, ())) or "none"
     parts = ", ".join(f"`{x}`" for x in parts_of(entry.formula))
     return f"Functions: {own}" + (f"; part of {parts}." if parts else ".")
@@ -203,7 +203,7 @@ def _converted(
     mathematics: Callable[[str], str],
     plain: Callable[[str], str] = str,
 ) -> str:
-    """Return a sentence with what stands between dollar signs, and the rest of it, converted."""
+    """Return a sentence with mathematics (between dollar signs) and plain text converted."""
     parts = sentence.split("$")
     parts[::2] = map(plain, parts[::2])
     parts[1::2] = map(mathematics, parts[1::2])
@@ -212,7 +212,7 @@ def _converted(
 
 @cache
 def _vectors() -> set[str]:
-    """Return the names that are those of vectors in all formulas that have them."""
+    """Return the names that are vectors in all formulas that use them."""
     formulas = [x for section in FORMULAS.values() for x in section]
     symbols = {s for x in formulas for s in _symbols(x)}
     scalars = {s.name for s in symbols if not isinstance(s, VectorSymbol)}
@@ -224,7 +224,7 @@ def _symbols(formula: Formula) -> tuple[sp.Symbol, ...]:
 
 
 def _named(source: str, formula: Formula) -> str:
-    """Return mathematics of its sentence as LaTeX, with the names as in the formulas."""
+    """Return mathematics in the sentence of a formula as LaTeX, with the names of the formula."""
     bold = _vectors() | {s.name for s in _symbols(formula) if isinstance(s, VectorSymbol)}
 
     def latex(name: re.Match[str]) -> str:
@@ -235,6 +235,6 @@ def _named(source: str, formula: Formula) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Return plain text for LaTeX, with what stands between backquotes in typewriter letters."""
+    """Return plain text for LaTeX, with text between backquotes in typewriter letters."""
     escaped = re.sub(r"([<>])", r"$\1$", re.sub(r"([_&%#])", r"\\\1", text))
     return re.sub(r"`(.*?)`", r"\\texttt{\1}", escaped)

@@ -1,7 +1,7 @@
 """Formulas as loops over arrays: one row for each set of inputs, the formula written out inside.
 
-They are plain Python; `runtime` compiles them. A loop holds all that it computes, so that it can be
-read, and taken away, by itself.
+They are plain Python; `runtime` compiles them. A loop is self-contained: it can be read and reused
+by itself.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ __all__ = ["array_function", "jet_function", "row_loop", "row_shapes"]
 
 Symbols = Sequence[sp.Symbol]
 
-# What the arrays of some symbols are called; others are called after the symbol.
+# The names of the arrays of some symbols; others are named after the symbol.
 ARRAYS = {"n": "normals", "x": "points", "hessian": "hessians"}
 
 
 def array_function(formula: Formula, over: Collection[sp.Symbol]) -> str:
-    """Return a formula as a function of arrays, which fills those of its outputs.
+    """Return a formula as a function of arrays, which fills the arrays of its outputs.
 
-    The inputs in `over` are arrays with a row for each evaluation; the others are what they are to
+    The inputs in `over` are arrays with a row for each evaluation; the others are passed as to
     `emit.function`.
     """
     given = {x: y for x, y in arguments(formula).items() if not {*y} <= {*over}}
@@ -50,7 +50,7 @@ def array_function(formula: Formula, over: Collection[sp.Symbol]) -> str:
 def jet_function(formula: Formula) -> str:
     """Return the 2-jet of a surface, a formula of u, v and parameters, as a function of arrays.
 
-    Each number is stored where it is computed, which keeps 18 of them short to read.
+    Each of the 18 numbers is stored as soon as it is computed, which keeps the source short.
     """
     u, v, *parameters = formula.inputs
     places = {
@@ -78,10 +78,10 @@ def jet_function(formula: Formula) -> str:
 def row_loop(
     formula: Formula, inputs: Mapping[str, Symbols], outputs: Mapping[str, Symbols]
 ) -> str:
-    """Return the loop that reads each row of the inputs, computes, and writes that of the outputs.
+    """Return the loop that reads each row of the inputs and writes the row of the outputs.
 
-    Inputs and outputs are named as arguments. Raises ValueError if the formula has a name that the
-    loop needs itself.
+    Inputs and outputs are named as arguments. Raises ValueError if the formula uses a name of the
+    loop.
     """
     taken = {"row", *map(_array, inputs), *map(_array, outputs)}
     names = {x.name for x, _ in straight_line(formula).assignments}
@@ -101,7 +101,7 @@ def _array(argument: str) -> str:
 
 
 def _entries(argument: str, symbols: Symbols) -> list[tuple[str, str]]:
-    """Return the numbers in an argument by their names, and where they stand in its array."""
+    """Return the numbers in an argument by their names, with their indices in its array."""
     array = _array(argument)
     if argument == "hessian":
         return [

@@ -1,4 +1,4 @@
-"""Triangles through points of a surface: how their planes deviate from it, and how far to go."""
+"""Triangles through points of a surface: deviation, angles, spacing, and curved edges."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ BORDER_SPACING = Formula.build(
     "perpendicular to the unit normals $n0$ and $n1$ at its ends.",
 )
 def EDGE_OVER_SURFACE() -> Parts:
-    """Solve for how far along n0 + n1 the middle Bézier point of an edge is, by least squares.
+    """Solve for the shift of the middle Bézier point of an edge along n0 + n1, by least squares.
 
     With it the ends of the edge, a quadratic curve, should be perpendicular to the normals: the
     products with n0 and n1 of its first and last leg, e/2 ± beta (n0 + n1), should vanish.

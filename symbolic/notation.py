@@ -134,12 +134,12 @@ def dot(left: sp.Matrix, right: sp.Matrix) -> sp.Expr:
 
 
 def substitute(expression: sp.Expr, values: Mapping[Any, sp.Expr]) -> sp.Expr:
-    """Replace symbols (or other parts) by expressions, all at once."""
+    """Replace symbols (or other subexpressions) by expressions, simultaneously."""
     return cast(sp.Expr, expression.xreplace(values))
 
 
 def derivative(expression: sp.Expr, by: Mapping[VectorSymbol, VectorSymbol]) -> sp.Expr:
-    """Return the derivative of products of vectors, by the derivatives of these; others are 0."""
+    """Return the derivative of products of vectors, given those of vectors, 0 for others."""
     zero: sp.Expr = sp.S.Zero
     if isinstance(expression, VectorProduct):
         factors = [cast(VectorSymbol, x) for x in expression.args]
@@ -158,7 +158,7 @@ def derivative(expression: sp.Expr, by: Mapping[VectorSymbol, VectorSymbol]) -> 
 
 
 def is_vector(expression: sp.Basic) -> bool:
-    """Say whether an expression is a vector; ValueError if it makes no sense, such as a + |a|."""
+    """Return whether an expression is a vector; ValueError if it is ill-formed, such as a + |a|."""
     if isinstance(expression, VectorProduct):
         return isinstance(expression, Cross)
     parts = [is_vector(x) for x in expression.args]
@@ -172,7 +172,7 @@ def is_vector(expression: sp.Basic) -> bool:
 def components(expression: sp.Expr) -> tuple[sp.Expr, ...]:
     """Return the components of a vector, or a scalar in the components of its vectors.
 
-    Raises ValueError if the expression makes no sense, see `is_vector`, or mixes R² and R³.
+    Raises ValueError if the expression is ill-formed, see `is_vector`, or mixes R² and R³.
     """
     plain = substitute(expression, {x: x.in_components() for x in expression.atoms(Dot, Det)})
     if not is_vector(expression):
@@ -183,14 +183,14 @@ def components(expression: sp.Expr) -> tuple[sp.Expr, ...]:
 
 
 def named(name: str, expression: sp.Expr) -> sp.Symbol:
-    """Return a symbol of the kind that the expression is: a scalar or a vector of R² or R³."""
+    """Return a symbol of the same kind as the expression: a scalar or a vector of R² or R³."""
     if not is_vector(expression):
         return scalar(name)
     return (PlaneVector if len(components(expression)) == 2 else VectorSymbol)(name)
 
 
 def flat(symbols: Iterable[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Put components in the place of vector symbols."""
+    """Replace vector symbols by their components."""
     return tuple(
         x for s in symbols for x in (s.components if isinstance(s, VectorSymbol) else (s,))
     )

@@ -1,4 +1,4 @@
-"""Formulas of users as functions: what `make generate` writes into files, without files."""
+"""Users' formulas as compiled functions, with the code that `make generate` writes into files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PREAMBLE = "import math\nfrom typing import NamedTuple\n"
 
 
 def compiled(formula: Formula) -> CompiledFormula:
-    """Return a formula as a function of arrays that Numba compiles, with all that it is made of.
+    """Return a formula as a function of arrays that Numba compiles, with the stages of its making.
 
     It is printed by the same code as the functions in `generated/`. Compilation happens at the
     first call.
@@ -42,7 +42,7 @@ def compiled(formula: Formula) -> CompiledFormula:
     TypeError
         For anything but a Formula.
     ValueError
-        If the formula has a name that its loop needs itself, such as "row".
+        If the formula uses a name of its loop, such as "row".
     NotImplementedError
         For a function of SymPy that cannot be printed.
 
@@ -68,7 +68,7 @@ def compiled(formula: Formula) -> CompiledFormula:
 
 
 class CompiledFormula:
-    """A formula and what is made of it, stage by stage; made by `compiled`.
+    """A formula and its stages, from the derivation to the compiled function; made by `compiled`.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ class CompiledFormula:
 
     @cached_property
     def scalar_function(self) -> Callable[..., Any]:
-        """The function of one set of inputs, which Numba puts into the functions that call it.
+        """The function of one set of inputs, which Numba inlines into its callers.
 
         Vectors are tuples of three numbers, as in `generated/vectors.py`.
         """
@@ -146,14 +146,14 @@ class CompiledFormula:
 
     @cached_property
     def array_function(self) -> Callable[..., Any]:
-        """The compiled function of arrays (k, …) of inputs, which fills those of the outputs."""
+        """The compiled function of arrays (k, …) of inputs, which fills the output arrays."""
         import numba
 
         loop = self._made(self._loop_source, {})
         return numba.njit(nogil=True, error_model="numpy", fastmath=False)(loop)
 
     def __call__(self, *inputs: ArrayLike) -> Any:  # noqa: ANN401 - one array or several
-        """Return the outputs, an array each, of arrays of the inputs, which broadcast together.
+        """Return an array for each output, from arrays of the inputs, which broadcast together.
 
         Scalars are (…), vectors (…, 3) and Hessians (…, 3, 3).
         """
@@ -184,7 +184,7 @@ class CompiledFormula:
         return array_function(self.formula, self.formula.inputs)
 
     def _made(self, source: str, names: dict[str, Any]) -> Callable[..., Any]:
-        """Return the function of a source, which debuggers show."""
+        """Return the function of a source, which debuggers can show."""
         text = f"{PREAMBLE}\n\n{source}"
         place = f"<formula {self.formula.name} {id(self)} {len(text)}>"
         linecache.cache[place] = (len(text), None, text.splitlines(keepends=True), place)
@@ -195,7 +195,7 @@ class CompiledFormula:
 def _rows(
     array: NDArray[np.float64], head: tuple[int, ...], width: tuple[int, ...]
 ) -> NDArray[np.float64]:
-    """Return an array that is broadcast, with one row for each evaluation."""
+    """Return a broadcast array with one row for each evaluation."""
     import numpy as np
 
     return np.ascontiguousarray(np.broadcast_to(array, head + width)).reshape(-1, *width)

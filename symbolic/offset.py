@@ -1,8 +1,8 @@
 """Sect. 3: the linear field of normals of a quadratic patch, and its exact rational offset.
 
-The envelope operator is rational and homogeneous of degree 0 in the normal n. So a patch takes any
-field of normals as its parametrization x(s,t) = ∇h(n(s,t)): a linear field gives a rational one,
-and one whose length is a polynomial, too, gives an offset that is rational without square roots.
+The envelope operator is rational and homogeneous of degree 0 in the normal n. So any field of
+normals gives a parametrization x(s,t) = ∇h(n(s,t)) of a patch: a linear field gives a rational one,
+and a polynomial field of polynomial length gives a rational offset, without square roots.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
     p(u,v) = ½ a u² + b uv + ½ c v² + d u + e v + p,     a, b, c, d, e, p ∈ R³
 
-Everything below is derived once, in the five linear forms A = n·a, B = n·b, C = n·c, P = n·d,
-Q = n·e of the normal n; the vectors come back in by the chain rule, since ∂A/∂n = a and so on.
+All formulas are derived once, in the five linear forms A = n·a, B = n·b, C = n·c, P = n·d, Q = n·e
+of the normal n; the vectors are reintroduced by the chain rule, since ∂A/∂n = a and so on.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def multinomial(i: int, j: int, k: int) -> int:
     source="eqs. (8) and (10)",
 )
 def POWER_FORM() -> Parts:
-    """Take the derivatives of the Bernstein form (10) at the origin: the vectors of eq. (8)."""
+    """Differentiate the Bernstein form (10) at the origin: the vectors of eq. (8)."""
     point = sp.S.Zero
     for control_point in NET:
         i, j, k = (int(x) for x in control_point.name[1:])
@@ -72,7 +72,7 @@ class Elimination:
 
 
 def eliminate() -> Elimination:
-    """Solve n·p_u = n·p_v = 0 for u, v and put the solution into n·p(u,v), as in eq. (9)."""
+    """Solve n·p_u = n·p_v = 0 for u, v and substitute the solution into n·p(u,v), as in eq. (9)."""
     h = A * u**2 / 2 + B * u * v + C * v**2 / 2 + P * u + Q * v
     (solution,) = sp.solve([sp.diff(h, u), sp.diff(h, v)], [u, v], dict=True)
     determinant = sp.det(sp.hessian(h, (u, v)))
@@ -84,7 +84,7 @@ SOLUTION = eliminate()
 
 
 def _written(target: sp.Expr, derived: sp.Expr) -> sp.Expr:
-    """Return `target`, a shorter writing of `derived` in D, U, V, u, v.
+    """Return `target`, a shorter form of `derived` in D, U, V, u, v.
 
     Raises ArithmeticError if they are not equal.
     """
@@ -192,7 +192,7 @@ TANGENTS = Formula.build(
 
 
 def hessian_factors(x: sp.Expr, y: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """Return the rows s, t of −M⁻¹ J, where x, y are those of J and M = [A B; B C]."""
+    """Return the rows s, t of −M⁻¹ J, where x, y are the rows of J and M = [A B; B C]."""
     return (B * y - C * x) / D, (B * x - A * y) / D
 
 
@@ -202,7 +202,7 @@ def hessian_factors(x: sp.Expr, y: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     "are the signed principal radii, positive on a sphere with outward normals.",
 )
 def HESSIAN() -> Parts:
-    """Check Hess h = p_u sᵀ + p_v tᵀ in coordinates with respect to a … e, and write it so."""
+    """Write the Hessian as p_u sᵀ + p_v tᵀ, checked in coordinates with respect to a … e."""
     derived = sp.hessian(SOLUTION.h, LINEAR_FORMS)
     x, y = ([sp.diff(g, by) for g in GRADIENT] for by in (u, v))
     for i, j in product(range(5), repeat=2):
@@ -310,7 +310,7 @@ def bernstein(polynomial: sp.Expr, degree: int) -> dict[str, sp.Expr]:
     source="Sect. 3.2, eq. (14)",
 )
 def CONTROL_NORMALS() -> Parts:
-    """Multiply the linear fields p_u and p_v, both given at the corners, in Bernstein form."""
+    """Multiply the linear fields p_u and p_v, given at the corners, in Bernstein form."""
     corners = {"100": (1, 0), "010": (0, 1), "001": (0, 0)}
     tangents = [
         (f"{field_name}{corner}", sp.expand(substitute(field, {u: sp.S(at[0]), v: sp.S(at[1])})))
@@ -334,7 +334,7 @@ def CONTROL_NORMALS() -> Parts:
     source="Sect. 3.2 and Remark 3.1",
 )
 def PARABOLIC_CUBIC() -> Parts:
-    """Put n = N(u,v) into D; in triple products the quartic terms cancel and a cubic is left."""
+    """Substitute n = N(u,v) into D; the quartic terms cancel in triple products."""
     triples = {"".join(x): Det(*vectors(x)) for x in combinations("abcde", 3)}
     along_u, along_v = (
         {x.name: sp.diff(g, by) for x, g in zip(VECTORS, GRADIENT, strict=True)} for by in (u, v)
@@ -374,7 +374,7 @@ MEASURE = Formula.build(
 
 
 def quadrature_node() -> sp.Rational:
-    """Return t of the three nodes (1 − 2t, t, t), inside, whose mean integrates all quadratics."""
+    """Return t of the three inner nodes (1 − 2t, t, t) whose mean integrates all quadratics."""
     t = sp.Symbol("t")
     second_moment = sp.integrate(u**2, (u, 0, 1 - v), (v, 0, 1))
     return min(sp.solve(((1 - 2 * t) ** 2 + 2 * t**2) / 6 - second_moment, t))

@@ -1,7 +1,7 @@
 """SymPy expressions as Python source for Numba: products instead of powers, exact numbers.
 
-Other powers than short products and square roots, which only the expressions of users have, are
-calls of `math.pow`.
+Powers other than short products and square roots, which occur only in users' expressions, are calls
+of `math.pow`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ LONGEST_PRODUCT = 64  # higher powers are calls of `math.pow`
 
 
 class PositiveFirst:
-    """For printers: the terms of a sum in SymPy's order, but the first positive one in front."""
+    """A mixin for printers: terms of sums in SymPy's order, the first positive one in front."""
 
     def _as_ordered_terms(self, expr: sp.Expr, order: str | None = None) -> list[sp.Expr]:
         terms = cast(Any, super())._as_ordered_terms(expr, order)
@@ -61,7 +61,7 @@ class KernelPrinter(PositiveFirst, PythonCodePrinter):
         return f"({numerator}.0 / {denominator}.0)"
 
     def _factors(self, base: sp.Expr, exponent: sp.Expr) -> list[str]:
-        """Return a power whose exponent is not known to be negative as factors."""
+        """Return the factors of a power whose exponent is not known to be negative."""
         whole, half = divmod(exponent, 1)
         if not whole.is_Integer or half not in (0, sp.S.Half) or whole > LONGEST_PRODUCT:
             return [f"{self.power}({self._print(base)}, {self._print(exponent)})"]
@@ -70,7 +70,7 @@ class KernelPrinter(PositiveFirst, PythonCodePrinter):
 
 
 class ArrayPrinter(KernelPrinter, SciPyPrinter):
-    """Print the same for arrays, with the functions of NumPy and of `scipy.special`."""
+    """Print source for arrays, with the functions of NumPy and of `scipy.special`."""
 
     power, root = "numpy.power", "numpy.sqrt"
 
@@ -107,7 +107,7 @@ def array_source_of(expression: sp.Expr) -> str:
 
 
 def operations(expressions: Iterable[sp.Expr]) -> int:
-    """Return how many operations and calls the source does; constants alone cost nothing."""
+    """Return the number of operations and calls in the source, except in constants."""
     nodes = (node for x in expressions for node in ast.walk(ast.parse(source_of(x))))
     return sum(
         isinstance(node, ast.BinOp | ast.UnaryOp | ast.Call) and _has_variable(node)

@@ -1,4 +1,4 @@
-"""The points of a surface with a given normal, proved: bounds over a cell of its parameters.
+"""Proofs for the points of a surface with a given normal: bounds over a cell of its parameters.
 
 Over a cell, with parameters s and t that are scaled to −1 … 1, the derivatives of n·x by s and t
 are
@@ -7,7 +7,7 @@ are
     Q + B s + C t + ½ (T1 s² + 2 T2 s t + T3 t²)
 
 with the linear forms A, B, C, P, Q in n of the patch that osculates at the centre of the cell, and
-T0 = n·x_sss, T1 = n·x_sst, T2 = n·x_stt, T3 = n·x_ttt at places between the centre and (s, t). The
+T0 = n·x_sss, T1 = n·x_sst, T2 = n·x_stt, T3 = n·x_ttt at points between the centre and (s, t). The
 points with the normals n and −n are the common zeros of both.
 """
 
@@ -38,12 +38,12 @@ y11, y12, y22 = (scalar(f"y{k}") for k in ("11", "12", "22"))
 
 
 def _cubic(thirds: Iterable[sp.Expr], along: sp.Expr, across: sp.Expr) -> sp.Expr:
-    """Return the form with these third derivatives."""
+    """Return the cubic form with these third derivatives."""
     terms = (sp.binomial(3, k) * z * along ** (3 - k) * across**k / 6 for k, z in enumerate(thirds))
     return sum(terms, start=sp.S.Zero)
 
 
-# The cubic model of n·x, less its value, and its derivatives.
+# The cubic model of n·x, without the constant term.
 MODEL = P * s + Q * t + (A * s**2 + 2 * B * s * t + C * t**2) / 2 + _cubic(THIRDS, s, t)
 MODEL_AT = Formula.build(
     "model_at",
@@ -87,7 +87,7 @@ REMAINDERS = Formula.build(
     "patch leaves out of the derivatives.",
 )
 def EXCESSES() -> Parts:
-    """Bound both derivatives over the cell, and the combinations of them that are s and t."""
+    """Bound both derivatives over the cell, and their combinations in s and in t alone."""
     along, across = P + A * s + B * t, Q + B * s + C * t
     linear = {
         "e1": along,
@@ -160,7 +160,7 @@ def _ordinate(polynomial: sp.Expr, places: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
     "that they span.",
 )
 def NORMAL_ORDINATES() -> Parts:
-    """Expand x_s × x_t of the patch by s and t; products of vectors stand for themselves."""
+    """Expand x_s × x_t of the patch by s and t; products of vectors are symbols."""
     along, across = (d, a, b), (e, b, c)
     powers = (sp.S.One, s, t)
     normal = sum(
@@ -185,9 +185,10 @@ def NORMAL_ORDINATES() -> Parts:
 
 # --- no point, two, or a double one ---------------------------------------------------------------
 #
-# Where the Hessian has one small eigenvalue, parameters i along the other eigenvector (x, y) and j
-# across it are used: s = x i − y j, t = y i + x j. The derivative by i of the height along n is 0
-# on one curve i(j), along which the other derivative is strictly convex or concave.
+# If the Hessian has one small eigenvalue, rotated parameters are used, i along the other
+# eigenvector (x, y) and j across it: s = x i − y j, t = y i + x j. The derivative by i of the
+# height along n is 0 on one curve i(j), along which the other derivative is strictly convex or
+# concave.
 
 
 def _turned(thirds: Iterable[sp.Expr]) -> list[sp.Expr]:

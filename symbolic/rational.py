@@ -10,7 +10,7 @@ from .notation import scalar, substitute, vectors
 __all__ = ["FORMULAS"]
 
 SOURCE = "beyond the paper; Piegl & Tiller, The NURBS Book, eqs. (4.19) and (4.20)"
-# The derivatives of order 0, 1 and 2, by the parameters in turn, each after those it needs.
+# The derivatives of order 0, 1 and 2, by parameters, each after those that it needs.
 ORDERS = ("", "u", "v", "uu", "uv", "vv")
 
 
@@ -27,7 +27,7 @@ def _symbol(kind: str, order: str) -> sp.Symbol:
     source=SOURCE,
 )
 def RATIONAL_JET() -> Parts:
-    """Solve for the derivatives of x = A/w in those of A = w x, and write r = 1/w."""
+    """Solve for the derivatives of x = A/w from those of A = w x, with r = 1/w."""
     u, v = sp.symbols("u v")
     point, weight = (sp.Function(name)(u, v) for name in ("x", "w"))
     r = scalar("r")

@@ -1,9 +1,9 @@
-"""Mathematical text of users as SymPy expressions: nothing in a text is ever run as Python.
+"""Users' mathematical texts as SymPy expressions, without running any of it as Python.
 
-The text is parsed by `ast`, and the expression built from the tree: literals, arithmetic, the
-declared symbols, and the constants and functions that stand here. A value is a number or a truth
-value, and each function says which it takes. What SymPy may compute is bounded beforehand:
-constants that are not short are floating-point numbers, and steps and questions are counted.
+The text is parsed by `ast`, and the expression is built from the tree: literals, arithmetic, the
+declared symbols, and the constants and functions listed here. A value is a number or a truth value,
+and each function declares which it takes. SymPy's work is bounded beforehand: long constants become
+floating-point numbers, and operations and queries of signs are counted.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ __all__ = [
 
 LONGEST_TEXT = 20_000  # characters
 DEEPEST_TREE = 200
-MOST_STEPS = 10_000  # literals, names, operations and calls, those of sums counted for each term
+MOST_STEPS = 10_000  # literals, names, operations and calls; in sums, counted for each term
 MOST_BITS = 2048  # twice what a float64 can hold
-MOST_PLAIN_BITS = 32  # of numbers whose roots and functions SymPy may look for exactly
+MOST_PLAIN_BITS = 32  # of numbers whose roots and functions SymPy may evaluate exactly
 MOST_EXACT = 30  # numbers and operations in a constant that is not a float
 
-# A function costs SymPy about a microsecond times the square of the steps of its arguments. Where
-# SymPy asks for their signs it takes as long as for ASKING steps more.
+# A function costs SymPy about a microsecond times the square of the steps of its arguments. A query
+# of their signs costs as much as ASKING more steps.
 MOST_WORK = 1_000_000
 ASKING = 80
 MOST_DERIVED = 100_000  # numbers and operations in second derivatives
@@ -54,7 +54,7 @@ class ReadingError(ValueError):
 
 
 class Function(NamedTuple):
-    """What SymPy calls it, what it takes (numbers or truth values), and how many of them."""
+    """Its name in SymPy, the type of its arguments (numbers or truth values), and their number."""
 
     of: Callable[..., Any]
     takes: type
@@ -69,7 +69,7 @@ def _functions(
 
 
 def _power(base: Any, exponent: Any) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return a power, if its numbers cannot become too large: SymPy computes 2**(10**9) + 1."""
+    """Return a power unless its numbers may be too large: SymPy would compute 2**(10**9) + 1."""
     bits = max((_bits(x) for x in base.atoms(sp.Number)), default=1)
     for term in sp.Add.make_args(exponent):
         if term.is_number and abs(_float(term)) * max(bits, 1) > MOST_BITS:
@@ -98,7 +98,7 @@ FUNCTIONS = {
     "Heaviside": Function(lambda x: (1 + sp.sign(x)) / 2, sp.Expr, ONE, True),
 }
 FUNCTIONS |= {"abs": FUNCTIONS["Abs"], "ln": FUNCTIONS["log"]}
-PARTED = ("Piecewise", "Sum", "Product")  # their arguments are no values
+PARTED = ("Piecewise", "Sum", "Product")  # their arguments are not values
 
 CONSTANTS = {
     name: getattr(sp, name)
@@ -114,7 +114,7 @@ OPERATORS = {
     ast.BitAnd: "And", ast.BitOr: "Or", ast.Invert: "Not", ast.Not: "Not", ast.Pow: "Pow",
 }  # fmt: skip
 
-# What may be left in an expression: whether its own kernel has it, each compiler says itself.
+# The classes that an expression may contain; each compiler checks whether it supports them.
 USABLE = (
     sp.Symbol, sp.Number, sp.NumberSymbol, type(sp.I), sp.Add, sp.Mul, sp.Pow, sp.exp,
     sp.Piecewise, ExprCondPair, sp.Tuple, sp.UnevaluatedExpr, sp.Sum, sp.Product,
@@ -128,12 +128,12 @@ USABLE = (
 
 
 def read(text: str, symbols: Mapping[str, Any] | None = None, exact: bool = False) -> sp.Basic:
-    """Return the expression or condition that a text stands for.
+    """Return the expression or condition of a text.
 
-    Names are first looked up in `symbols`; those that are unknown become symbols. `^` is a power.
-    With `exact`, decimal numbers are fractions, and no number is rounded. Raises ReadingError, with
-    the reason, for anything but real mathematics, for functions that are not in `FUNCTIONS`, and
-    for what is too large.
+    Names are first looked up in `symbols`; unknown names become symbols. `^` is a power. With
+    `exact`, decimal numbers are fractions, and no number is rounded. Raises ReadingError, with the
+    reason, for anything but real mathematics, for functions that are not in `FUNCTIONS`, and for
+    expressions that are too large.
     """
     try:
         expression = _Reader(text, symbols or {}, exact).read()
@@ -148,7 +148,7 @@ def read(text: str, symbols: Mapping[str, Any] | None = None, exact: bool = Fals
 
 
 def refuse_unusable(expression: sp.Basic) -> None:
-    """Raise ReadingError if an expression has parts that no kernel can have, or huge numbers."""
+    """Raise ReadingError for parts that kernels cannot compute, and for huge numbers."""
     if _depth(expression) > DEEPEST_TREE:
         raise ReadingError("it is nested too deeply")
     for part in _parts(expression):
@@ -162,13 +162,13 @@ def refuse_unusable(expression: sp.Basic) -> None:
 
 
 def is_differentiable(expressions: Iterable[sp.Basic]) -> bool:
-    """Say whether SymPy writes the second derivatives of expressions within some seconds."""
+    """Return whether SymPy can derive the second derivatives of expressions within some seconds."""
     known: dict[sp.Basic, tuple[int, int, int]] = {}
     return sum(_sizes(x, known)[2] for x in expressions) <= MOST_DERIVED
 
 
 def _sizes(x: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[int, int, int]:
-    """Return about the sizes of an expression, of its first and of its second derivative."""
+    """Return the approximate sizes of an expression and of its first and second derivatives."""
     if x not in known:
         parts = [_sizes(y, known) for y in x.args if isinstance(y, sp.Basic)]
         size, first, second = (sum(y[k] for y in parts) for k in range(3))
@@ -187,7 +187,7 @@ def _sizes(x: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[in
 
 
 def _depth(expression: sp.Basic) -> int:
-    """Return how many operations and functions stand in one another, at most."""
+    """Return the largest depth of nested operations and functions."""
     levels, part = -1, {expression}
     while part and levels <= DEEPEST_TREE:
         part = {x for y in part for x in y.args if isinstance(x, sp.Basic)}
@@ -196,7 +196,7 @@ def _depth(expression: sp.Basic) -> int:
 
 
 def _parts(expression: sp.Basic) -> Iterator[sp.Basic]:
-    """Yield every different part of an expression once, however deep it is."""
+    """Yield every distinct subexpression once, at any depth."""
     seen, waiting = {expression}, [expression]
     while waiting:
         part = waiting.pop()
@@ -249,7 +249,7 @@ class _Reader:
         return self._of(tree.body)
 
     def _of(self, node: ast.AST, takes: type = sp.Basic) -> Any:  # noqa: ANN401
-        """Return the value of a node: a number (Expr) or a truth value (Boolean), as is taken."""
+        """Return the value of a node, a number (Expr) or a truth value (Boolean), by `takes`."""
         self._count(1)
         if self.depth > DEEPEST_TREE:
             raise ReadingError("it is nested too deeply")
@@ -318,11 +318,11 @@ class _Reader:
         floor = self._value("floor", [quotient], size)
         if isinstance(node.op, ast.FloorDiv):
             return floor
-        self._count(size)  # of what is written twice
+        self._count(size)  # for parts that are written twice
         return left - right * floor
 
     def _chain(self, node: Any, kinds: Any) -> list[Any]:  # noqa: ANN401
-        """Return the terms of a - b + c, or the factors of a / b * c, however many they are."""
+        """Return the terms of a - b + c, or the factors of a / b * c, of any number."""
         operands = []
         while isinstance(node, ast.BinOp) and isinstance(node.op, kinds):
             operands.append((node.op, node.right))
@@ -369,7 +369,7 @@ class _Reader:
         return self._value(name, values, self.steps - start)
 
     def _value(self, name: str, values: list[Any], size: int) -> Any:  # noqa: ANN401
-        """Return a function of values that were made in so many steps."""
+        """Return a function of values that were built in `size` steps."""
         function = FUNCTIONS[name]
         if not self.exact and all(x.is_number for x in values):
             plain = all(map(_is_plain, values))
@@ -393,7 +393,7 @@ class _Reader:
         return sp.Piecewise(*pairs)
 
     def _finite(self, node: ast.Call, name: str) -> Any:  # noqa: ANN401
-        """Return a sum or product over whole numbers, as in Sum(u**k, (k, 0, 3)), term by term."""
+        """Return a sum or product over integers, as in Sum(u**k, (k, 0, 3)), term by term."""
         if len(node.args) != 2 or not isinstance(limits := node.args[1], ast.Tuple):
             _refuse_syntax()
         if len(limits.elts) != 3 or not isinstance(index := limits.elts[0], ast.Name):
@@ -409,7 +409,7 @@ class _Reader:
         return (sp.Add if name == "Sum" else sp.Mul)(*terms)
 
     def _bounded(self, value: Any) -> Any:  # noqa: ANN401
-        """Return a value, constants that are long as floats; ReadingError for what is no number."""
+        """Return a value, long constants as floats; ReadingError if it is not a real number."""
         if isinstance(value, Boolean) or not value.is_number:
             return value
         rounded = _float(value)
@@ -433,7 +433,7 @@ def _is_arithmetic(part: sp.Basic) -> bool:
 
 
 def _is_plain(constant: Any) -> bool:  # noqa: ANN401
-    """Say whether SymPy knows at once where a function of this constant has an exact value."""
+    """Return whether SymPy finds exact values of functions of this constant quickly."""
     factor, rest = constant.as_coeff_Mul()
     return _bits(factor) <= MOST_PLAIN_BITS and (rest is sp.S.One or rest.is_NumberSymbol)
 
@@ -450,7 +450,7 @@ def _float(constant: Any) -> Any:  # noqa: ANN401
 
 
 def _bits(number: Any) -> int:  # noqa: ANN401
-    """Return the length of a number: of numerator or denominator, or the exponent of a float."""
+    """Return the bits of a number: of numerator or denominator, or the exponent of a float."""
     if number.is_Rational and number.is_finite:
         return max(int(number.p).bit_length(), int(number.q).bit_length())
     if number.is_Float:

@@ -19,7 +19,7 @@ __all__ = ["StraightLine", "straight_line"]
 
 @dataclass(frozen=True)
 class StraightLine:
-    """Assignments in their order, and the number of operations as written and as they run."""
+    """Assignments in order, and the numbers of operations as written and as run."""
 
     assignments: tuple[Definition, ...]
     operations_before: int
@@ -64,7 +64,7 @@ def share_subexpressions(definitions: Collection[Definition]) -> list[Definition
 
 
 def other_names(assignments: Iterable[Definition]) -> set[sp.Symbol]:
-    """Return the temporaries whose value is another symbol, perhaps with a sign."""
+    """Return the temporaries whose value is another symbol, possibly with a sign."""
 
     def is_name(value: sp.Basic) -> bool:  # a condition has no sign
         return value.is_Symbol or (isinstance(value, sp.Mul) and (-value).is_Symbol)
@@ -82,7 +82,7 @@ def used_once(assignments: Iterable[Definition]) -> Collection[sp.Symbol]:
 def write_back(
     assignments: Iterable[Definition], needless: Collection[sp.Symbol]
 ) -> list[Definition]:
-    """Put the values of needless symbols where they are used."""
+    """Substitute the values of needless symbols where they are used."""
     values: dict[sp.Symbol, sp.Expr] = {}
     kept: list[Definition] = []
     for symbol, value in assignments:
@@ -95,7 +95,7 @@ def write_back(
 
 
 def name_temporaries(assignments: Collection[Definition]) -> list[Definition]:
-    """Call the temporaries t0, t1, … in their order, but for names that the formula has itself."""
+    """Rename the temporaries to t0, t1, … in order, skipping names that the formula uses."""
     symbols = {y for x, value in assignments for y in (x, *value.atoms(sp.Symbol))}
     taken = {x.name for x in symbols if not x.is_Dummy}
     free = (x for x in sp.numbered_symbols("t", real=True) if x.name not in taken)

@@ -1,4 +1,4 @@
-"""The C¹ quadratic spline on the criss-cross grid, derived from what it has to be.
+"""The C¹ quadratic spline on the criss-cross grid, derived from its defining conditions.
 
 Every grid cell is cut by both diagonals into four triangles. The Zwart-Powell box spline is the
 only C¹ piecewise quadratic on that triangulation whose support is three cells wide (up to a
@@ -75,7 +75,7 @@ def triangles(cells: Iterable[tuple[int, int]]) -> list[Triangle]:
 
 
 def middle(left: Point, right: Point) -> Point:
-    """Return the place of the Bézier point between two corners, or at a corner given twice."""
+    """Return the domain point between two corners, or at a corner given twice."""
     return (left[0] + right[0]) / 2, (left[1] + right[1]) / 2
 
 
@@ -93,10 +93,10 @@ def barycentric(point: Point, corners: Triangle) -> list[Fraction]:
 
 
 def smoothness_conditions(tiles: Iterable[Triangle]) -> list[dict[Point, Fraction]]:
-    """Return the linear conditions on the Bézier ordinates (by place) that make a quadratic C¹.
+    """Return the linear conditions on Bézier ordinates, by domain point, for a C¹ quadratic.
 
     Across an edge PQ between the triangles RPQ and SPQ, with S = αR + βP + γQ, both ordinates next
-    to S are the same combination of three next to R. Those on a common edge are shared by place.
+    to S are the same combination of three next to R. Ordinates on a common edge are the same.
     """
     by_edge: dict[frozenset[Point], list[Point]] = {}
     for tile in tiles:
@@ -116,10 +116,11 @@ def smoothness_conditions(tiles: Iterable[Triangle]) -> list[dict[Point, Fractio
 
 @cache
 def box_spline_net() -> Mapping[Point, Fraction]:
-    """Return the Bézier net of the Zwart-Powell box spline centred at the origin, by place.
+    """Return the Bézier net of the Zwart-Powell box spline centred at the origin, by domain point.
 
-    Solved for: C¹ across every edge, zero with its first derivatives on the border of 3 × 3 cells,
-    translates summing to 1. Raises ArithmeticError if that leaves more or less than one function.
+    It solves the conditions: C¹ across every edge, zero with its first derivatives on the boundary
+    of 3 × 3 cells, translates summing to 1. Raises ArithmeticError unless exactly one function
+    satisfies them.
     """
     cells = list(NEIGHBOURS.values())
     tiles = triangles(cells)
@@ -142,7 +143,7 @@ def box_spline_net() -> Mapping[Point, Fraction]:
 
 
 def net_weights(place: Point) -> dict[str, Fraction]:
-    """Return the weights of the 3 × 3 coefficients in the Bézier point of a cell at that place."""
+    """Return the weights of the 3 × 3 coefficients in a Bézier point, by its domain point."""
     net = box_spline_net()
     weights = {
         name: net.get((place[0] - x, place[1] - y), ZERO) for name, (x, y) in NEIGHBOURS.items()
@@ -161,7 +162,7 @@ def monomial(powers: tuple[int, int], point: tuple[Fraction | int, Fraction | in
 
 
 def ordinate(powers: tuple[int, int], left: Point, right: Point) -> Fraction:
-    """Return the Bézier ordinate of x^r y^s, r + s <= 2, at the middle of two corners."""
+    """Return the Bézier ordinate of x^r y^s, r + s <= 2, between two corners."""
     ends = monomial(powers, left) + monomial(powers, right)
     return 2 * monomial(powers, middle(left, right)) - ends / 2
 
@@ -170,8 +171,8 @@ def ordinate(powers: tuple[int, int], left: Point, right: Point) -> Fraction:
 def functional_moments() -> Mapping[tuple[int, int], Fraction]:
     """Return the coefficient of the central cell that reproduces each monomial x^r y^s, r + s <= 2.
 
-    The coefficients of a quadratic are themselves a quadratic in the place of the cell; it is found
-    by comparing Bézier nets.
+    The coefficients of a quadratic are themselves a quadratic in the centre of the cell, which
+    follows from a comparison of Bézier nets.
     """
     unknown = sp.symbols(f"k:{len(MONOMIALS)}")
     coefficients = {
@@ -194,7 +195,8 @@ def functional_moments() -> Mapping[tuple[int, int], Fraction]:
 def edge_moments() -> Mapping[tuple[int, int], Fraction]:
     """Return the middle Bézier point of an edge along x that reproduces each monomial in x.
 
-    It is the mean of two neighbouring coefficients, which such a monomial does not tell apart.
+    It is the mean of the two coefficients on both sides of the edge, which are equal for such a
+    monomial.
     """
     return {powers: x for powers, x in functional_moments().items() if powers[1] == 0}
 
@@ -203,9 +205,9 @@ def coefficient_weights(
     *orbits: Sequence[Point],
     moments: Moments = functional_moments,
 ) -> list[Fraction]:
-    """Return one weight for each orbit of points: the functional that has these moments.
+    """Return the weights of the functional with these moments, one for each orbit of points.
 
-    By default they are those of a coefficient. Raises ArithmeticError if the orbits do not
+    By default the moments are those of a coefficient. Raises ArithmeticError if the orbits do not
     determine the functional.
     """
     unknown = sp.symbols(f"k:{len(orbits)}")
@@ -260,7 +262,7 @@ def _used(expressions: Iterable[sp.Expr]) -> list[VectorSymbol]:
 
 @cache
 def control_points() -> Mapping[sp.Symbol, sp.Expr]:
-    """Return the control points of the south triangle in the coefficients."""
+    """Return the control points of the south triangle in terms of the coefficients."""
     weights = {point: net_weights(SOUTH[point.name[1:]]) for point in patch.NET}
     return {point: _linear(x.values(), (MU[name] for name in x)) for point, x in weights.items()}
 
@@ -272,7 +274,7 @@ def control_points() -> Mapping[sp.Symbol, sp.Expr]:
     source="Sect. 3.1",
 )
 def CONTROL_NET() -> Parts:
-    """Take the net of the box splines that do not vanish on the cell."""
+    """Sum the nets of the box splines that do not vanish on the cell."""
     net = control_points()
     return Parts(inputs=_used(net.values()), outputs=[(x.name, y) for x, y in net.items()])
 
@@ -288,9 +290,10 @@ SCALE = 8  # the common denominator of the weights of a patch
     source="Sect. 3.1 and eq. (8)",
 )
 def TRIANGLE() -> Parts:
-    """Put the control points into a … e of eq. (8), and into p − mu_c.
+    """Substitute the control points into a … e of eq. (8), and into p − mu_c.
 
-    Raises ArithmeticError if one of them changes under translation, or SCALE is another number.
+    Raises ArithmeticError if one of them changes under translation, or if SCALE is not the common
+    denominator.
     """
     net = control_points()
     found = {x.name: sp.expand(substitute(y, net)) for x, y in patch.POWER_FORM.definitions}
@@ -367,7 +370,7 @@ EDGE_POINT_FROM_VERTICES = _functional(
 
 
 def _solved(name: str, sentence: str, point: str, unknown: str) -> Formula:
-    """Solve a Bézier point of the south triangle, of value f, for one coefficient."""
+    """Solve for one coefficient, from a Bézier point f of the south triangle."""
 
     @formula(name, sentence, source="Sect. 3.1")
     def solved() -> Parts:

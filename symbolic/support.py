@@ -1,4 +1,4 @@
-"""Support functions as such, eqs. (4)-(7): of a patch, of a sphere, of offsets; and curvature."""
+"""Support functions, eqs. (4)-(7), of patches, spheres and offsets; and curvature."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def OFFSET() -> Parts:
 
 
 def _curvature_from_hessian() -> Content:
-    """Read the radii from the characteristic polynomial, of which 0 (with n) is one root."""
+    """Derive the radii from the characteristic polynomial, which has the root 0 (for n)."""
     _, minus_trace, minors, _ = HESSIAN_MATRIX.charpoly().all_coeffs()
     m, q = scalar("m"), scalar("q")
     squares = (x**2 for x in symmetric(named("T")).flat())
@@ -94,7 +94,7 @@ AREA_GROWTH = 1 + 2 * R * H + R**2 * K
 
 
 def _in_radii(value: sp.Expr, change: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Write what K and H say in the principal radii, after these have changed."""
+    """Write K and H in the principal radii, after a change of these."""
     R_1, R_2 = (scalar(name) + change for name in ("R_1", "R_2"))
     return substitute(value, {K: 1 / (R_1 * R_2), H: (R_1 + R_2) / (2 * R_1 * R_2)})
 
@@ -122,7 +122,7 @@ def OFFSET_CURVATURE() -> Parts:
     "passed no radius of curvature; elsewhere the offset is folded.",
 )
 def OFFSET_GROWTH() -> Parts:
-    """Say by which factors (R_i + R)/R_i the radii grow: their product and their mean."""
+    """Write the factors (R_i + R)/R_i by which the radii grow: their product and their mean."""
     factors = [1 + R / scalar(name) for name in ("R_1", "R_2")]
     outputs = {"s": AREA_GROWTH, "m": 1 + R * H}
     expected = factors[0] * factors[1], (factors[0] + factors[1]) / 2
@@ -182,7 +182,8 @@ CURVATURE_AT_NORMAL = compose(
     outputs=[K, H],
 )
 
-# What is emitted as loops over arrays, with the inputs that have a row for each evaluation.
+# The formulas that are emitted as loops over arrays, with the inputs that have a row for each
+# evaluation.
 LOOPS = {
     SUPPORT_FUNCTION: (n,),
     GRADIENT_AT_NORMAL: (n,),

@@ -29,7 +29,7 @@ u, v = sp.symbols("u v", real=True)
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number that a user may choose; `positive` says that it must be greater than zero."""
+    """A number that a user may choose; it must be greater than zero if `positive`."""
 
     symbol: sp.Symbol
     default: sp.Expr
@@ -41,7 +41,7 @@ class Parameter:
 class ParametricSurface:
     """A surface x(u,v) over the rectangle [u0,u1] × [v0,v1], and its boundary conditions.
 
-    `boundary` holds, for u and for v, the conditions at the low and at the high end:
+    `boundary` holds, for u and for v, the conditions at the lower and at the upper bound:
 
     - "open": the surface has an edge here, or is cut off;
     - "periodic": periodic, x(u1 + s, v) = x(u0 + s, v);
@@ -60,7 +60,7 @@ class ParametricSurface:
     boundary: Boundary
 
     def __post_init__(self) -> None:
-        """Refuse unknown symbols, a domain that is no rectangle, boundary conditions that clash."""
+        """Refuse unknown symbols, invalid domains and contradictory boundary conditions."""
         if not self.name.isidentifier():
             raise ValueError(f"{self.name!r} is not an identifier")
         known = {self.u, self.v, *self.defaults}
@@ -86,7 +86,7 @@ class ParametricSurface:
         return {parameter.symbol: parameter.default for parameter in self.parameters}
 
     def derivative(self, *by: sp.Symbol) -> sp.Matrix:
-        """Return the derivative of the position by each of `by` in turn, at first itself."""
+        """Return the derivative of the position by each of `by`, by default the position."""
         return sp.Matrix([sp.diff(x, *by) if by else x for x in self.position])
 
     @cached_property

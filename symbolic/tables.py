@@ -13,19 +13,19 @@ from . import icosahedron, spline
 
 __all__ = ["differences", "grid", "icosahedron_tables"]
 
-# Points of a difference; central ones have this order less one.
+# The number of points of a difference; the order of central ones is one less.
 STENCIL = 9
 WIDTH = 106  # of the longest row of small numbers
 SHORT = 20
 
 
 def grid() -> str:
-    """Return where things are round a cell: what patches and fitting read, in their order.
+    """Return the positions around a cell that patches and fitting read, in order.
 
-    NEIGHBOURS and CORNERS are given for each of the four patches. VERTICES are those that the
-    formula `coefficient_from_vertices` reads, counted from the vertex one step south and one step
-    west of those of the cell; TRIANGLE_NEIGHBOURS are those of the nine coefficients that the
-    formula `triangle` reads.
+    NEIGHBOURS and CORNERS are given for each of the four patches. VERTICES are the vertices that
+    the formula `coefficient_from_vertices` reads, counted from the vertex one step south and one
+    step west of those of the cell; TRIANGLE_NEIGHBOURS are the ones of the nine coefficients that
+    the formula `triangle` reads.
     """
     neighbours, corners = (
         [[list(spline.quarter_turns(x, turns)) for x in places] for turns in range(4)]
@@ -68,13 +68,13 @@ def differences() -> str:
 
 
 def _weights(order: int, places: Sequence[int]) -> list[sp.Expr]:
-    """Return the weights of the values at some places in a derivative at zero."""
+    """Return the weights of the values at given nodes in a derivative at zero."""
     weights: Any = sp.finite_diff_weights(order, list(places), cast(Any, 0))
     return weights[order][-1]
 
 
 def _changes(order: int, places: Sequence[int]) -> list[sp.Expr]:
-    """Return the weights without those of the differences of the places nearest to zero."""
+    """Return the weights minus those of the difference with the nodes nearest to zero."""
     near = sorted(sorted(places, key=abs)[:-2])
     fewer = dict(zip(near, _weights(order, near), strict=True))
     pairs = zip(places, _weights(order, places), strict=True)
@@ -91,7 +91,7 @@ def icosahedron_tables() -> str:
 
 
 def _array(name: str, values: Sequence[object]) -> str:
-    """Return an array as a constant: long rows one a line, short ones and numbers side by side."""
+    """Return an array as a constant: long rows one per line, short ones side by side."""
     text = f"{name} = np.array({values})"
     if len(text) <= WIDTH:
         return text

@@ -1,7 +1,7 @@
-"""Tapes: three expressions in u and v as a list of steps, each of results of earlier ones.
+"""Tapes: three expressions in u and v as a list of steps, each on results of earlier ones.
 
-With numbers a tape gives points, with Taylor polynomials derivatives, with intervals bounds of
-these: `runtime/tape/kernels/points.py` and its neighbours interpret it.
+Evaluated with numbers a tape gives points, with Taylor polynomials derivatives, with intervals
+bounds: `runtime/tape/kernels/points.py` and its neighbours interpret it.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from .elementary import FUNCTIONS
 
 __all__ = ["NoTapeError", "Step", "tape_steps"]
 
-# The name of an operation and its arguments: the numbers of steps; a value, and how far the exact
-# one may be from it ("constant"); a name ("parameter"); a step, and twice the exponent ("power").
+# The name of an operation and its arguments: the indices of steps; a value, and a bound of its
+# error ("constant"); a name ("parameter"); a step, and twice the exponent ("power").
 Step = tuple[Any, ...]
 
 DIGITS = 40  # of constants, before they are rounded
-SLACK = sp.Rational(1001, 1000)  # more than the rounding of a radius
+SLACK = sp.Rational(1001, 1000)  # exceeds the rounding of a radius
 KNOWN = {function.of.func: name for name, function in FUNCTIONS.items() if not function.of.is_Pow}
 REWRITTEN: Mapping[Any, Callable[[Any], sp.Expr]] = {
     sp.tan: lambda x: sp.sin(x) / sp.cos(x),
@@ -39,15 +39,15 @@ REWRITTEN: Mapping[Any, Callable[[Any], sp.Expr]] = {
 
 
 class NoTapeError(ValueError):
-    """An expression holds what no operation of a tape computes; the message says what."""
+    """An expression has an operation that tapes lack; the message names it."""
 
 
 def tape_steps(
     position: Sequence[sp.Expr], u: sp.Symbol, v: sp.Symbol, parameters: Sequence[sp.Symbol] = ()
 ) -> tuple[list[Step], list[int]]:
-    """Return the steps that compute expressions in u, v and parameters, and the steps of these.
+    """Return steps that compute expressions in u, v and parameters, and those of the results.
 
-    Raises NoTapeError if there are none.
+    Raises NoTapeError if an expression has no tape.
     """
     exact = [x.xreplace({y: sp.Rational(y) for y in x.atoms(sp.Float)}) for x in position]
     symbols = sp.numbered_symbols("t", cls=sp.Dummy, real=True)
@@ -63,7 +63,7 @@ def tape_steps(
 
 
 class _Steps:
-    """The steps of expressions; what is there already is not written again."""
+    """The steps of expressions, each written once."""
 
     def __init__(self, symbols: Mapping[sp.Symbol, Step]) -> None:
         self.steps: list[Step] = []
@@ -71,11 +71,11 @@ class _Steps:
         self._found: dict[sp.Expr, int] = {x: self._write(*y) for x, y in symbols.items()}
 
     def define(self, symbol: sp.Symbol, expression: sp.Expr) -> None:
-        """Write the steps of an expression that a symbol stands for."""
+        """Write the steps of an expression that defines a symbol."""
         self._found[symbol] = self.step_of(expression)
 
     def step_of(self, expression: sp.Expr) -> int:
-        """Return the number of the step of an expression, after it is written."""
+        """Return the index of the step of an expression, writing its steps."""
         if expression not in self._found:
             self._found[expression] = self._written(expression)
         return self._found[expression]
@@ -109,7 +109,7 @@ class _Steps:
         return self._write("constant", middle, float(distance * SLACK))
 
     def _power(self, base: sp.Expr, exponent: sp.Expr) -> int:
-        if not (2 * exponent).is_Integer:  # of positive numbers
+        if not (2 * exponent).is_Integer:  # defined for positive numbers
             logarithm = self._write("log", self.step_of(base))
             return self._write("exp", self._write("product", self.step_of(exponent), logarithm))
         return self._write("power", self.step_of(base), int(2 * exponent))
@@ -121,7 +121,7 @@ class _Steps:
         return step
 
     def _write(self, *step: str | float) -> int:
-        """Return the number of a step, which is written unless it is there."""
+        """Return the index of a step, appending it if it is new."""
         number = self._numbers.setdefault(step, len(self.steps))
         if number == len(self.steps):
             self.steps.append(step)

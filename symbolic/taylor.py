@@ -4,9 +4,9 @@ A function of u and v has at a point the Taylor polynomial
 
     a_0 + a_u s + a_v t + a_uu s² + a_uv s t + a_vv t² + …,
 
-whose coefficients are derivatives divided by factorials. Those of products and compositions are
-sums of products with positive factors. If factors |x| <= X have errors up to D_x then a product
-x y z changes by at most
+whose coefficients are derivatives divided by factorials. The coefficients of products and
+compositions are sums of products with positive factors. If factors |x| <= X have errors up to D_x
+then a product x y z changes by at most
 
     D_x Y Z + (X + D_x) D_y Z + (X + D_x) (Y + D_y) D_z.
 """
@@ -26,10 +26,10 @@ __all__ = ["FORMULAS"]
 Coefficients = dict[str, Any]
 Symbols = Mapping[sp.Symbol, sp.Symbol]
 
-# What sizes with their errors are called.
+# The names of absolute values increased by their errors.
 LARGEST = str.maketrans("abf", "stF")
 
-s, t = sp.symbols("s t")  # u and v, from the point on
+s, t = sp.symbols("s t")  # u and v relative to the point
 u = scalar("u")  # the unit of rounding
 
 
@@ -54,20 +54,20 @@ def _product(a: TaylorSymbol, b: TaylorSymbol) -> Coefficients:
 
 
 def _composition(f: Sequence[sp.Symbol], a: TaylorSymbol) -> Coefficients:
-    """Return the coefficients of f_1 p + f_2 p² + …, where p is a without its value."""
+    """Return the coefficients of f_1 p + f_2 p² + …, where p is a without its constant term."""
     p = _polynomial(a) - a.components[0]
     terms = (x * p ** (k + 1) for k, x in enumerate(f))
     return _coefficients(sum(terms, start=sp.S.Zero), a.AXES[1:])
 
 
 def _factors(product: sp.Expr) -> list[Any]:
-    """Return the factors of a product of symbols, those of powers several times."""
+    """Return the factors of a product of symbols, repeated for powers."""
     powers: list[Any] = [x.as_base_exp() for x in sp.Mul.make_args(product)]
     return [base for base, exponent in powers for _ in range(int(exponent))]
 
 
 def _parted(term: Any) -> tuple[Any, list[Any]]:  # noqa: ANN401 - SymPy has no types
-    """Return the number in a product, and the other factors."""
+    """Return the numerical factor of a product, and the other factors."""
     number, rest = term.as_coeff_Mul()
     return number, _factors(rest)
 
@@ -83,7 +83,7 @@ def _change(value: sp.Expr, errors: Symbols, largest: Symbols) -> sp.Expr:
 
 
 def _roundings(value: sp.Expr) -> int:
-    """Return how many roundings a term of a sum of products goes through."""
+    """Return the number of roundings of a term of a sum of products."""
     terms = [_parted(term) for term in sp.Add.make_args(value)]
     return len(terms) - 1 + max(len(row) - (number == 1) for number, row in terms)
 
@@ -91,7 +91,7 @@ def _roundings(value: sp.Expr) -> int:
 def _radii(of: Coefficients, inputs: Sequence[sp.Symbol], errors: Symbols) -> Parts:
     """Return bounds for coefficients that are sums of products.
 
-    Named terms are sizes with their errors, and the coefficients for these.
+    Named terms are absolute values increased by their errors, and the coefficients of these.
     """
     symbols = {x for value in of.values() for x in value.free_symbols}
     largest = {x: scalar(x.name.translate(LARGEST)) for x in errors if x in symbols}

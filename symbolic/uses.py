@@ -1,4 +1,4 @@
-"""Which generated functions a formula is, and what it is a part of."""
+"""The generated functions of a formula, and the formulas that contain it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["functions", "wholes"]
 
 
 def functions(sources: Mapping[str, str]) -> dict[str, list[str]]:
-    """Return the functions `file.name` of each name; `sources` are texts by names of files."""
+    """Return the functions `file.name` of each name; `sources` are contents by file name."""
     result: dict[str, list[str]] = {}
     for file in sorted(x for x in sources if x.endswith(".py")):
         for name in _functions_in(sources[file]):
@@ -22,14 +22,14 @@ def functions(sources: Mapping[str, str]) -> dict[str, list[str]]:
 
 @lru_cache(maxsize=128)
 def _functions_in(source: str) -> tuple[str, ...]:
-    """Return the names of the functions of a module; pages ask again for each formula."""
+    """Return the names of the functions of a module, cached for the pages of many formulas."""
     return tuple(x.name for x in ast.parse(source).body if isinstance(x, ast.FunctionDef))
 
 
 def wholes(formula: Formula, formulas: Iterable[Formula]) -> list[str]:
-    """Return the names of the formulas that do what this one does, and more.
+    """Return the names of the formulas that contain this one.
 
-    They may leave out a few of the outputs: `compose` drops what is not needed.
+    They may lack some of its outputs: `compose` drops those that are not needed.
     """
     mine = dict(formula.definitions)
 

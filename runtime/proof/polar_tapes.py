@@ -1,7 +1,7 @@
-"""Tapes of surfaces in polar coordinates at a pole, and of what is finite there.
+"""Tapes of surfaces in polar coordinates at a pole, and of quotients that are finite there.
 
-The parameters are u around the pole, one of those of the surface, and the distance r of the other
-one from its value at the pole. All points with r = 0 are one, p.
+The parameters are u around the pole, a parameter of the surface, and the distance r of the other
+parameter from its value at the pole. All points with r = 0 are one point p.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ __all__ = ["PolarTapes", "polar_tapes"]
 NAMES = {code: name.lower() for name, code in vars(elementary).items() if isinstance(code, int)}
 PARTNERS = {"sin": "cos", "cos": "sin", "sinh": "cosh", "cosh": "sinh"}
 
-Slope = Traced | float  # the number 0.0 where a row does not depend on the angle
+Slope = Traced | float  # the number 0.0 if a row does not depend on the angle
 
 
 @dataclass(frozen=True)
@@ -38,10 +38,10 @@ class PolarTapes:
 
 
 def polar_tapes(tape: Tape, angle: int, end: float, inward: float) -> PolarTapes | None:
-    """Return the tapes at a pole; None if there are none, as with numbers that are not finite.
+    """Return the tapes at a pole; None if they do not exist, as with infinite numbers.
 
-    Parameter number `angle` runs around it; the other one is end + inward r, where `inward` is 1 or
-    −1.
+    Parameter `angle` (0 or 1) runs around it; the other one is end + inward r, where `inward` is 1
+    or −1.
     """
     if (tape.operations[:, 0] == elementary.SPLINE).any():
         found = spline_quotient(tape, angle, end, inward)

@@ -1,8 +1,8 @@
-"""The quotient of a spline, less a point p, by the distance r from a side that is this point.
+"""The quotient (x − p) / r of a spline x at a side r = 0 of its domain that is the point p.
 
 On the spans next to the side the numerators of x − p are polynomials in r without a constant term,
-so that those of (x − p) / r are polynomials, too. All that a tape does to the coordinates of a
-spline is linear: divided by the weight, turned, and moved.
+so that those of (x − p) / r are polynomials as well. The operations of a tape on the coordinates of
+a spline are linear: division by the weight, rotation, and translation.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ ROUNDINGS = 2.0**10
 
 
 def spline_quotient(tape: Tape, angle: int, end: float, inward: float) -> tuple[Tape, float] | None:
-    """Return the tape of (x − p) / r, with r for the parameter that is end + inward r.
+    """Return the tape of (x − p) / r, where a parameter is end + inward r.
 
-    It is the second parameter; the first one is parameter number `angle`. The tape holds up to a
-    largest r, which is returned, too.
-    None if the side r = 0 of the spline is not one point, or something else depends on r.
+    Its second parameter is r, the first one is parameter `angle` (0 or 1). The largest r for which
+    the tape is valid is returned as well. Return None if the side r = 0 of the spline is not one
+    point, or if another operation depends on r.
     """
     (row,) = np.nonzero(tape.operations[:, 0] == codes.SPLINE)
     turned, total = int(tape.operations[row[0], 3]), tuple(tape.numbers[row[0]].tolist())
@@ -62,7 +62,7 @@ def _quotients(
     middle, scale = frames[axis][at].tolist()
     place = (float(breaks[at]) - middle) * scale
     off = 4.0 * UNIT * (abs(end) + abs(middle)) * scale
-    # Those of the span (spans, p + 1, q + 1, 4), of which the last power is that of r.
+    # The coefficients (spans, p + 1, q + 1, 4) next to the side; the last power is that of r.
     table, errors = (
         np.take(x, at, axis=axis) if axis == 1 else np.take(x, at, axis=0).swapaxes(1, 2)
         for x in (spline.coefficients, spline.errors)
@@ -93,7 +93,7 @@ def _expanded(
 ) -> tuple[Array, Array]:
     """Return the coefficients of powers of inward (s − place), with bounds of their errors.
 
-    The last axis but one is that of the powers of s; the place may be off by a little.
+    The last axis but one is that of the powers of s; the place has an error bound.
     """
     degree = table.shape[2] - 1
     shift, sizes, slopes = np.zeros((3, degree + 1, degree + 1))
@@ -127,9 +127,9 @@ def _as_polynomials(
 
 
 def _replayed(writer: TapeWriter, tape: Tape, first: int, is_rational: bool) -> list[int] | None:
-    """Write a tape for other coordinates of its spline, without what is added to these.
+    """Write a tape for other coordinates of its spline, without the constants added to these.
 
-    None if the outputs are not linear in them.
+    Return None if the outputs are not linear in them.
     """
     rows: list[int] = []
     linear: list[bool] = []
@@ -161,7 +161,7 @@ def _replayed(writer: TapeWriter, tape: Tape, first: int, is_rational: bool) -> 
 def mapped_spline(tape: Tape, matrix: Array) -> Tape | None:
     """Return the tape of matrix x for one of `spline_quotient`; None if numbers are not finite.
 
-    Where it can, the matrix maps coefficients of polynomials: bounds of sums of rows are wider.
+    If possible, the matrix maps coefficients of polynomials: bounds of sums of rows are wider.
     """
     found = _linear_form(tape)
     if found is None:
@@ -187,7 +187,7 @@ def mapped_spline(tape: Tape, matrix: Array) -> Tape | None:
 
 
 def _linear_form(tape: Tape) -> tuple[Array, int | None] | None:
-    """Return a matrix, and the row of the inverse weight, if outputs are these times x, y, z."""
+    """Return matrix and row of the inverse weight if outputs are linear in x, y, z."""
     forms: list[tuple[Array, int | None] | None] = []
     for row, (code, a, b, last) in enumerate(tape.operations.tolist()):
         number, distance = tape.numbers[row].tolist()

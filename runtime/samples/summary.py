@@ -81,7 +81,7 @@ def misfit_clause(report: SamplingReport) -> str:
 
 
 def _filling(samples: SampleArrays) -> int:
-    """Return how many samples are at no prescribed normal nor edge, as far as that is known."""
+    """Return the number of samples neither at a prescribed normal nor on an edge, if known."""
     if "normal_index" not in samples.fields:
         return 0
     filling = samples.normal_index < 0

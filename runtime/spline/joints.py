@@ -76,7 +76,7 @@ class Joints(NamedTuple):
 
 
 def merged_points(points: Array) -> tuple[Array, Indices]:
-    """Return points that differ by more than rounding, and which of them each point (N, 3) is."""
+    """Return points without duplicates up to rounding, and the index of each point (N, 3)."""
     size = float(np.abs(points).max()) * SAME_POINT
     number = np.arange(len(points))
     if size == 0.0:
@@ -216,7 +216,7 @@ class Topology:
 
     @cached_property
     def angles(self) -> Array:
-        """How far normals of a patch (T,) are from those that its joints share, in radians."""
+        """The angle (T,) in radians between normals of a patch and those shared at its joints."""
         found = np.zeros(len(self.nets))
         joints = self.joints
         for side in (0, 1):

@@ -78,7 +78,7 @@ def checked_nodata(nodata: Any) -> float:  # noqa: ANN401
 
 
 def without_nodata(points: Array, nodata: object, name: str) -> Array:
-    """Return points or elevations with NaN in place of `nodata`; a warning if some look like it."""
+    """Return points or elevations with NaN in place of `nodata`; warn of likely missing data."""
     if nodata is None:
         _warn_of_nodata(points, name)
         return points
@@ -126,7 +126,7 @@ def filled(points: Array) -> Array:
 
 
 def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) -> Known | None:
-    """Return which patches of the spline of a grid depend on no point with NaN; None if all do.
+    """Return the patches of the spline of a grid that do not depend on NaN; None if none is NaN.
 
     Raises InputError if no patch is left.
     """
@@ -166,7 +166,7 @@ def known_of_values(
 
 
 def _known(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> Known:
-    """Return the patches without NaN in their control nets, from coefficients (m, n, 3) with it."""
+    """Return the patches without NaN in their control nets, from coefficients (m, n, 3)."""
     for axis, ends in enumerate(boundary):
         rows = np.swapaxes(inner, 0, axis)
         for end, first in zip(ends, (0, -1), strict=True):

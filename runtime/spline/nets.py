@@ -209,7 +209,7 @@ class NetSpline(Spline, NetMethods):
 
     @property
     def cap(self) -> tuple[Array, float]:
-        """A unit vector, and the least cosine of a normal with it; −1 if some are perpendicular."""
+        """A unit vector, and its least cosine with a normal; −1 if a normal is perpendicular."""
         control = self.topology.normals.reshape(-1, 3)
         lengths = np.linalg.norm(control, axis=1)
         unit = control[lengths > 0.0] / lengths[lengths > 0.0, None]

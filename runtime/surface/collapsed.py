@@ -1,9 +1,9 @@
-"""Sides of the domain that are one point: poles, where the surface goes on smoothly, and apexes.
+"""Collapsed sides of the domain: poles, where the surface is smooth, and apexes.
 
-A disk in polar coordinates has such a side, and a sphere has two. Where nobody said how a surface
-ends, they are found from a few points: the side is one point, the other parameter closes smoothly,
-and so do the meridians, each continued by the opposite one. A side that is one point without that
-is an apex: the tip of a cone, the corner of a triangle.
+A disk in polar coordinates has such a side, and a sphere has two. If boundary conditions were not
+declared, poles are detected from a few points: the side is one point, the other parameter is
+smoothly periodic, and each meridian is smoothly continued by the opposite one. Any other collapsed
+side is an apex: the tip of a cone, the corner of a triangle.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from .surface_values import SurfaceValues
 __all__ = ["closed_grid", "found_sides"]
 
 
-# A line along a side has this number of steps, an even one.
+# The number of steps of a line along a side; it is even.
 STEPS = 16
-# The distance of the lines near a side as a part of the domain. Far from the origin, relative to
-# its size, it is the cube root of the rounding, where that is more.
+# The distance of the lines near a side as a part of the domain. For a surface far from the origin,
+# relative to its size, it is the cube root of the rounding error, if that is larger.
 LEAST_STEP, MOST_STEP = 1e-4, 1e-2
-# A surface goes on smoothly if the next point is predicted from three up to this part of the step.
-# The error is of second order relative to the step, which is that of the grid for data.
+# A line is continued smoothly if three points predict the next one up to this part of the step. The
+# error is of second order in the step; for data, the step is that of the grid.
 KINK, KINK_OF_DATA = 1e-2, 0.3
 # Rounding of coordinates, in units of the last place: they come from several operations each.
 ROUNDING = 64.0
@@ -41,8 +41,8 @@ ROUNDING = 64.0
 def found_sides(surface: SurfaceValues) -> tuple[Boundary, int]:
     """Return the boundary conditions of a surface, with poles, and the number of its apexes.
 
-    A surface that cannot be evaluated next to its sides keeps its own: if that is an error, the fit
-    says so at a place of its own.
+    A surface that cannot be evaluated next to its sides keeps its boundary conditions: if that is
+    an error, the fit reports it.
     """
     if any(surface.assumed_open):
         with np.errstate(all="ignore"), suppress(SurfaceError):
@@ -53,9 +53,9 @@ def found_sides(surface: SurfaceValues) -> tuple[Boundary, int]:
 
 
 def closed_grid(points: Array, boundary: Boundary, assumed: Assumed) -> tuple[Array, Boundary]:
-    """Return a grid (m, n, 3) and its boundary conditions, with poles that nobody declared.
+    """Return a grid (m, n, 3) and its boundary conditions, with detected poles.
 
-    Where a parameter turns out to be periodic, the points at its end are left out: they are those
+    If a parameter turns out to be periodic, the points at its end are left out: they repeat those
     at its beginning.
     """
     if not any(assumed) or min(points.shape[:2]) < 4:
@@ -72,9 +72,9 @@ def closed_grid(points: Array, boundary: Boundary, assumed: Assumed) -> tuple[Ar
 class _Sides:
     """The sides of a surface.
 
-    `lines(axis, end)` are the points (3, k, 3) on a side and on two lines next to it, all from one
-    end to the other. `repeated` says whether both ends are there if these are one point. `same` is
-    how far points may be apart that are one, `rounding` that of a combination of a few points.
+    `lines(axis, end)` are the points (3, k, 3) on a side and on two lines next to it, from end to
+    end. `repeated` is True if closed lines repeat their first point. `same` is the largest distance
+    of points that count as one, `rounding` the rounding error of a combination of a few points.
     """
 
     lines: Callable[[int, int], Array]
@@ -87,7 +87,7 @@ class _Sides:
 
     @classmethod
     def of_surface(cls, surface: SurfaceValues) -> _Sides:
-        """Return the sides of a surface, which is evaluated when one of them is looked at."""
+        """Return the sides of a surface, which is evaluated on demand."""
         parts = [low + (high - low) * np.linspace(0.0, 1.0, 5) for low, high in surface.domain]
         size, last_place = _extent(surface.evaluate(parts[0][:, None], parts[1]))
         part = np.clip(np.cbrt(last_place / (size or 1.0)), LEAST_STEP, MOST_STEP)
@@ -116,7 +116,7 @@ class _Sides:
         return cls(lines, boundary, assumed, False, KINK_OF_DATA, same, rounding)
 
     def found(self) -> tuple[Boundary, int]:
-        """Return the boundary conditions with those found, and the number of apexes."""
+        """Return the boundary conditions with detected poles, and the number of apexes."""
         kinds, apexes = [list(ends) for ends in self.boundary], 0
         for axis, end in ((0, 0), (0, 1), (1, 0), (1, 1)):
             if self.assumed[axis] and self.boundary[axis][end] == "open":
@@ -150,7 +150,7 @@ class _Sides:
         return bool(bend < step) and self._goes_on(near, opposite)
 
     def _closes(self, axis: int) -> bool:
-        """Return whether a parameter closes: points and tangents are the same at its two ends."""
+        """Return whether a parameter is periodic: points and tangents are the same at both ends."""
         low, high = self.lines(axis, 0), self.lines(axis, 1)
         is_same = bool(np.abs(low[0] - high[0]).max() <= self.same)
         return is_same and self._goes_on(low, high[1])

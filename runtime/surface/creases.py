@@ -1,8 +1,8 @@
-"""Lines of a NURBS surface where it is not smooth, and whether its ends meet smoothly.
+"""Creases, parameter lines where a NURBS surface is not smooth, and smoothly closed parameters.
 
-Both are measured: a knot may be multiple where the surface is smooth, as in a circle of four arcs.
-A line is smooth if normals do not turn there, and the tangent across it does not change its length
-so much that a spline would fold.
+Both are measured: a surface may be smooth at a multiple knot, as a circle of four arcs is. It is
+smooth across a line if the normal does not jump there, and the length of the tangent across it does
+not jump so much that a spline would fold.
 """
 
 from __future__ import annotations
@@ -17,17 +17,18 @@ from .nurbs import Nurbs
 __all__ = ["CREASE_ANGLE", "creases", "smoothly_closed"]
 
 
-# Degrees: a line where normals turn by less is no crease. Data for CAD are this smooth at best.
+# The least jump of the normal at a crease, in degrees. Data for CAD are this smooth at best.
 CREASE_ANGLE = 0.1
-# The spline of a surface whose x_u jumps from 1 to this length has no folds, but it has from 5 on.
+# The largest smooth ratio of tangent lengths. The spline of a surface has no folds at this ratio,
+# but has some from 5 on.
 LARGEST_JUMP = 3.0
-# Where |x_u × x_v| on a line is below SINGULAR times the largest |x_u| |x_v|, x_u or x_v vanishes;
-# the normal is then taken beside the line, at BESIDE times the knot span.
+# If |x_u × x_v| on a line is below SINGULAR times the largest |x_u| |x_v|, x_u or x_v vanishes; the
+# normal is then taken beside the line, at BESIDE times the knot span.
 BESIDE, SINGULAR = 1e-4, 1e-9
 
 
 def creases(nurbs: Nurbs) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the values of u, and those of v, inside the domain where it is not smooth."""
+    """Return the values of u, and those of v, inside the domain where the surface is not smooth."""
 
     def is_crease(axis: int, t: float) -> bool:
         turning, jump = _turning(nurbs, axis, t, t), _jump(nurbs, axis, t, t)
@@ -40,7 +41,7 @@ def creases(nurbs: Nurbs) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def smoothly_closed(nurbs: Nurbs, axis: int) -> bool:
-    """Say whether the two ends of u (axis 0) or v (axis 1) are one line, and smooth across it."""
+    """Return whether both ends of u (axis 0) or v (axis 1) are one line, smooth across it."""
     low, high = nurbs.domain[axis]
     first, last = (_jets_along(nurbs, axis, end) for end in (low, high))
     if apart(first[:, 0], last[:, 0], nurbs.control_points):
@@ -60,7 +61,7 @@ def _candidates(nurbs: Nurbs, axis: int) -> list[float]:
     found = []
     values, counts = np.unique(knots, return_counts=True)
     for t, count in zip(values.tolist(), counts.tolist(), strict=True):
-        last = int(np.searchsorted(knots, t, "right")) - 1 - count  # that does not vanish at t
+        last = int(np.searchsorted(knots, t, "right")) - 1 - count  # basis function, not 0 at t
         coincide = same[last + count - p : last]
         if low < t < high and (count >= p or coincide.all(axis=0).any()):
             found.append(t)
@@ -70,7 +71,7 @@ def _candidates(nurbs: Nurbs, axis: int) -> list[float]:
 def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
     """Return the largest angle in degrees between the normals below a line and above it.
 
-    The line has two values for the ends of a domain. NaN if no place has normals.
+    For the ends of a domain, the line has two parameter values. NaN if no point has normals.
     """
     low, high = nurbs.domain[axis]
     first = _normals_along(nurbs, axis, (low, below), 1)
@@ -83,7 +84,7 @@ def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
 def _jump(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
     """Return the largest ratio of the lengths of x_u, or x_v, below a line and above it.
 
-    Where both vanish, relative to other places, it counts as 1.
+    Where both vanish, relative to other points, the ratio counts as 1.
     """
     low, high = nurbs.domain[axis]
     first, second = (
@@ -118,7 +119,7 @@ def _normals_along(nurbs: Nurbs, axis: int, part: tuple[float, float], end: int)
 
 
 def _jets_along(nurbs: Nurbs, axis: int, t: float) -> Array:
-    """Return jets (k, 6, 3) at places on the line u = t or v = t: some in each knot span of it."""
+    """Return jets (k, 6, 3) at points on the line u = t or v = t: some in each knot span of it."""
     other = 1 - axis
     knots, (low, high) = nurbs.knots[other], nurbs.domain[other]
     ends = np.unique(np.concatenate([[low, high], knots[(knots > low) & (knots < high)]]))

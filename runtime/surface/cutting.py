@@ -17,7 +17,7 @@ Surface = TypeVar("Surface", bound=SurfaceValues)
 
 
 def pieces_of(surface: Surface) -> tuple[Surface, ...]:
-    """Return the smooth pieces of a surface; a smooth surface itself."""
+    """Return the smooth pieces of a surface; a smooth surface is its only piece."""
     function = surface.function
     if isinstance(function, Moved):
         return _moved_pieces(surface, function)
@@ -32,7 +32,7 @@ def pieces_of(surface: Surface) -> tuple[Surface, ...]:
 
 
 def _moved_pieces(surface: Surface, moved: Moved) -> tuple[Surface, ...]:
-    """Return the pieces of a moved surface: those of the surface before, moved."""
+    """Return the pieces of a moved surface: those of the original surface, moved."""
     pieces = pieces_of(moved.surface)
     if len(pieces) == 1:
         return (surface,)
@@ -41,7 +41,7 @@ def _moved_pieces(surface: Surface, moved: Moved) -> tuple[Surface, ...]:
 
 
 def _moved(surface: Surface, moved: Moved, piece: SurfaceValues) -> Surface:
-    """Return the part of a moved surface that is a piece of the surface before."""
+    """Return the part of a moved surface that is a piece of the original surface."""
     (low, high), along_v = piece.domain
     (at_low, at_high), ends_v = piece.boundary
     if moved.turned:
@@ -67,7 +67,7 @@ def _piece(surface: Surface, function: Differentiable, number: int, domain: Doma
 
 
 def _boundary(surface: SurfaceValues, domain: Domain) -> Boundary:
-    """Return the boundary conditions of a part: new ends are open."""
+    """Return the boundary conditions of a part: its new sides are open."""
     along_u, along_v = (
         _ends(*x) for x in zip(surface.boundary, surface.domain, domain, strict=True)
     )

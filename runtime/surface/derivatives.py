@@ -1,8 +1,8 @@
-"""Derivatives of surfaces: what can give its own, and differences of high order for the others.
+"""Derivatives of surfaces: the interface of functions that have them, and high-order differences.
 
 The differences are of nine points along u, along v and along one diagonal of the parameters. Steps
-are between 1/512 and 1/256 of the domain, and smaller where differences of seven points show that
-the surface varies faster.
+are between 1/512 and 1/256 of the domain, and smaller if differences of seven points show that the
+surface varies faster.
 """
 
 from __future__ import annotations
@@ -43,25 +43,26 @@ NAMES = ("x", "x_u", "x_v", "x_uu", "x_uv", "x_vv")
 EVERYWHERE: Bounds = ((-math.inf, math.inf), (-math.inf, math.inf))
 POINTS = FIRST.shape[1]
 HALF = POINTS // 2
-# A step is the largest power of two up to this part of the domain. (With powers of two parameters
-# and steps are added without rounding, but for the last bit.)
+# A step is the largest power of two up to this part of the domain. (With powers of two, sums of
+# parameters and steps are exact up to the last bit.)
 STEP = 1 / 256
-CHUNK = 4096  # rows for which all points are evaluated at once
-# Where differences of seven points are not the same to SAME, relative to the differences of values,
-# steps are divided by FINER, at most LEVELS times, and as long as that helps or doubt is LARGE.
+CHUNK = 4096  # number of rows that are evaluated at a time
+# If differences of seven and nine points disagree by more than SAME, relative to the differences of
+# values, steps are divided by FINER, at most LEVELS times, as long as that helps or the
+# disagreement is LARGE.
 SAME, LARGE = 1e-10, 1e-3
 FINER, LEVELS = 4.0, 5
-ROUNDING = 2.0**-46  # of values, in which a difference is lost
+ROUNDING = 2.0**-46  # of values: smaller differences are rounding errors
 
 
 class Differentiable(ABC):
-    """A function x(u,v) that knows its derivatives, and may be called by several threads."""
+    """A function x(u,v) with derivatives, which several threads may call."""
 
-    has_gaps: ClassVar[bool] = False  # whether derivatives may be NaN at single places
-    creases: Lines = ((), ())  # values of u, and those of v, inside, where it is not smooth
+    has_gaps: ClassVar[bool] = False  # whether derivatives may be NaN at isolated points
+    creases: Lines = ((), ())  # values of u, and of v, inside the domain where it is not smooth
 
     def restricted(self, domain: Domain) -> Differentiable:
-        """Return it over a part of its domain, evaluated from inside at the ends."""
+        """Return the function over a part of its domain, evaluated from inside at the ends."""
         return self
 
     @property
@@ -78,17 +79,17 @@ class Differentiable(ABC):
         """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) for u (k,) and v (k,)."""
 
     def tape(self) -> Tape | None:
-        """Return the operations of the function; None if these are not known."""
+        """Return the tape of the function; None if it is unknown."""
         return None
 
     def differences(self, boundary: Boundary) -> Differences | None:
-        """Return the differences that the derivatives are, if they are; for boundary conditions."""
+        """Return the `Differences` by which derivatives are computed; None if they are formulas."""
         return None
 
 
 @dataclass(frozen=True)
 class Differences:
-    """The derivatives of a function over a domain, by differences; it is called inside only."""
+    """The derivatives of a function by differences; it is called only inside the domain."""
 
     function: Function
     domain: Domain
@@ -110,7 +111,7 @@ class Differences:
         return jets
 
     def _refined(self, u: Array, v: Array, steps: tuple[float, float], bounds: Bounds) -> Array:
-        """Return 2-jets (k, 6, 3) with smaller steps where these make a difference."""
+        """Return 2-jets (k, 6, 3), with smaller steps where these change them."""
         jets, doubts = differences(self._inside, u, v, steps, bounds)
         rows = np.flatnonzero(doubts > SAME)
         for _ in range(LEVELS):
@@ -128,13 +129,13 @@ class Differences:
 
 
 def _bounds(interval: Interval, ends: BoundaryPair) -> Interval:
-    """Return where open ends are; beyond others the surface goes on."""
+    """Return the bounds at open ends; beyond other ends the surface continues."""
     (low, high), (at_low, at_high) = interval, ends
     return low if at_low == "open" else -math.inf, high if at_high == "open" else math.inf
 
 
 def normals_of_jets(jets: Array) -> Array:
-    """Return the unit normals (k, 3) of 2-jets (k, 6, 3); 0 where there is none."""
+    """Return the unit normals (k, 3) of 2-jets (k, 6, 3); 0 at singular points."""
     tangents = scale_to_one(float(np.abs(jets[:, 1:3]).max(initial=0.0))) * jets[:, 1:3]
     normals = np.cross(tangents[:, 0], tangents[:, 1])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -147,9 +148,9 @@ def power_of_two(value: float) -> float:
 
 
 def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tuple[Array, Array]:
-    """Return parameters of the same points inside the domain, where its ends say how it goes on.
+    """Return parameters of the same points inside the domain, by its boundary conditions.
 
-    Beyond open ends, parameters stay what they are.
+    Beyond open ends, parameters are unchanged.
     """
     places = u.copy(), v.copy()
     for axis in (0, 1):
@@ -182,8 +183,8 @@ def differences(
     steps : (float, float)
         The distances of the points along u and v, preferably powers of two.
     bounds : pair of (float, float)
-        The function is only called between these ends, at least 16 steps apart; points next to them
-        are differentiated by points on one side.
+        The function is called only between these bounds, which are at least 16 steps apart; next to
+        them, differences are one-sided.
 
     Returns
     -------
@@ -192,14 +193,14 @@ def differences(
         value, that of a second derivative h⁸/3150 of the tenth plus 8 ε/h²: ten to a thousand times
         as much next to a bound.
     (k,) float64 array
-        How far they are from differences of seven points, relative to the differences of values:
-        infinity where a value is not finite, but for those of which x itself is not.
+        The distances from differences of seven points, relative to the differences of values;
+        infinity if a value is not finite, unless x itself is not.
 
     """
     (shift_u, inward_u), (shift_v, inward_v) = (
         shifts_inside(x, step, *ends) for x, step, ends in zip((u, v), steps, bounds, strict=True)
     )
-    # Along the diagonal that leads away from the nearer bounds there is room for both shifts.
+    # The diagonal that leads away from the nearer bounds has room for both shifts.
     shift = np.maximum(np.abs(shift_u), np.abs(shift_v)) * inward_u
     sign = inward_u * inward_v
     central = np.arange(-HALF, HALF + 1)[:, None]
@@ -229,7 +230,7 @@ def differences(
 
 
 def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
-    """Return what two points less change, relative to the differences (9, k, 3) of values."""
+    """Return the change by omitting two points, relative to the differences (9, k, 3) of values."""
     changes = np.array([weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
     size, change = (np.abs(x).max(axis=0).max(axis=1) for x in (values, changes))
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -239,9 +240,9 @@ def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
 def shifts_inside(
     values: Array, step: float | Array, low: float | Array, high: float | Array
 ) -> tuple[Indices, Indices]:
-    """Return the steps by which points are shifted to stay inside, and the sign of the way in.
+    """Return the steps by which points are shifted to stay inside, and the inward sign.
 
-    Step and ends are those of all values (k,), or arrays (k,).
+    Step and ends are common to all values (k,), or arrays (k,).
     """
     before = np.clip(np.floor((values - low) / step), 0, HALF)
     after = np.clip(np.floor((high - values) / step), 0, HALF)
@@ -256,7 +257,7 @@ def nodes_between(
     low: float | Array,
     high: float | Array,
 ) -> Array:
-    """Return the places of a difference; rounding takes none of them out of the bounds."""
+    """Return the nodes of a difference; rounding does not move them out of the bounds."""
     return np.clip(values + offsets * step, np.minimum(low, values), np.maximum(high, values))
 
 

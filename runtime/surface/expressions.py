@@ -1,6 +1,6 @@
 """Texts and SymPy expressions of a user: the way from the runtime to SymPy.
 
-What texts may hold stands in `symbolic.reading`. SymPy is imported on first use.
+`symbolic.reading` defines the language of texts. SymPy is imported at first use.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ __all__ = [
 
 
 def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tuple[Any, ...]:
-    """Return three expressions in two symbols, or two in one; InputError if they are not.
+    """Return three expressions in two symbols, or two in one; InputError if they are unusable.
 
-    They are in these symbols whatever is assumed about those of the same name in an expression.
+    Symbols of the same name in an expression are replaced by these, whatever their assumptions.
     """
     by_name = {symbol.name: symbol for symbol in symbols}
     expressions = [as_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
@@ -47,9 +47,9 @@ def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tup
 
 
 def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
-    """Return a domain or an interval with floats for its ends, which may be expressions.
+    """Return a domain or an interval with floats for its bounds, which may be expressions.
 
-    Raises InputError if it is none, with the form that it must have.
+    Raises InputError, with the required form, if it is invalid.
     """
 
     def number(end: object) -> Any:  # noqa: ANN401
@@ -58,7 +58,7 @@ def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
 
     try:
         return number(domain)
-    except (TypeError, ValueError, OverflowError, RecursionError):  # of a list that holds itself
+    except (TypeError, ValueError, OverflowError, RecursionError):  # lists that hold themselves
         raise InputError(f"domain must be {form} in numbers, not {shown(domain)}.") from None
 
 
@@ -107,9 +107,9 @@ def _symbol(entry: object) -> sympy.Symbol | None:
 
 
 def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return an expression or the one that a text stands for, in which `symbols` come first.
+    """Return an expression, or that of a text, whose names are first looked up in `symbols`.
 
-    Raises InputError with the reason if it is none, or holds what kernels cannot compute.
+    Raises InputError, with the reason, if it is invalid, or if kernels cannot compute it.
     """
     import sympy as sp
 
@@ -120,7 +120,7 @@ def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 -
 
 
 def as_condition(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return the Boolean of SymPy that is given, or that a text stands for; InputError if none."""
+    """Return a Boolean of SymPy, or read one from a text; InputError if it is invalid."""
     from sympy.logic.boolalg import Boolean
 
     condition = _read(entry, symbols)
@@ -130,9 +130,9 @@ def as_condition(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - 
 
 
 def _read(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401
-    """Return what SymPy makes of a text, a number or an expression; None for anything else.
+    """Return the SymPy object for a text, a number or an expression; None for anything else.
 
-    SymPy itself would run texts as Python, those in lists as well, so that it gets none.
+    SymPy would run texts as Python, even those in lists, so that none is passed to it.
     """
     import sympy as sp
 

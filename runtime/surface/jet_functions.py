@@ -1,4 +1,4 @@
-"""Where the derivatives of a surface come from: its formulas, its user, or differences."""
+"""The source of the derivatives of a surface: its formulas, its user, or differences."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ Evaluation = Callable[[Array, Array], ArrayLike]
 
 # Given derivatives are compared with numerical ones at points (i/√2, i/√3) modulo 1 of the domain.
 PLACES = 48
-# They may differ by TOLERANCE, relative to the largest of their kind, and by DOUBT times the change
-# of the numerical ones when their steps are doubled.
+# They may differ by TOLERANCE, relative to the largest derivative of the same order, plus DOUBT
+# times the change of the numerical ones when their steps are doubled.
 TOLERANCE = 1e-5
 DOUBT = 10.0
 
@@ -48,9 +48,9 @@ def jet_function(
 
 
 def guarded(function: Evaluation, shape: tuple[int, ...], label: str) -> Function:
-    """Return a user's callable, whose results have one shape, and which one thread calls at a time.
+    """Return a user's callable with checked results, which only one thread calls at a time.
 
-    It raises SurfaceError unless the callable returns arrays of that shape for each place.
+    It raises SurfaceError unless the callable returns an array of `shape` for each parameter pair.
     """
     lock = threading.RLock()
 
@@ -62,7 +62,7 @@ def guarded(function: Evaluation, shape: tuple[int, ...], label: str) -> Functio
 
 
 def filled(function: Differentiable, numerical: Differences) -> Function:
-    """Return the derivatives of a formula, with numerical ones where these are not finite."""
+    """Return the derivatives of a formula, with numerical ones where they are not finite."""
 
     def jets(u: Array, v: Array) -> Array:
         found = function.jets(u, v)
@@ -77,7 +77,7 @@ def filled(function: Differentiable, numerical: Differences) -> Function:
 def compare(derivatives: Function, numerical: Differences, label: str) -> None:
     """Raise SurfaceError if derivatives are not finite, or not those of the function.
 
-    The message says which one, where, and by how much.
+    The message has the derivative, the parameters, and the difference.
     """
     steps = np.arange(1, PLACES + 1)
     u, v = (
@@ -93,7 +93,7 @@ def compare(derivatives: Function, numerical: Differences, label: str) -> None:
         allowed = TOLERANCE * sizes + DOUBT * np.abs(found - coarse).max(axis=-1)
         wrong: Flags = known & ~(error <= allowed)
     if wrong.any():
-        order = int(np.argmax(wrong.any(axis=0)))  # the first that is wrong explains the others
+        order = int(np.argmax(wrong.any(axis=0)))  # the first wrong one explains the others
         place = int(np.argmax(np.where(wrong, error, -1.0)[:, order]))
         raise SurfaceError(
             f"derivatives of {label} contradict it: {NAMES[order]} at u = {float(u[place])}, v = "

@@ -1,6 +1,6 @@
 """Callables of SymPy expressions: points, and derivatives; pickled as the expressions.
 
-Derivatives are those of a tape where there is one; else they are symbolic, as for |u|.
+Derivatives are those of a tape if there is one; otherwise they are symbolic, as for |u|.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Expressions", "compiled"]
 
-PROBES = np.array([0.25, 0.75])  # for which derivatives are tried, whatever they are there
+PROBES = np.array([0.25, 0.75])  # parameters for a trial of the derivatives, whatever their values
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +59,11 @@ class Expressions(Differentiable):
         return result.reshape(-1, len(NAMES), 3)
 
     def tape(self) -> Tape | None:
-        """Return the operations of a surface; None if the expressions hold what tapes have not."""
+        """Return the tape of a surface; None if the expressions have operations that tapes lack."""
         return self._tape
 
     def __getstate__(self) -> dict[str, object]:
-        """Return what is pickled: the expressions without the functions made of them."""
+        """Return the pickled state: the expressions without the functions made of them."""
         return {"expressions": self.expressions, "symbols": self.symbols}
 
     @cached_property
@@ -77,7 +77,7 @@ class Expressions(Differentiable):
 
     @cached_property
     def _derivatives(self) -> Callable[..., Any] | None:
-        """The function of 18 expressions, or None if there is none."""
+        """The NumPy function of the 18 components of the 2-jet, or None if there is none."""
         expressions = _jet(self.expressions, self.symbols)
         if expressions is None:
             return None
@@ -85,7 +85,7 @@ class Expressions(Differentiable):
             function = _lambdified(self.symbols, expressions)
             with np.errstate(all="ignore"):
                 values = [np.asarray(x) for x in function(PROBES, PROBES)]
-        except Exception:  # what NumPy lacks, and what SymPy's printer writes for it
+        except Exception:  # functions that NumPy lacks, and SymPy's output for them
             return None
         return function if all(x.dtype.kind in "fi" for x in values) else None
 
@@ -101,7 +101,7 @@ def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expres
 
 
 def _jet(expressions: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> list[Any] | None:
-    """Return positions and derivatives, one after the other; None where SymPy has none."""
+    """Return the components of positions and derivatives, concatenated; None if SymPy has none."""
     import sympy as sp
 
     if not bridge.reading().is_differentiable(expressions):
@@ -121,7 +121,7 @@ def _jet(expressions: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> list[An
 
 
 def _with_floor(expression: Any) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Write remainders by floor, whose derivative is known."""
+    """Rewrite remainders in terms of floor, whose derivative is known."""
     import sympy as sp
 
     written = expression.replace(sp.Mod, lambda x, y: x - y * sp.floor(x / y))

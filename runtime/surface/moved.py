@@ -1,4 +1,4 @@
-"""Surfaces that are moved by affine maps, and turned inside out: points, derivatives, grids."""
+"""Surfaces moved by affine maps, or with reversed normals: points, derivatives, grids."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class AffineMap:
     shift: Array
 
     def after(self, first: AffineMap) -> AffineMap:
-        """Return the map that does `first`, then this one."""
+        """Return the composition: `first`, then this map."""
         return AffineMap(self.matrix @ first.matrix, self.directions(first.shift) + self.shift)
 
     @property
@@ -38,11 +38,11 @@ class AffineMap:
         return bool(np.linalg.slogdet(self.matrix)[0] < 0.0)
 
     def points(self, points: Array) -> Array:
-        """Return points (..., 3) after the map."""
+        """Return the images of points (..., 3)."""
         return self.directions(points) + self.shift
 
     def directions(self, vectors: Array) -> Array:
-        """Return vectors (..., 3), such as derivatives, after the map."""
+        """Return the images of vectors (..., 3), such as derivatives."""
         # One product of long matrices: NumPy is ten times slower with stacks of short ones.
         product = vectors.reshape(-1, 3) @ np.ascontiguousarray(self.matrix.T)
         return product.reshape(vectors.shape)
@@ -52,7 +52,7 @@ IDENTITY = AffineMap(np.eye(3), np.zeros(3))
 
 
 def affine_map(matrix: ArrayLike) -> AffineMap:
-    """Return the map of a matrix (3, 3) or (4, 4); InputError if it is none, or singular."""
+    """Return the map of a matrix (3, 3) or (4, 4); InputError if it is not affine, or singular."""
     array = finite_array(matrix, None, "matrix")
     if array.shape not in ((3, 3), (4, 4)):
         raise InputError(f"matrix must have the shape (3, 3) or (4, 4), not {array.shape}.")
@@ -70,7 +70,7 @@ def affine_map(matrix: ArrayLike) -> AffineMap:
 
 @dataclass(frozen=True, eq=False)
 class Moved(Differentiable):
-    """The function of a surface that is moved; if it is `turned`, u is reversed between `ends`."""
+    """The function of a moved surface; if `turned`, u is reversed between `ends`."""
 
     surface: SurfaceValues
     map: AffineMap
@@ -79,13 +79,13 @@ class Moved(Differentiable):
 
     @classmethod
     def of(cls, surface: SurfaceValues) -> Moved:
-        """Return the function of a surface as a moved one: its own, if it is one."""
+        """Return the function of a surface as a `Moved`: its own, if it is one."""
         if isinstance(surface.function, Moved):
             return surface.function
         return cls(surface, IDENTITY, False, surface.domain[0])
 
     def then(self, map_: AffineMap, turned: bool) -> Moved:
-        """Return this function after a further motion."""
+        """Return this function after a further map."""
         return replace(self, map=map_.after(self.map), turned=self.turned != turned)
 
     def __call__(self, u: Array, v: Array) -> Array:
@@ -103,7 +103,7 @@ class Moved(Differentiable):
         return jets
 
     def tape(self) -> Tape | None:
-        """Return the operations of the surface, and those of the map after them."""
+        """Return the operations of the surface, followed by those of the map."""
         own = self.surface.tape
         if own is None:
             return None
@@ -130,7 +130,7 @@ class Moved(Differentiable):
 
 
 def moved_grid(grid: Array, boundary: Boundary, map_: AffineMap, turned: bool) -> Array:
-    """Return the points of a grid (m, n, 3) after a map, and with u reversed if it is turned."""
+    """Return the images of the points of a grid (m, n, 3), with u reversed if `turned`."""
     points = map_.points(grid)
     (along_u, _), (along_v, _) = boundary
     if not turned:
@@ -138,13 +138,13 @@ def moved_grid(grid: Array, boundary: Boundary, map_: AffineMap, turned: bool) -
     if along_u in ("open", "pole"):
         return points[::-1].copy()
     points = np.roll(points[::-1], 1, axis=0)
-    if along_u == "mirrored":  # u = 0 is now where u ended, at the mirror image of the first row
+    if along_u == "mirrored":  # u = 0 is now the other end of u, where rows are mirrored
         points[0] = points[0, ::-1] if along_v != "periodic" else np.roll(points[0, ::-1], 1, 0)
     return points
 
 
 def turned_trim(trim: Trim, boundary: Boundary) -> Trim:
-    """Return a trim of the surface with reversed u, whose boundary conditions are given."""
+    """Return a trim of the surface with reversed u and the given boundary conditions."""
     low, high = trim.domain[0]
     parts = (Turned.of(part, low + high) for part in trim.parts)
     return replace(trim, boundary=boundary, parts=tuple(parts))
@@ -159,21 +159,21 @@ class Turned:
 
     @staticmethod
     def of(part: TrimPart, total: float) -> TrimPart:
-        """Return a condition after reversal, the original one after two."""
+        """Return a condition after reversal; two reversals give the original one."""
         return part.part if isinstance(part, Turned) else Turned(part, total)
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
-        """Return whether points (k, 2) fulfil it."""
+        """Return whether points (k, 2) fulfil the condition."""
         own = np.stack([self.total - uv[:, 0], uv[:, 1]], axis=1)
         return self.part.contains(own, threads)
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
-        """Return the cells (m, n) of a grid that its border may pass."""
+        """Return the cells (m, n) of a grid that its boundary may intersect."""
         (low, high), along_v = domain
         found = self.part.cells_of_border(((self.total - high, self.total - low), along_v), cells)
         return None if found is None else found[::-1]
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Return on which side of its border boxes (k, 4) are, −1, 0 or 1."""
+        """Classify boxes (k, 4) as inside (1), outside (−1) or undecided (0)."""
         own = np.column_stack([self.total - boxes[:, 1::-1], boxes[:, 2:]])
         return self.part.sides(own, normals)

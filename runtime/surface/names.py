@@ -1,4 +1,4 @@
-"""Names of surfaces whose user gave none: those of their callables, numbered where they repeat."""
+"""Default names of surfaces: those of their callables, numbered if they repeat."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ _lock = threading.Lock()
 
 
 def label(name: str | None, kind: str, function: object = None) -> str:
-    """Return a name that was given, or else that of a function or a kind of surface.
+    """Return a given name, or else that of a function or a kind of surface.
 
-    In one process these are distinct: "waves", then "waves 2". InputError unless a name is a text.
+    Default names are distinct in a process: "waves", then "waves 2". InputError unless a given name
+    is a text.
     """
     if name is not None:
         return text(name, "name")
     own = getattr(function, "__name__", "")
-    base = own if isinstance(own, str) and own.isidentifier() else kind  # "<lambda>" is none
+    base = own if isinstance(own, str) and own.isidentifier() else kind  # not "<lambda>"
     with _lock:
         _used[base] += 1
         return base if _used[base] == 1 else f"{base} {_used[base]}"

@@ -27,7 +27,7 @@ class Nurbs(Differentiable):
     `points` are (m, n, 3), or (m, n, 4) if they are w x, w y, w z, w; they are relative to `centre`
     (3,), so that a surface far from the origin keeps its digits. At the ends of the domain, which
     may be lines where the surface is not smooth, it is evaluated from inside. `creases` are the
-    values of u, and those of v, inside the domain where it is not smooth.
+    values of u, and of v, inside the domain where the surface is not smooth.
     """
 
     degrees: tuple[int, int]
@@ -59,19 +59,19 @@ class Nurbs(Differentiable):
     def jets(self, u: Array, v: Array) -> Array:
         """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) at u (k,) and v (k,).
 
-        Nothing is checked. Beyond an end of the domain the last polynomials go on.
+        Nothing is checked. Beyond an end of the domain the last polynomials are continued.
         """
         jets = np.empty((len(u), 6, 3))
-        u, v = np.array(u), np.array(v)  # other memory layouts would be compiled for
+        u, v = np.array(u), np.array(v)  # other memory layouts would be compiled separately
         kernels.jets(self._net, u, v, self._scratch(), jets)
         return jets
 
     def tape(self) -> Tape | None:
-        """Return the operations of the surface; None for large degrees or nets."""
+        """Return the tape of the surface; None for large degrees or nets."""
         return nurbs_tape(self._net)
 
     def restricted(self, domain: Domain) -> Nurbs:
-        """Return the same surface over a part of its domain; it is periodic where that is whole."""
+        """Return the surface over a part of its domain; whole parameters stay periodic."""
         whole = zip(self.periodic, domain, self.domain, strict=True)
         u, v = (periodic and part == ends for periodic, part, ends in whole)
         lines_u, lines_v = (
@@ -89,7 +89,7 @@ class Nurbs(Differentiable):
     @cached_property
     def _net(self) -> kernels.Net:
         spans = [
-            # Kernels read the knots around a span without looking whether they are there.
+            # Kernels read the knots around a span without checks of bounds.
             np.clip(
                 (np.searchsorted(knots, low, "right"), np.searchsorted(knots, high, "left")),
                 degree + 1,

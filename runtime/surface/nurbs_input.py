@@ -1,4 +1,4 @@
-"""What a user says of a NURBS surface, checked: numbers, or an object of geomdl or Splipy."""
+"""Checks of users' NURBS surfaces: arrays of numbers, or an object of geomdl or Splipy."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ MOST_DEGREE = 25
 
 
 def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nurbs:  # noqa: ANN401
-    """Return the NURBS surface of numbers, or of an object in the place of the degrees.
+    """Return the NURBS surface of arrays, or of an object that is given as `degrees`.
 
-    Raises InputError if they do not define one.
+    Raises InputError if these do not define a surface.
     """
     definition: tuple[Any, ...] = degrees, knots, control_points, weights
     if knots is None and control_points is None and weights is None:
@@ -88,7 +88,7 @@ def _knots(values: ArrayLike, degree: int, count: int, name: str) -> Array:
 
 
 def _check_multiplicities(knots: Array, degree: int, name: str) -> None:
-    """Raise InputError for knots inside the domain that tear the surface, and needless ones."""
+    """Raise InputError for knots inside the domain that tear the surface, and for excess knots."""
     values, counts = np.unique(knots, return_counts=True)
     inside = (values > knots[degree]) & (values < knots[-degree - 1])
     for many, reason in (
@@ -104,7 +104,7 @@ def _check_multiplicities(knots: Array, degree: int, name: str) -> None:
 
 
 def _weights(values: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """Return weights of which the largest is about 1; InputError unless all are positive."""
+    """Return weights scaled so that the largest is about 1; InputError unless all are positive."""
     weights = finite_array(values, shape, "weights")
     if not (weights > 0.0).all():
         i, j = np.argwhere(~(weights > 0.0))[0].tolist()
@@ -120,9 +120,9 @@ def _weights(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 def _definition_of(value: object) -> tuple[Any, ...]:
-    """Return what defines a surface of geomdl or Splipy, known by the names of its attributes.
+    """Return degrees, knots, points and weights of a geomdl or Splipy surface, told by attributes.
 
-    Raises InputError for other objects, and for what cannot be taken over.
+    Raises InputError for other objects, and for features that cannot be converted.
     """
     if is_of_geomdl(value):
         return _of_geomdl(value)
@@ -135,7 +135,7 @@ def _definition_of(value: object) -> tuple[Any, ...]:
 
 
 def _of_geomdl(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not imported
-    """Return what defines a `geomdl.BSpline.Surface` or `geomdl.NURBS.Surface`.
+    """Return the definition of a `geomdl.BSpline.Surface` or `geomdl.NURBS.Surface`.
 
     Its control points are in one list, along v first, without their weights.
     """
@@ -161,7 +161,7 @@ def _of_geomdl(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not impor
 
 
 def _of_splipy(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not imported
-    """Return what defines a `splipy.Surface`.
+    """Return the definition of a `splipy.Surface`.
 
     Its control points are w x, w y, w z, w if it is rational. Those at the end of a periodic
     direction are not repeated.
@@ -177,7 +177,7 @@ def _of_splipy(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not impor
         points = np.concatenate([points, points.take(repeated, axis=axis)], axis=axis)
     weights = points[:, :, -1] if value.rational else None
     if weights is not None:
-        _weights(weights, weights.shape)  # before they divide
+        _weights(weights, weights.shape)  # checked before the division
         points = points[:, :, :-1] / weights[:, :, None]
     degrees = tuple(int(basis.order) - 1 for basis in bases)
     return degrees, tuple(basis.knots for basis in bases), points, weights

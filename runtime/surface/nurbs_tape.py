@@ -24,8 +24,8 @@ __all__ = ["nurbs_tape"]
 
 
 UNIT = 2.0**-53
-KEPT = 256  # bases of spans: those of the faces of a part are often the same
-MOST_NUMBERS = 4_000_000  # in the coefficients of all polynomials: 64 MB with their errors
+KEPT = 256  # number of cached bases of spans: faces of a part often share them
+MOST_NUMBERS = 4_000_000  # of coefficients of all polynomials: 64 MB with their errors
 
 
 class Axis(NamedTuple):
@@ -58,13 +58,13 @@ def nurbs_tape(net: Net) -> Tape | None:
 
 
 def _axis(net: Net, axis: int) -> Axis:
-    """Return the spans of u (axis 0) or v (axis 1) that have a length."""
+    """Return the spans of u (axis 0) or v (axis 1) of positive length."""
     knots, degree = (net.knots_u, net.knots_v)[axis], int(net.degrees[axis])
     first, last = net.spans[axis].tolist()
     spans = np.array([k for k in range(first, last + 1) if knots[k] < knots[k + 1]])
     breaks = np.append(knots[spans], knots[spans[-1] + 1])
     smooth = degree - np.count_nonzero(knots[:, None] == breaks, axis=0)
-    if net.periods[axis, 1] > 0.0:  # the ends are one place, where nothing is known
+    if net.periods[axis, 1] > 0.0:  # both ends are the same knot, with unknown smoothness
         smooth[0] = smooth[-1] = 0
     middles = breaks[:-1] / 2 + breaks[1:] / 2
     scales = np.ldexp(1.0, -np.frexp(np.diff(breaks) / 2)[1])

@@ -1,4 +1,4 @@
-"""A surface: how to evaluate x(u,v), over which rectangle, with which boundary conditions."""
+"""`Surface`: a function x(u,v) over a rectangle of parameters, with boundary conditions."""
 
 from __future__ import annotations
 
@@ -51,21 +51,21 @@ class Surface(SurfaceValues):
     domain : ((u0, u1), (v0, v1)) of float
         The rectangle of the parameters.
     boundary : pair of pairs of str
-        For u and for v, the boundary conditions at the low and the high end: "open" (an edge),
+        For u and for v, the boundary conditions at the lower and the upper bound: "open" (an edge),
         "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius band)
-        or "pole" (the end is one point and the opposite meridian continues the surface). Those of
-        the spline may have poles in place of open ends, see `assumed_open`.
+        or "pole" (the side is one point and the opposite meridian continues the surface). The
+        spline may have poles in place of open sides, see `assumed_open`.
     grid : (m, n, 3) float64 array or None
         The points of a surface that was given by points; NaN where they are missing.
     derivative_function : callable or None
-        What `from_callable` was given as derivatives.
+        The `derivatives` that were passed to `from_callable`.
     trim : Trim or None
         The part of the domain that belongs to the surface, None for all of it; see `trimmed`.
     assumed_open : (bool, bool)
-        For u and for v, whether open ends were assumed: ``periodic=False``, and not "open". Then
-        `fit` looks whether one of them is a single point through which the surface goes on
-        smoothly, and takes that for a pole, and the other parameter for periodic. If points were
-        given, `boundary` has these poles, and points that repeat the first ones are left out.
+        For u and for v, whether open sides were assumed: ``periodic=False``, and not "open". Then
+        `fit` tests whether one of them is a single point at which the surface is smooth; such a
+        side becomes a pole, and the other parameter periodic. If points were given, `boundary` has
+        these poles, and points that repeat the first ones are left out.
     georeference : Georeference or None
         Of a `terrain`: the coordinate reference system `crs`, as "EPSG:number" or WKT, and the
         `origin` (x, y, z) that was subtracted from coordinates.
@@ -108,19 +108,19 @@ class Surface(SurfaceValues):
         Parameters
         ----------
         f : callable
-            Gets two float64 arrays of one shape and returns points of that shape + (3,). It is
-            first called when the surface is fitted or evaluated (see `evaluate`).
+            A function of two float64 arrays of one shape that returns points of that shape + (3,).
+            It is first called when the surface is fitted or evaluated (see `evaluate`).
         domain : ((u0, u1), (v0, v1)) of float
             The rectangle of the parameters.
         periodic : bool or pair, default False
             The boundary conditions of both parameters, or a pair of those of u and of v: True
             (periodic), False (open, and poles are found, see `assumed_open`); in a pair also one of
-            "open", "periodic", "mirrored", "pole" for both ends, or a pair of these (low end, high
-            end).
+            "open", "periodic", "mirrored", "pole" for both ends, or a pair of these (lower bound,
+            upper bound).
         derivatives : callable, optional
             ``derivatives(u, v)`` returns (..., 6, 3): x, x_u, x_v, x_uu, x_uv, x_vv. They are
-            compared with numerical ones when they are first used. By default derivatives are
-            numerical, see `derivatives`.
+            compared with numerical ones at their first use. By default derivatives are numerical,
+            see `derivatives`.
         name : str, optional
             Label of the surface. By default the name of f, or "surface" if it has none, with a
             number from the second surface of that name on: "waves", "waves 2".
@@ -189,8 +189,8 @@ class Surface(SurfaceValues):
         Raises
         ------
         InputError
-            Unless there are three expressions without further symbols, and if one uses another
-            function or a truth value as a number, holds complex numbers or such as 9**9**9, or is
+            Unless there are three expressions without further symbols; if one uses another function
+            or a truth value as a number, contains complex or huge numbers such as 9**9**9, or is
             too long or nested too deeply for SymPy; for domain and boundary conditions as
             `from_callable`.
 
@@ -225,8 +225,8 @@ class Surface(SurfaceValues):
     ) -> Surface:
         """Make a surface of points, or of elevations.
 
-        One spline cell stands between any four neighbouring points, so that no detail is lost;
-        `fit(cells=...)` chooses otherwise.
+        The spline has one cell between any four neighbouring points, so that no detail is lost,
+        unless `fit` is called with other `cells`.
 
         Parameters
         ----------
@@ -241,8 +241,8 @@ class Surface(SurfaceValues):
         periodic : bool or pair, default False
             As in `from_callable`; for points only.
         nodata : float, optional
-            The number that stands for missing data, such as −9999; NaN and masked entries do so
-            anyway. What the spline makes of missing points is left out (see `trim`): up to three
+            The number that means missing data, such as −9999; NaN and masked entries always do. The
+            parts of the spline that depend on missing points are left out (see `trim`): up to three
             cells around each.
         name : str, optional
             Label of the surface. By default "grid", then "grid 2", and so on.
@@ -255,14 +255,14 @@ class Surface(SurfaceValues):
         Raises
         ------
         InputError
-            For another shape, infinity (and says where), fewer than 4 points in a direction that
-            is not periodic (3 if it is), spacing that is zero, missing for elevations or given for
-            points, boundary conditions as in `from_callable`, and if missing points leave nothing.
+            For another shape, infinity, fewer than 4 points in a direction that is not periodic (3
+            if it is), a spacing that is zero, missing for elevations or given for points, boundary
+            conditions as in `from_callable`, or if every part depends on missing points.
 
         Warns
         -----
         GaussmapWarning
-            If there are numbers that often stand for missing data, such as −9999, and no `nodata`.
+            If there are numbers that often mean missing data, such as −9999, and no `nodata`.
 
         Examples
         --------
@@ -332,16 +332,16 @@ class Surface(SurfaceValues):
         periodic: Periodic | None = None,
         name: str | None = None,
     ) -> Surface:
-        """Make a surface of a NURBS: of its numbers, or of a surface of geomdl or Splipy.
+        """Make a surface of a NURBS, given by arrays, or by a surface of geomdl or Splipy.
 
-        The domain is [U[p], U[m]] × [V[q], V[n]] for knots U, V, as usual. Where the two ends of a
-        parameter are one line and the surface is smooth across it, it is periodic. Lines where it
-        is not smooth cut it into `pieces`.
+        The domain is [U[p], U[m]] × [V[q], V[n]] for knots U, V, as usual. A parameter is periodic
+        if its two ends are one line, across which the surface is smooth. Lines where the surface is
+        not smooth cut it into `pieces`.
 
         Parameters
         ----------
         degrees : (int, int), or surface of geomdl or Splipy
-            The degrees (p, q) along u and v, from 1 to 25. Instead of all the numbers, a
+            The degrees (p, q) along u and v, from 1 to 25. Instead of all arrays, a
             ``geomdl.NURBS.Surface``, ``geomdl.BSpline.Surface`` or ``splipy.Surface``.
         knots : pair of array_like
             The knots U (m + p + 1,) and V (n + q + 1,), which never decrease. Those inside the
@@ -351,7 +351,7 @@ class Surface(SurfaceValues):
         weights : (m, n) array_like, optional
             The positive weights; by default all are 1, and the surface is a B-spline.
         periodic : bool or pair, optional
-            As in `from_callable`; by default it is found as described.
+            As in `from_callable`; by default it is detected as described.
         name : str, optional
             Label of the surface. By default "surface", then "surface 2", and so on.
 
@@ -363,9 +363,9 @@ class Surface(SurfaceValues):
         Raises
         ------
         InputError
-            For other numbers than these: numbers of knots that do not fit, knots that decrease or
-            tear the surface, weights that are not positive, NaN, another shape; for an object that
-            is none of these, or has trim curves; and for boundary conditions as `from_callable`.
+            For numbers of knots that do not fit, knots that decrease or tear the surface, weights
+            that are not positive, NaN, or another shape; for any other object, or one with trim
+            curves; and for boundary conditions as `from_callable`.
 
         References
         ----------
@@ -405,8 +405,8 @@ class Surface(SurfaceValues):
         Returns
         -------
         tuple of Surface
-            The pieces, those of the lowest u first, and in turn along v; parameters are those of
-            the whole. A smooth surface is its only piece.
+            The pieces, ordered by u, then by v; parameters are those of the whole. A smooth surface
+            is its only piece.
 
         Examples
         --------
@@ -422,9 +422,9 @@ class Surface(SurfaceValues):
         return pieces_of(self)
 
     def transformed(self, matrix: ArrayLike) -> Surface:
-        """Return the surface after an affine map: rotated, translated, scaled, mirrored.
+        """Return the image of the surface under an affine map, such as a rotation or a scaling.
 
-        Derivatives are those of this surface after the map, exactly. A reflection also reverses
+        Derivatives are mapped exactly. A reflection also reverses
         u, u → u0 + u1 - u, so that normals stay on the same side: outward ones stay outward.
 
         Parameters
@@ -441,7 +441,7 @@ class Surface(SurfaceValues):
         Raises
         ------
         InputError
-            For another shape or last row, NaN or infinity, and a singular matrix.
+            For another shape or last row, NaN or infinity, or a singular matrix.
         SurfaceError
             If a surface that was given by points becomes too large or too small for float64.
 
@@ -508,26 +508,27 @@ class Surface(SurfaceValues):
         loops : sequence of (k, 2) array_like, or Polygon, optional
             Closed polygons of points u, v, whose first point may be repeated at the end: a point is
             inside by the even-odd rule, so that a polygon in another one is a hole. Or a Polygon or
-            MultiPolygon of Shapely, or anything else with its ``__geo_interface__``. Loops may run
-            beyond the seam of a periodic direction: a point is inside if it, or its copy any number
-            of periods away, is.
+            MultiPolygon of Shapely, or any other object with the same ``__geo_interface__``. Loops
+            may run beyond the seam of a periodic direction: a point is inside if it, or a copy
+            shifted by whole periods, is.
         within : callable, optional
-            ``within(u, v)`` gets two float64 arrays (k,) of parameters in the domain, and returns
-            booleans (k,). What is smaller than an eighth of a patch of the spline may go unseen.
-            If it consists of inequalities between NumPy functions, joined by &, | and ~, undecided
-            boxes (see `SamplingReport.undecided`) outside of it are known to be there.
+            ``within(u, v)`` takes two float64 arrays (k,) of parameters in the domain, and returns
+            booleans (k,). Parts smaller than an eighth of a patch of the spline may be missed. If
+            it consists of inequalities between NumPy functions, joined by &, | and ~, undecided
+            boxes (see `SamplingReport.undecided`) outside of the part are excluded.
 
         Returns
         -------
         Surface
-            The part. If it is trimmed already, or if loops and a predicate are given, all of them
-            hold. The spline is fitted on the whole domain, on which the surface must be defined.
+            The part. If the surface is already trimmed, or if loops and a predicate are given, all
+            conditions hold. The spline is fitted on the whole domain, on which the surface must be
+            defined.
 
         Raises
         ------
         InputError
             For loops with fewer than 3 points, with NaN or infinity, of another shape, or more than
-            100 periods away; for a predicate that is not callable; and without both.
+            100 periods away; for a predicate that is not callable; or without either.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""The values of a surface: its points, its derivatives, and what they are made of."""
+"""The values of a surface: its points and derivatives, and the functions that compute them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Evaluation = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SurfaceValues(Immutable):
-    """What `Surface` is made of, and evaluates."""
+    """The attributes of `Surface`, and their evaluation."""
 
     name: str
     function: Evaluation
@@ -82,10 +82,10 @@ class SurfaceValues(Immutable):
         Raises
         ------
         SurfaceError
-            If the callable raises, returns another shape than (..., 3) or anything but real
-            numbers, or gives NaN or infinity; the message says where.
+            If the callable raises, returns another shape than (..., 3), anything but real numbers,
+            or NaN or infinity; the message gives the parameters.
         InputError
-            If the parameters are no real numbers, or lie outside a surface that was given by
+            If the parameters are not real numbers, or lie outside a surface that was given by
             points.
 
         Examples
@@ -101,7 +101,7 @@ class SurfaceValues(Immutable):
 
     @property
     def evaluable(self) -> bool:
-        """Whether the surface is known everywhere, and not by points only.
+        """Whether the surface can be evaluated everywhere, and is not given only by points.
 
         Examples
         --------
@@ -116,9 +116,9 @@ class SurfaceValues(Immutable):
     def derivatives(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points and their first and second derivatives.
 
-        They are exact for the catalogue, for SymPy expressions and for NURBS, given by the user
-        for a callable with `derivatives`, and numerical otherwise: by differences of nine points
-        with steps of about 1/400 of the domain, which evaluate the callable inside the domain only.
+        They are exact for the catalogue, for SymPy expressions and for NURBS, given by the user for
+        a callable with `derivatives`, and numerical otherwise: by differences of nine points with
+        steps of about 1/400 of the domain, which evaluate the callable only inside the domain.
 
         Parameters
         ----------
@@ -133,18 +133,18 @@ class SurfaceValues(Immutable):
         Raises
         ------
         SurfaceError
-            As `evaluate`, if a derivative is not finite, and if given derivatives differ from
-            numerical ones; the message says where.
+            As `evaluate`; if a derivative is not finite, or if given derivatives differ from
+            numerical ones; the message gives the parameters.
         InputError
-            If the parameters are no real numbers, or the surface was given by points.
+            If the parameters are not real numbers, or the surface was given by points.
 
         Notes
         -----
         The error of numerical derivatives, relative to the surface's own size and domain, is 1e-12
-        (first) and 1e-9 (second) where a wave takes a third of the domain or more, and 1e-10 and
-        1e-7 up to 100 waves: where differences of seven points disagree with those of nine, steps
-        are divided by 4, up to five times. A callable in single precision leaves four digits of
-        first derivatives, and none of second ones.
+        (first) and 1e-9 (second) if the shortest wavelength is a third of the domain or more, and
+        1e-10 and 1e-7 up to 100 waves: if differences of seven points disagree with those of nine,
+        steps are divided by 4, up to five times. With a callable in single precision, first
+        derivatives have four digits, and second ones none.
 
         Examples
         --------
@@ -205,9 +205,9 @@ class SurfaceValues(Immutable):
         return normals.reshape(*jets.shape[:-2], 3)
 
     def jets(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return what `derivatives` does, fast: for flat arrays, without checks of numbers.
+        """Return the array of `derivatives`, faster: for flat arrays, without checks of values.
 
-        Several threads may call this; a user's callable is called by one of them at a time.
+        Several threads may call this; a user's callable is called by one thread at a time.
 
         Parameters
         ----------
@@ -222,8 +222,8 @@ class SurfaceValues(Immutable):
         Raises
         ------
         SurfaceError
-            If a user's callable raises, returns another shape or anything but real numbers, and if
-            given derivatives differ from numerical ones.
+            If a user's callable raises, or returns another shape or anything but real numbers, or
+            if given derivatives differ from numerical ones.
         InputError
             For anything but two arrays of one shape (k,).
 
@@ -257,10 +257,10 @@ class SurfaceValues(Immutable):
 
     @cached_property
     def tape(self) -> Tape | None:
-        """The operations that compute the surface, from which its derivatives are bounded.
+        """The tape of operations that compute the surface, from which its derivatives are bounded.
 
-        They are known for the catalogue, for SymPy expressions, and for callables made of NumPy
-        functions, if these are smooth elementary functions; None where they are not. A callable is
+        It is known for the catalogue, for SymPy expressions, and for callables made of NumPy
+        functions, if these are smooth elementary functions; otherwise it is None. A callable is
         called once with arrays of objects.
 
         Examples
@@ -280,10 +280,10 @@ class SurfaceValues(Immutable):
 
     @cached_property
     def unchecked_jets(self) -> Function:
-        """The function that `jets` calls when it has checked u and v.
+        """The function that `jets` calls after its checks of u and v.
 
         It takes u and v as contiguous float64 arrays (k,), and returns an array (k, 6, 3). It saves
-        time where there are many calls with few places each.
+        time in many calls with few points each.
 
         Examples
         --------

@@ -79,7 +79,7 @@ def names() -> tuple[str, ...]:
 
 
 def describe(name: str) -> str:
-    """Return what a surface is and what its parameters mean.
+    """Return the description of a surface and of its parameters.
 
     Parameters
     ----------
@@ -125,15 +125,15 @@ def surface(name: str, /, **parameters: float) -> Surface:
     Returns
     -------
     Surface
-        What ``gm.surfaces.NAME(**parameters)`` returns.
+        The result of ``gm.surfaces.NAME(**parameters)``.
 
     Raises
     ------
     UnknownNameError
         If there is no surface of that name.
     InputError
-        For a parameter that the surface does not have, that is not finite, or that must be positive
-        and is not.
+        For a parameter that the surface does not have, or a value that is not finite, or not
+        positive if it has to be.
 
     Examples
     --------
@@ -162,7 +162,7 @@ def named(value: T | str) -> T | Surface:
     """Return the surface of the catalogue for a name, and any other value unchanged.
 
     Every function that takes a surface calls this first. Raises UnknownNameError for other names,
-    with what to do if they are those of files.
+    with advice for names of files.
     """
     if isinstance(value, str) and value not in CATALOGUE and (advice := file_advice(value)):
         raise UnknownNameError(f"there is no surface {shown(value)}; {advice}.")
@@ -212,7 +212,7 @@ def _docstring(name: str) -> str:
 
 globals().update({name: _maker(name) for name in CATALOGUE})
 
-if not TYPE_CHECKING:  # its tools know the names from generated/surfaces_signatures.pyi
+if not TYPE_CHECKING:  # type checkers know the names from generated/surfaces_signatures.pyi
 
     def __getattr__(name: str) -> None:
         raise AttributeError(

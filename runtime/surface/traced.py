@@ -1,6 +1,6 @@
-"""Callables that are made of NumPy functions: they are called once with symbols.
+"""Tracing of callables made of NumPy functions: these are called once with symbols.
 
-Those that return points have tapes; those that return truth values are inequalities between tapes.
+Callables that return points give tapes; those that return booleans give inequalities of tapes.
 """
 
 from __future__ import annotations
@@ -26,27 +26,28 @@ Sides = NDArray[np.int8]
 Function = Callable[..., Any]  # of u and v: arrays, or traced numbers
 
 # The callable and the tape are compared at points (i/√2, i/√3) modulo 1 of the domain. Both have
-# rounding errors, of which that of the tape is bounded, and that of the callable may be larger.
+# rounding errors; that of the tape is bounded, that of the callable may be larger.
 PLACES = 48
 ROUNDING = 64.0
 
 
 def traced_tape(function: Function, domain: Domain) -> Tape | None:
-    """Return the tape of a callable f(u, v) → (..., 3); None if it does what is not traced.
+    """Return the tape of a callable f(u, v) → (..., 3); None if it cannot be traced.
 
-    What depends on comparisons, on single precision or on anything but u and v has none.
+    Callables that depend on comparisons, single precision or other variables than u and v have
+    none.
     """
     for called in (function, _with_object_arrays(function)):
         try:
             tape = _tape_of(called)
             return tape if tape is not None and _agree(function, tape, domain) else None
-        except Exception:  # what a user's callable raises for arrays of objects
+        except Exception:  # any exception of a user's callable for arrays of objects
             continue
     return None
 
 
 class ObjectArrays:
-    """The module NumPy, but for new arrays of float64: they hold objects, and so traced numbers."""
+    """NumPy, except that new float64 arrays are object arrays, which can hold traced numbers."""
 
     def __getattr__(self, name: str) -> object:
         return getattr(np, name)
@@ -65,7 +66,7 @@ class ObjectArrays:
 def _with_object_arrays(function: Function) -> Function:
     """Return a function of Python that fills new arrays with traced numbers.
 
-    It has other globals: TypeError if a call assigns to one of them.
+    It runs with other globals: TypeError if a call assigns to one of them.
     """
     if not isinstance(function, FunctionType):
         return function
@@ -86,9 +87,9 @@ def _with_object_arrays(function: Function) -> Function:
 
 
 def traced_condition(function: Function, domain: Domain) -> Condition | None:
-    """Return the inequalities that a callable f(u, v) → truth values is made of; None if unknown.
+    """Return the inequalities in a callable f(u, v) → booleans; None if they are unknown.
 
-    These are joined by &, | and ~. They are compared with the callable at some points.
+    They are joined by &, | and ~, and compared with the callable at some points.
     """
     writer = TapeWriter()
     try:
@@ -98,7 +99,7 @@ def traced_condition(function: Function, domain: Domain) -> Condition | None:
         u, v = _places(domain)
         own, sides = function(u, v), found.sides(np.stack([u, u, v, v], axis=1))
         return found if ((sides == 0) | (own == (sides > 0))).all() else None
-    except Exception:  # what a user's callable raises for other objects than arrays
+    except Exception:  # any exception of a user's callable for objects
         return None
 
 
@@ -113,7 +114,7 @@ def _tape_of(function: Function) -> Tape | None:
 
 
 def _agree(function: Function, tape: Tape, domain: Domain) -> bool:
-    """Return whether the callable has the values of a tape, but for rounding."""
+    """Return whether the callable has the values of a tape, up to rounding."""
     u, v = _places(domain)
     values, errors = values_of(tape, u, v)
     with np.errstate(all="ignore"):
@@ -156,10 +157,10 @@ def applied(name: str) -> Callable[[Traced], Traced]:
 
 @dataclass(frozen=True, eq=False)
 class Traced:
-    """A number that depends on u and v: what is done to it is written to a tape.
+    """A number that depends on u and v: operations on it are written to a tape.
 
-    NumPy's functions call the methods of their names for arrays of objects. Comparisons are
-    conditions, which have no truth value; absolute values can be compared only, and integers and
+    NumPy's functions call the methods of their names for arrays of objects. Comparisons give
+    conditions, which have no truth value; absolute values can only be compared, and integers and
     equality raise TypeError.
     """
 
@@ -189,7 +190,7 @@ class Traced:
     def __lt__(self, other: object) -> Condition:
         return -self > self.written("negative", other)
 
-    __ge__, __le__ = __gt__, __lt__  # equal ones are decided by neither
+    __ge__, __le__ = __gt__, __lt__  # equality is decided by neither
 
     def __abs__(self) -> AbsoluteValue:
         return AbsoluteValue(self)
@@ -236,7 +237,7 @@ class Traced:
         return self.written("sqrt", self * self + self.written("square", other))
 
     def arctan2(self, other: object) -> Traced:
-        """Return the angle of (other, self), by half of it: it has no bounds where that is π/2."""
+        """Return the angle of (other, self), from half of it; unbounded where that is π/2."""
         size = self.written("sqrt", self.written("square", other) + self * self)
         return self.written("atan", self / (size + other)) * 2.0
 
@@ -245,7 +246,7 @@ class Traced:
         return self.sin() / self.cos()
 
     def arccos(self) -> Traced:
-        """Return the inverse of the cosine."""
+        """Return the inverse cosine."""
         quarter = Traced(self.writer, self.writer.constant(math.pi / 2, 2.0**-53))
         return quarter - self.arcsin()
 
@@ -256,7 +257,7 @@ class Traced:
 
 @dataclass(frozen=True, eq=False)
 class AbsoluteValue:
-    """That of a traced number, which can be compared only: it has no derivative at 0."""
+    """The absolute value of a traced number, only for comparisons: it has no derivative at 0."""
 
     of: Traced
 
@@ -270,10 +271,10 @@ class AbsoluteValue:
 
 
 class Condition:
-    """A condition on u and v, made of inequalities: what is known of it on boxes."""
+    """A condition on u and v, made of inequalities, which can be evaluated on boxes."""
 
     def sides(self, boxes: Array) -> Sides:
-        """Return 1 for boxes (k, 4) where it holds, −1 where it does not, 0 if that is unknown."""
+        """Return 1 for boxes (k, 4) where the condition holds, −1 where it fails, 0 if unknown."""
         raise NotImplementedError
 
     def __and__(self, other: Condition) -> Condition:
@@ -296,7 +297,7 @@ class Positive(Condition):
     tape: Tape
 
     def sides(self, boxes: Array) -> Sides:
-        """Return the signs of bounds over boxes (k, 4), 0 for those that hold 0."""
+        """Return the signs of bounds over boxes (k, 4), 0 for bounds that contain 0."""
         low, high = boxes[:, ::2], boxes[:, 1::2]
         halves = (high - low) / 2.0 + np.spacing(np.maximum(np.abs(low), np.abs(high)))
         bounds = bounds_over_boxes(self.tape, (low + high) / 2.0, halves)

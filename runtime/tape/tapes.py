@@ -1,4 +1,4 @@
-"""The tapes of surfaces: the operations that compute x(u,v), for bounds of its derivatives."""
+"""Tapes of surfaces: the operations that compute x(u,v), for bounds of its derivatives."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ __all__ = [
     "values_of",
 ]
 
-Number = tuple[float, float]  # a value, and how far the exact one may be from it
+Number = tuple[float, float]  # a value, and a bound of its error
 LEAVES = (codes.U, codes.V, codes.CONSTANT, codes.SPLINE, codes.COORDINATE)
 BINARY = (codes.SUM, codes.PRODUCT)
 NEUTRAL = {codes.SHIFT: (0.0, 0.0), codes.SCALE: (1.0, 0.0)}  # exact numbers that change nothing
-# Functions that are computed together: the second one is in the row after the first.
+# Pairs of functions that are computed together, in consecutive rows.
 PAIRS = {codes.COS: codes.SIN, codes.COSH: codes.SINH}
 
 
 class TapeWriter:
-    """Writes the operations of a tape, and none of them twice."""
+    """A builder of tapes that writes each operation once."""
 
     def __init__(self) -> None:
         self._operations: list[tuple[int, int, int, int]] = []
@@ -65,7 +65,7 @@ class TapeWriter:
     def spline(self, polynomials: Polynomials, turned: int = 0, number: Number = (0.0, 0.0)) -> int:
         """Return the first of the four rows of a spline.
 
-        If it is turned then the number in the place of u is total − u, with the error of the total.
+        If `turned`, its parameter is total − u; `number` is the total, with its error.
         """
         self._spline = polynomials
         row = self.row(codes.SPLINE, last=turned, number=number)
@@ -91,7 +91,7 @@ class TapeWriter:
         return self.write("product", self._whole_power(row, exponent - 1), row)
 
     def replay(self, tape: Tape, total: Number | None = None) -> list[int]:
-        """Write the operations of a tape, for total − u if that is given; return its outputs."""
+        """Write the operations of a tape, for total − u if `total` is given; return its outputs."""
         rows: list[int] = []
         self._spline = tape.spline
         for (code, a, b, last), number in zip(
@@ -169,13 +169,13 @@ def moved_tape(tape: Tape, matrix: Array, shift: Array, ends: Interval | None) -
 
 
 def _folded(tape: Tape) -> Tape | None:
-    """Return a tape whose constants are computed, and without the rows that nothing needs."""
+    """Return a tape with constants folded, without unused rows."""
     constant = _constant_rows(tape)
     numbers = np.where(constant[:, None], _values(tape), tape.numbers)
     if not np.isfinite(numbers).all():
         return None
     operations = tape.operations.copy()
-    same = np.arange(len(operations))  # the rows that have the same values
+    same = np.arange(len(operations))  # for each row, one with the same values
     for row in range(len(operations)):
         operations[row, 1:3] = same[operations[row, 1:3]]
         code, a, b, _ = operations[row]
@@ -213,7 +213,7 @@ def bounds_over_boxes(tape: Tape, centres: Array, half_widths: Array, order: int
 
 
 def _values(tape: Tape) -> Array:
-    """Return midpoints and radii (k, 2) of the values of all rows, at an arbitrary place."""
+    """Return midpoints and radii (k, 2) of the values of all rows, at an arbitrary point."""
     middles, radii = np.empty((2, BALL * (len(tape.operations) + 1)))
     place = np.zeros((1, 2))
     bounds = np.empty((1, 2, 10, 3))
