@@ -2,5 +2,5 @@
 
 import lazy_loader
 
-# The namespaces of the package (see ../__init__.pyi), each loaded when it is first asked for.
+# The namespaces of the package (see ../__init__.pyi), each imported at first use.
 __getattr__, __dir__, __all__ = lazy_loader.attach(__name__, ["directions"])

@@ -85,7 +85,7 @@ def _given(definitions: tuple[Definition, ...]) -> Formula:
 
 
 def is_homogeneous(h: sp.Expr, gradient: Sequence[sp.Expr] | None = None) -> bool:
-    """Say whether h is proved to be homogeneous of degree 1, by Euler's relation n·∇h = h."""
+    """Return whether h is proved to be homogeneous of degree 1, by Euler's relation n·∇h = h."""
     if gradient is None:
         gradient = [_derivative(h, axis) for axis in NORMAL]
     defect = dot(sp.Matrix(gradient), n.column) - h

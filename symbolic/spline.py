@@ -151,7 +151,7 @@ def net_weights(place: Point) -> dict[str, Fraction]:
     return {name: weight for name, weight in weights.items() if weight}
 
 
-# --- what the coefficients have to be -------------------------------------------------------------
+# --- the conditions for coefficients --------------------------------------------------------------
 
 MONOMIALS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
 

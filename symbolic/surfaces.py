@@ -46,7 +46,7 @@ class ParametricSurface:
     - "open": the surface has an edge here, or is cut off;
     - "periodic": periodic, x(u1 + s, v) = x(u0 + s, v);
     - "mirrored": periodic with a mirror image, x(u1 + s, v) = x(u0 + s, v0 + v1 − v);
-    - "pole": the whole end of v is one point, and the surface goes on along the opposite meridian,
+    - "pole": this side of v is one point, and the opposite meridian continues the surface,
       x(u, v1 − s) = x(u + (u1 − u0)/2, v1 + s).
     """
 

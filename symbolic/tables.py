@@ -54,7 +54,7 @@ def grid() -> str:
 def differences() -> str:
     """Return the weights of first and second differences with a unit step, for each shift.
 
-    The points are at the shift and at up to four steps on either side of it.
+    The points are the shift and up to four steps on either side of it.
     """
     half = STENCIL // 2
     rows = [[shift + x for x in range(-half, half + 1)] for shift in range(-half, half + 1)]

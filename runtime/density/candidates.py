@@ -1,4 +1,4 @@
-"""Choosing samples among candidates: those that are far from all samples."""
+"""The choice of samples among candidates far from all samples."""
 
 from __future__ import annotations
 

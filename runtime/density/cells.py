@@ -100,7 +100,7 @@ class Cells:
 
     @property
     def radii(self) -> Array:
-        """Radii (M,) of balls around the places that hold the cells."""
+        """Radii (M,) of balls around the places that contain the cells."""
         return self.numbers[:, RADIUS]
 
     @property
@@ -183,7 +183,7 @@ def new_cells(
 
 
 def points_of(pieces: Indices, places: Array, sizes: Array, limits: Array | float = 0.0) -> Cells:
-    """Return cells without an extent at places (k, 2) of pieces (k,), not evaluated.
+    """Return cells without an extent at parameters (k, 2) of pieces (k,), not evaluated.
 
     `sizes` (k, 2) are the lengths of their domains.
     """

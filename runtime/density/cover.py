@@ -230,7 +230,7 @@ class Cover:
         return voronoi
 
     def fill_gaps(self, voronoi: Voronoi, widest: float, count: int) -> None:
-        """Add samples at finer places, the widest gaps first, until there are `count`.
+        """Add samples at fine points of the cells, the widest gaps first, until there are `count`.
 
         The search begins with gaps of the radius `widest`.
         """

@@ -31,7 +31,7 @@ def progressive(self: Samples, *, progress: bool = False) -> Samples:
     Parameters
     ----------
     progress : bool, default False
-        Show on a terminal what is done, after the first second.
+        Show progress on a terminal, after the first second.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def coverage(
     threads : int, optional
         The number of threads; by default all cores.
     progress : bool, default False
-        Show on a terminal what is done, after the first second.
+        Show progress on a terminal, after the first second.
 
     Returns
     -------
@@ -123,7 +123,7 @@ def normal_deviation(
     threads : int, optional
         The number of threads; by default all cores.
     progress : bool, default False
-        Show on a terminal what is done, after the first second.
+        Show progress on a terminal, after the first second.
 
     Returns
     -------

@@ -113,7 +113,7 @@ class Piece(ABC):
         return {}
 
     def contains(self, places: Array) -> Flags:
-        """Return which places (k, 2) are inside the trim."""
+        """Return which parameters (k, 2) are inside the trim."""
         return (
             np.ones(len(places), np.bool_) if self.trim is None else self.trim.contains(places, 1)
         )

@@ -20,7 +20,7 @@ BOXES_AT_A_TIME = 1 << 13
 def sifted(
     trims: Trims, cells: Cells, pixels: Indices, owner: Indices | None = None
 ) -> tuple[Cells, Indices]:
-    """Return cells without those outside, and which are whole; and the owners of these."""
+    """Return the cells that are not outside, with `whole` set, and their owners."""
     whole = cells.whole | ~trims.trimmed[cells.pieces]
     open_, clear = np.flatnonzero(~whole), whole.copy()
     for k, rows in runs(cells.pieces[open_]):

@@ -32,7 +32,7 @@ GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 LONGEST, SHORTEST = 0.5, 1e-9
 # The angle that gives a count is searched up to WIDEST, until the count is met within CLOSE.
 WIDEST, CLOSE, TRIALS = math.pi, 0.002, 12
-# A distance that needs too many samples is increased by this factor beyond the possible one.
+# A distance that needs too many samples is increased until this factor of the count is spare.
 LARGER = 1.1
 
 

@@ -93,7 +93,7 @@ class SurfacePiece(Piece):
 
     @property
     def exact(self) -> Piece:
-        """The piece with the derivatives of what is sampled."""
+        """The piece with the derivatives of the sampled surface itself."""
         return self if self.exactly else replace(self, exactly=True, distance=0.0)
 
 

@@ -50,7 +50,7 @@ class Trims:
                 self._loops.append(loops)
 
     def contains(self, pieces: Indices, places: Array) -> Flags:
-        """Return which places (k, 2) of pieces (k,) are inside their trims."""
+        """Return which parameters (k, 2) of pieces (k,) are inside their trims."""
         inside = np.ones(len(pieces), np.bool_)
         asked = np.flatnonzero(self.trimmed[pieces])
         for first in range(0, len(asked), PLACES_AT_A_TIME):
@@ -115,7 +115,7 @@ class Trims:
         )
 
     def _allow(self, pieces: Indices, places: Array) -> Flags:
-        """Return which places (k, 2) on loops fulfil all other conditions of the trims."""
+        """Return which parameters (k, 2) on loops fulfil all other conditions of the trims."""
         allowed = np.ones(len(places), np.bool_)
         others = np.flatnonzero(self._place[pieces] < 0)
         for k, rows in grouped(pieces[others]):
@@ -128,7 +128,7 @@ class Trims:
         return allowed
 
     def _inside_loops(self, pieces: Indices, places: Array) -> Flags:
-        """Return which places (k, 2) of pieces (k,), whose trims are loops, are inside."""
+        """Return which parameters (k, 2) of pieces (k,), whose trims are loops, are inside."""
         uv, totals, owners = self.wrapped(pieces, places), self._totals[pieces], self._place[pieces]
         uv[:, 0] = np.where(np.isnan(totals), uv[:, 0], totals - uv[:, 0])
         low, high = self._limits[owners, 0], self._limits[owners, 1]

@@ -105,7 +105,7 @@ def polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:
         Directions of any length but 0.
     corners : (c, 3) array_like
         At least three directions of any length, anticlockwise as seen from outside. The edges are
-        arcs of great circles, each shorter than half of one; the border belongs to the polygon.
+        arcs of great circles, each shorter than half of one; the boundary belongs to the polygon.
 
     Returns
     -------

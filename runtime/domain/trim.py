@@ -124,7 +124,7 @@ class Trim:
         Returns
         -------
         (m, n) bool array
-            The cells that the border may pass.
+            The cells that the boundary may pass.
         bool
             False if there is a predicate, whose boundary is unknown.
 

@@ -91,9 +91,9 @@ def _quotients(
 def _expanded(
     table: Array, errors: Array, place: float, off: float, inward: float
 ) -> tuple[Array, Array]:
-    """Return the coefficients of powers of inward (s − place), with bounds of their errors.
+    """Return the coefficients of powers of inward (s − `place`), with bounds of their errors.
 
-    The last axis but one is that of the powers of s; the place has an error bound.
+    The last axis but one is that of the powers of s; `place` has an error bound.
     """
     degree = table.shape[2] - 1
     shift, sizes, slopes = np.zeros((3, degree + 1, degree + 1))

@@ -166,9 +166,9 @@ def checked_fields(
 
     With `surface` they are for samples on the surface, with `proved` for those of a proved search,
     with `grid` for those that may be on a grid, with `part` for those of a CAD part, and with
-    `edges` on its sharp edges, too. Raises
-    UnknownNameError for an unknown name, and InputError for anything but a tuple of names, for no
-    names, for a repeated name, and for an attribute that is computed from fields.
+    `edges` also on its sharp edges. Raises UnknownNameError for an unknown name, and InputError for
+    anything but a tuple of names, for no names, for a repeated name, and for an attribute that is
+    computed from fields.
     """
     from ..base.checks import known_name, listed
 

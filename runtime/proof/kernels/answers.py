@@ -151,7 +151,7 @@ def relation(row, other, period):
 
 @loop
 def worse(one, other):
-    """Return the relation to a pair of solutions from those to each: the larger, or unknown."""
+    """Combine the relations to two solutions: 1 if either is 1, −1 if either is unknown, or 0."""
     return 1 if one == 1 or other == 1 else -1 if one == -1 or other == -1 else 0
 
 
