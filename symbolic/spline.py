@@ -49,7 +49,7 @@ NEIGHBOURS: dict[str, tuple[int, int]] = {
 }  # fmt: skip
 
 
-# --- places ---------------------------------------------------------------------------------------
+# --- domain points --------------------------------------------------------------------------------
 
 
 def quarter_turns(point: Sequence[Any], turns: int) -> tuple[Any, Any]:

@@ -66,7 +66,7 @@ def coverage(
 ) -> float:
     """Return a bound of the distance from any point of the surface to the nearest sample, in L.
 
-    Samples on the other side of a thin wall count, too; in `SamplingReport.coverage` they do not.
+    Samples on the other side of a thin wall also count; in `SamplingReport.coverage` they do not.
 
     Parameters
     ----------

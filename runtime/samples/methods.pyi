@@ -1,4 +1,4 @@
-"""The methods of `Samples` that rooms above this one define; `methods.py` loads them."""
+"""The methods of `Samples` that folders above define; `methods.py` loads them."""
 
 class Methods:
     from ...tools.files.of_samples import to_dataframe as to_dataframe

@@ -95,7 +95,7 @@ def merged_points(points: Array) -> tuple[Array, Indices]:
 
 
 def linked(count: int, one: Indices, other: Indices) -> tuple[int, Indices]:
-    """Return the number of connected components of a graph on [0, count), and those of the nodes.
+    """Return the number of connected components of a graph on [0, count), and that of each node.
 
     Its edges link `one` and `other` (k,). Components are numbered by their first nodes.
     """

@@ -1,4 +1,4 @@
-"""What `Spline` and `NetSpline` have from modules above; `methods.py` loads it."""
+"""Methods of `Spline` and `NetSpline` that modules above define; `methods.py` loads them."""
 
 from numpy.typing import ArrayLike
 
