@@ -2,7 +2,7 @@
 
 Pairs are processed in tiles of LANES: each step is a vectorized loop over the lanes. Pairs that
 need another evaluation of the surface stay in the tile; new pairs replace those that are done.
-Pairs that are not decided after a few evaluations are left to `proved_places`.
+Pairs that are not decided after a few evaluations are left to `places`.
 """
 
 from __future__ import annotations
