@@ -231,7 +231,7 @@ def checked_array(
     """
     if not isinstance(array, np.ndarray):
         raise InputError(f"{name} must be a NumPy array, not {type(array).__name__}.")
-    if array.dtype != np.dtype(dtype) or not _fits(array, shape):
+    if array.dtype != dtype or not (array.shape == shape or _fits(array, shape)):
         raise InputError(
             f"{name} must be a {np.dtype(dtype)} array of shape {_shown(shape)}, "
             f"not a {array.dtype} array of shape {array.shape}."

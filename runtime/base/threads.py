@@ -46,8 +46,12 @@ def over_ranges(
     At most a few results for each thread are computed ahead; closing the iterator ends the work.
     With `progress`, a bar on standard error shows work that takes longer than a second.
     """
+    if total <= size and not seen(progress):
+        if total > 0:
+            yield work(0, total)
+        return
     starts = range(0, total, size)
-    workers = min(thread_count(threads), len(starts)) if len(starts) > 1 else 1
+    workers = min(thread_count(threads), len(starts))
     # Nested work runs on its own thread: all other threads may be waiting for it.
     if workers <= 1 or getattr(_HERE, "is_worker", False):
         results = (work(first, min(first + size, total)) for first in starts)

@@ -45,7 +45,7 @@ def as_normals(
         return array
 
     def rows(begin: int, end: int) -> NDArray[np.float64]:
-        return normalized(_checked_directions(array[begin:end], begin))
+        return _normalized(*_checked_directions(array[begin:end], begin))
 
     return in_pieces(rows, 0, len(array), threads, dimension)
 
@@ -86,7 +86,12 @@ def in_pieces(
 
 def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """Divide vectors by their lengths, without overflow or underflow."""
-    exponents = np.frexp(_largest(vectors))[1]
+    return _normalized(vectors, _largest(vectors))
+
+
+def _normalized(vectors: NDArray[np.float64], largest: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the same of vectors whose `largest` components are known."""
+    exponents = np.frexp(largest)[1]
     far = np.abs(exponents) > 1
     if far.any():
         vectors = np.ldexp(vectors, np.where(far, -exponents, 0)[:, None])
@@ -106,19 +111,24 @@ def _are_unit(array: NDArray[Any], threads: int | None) -> bool:
     return all(over_ranges(work, len(array), PART, threads))
 
 
-def _checked_directions(values: NDArray[Any], start: int) -> NDArray[np.float64]:
-    """Return directions as float64; InputError names the first unusable row, from `start` on."""
+def _checked_directions(
+    values: NDArray[Any], start: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return directions as float64, and the largest component of each, in modulus.
+
+    InputError names the first unusable row, from `start` on.
+    """
     with np.errstate(over="ignore"):
-        array = values.astype(np.float64)
-    if not np.isfinite(array).all():
-        bad = int(np.argmin(np.isfinite(array).all(axis=1)))
-        raise InputError(f"normals[{start + bad}] holds NaN or infinity.")
-    zero = _largest(array) == 0.0
-    if zero.any():
+        array = values.astype(np.float64, copy=False)
+    largest = _largest(array)
+    finite = np.isfinite(largest)
+    if not finite.all():
+        raise InputError(f"normals[{start + int(finite.argmin())}] holds NaN or infinity.")
+    if not largest.all():
         raise InputError(
-            f"normals[{start + int(zero.argmax())}] is the zero vector, which has no direction."
+            f"normals[{start + int(largest.argmin())}] is the zero vector, which has no direction."
         )
-    return array
+    return array, largest
 
 
 def _largest(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -12,15 +12,12 @@ from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..domain.trim import Trim
 from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
-from ..proof.kernels.cells import Work
-from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places
+from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places, order_by_patch
 from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, row_shape
 from ..samples.report import UndecidedNormal
 from ..spline.inside import samples_inside, with_uv
-from ..spline.kernels.forms import patches_at
 from ..spline.spline import Spline
 from ..surface.surface import Surface
-from ..tape.kernels.points import Tape
 from .newton import near_poles
 from .on_spline import Fields, FieldsOfSamples
 from .pole_charts import pole_charts
@@ -60,37 +57,20 @@ def proved_samples(
 
     They come in the order of normals, then of the patches of the spline, then of u and v.
     """
-    found = _by_patch(index.query(normals, threads), spline)
+    found = index.query(normals, threads)
+    order_by_patch(found.numbers, found.places, spline.frame, spline.cells)
     check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
     wanted = with_uv(spline.trim, fields)
-    arrays = _arrays(surface, spline, index.tape, normals, found, wanted, threads)
+    arrays = _arrays(surface, spline, index, normals, found, wanted, threads)
     arrays = samples_inside(spline.trim, arrays, fields)
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
     return FieldsOfSamples(kept, 0), proof_of(normals, found.undecided, spline.trim)
 
 
-def _by_patch(found: ProvedPlaces, spline: Spline) -> ProvedPlaces:
-    """Return places in the order of normals, then of patches.
-
-    They are sorted by u, and so by rows of cells: only those of one row may have to be exchanged.
-    """
-    frame, numbers = spline.frame, found.numbers
-    row = np.clip((found.places[:, 0] - frame[0]) / frame[2], 0, spline.cells[0] - 1).astype(int)
-    same = np.flatnonzero((row[1:] == row[:-1]) & (numbers[1:] == numbers[:-1]))
-    if len(same) == 0:
-        return found
-    some = np.flatnonzero(np.isin(numbers, numbers[same]))
-    patches, local = np.empty(len(some), np.int64), np.empty((len(some), 2))
-    patches_at(*spline.cells, (found.uv[some] - frame[:2]) / frame[2:], patches, local)
-    places = found.places.copy()
-    places[some] = found.places[some[np.lexsort((patches, numbers[some]))]]
-    return found._replace(places=places)
-
-
 def _arrays(
     surface: Surface,
     spline: Spline,
-    tape: Tape,
+    index: ProvedIndex,
     normals: NDArray[np.float64],
     found: ProvedPlaces,
     fields: Sequence[str],
@@ -106,15 +86,16 @@ def _arrays(
         )
     )
     K, H = rooms.gaussian_curvature, rooms.mean_curvature
-    scales, frame = np.array([spline.scale, *spline.frame[2:]]), spline.frame
+    frame, cells = spline.frame, spline.cells
+    scales = np.array([spline.scale, frame[2], frame[3]])
     charts = pole_charts(surface, spline)
 
     def work(first: int, last: int) -> None:
-        scratch = Work.new(len(tape.operations))
-        fill_places(
-            tape, scratch, numbers, places, first, last, normals, scales, frame, spline.cells,
-            np.empty(CURVATURES), rooms,
-        )  # fmt: skip
+        with index.room() as memory:
+            fill_places(
+                index.tape, memory.work, numbers, places, first, last, normals, scales, frame,
+                cells, np.empty(CURVATURES), rooms,
+            )  # fmt: skip
         for rows, _, gaussian, mean in near_poles(charts, spline, places[first:last, :2]):
             if len(K) > 0:
                 K[first + rows] = np.copysign(gaussian, places[first + rows, 4])
@@ -131,6 +112,8 @@ def proof_of(
     normals: NDArray[np.float64], open_: Undecided, trim: Trim | None, face: int | None = None
 ) -> Proof:
     """Return the proof for unit normals (S, 3), of which some are open; on a face of a part."""
+    if len(open_.numbers) == 0:
+        return Proof(len(normals), ())
     open_ = _not_outside(trim, open_, normals)
     undecided = tuple(
         UndecidedNormal(number, tuple(box), KINDS[kind], border, face)
@@ -141,7 +124,7 @@ def proof_of(
 
 def _not_outside(trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]) -> Undecided:
     """Return the boxes that may have points inside a trim; they may meet its border, too."""
-    if trim is None or not len(open_.numbers):
+    if trim is None:
         return open_
     sides = trim.sides(open_.boxes, normals[open_.numbers])
     open_ = open_._replace(border=open_.border | (sides == 0))

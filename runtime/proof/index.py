@@ -32,7 +32,7 @@ from .kernels.answers import BORDER, BOX, KINDS, Answers, merge_places
 from .kernels.cells import OPEN, REACH, WIDE, Cells, Work, cut_cells
 from .kernels.discs import decide_discs
 from .kernels.places import Boxes, decide_normals
-from .kernels.search import PLACE, Found, Index, Tiles, evaluate_pairs
+from .kernels.search import Found, Index, Tiles, evaluate_pairs
 from .kernels.sorting import Sorted, count_places, order_places, put_places, start_normals
 from .lines import lines_of
 
@@ -50,6 +50,7 @@ CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
 CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
 # Cells without a cone of normals are in all bins: they are this part of the domain at most.
 MOST_OPEN = 0.25
+NO_PAIRS = np.empty((0, 2), np.int64)
 
 
 class Undecided(NamedTuple):
@@ -210,14 +211,13 @@ class ProvedIndex:
     ) -> tuple[list[Places], NDArray[np.int64]]:
         """Return what is found at once, and hard pairs (k, 2) of normals and cells."""
         order = ordered(normals, self.lists, threads)
-        nothing = Places(np.empty((0, PLACE)), np.empty(0, np.int64)), np.empty((0, 2), np.int64)
 
         def work(first: int, last: int) -> list[tuple[Places, NDArray[np.int64]]]:
             numbers, count, parts, start = order[first:last] & NUMBER, last - first, [], 0
             # Normals of a range side by side, since those of a bin are read for each of its cells.
             some = np.take(normals, numbers, axis=0)
             keys = (order[first:last] & ~NUMBER) | np.arange(count)
-            with self._room() as rooms:
+            with self.room() as rooms:
                 while start < count:
                     start, needed = search(
                         KIND, self.pieces, self.lists, some, keys, start, count, rooms.memory,
@@ -229,8 +229,9 @@ class ProvedIndex:
             return parts
 
         ranges = over_ranges(work, len(order), NORMALS_AT_A_TIME, threads)
-        places, hard = zip(nothing, *(x for parts in ranges for x in parts), strict=True)
-        return list(places), np.concatenate(hard)
+        found = [x for parts in ranges for x in parts]
+        hard = [pairs for _, pairs in found if len(pairs) > 0]
+        return [x for x, _ in found], np.concatenate(hard) if hard else NO_PAIRS
 
     def _evaluated(
         self, normals: NDArray[np.float64], numbers: NDArray[np.int64], rooms: Rooms
@@ -248,12 +249,15 @@ class ProvedIndex:
             rooms.found[0] = Found.new(2 * len(room.numbers), 2 * len(room.hard))
         found = rooms.found[0]
         places, hard = found.counts
+        close = Places(found.places[:places].copy(), numbers[found.numbers[:places]])
+        if hard + undecided == 0:
+            return close, NO_PAIRS
         others = rooms.pairs[0].undecided[:undecided]
         left = np.concatenate(
             [found.hard[:hard], np.stack([others >> 32, others & NUMBER], axis=1)]
         )
         left[:, 0] = numbers[left[:, 0]]
-        return Places(found.places[:places].copy(), numbers[found.numbers[:places]]), left
+        return close, left
 
     def _decide(
         self, normals: NDArray[np.float64], hard: NDArray[np.int64], threads: int | None
@@ -328,7 +332,7 @@ class ProvedIndex:
 
         def work(first: int, last: int) -> list[Answers]:
             answers = []
-            with self._room() as rooms:
+            with self.room() as rooms:
                 while first < last:
                     room = rooms.answers[0]
                     after = int(step(room, rooms, first, last))
@@ -342,7 +346,7 @@ class ProvedIndex:
         return [x for part in over_ranges(work, count, HARD_AT_A_TIME, threads) for x in part]
 
     @contextmanager
-    def _room(self) -> Iterator[Rooms]:
+    def room(self) -> Iterator[Rooms]:
         """Yield work arrays that no other thread uses."""
         try:
             rooms = self._rooms.pop()

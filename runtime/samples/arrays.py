@@ -19,9 +19,9 @@ from ..base.tolerances import DERIVATIVE_ERROR, PATCH_ERROR
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .fields import (
+    ARRAY_NAMES,
     COLUMNS,
     DERIVED,
-    FIELDS,
     REAL_NAMES,
     dtype_of,
     missing_fields,
@@ -71,18 +71,17 @@ class SampleArrays:
     offset_of: OffsetOf | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        arrays = {name: getattr(self, name) for name in COLUMNS}
-        arrays = {name: array for name, array in arrays.items() if array is not None}
+        arrays = {x: array for x in COLUMNS if (array := getattr(self, x)) is not None}
         if not arrays:
             raise InputError("samples need at least one array, such as points.")
         first = next(iter(arrays.values()))
         count = len(first) if isinstance(first, np.ndarray) and first.ndim else 0
         floating = _common_dtype(arrays)
-        for name in COLUMNS:
-            if name in arrays:
-                shape, dtype = (count, *row_shape(name)), dtype_of(name, floating)
-                object.__setattr__(self, name, checked_array(name, arrays[name], shape, dtype))
-            elif not FIELDS[name].only:
+        for name, array in arrays.items():
+            shape, dtype = (count, *row_shape(name)), dtype_of(name, floating)
+            object.__setattr__(self, name, checked_array(name, array, shape, dtype))
+        for name in ARRAY_NAMES:
+            if name not in arrays:
                 object.__delattr__(self, name)  # an empty slot, so that __getattr__ raises
         for name, (kind, allowed) in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):

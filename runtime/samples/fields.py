@@ -119,12 +119,16 @@ def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
     """Return the dtype of a field, `floating` for all fields of real numbers."""
     import numpy as np
 
-    return np.dtype({"flag": np.bool_, "index": np.int64, "real": floating}[FIELDS[name].kind])
+    kind = FIELDS[name].kind
+    return np.dtype(floating if kind == "real" else np.int64 if kind == "index" else np.bool_)
 
 
 def bytes_of(fields: Iterable[str], floating: DTypeLike) -> int:
     """Return the number of bytes of the fields of one sample."""
-    return sum(len(COLUMNS[x]) * dtype_of(x, floating).itemsize for x in fields)
+    import numpy as np
+
+    sizes = {"flag": 1, "index": 8, "real": np.dtype(floating).itemsize}
+    return sum(len(COLUMNS[x]) * sizes[FIELDS[x].kind] for x in fields)
 
 
 def new_field(
@@ -225,6 +229,9 @@ def checked_dtype(dtype: DTypeLike) -> np.dtype[np.floating]:
     import numpy as np
 
     known = np.dtype(np.float32), np.dtype(np.float64)
+    for number in known:
+        if dtype is number or dtype is number.type:
+            return number
     with suppress(Exception), catch_warnings():  # NumPy evaluates some texts as Python
         simplefilter("ignore")
         if dtype is not None and np.dtype(dtype) in known:
