@@ -16,7 +16,7 @@ from ..directions.unit import perpendicular
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
 from .in_nets import errors_of
-from .kernels.lists import FINEST, Lists, list_pieces, order_normals, write_caps
+from .kernels.lists import FINEST, Lists, list_pieces, order_normals, place_members, write_caps
 from .kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
 from .kernels.sort import count_keys, place_keys
 
@@ -28,10 +28,12 @@ MOST_PATCHES = 1 << 20
 PIECES_AT_A_TIME, NORMALS_AT_A_TIME = 1 << 12, 1 << 16
 # Bins are so small that a piece is in about this many.
 BINS_PER_PIECE = 7.0
+# Room for them in the beginning.
+KEYS_PER_PIECE = 16
 # Normals are sorted by bins that have as many of them on average.
 NORMALS_PER_BIN = 4
 # The pieces that are looked at for that.
-LOOKED_AT = 1 << 12
+LOOKED_AT = 1 << 10
 # Directions that fill a cap are spread over a face of the cube if its tangent is below this; it
 # counts as this at least.
 WIDEST_CAP, NARROWEST_CAP = 0.5, 2.0**-30
@@ -112,16 +114,19 @@ def listed(cones: Array) -> Lists:
     level = _level_of(cones, faces, tangent)
     caps = np.empty((faces << 2 * level, 4))
     write_caps(inverse, faces, level, caps)
-    starts = np.zeros(len(caps) + 1, np.int64)
-    lists = Lists(frame, inverse, faces, level, starts, np.empty(0, np.int32))
     # Heights of directions on their face are at least this.
     least = (1.0 - 1e-12) / math.sqrt(1.0 + 2.0 * tangent**2)
-    list_pieces(cones, caps, lists, 1.0 / tangent, least, starts)
-    starts[1:] = np.cumsum(starts[:-1])
-    starts[0] = 0
-    lists = lists._replace(members=np.empty(max(int(starts[-1]), 1), np.int32))
-    list_pieces(cones, caps, lists, 1.0 / tangent, least, starts.copy())
-    return lists
+    keys = np.empty(0, np.int64)
+    room = KEYS_PER_PIECE * len(cones)
+    while room > len(keys):
+        keys = np.empty(room, np.int64)
+        room = list_pieces(cones, caps, frame, faces, level, 1.0 / tangent, least, keys)
+    keys = keys[:room]
+    counts, members = np.zeros(len(caps) + 1, np.int32), np.empty(max(room, 1), np.int32)
+    count_keys(keys, 32, counts)
+    starts = np.cumsum(counts, dtype=np.int64)
+    place_members(keys, starts.copy(), members)
+    return Lists(frame, inverse, faces, level, starts, members)
 
 
 def _frame_of(cones: Array) -> tuple[Array, float]:

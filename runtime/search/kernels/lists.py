@@ -19,7 +19,15 @@ from ...machine_code.jit import inline, jit, loop
 from .bins import bin_index, cube_face, mapped
 from .pieces import CHORD, SLAB, WIDTH
 
-__all__ = ["FINEST", "NUMBER", "Lists", "list_pieces", "order_normals", "write_caps"]
+__all__ = [
+    "FINEST",
+    "NUMBER",
+    "Lists",
+    "list_pieces",
+    "order_normals",
+    "place_members",
+    "write_caps",
+]
 
 # The level of the bins by which normals are sorted.
 FINEST = np.int64(12)
@@ -123,12 +131,12 @@ def meets(cone, cap):
 
 
 @jit
-def list_pieces(cones, caps, lists, stretch, least, starts):
-    """Count the pieces of each bin in `starts`, or list them if there is room in `members`.
+def list_pieces(cones, caps, frame, faces, level, stretch, least, keys):
+    """Write bin << 32 | piece for the pieces of bins, as far as there is room; return how many.
 
     `stretch` is the norm of the frame, `least` the least height of a direction on its face.
     """
-    frame, _, faces, level, _, members = lists
+    count = 0
     grid = np.int64(1) << level
     for j in range(cones.shape[0]):
         cone = cones[j]
@@ -155,6 +163,16 @@ def list_pieces(cones, caps, lists, stretch, least, starts):
                 for column in range(left, right + 1):
                     b = bin_number(np.int64(k), np.int64(row), np.int64(column), level)
                     if meets(cone, caps[b]):
-                        if members.size > 0:
-                            members[starts[b]] = j
-                        starts[b] += 1
+                        if count < keys.size:
+                            keys[count] = b << 32 | j
+                        count += 1
+    return count
+
+
+@jit
+def place_members(keys, starts, members):
+    """Write the pieces of keys to the places of their bins; `starts` move on."""
+    for key in keys:
+        b = np.uint64(key >> 32)
+        members[np.uint64(starts[b])] = key & NUMBER
+        starts[b] += 1

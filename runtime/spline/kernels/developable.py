@@ -5,8 +5,10 @@ A test at the centre of a patch excludes most patches.
 
 from __future__ import annotations
 
+import math
+
 from ....generated.patch import control_normals, forms, parabolic_cubic
-from ...directions.kernels.vectors import largest_component, length
+from ...directions.kernels.vectors import dot, largest_component
 from ...domain.kernels.patch_numbers import place_of
 from ...machine_code.jit import jit, loop
 from .patch import normal_of_patch, patch_vectors
@@ -39,8 +41,8 @@ def longest_control_normal(patch):
     """Return the length of the longest control normal of a patch."""
     longest = 0.0
     for normal in control_normals(patch):
-        longest = max(longest, length(normal))
-    return longest
+        longest = max(longest, dot(normal, normal))
+    return math.sqrt(longest)
 
 
 @jit
