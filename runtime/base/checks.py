@@ -37,6 +37,10 @@ __all__ = [
 ]
 
 
+# Made once: a report checks many numbers.
+WHOLE, OF_NUMPY = (int, np.integer), (np.ndarray, np.generic)
+
+
 def known_name(name: str, known: Sequence[str], kind: str, command: str = "") -> str:
     """Return `name` if it is known; otherwise UnknownNameError lists similar or all names.
 
@@ -56,7 +60,7 @@ def known_name(name: str, known: Sequence[str], kind: str, command: str = "") ->
 
 def whole_number(value: object, name: str, least: int = 1, most: int = MOST) -> int:
     """Return a whole number from `least` to `most`; InputError with its name otherwise."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+    if isinstance(value, bool) or not isinstance(value, WHOLE) or value < least:
         example = ""
         if isinstance(value, float | np.floating) and least <= value <= most:
             example = f"; {round(value)} for example"
@@ -92,9 +96,7 @@ def checked_count(value: object) -> int:
 
 def as_float(value: SupportsFloat | str) -> float:
     """Return float(value); TypeError if that fails, and for complex or masked numbers of NumPy."""
-    if isinstance(value, np.ndarray | np.generic) and (
-        value.dtype.kind == "c" or np.ma.is_masked(value)
-    ):
+    if isinstance(value, OF_NUMPY) and (value.dtype.kind == "c" or np.ma.is_masked(value)):
         raise TypeError("neither complex nor masked arrays are real numbers")
     try:
         return float(value)

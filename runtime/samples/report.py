@@ -284,8 +284,8 @@ class SamplingReport:
             known_name(self.density, DENSITIES, "density")
         for name, check in CHECKS.items():
             value = getattr(self, name)
-            if value is not None or name in KNOWN:
-                object.__setattr__(self, name, check(value, name))
+            if (value is not None or name in KNOWN) and (plain := check(value, name)) is not value:
+                object.__setattr__(self, name, plain)
 
     @property
     def _cap(self) -> Cap | None:
@@ -412,7 +412,7 @@ def count_infinite(arrays: Mapping[str, NDArray[Any]]) -> int | None:
     """Return the number of samples with infinite K; None if K is not among their fields."""
     if "gaussian_curvature" not in arrays:
         return None
-    return int(np.isinf(arrays["gaussian_curvature"]).sum())
+    return int(np.count_nonzero(np.isinf(arrays["gaussian_curvature"])))
 
 
 def count_unrefined(arrays: Mapping[str, NDArray[Any]]) -> int | None:
