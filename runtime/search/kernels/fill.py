@@ -7,7 +7,7 @@ import numpy as np
 from ...directions.kernels.vectors import STEP, TILE, row_vector
 from ...machine_code.jit import jit
 from .lists import NUMBER
-from .tile import NORMAL, fill_tile, load_patch, put
+from .tile import NORMAL, copy_patch, fill_tile, load_patch, put
 
 __all__ = ["fill_samples"]
 
@@ -30,7 +30,11 @@ def fill_samples(
             number, patch = key >> 32, key & NUMBER
             indices[k], indices[STEP + k] = number, patch
             put(tile, NORMAL, k, row_vector(normals, np.uint64(number)))
-            load_patch(mu, patch, scale, tile, k)
+            # Neighbouring normals mostly have the same patches, often two.
+            if k > 1 and indices[STEP + k - 2] == patch:
+                copy_patch(tile, k, k - 2)
+            else:
+                load_patch(mu, patch, scale, tile, k)
         fill_tile(
             tile, indices, count, begin, scale, frame,
             points, directions, uv, support, gaussian, mean, normal_index, patch_index,

@@ -26,7 +26,7 @@ from ...spline.kernels.patch import (
 )
 from .lists import NUMBER
 
-__all__ = ["NORMAL", "fill_known", "fill_tile", "load_patch", "new_tile", "put"]
+__all__ = ["NORMAL", "copy_patch", "fill_known", "fill_tile", "load_patch", "new_tile", "put"]
 
 # The number of rows, of STEP numbers, and the starts of the parts of a tile. The starts are typed,
 # since Numba compiles a function anew for each literal number in its arguments.
@@ -110,6 +110,13 @@ def load_patch(mu, number, scale, tile, k):
     tile[PLACE + 6 * STEP + k] = place.u_t
     tile[PLACE + 7 * STEP + k] = place.v_s
     tile[PLACE + 8 * STEP + k] = place.v_t
+
+
+@loop
+def copy_patch(tile, k, source):
+    """Write the same as `load_patch`, for the patch of another sample of the tile."""
+    for row in range(COEFFICIENTS, POINT, STEP):
+        tile[np.uint64(row + k)] = tile[np.uint64(row + source)]
 
 
 @loop
