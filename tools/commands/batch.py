@@ -67,7 +67,8 @@ def run(options: SimpleNamespace) -> None:
 
 def _parts_of(options: SimpleNamespace) -> tuple[list[Source], Named]:
     """Return the parts, with files by name, and the options with which workers read these."""
-    own = {"formula": None, "domain": None, "time_limit": None, "memory_limit": None}
+    none = dict.fromkeys(("formula", "domain", "time_limit", "memory_limit"))
+    own = none | {"quiet": False}  # data sets do not depend on it
     named = Named.of(SimpleNamespace(**vars(options) | own))
     of_formulas = [
         surface_of(replace(named, formula=formula, domain=options.domain))
