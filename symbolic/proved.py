@@ -25,7 +25,6 @@ from .patch import LINEAR_FORMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d
 __all__ = ["FORMULAS"]
 
 s, t, x, y, i, j = (scalar(name) for name in "stxyij")
-CELL_SIDES = {sp.S.NegativeOne: "low", sp.S.Zero: "middle", sp.S.One: "high"}
 
 
 def _names(letter: str) -> tuple[sp.Symbol, ...]:
