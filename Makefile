@@ -94,7 +94,6 @@ verify: $(READY) $(VENV)/cad/8.0.0/.ready ## run what is slow: all tests with ma
 	$(VENV)/cad/8.0.0/bin/python -m pytest -q -m slow tests/tools/cad/opencascade
 	$(BIN)/python -m pytest -q -m "not slow" --hypothesis-profile=large --numprocesses auto --dist worksteal
 	$(MAKE) docs
-	$(VENV)/docs/bin/python -m pytest -q tests/docs/test_mathml.py
 	.ci/check-site
 	.ci/check-newcomers
 	$(MAKE) coverage bench formulas

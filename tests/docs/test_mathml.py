@@ -5,11 +5,10 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
+import math_core
 import pytest
 from gaussmap.symbolic import latex
 
-math_core = pytest.importorskip("math_core")
-pytest.importorskip("sphinx")
 sys.path.append(str(Path(__file__).parents[2] / "docs" / "_sphinx"))
 mathml = __import__("mathml").mathml
 
