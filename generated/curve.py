@@ -124,7 +124,7 @@ def arc_curvature(A, p_t):
 
 @inline
 def arc_sample(arc, t, A):
-    """What a sample of a curve holds: the point, the tangent and the curvature.
+    """Point, tangent and curvature of a sample of a curve.
 
         x = a*t**2/2 + b*t + c
         p_t = a*t + b

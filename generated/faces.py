@@ -191,8 +191,8 @@ def offset_jet(patch, x_uuu, x_uuv, x_uvv, x_vvv, n, L, R):
 @inline
 def offset_side(patch, n, R):
     """A number D with the sign of the product of the normals of a surface and of its offset by
-    R, from first and second derivatives of the surface and its unit normal n: the determinant
-    of the first fundamental form less R times the second one.
+    R: the determinant of the first fundamental form minus R times the second one, from first
+    and second derivatives of the surface and its unit normal n.
 
         D = (|d|**2 - R*a·n)*(|e|**2 - R*c·n) - (d·e - R*b·n)**2
 

@@ -150,7 +150,7 @@ def edge_vectors(T0, X0, T1, X1):
 
 @inline
 def tangential(x, n):
-    """The part of x perpendicular to n, times the square of the length of n.
+    """The component of x perpendicular to n, times |n|^2.
 
         y = x*|n|**2 - n*x·n
 
@@ -203,10 +203,9 @@ def boundary_arc(N0, N1, N2, t):
 
 @inline
 def boundary_arc_zeros(N0, N1, N2, q, s):
-    """The two zeros of the component along q of the normals of a boundary arc. Where the
-    normals vanish, at a singular point, that of every q has a zero. s is the sign of z1, so
-    that nothing cancels. A discriminant below zero, which rounding may leave of a double zero,
-    counts as zero.
+    """The two zeros of q·n along a boundary arc. At a singular point, where n = 0, it vanishes
+    for every q. s is the sign of z1, which avoids cancellation. A negative discriminant, the
+    rounded value of a double zero, counts as zero.
 
         z0 = q·N0
         z1 = q·N1
@@ -232,9 +231,9 @@ def boundary_arc_zeros(N0, N1, N2, q, s):
 
 @inline
 def solid_angle(q, n, n_t):
-    """What a curve n of normals of any length, with the derivative n_t, adds to a solid angle:
-    the integral along the boundary of a region of the sphere is the solid angle of the region,
-    if it does not hold -q. q is a unit vector.
+    """Integrand of a solid angle along a curve n of normals of any length, with the derivative
+    n_t: its integral along the boundary of a region of the sphere is the region's solid angle,
+    unless the region contains -q. q is a unit vector.
 
         S_t = (det(q, n, n_t))/((q·n + |n|)*|n|)
 
@@ -297,8 +296,8 @@ def parabolic_directions(patch):
 
 @inline
 def parabolic_normal(patch, s, t):
-    """The one normal along a parabolic line of direction (s, t), up to its length and sign:
-    three vectors that are multiples of it. They do not all vanish, unless the patch is
+    """Three multiples of the normal along a parabolic line of direction (s, t), which is
+    constant there up to length and sign. At least one is non-zero, unless the patch is
     developable or has no normal on the line.
 
         f1 = a*t - b*s

@@ -186,9 +186,9 @@ def contour(patch, w):
 
 @inline
 def polar_chart(patch, r, x, y):
-    """The 2-jet in the regular chart s = r x, t = r y at a pole, from that by the polar angle
-    (a and d twice and once, b mixed) and the distance r > 0 from the pole; x and y are the
-    cosine and the sine of the angle.
+    """The 2-jet in the regular chart s = r x, t = r y at a pole, from derivatives by the polar
+    angle (once d, twice a), by angle and distance (b) and by the distance r > 0; x and y are
+    the cosine and the sine of the angle.
 
         o = d/r
         m = b/r - o/r

@@ -10,9 +10,8 @@ from .vectors import Vector, inline
 
 @inline
 def corner_products(p0, p1, p2, n0, n1, n2):
-    """How a triangle with the corners p0, p1, p2 lies to the surface: s0/L, s1/L and s2/L are
-    the cosines of the angles between its normal and the unit normals n0, n1, n2 of the surface
-    there. L is twice its area.
+    """Cosines s0/L, s1/L, s2/L of the angles between the normal of a triangle with the corners
+    p0, p1, p2 and the unit normals n0, n1, n2 of the surface there. L is twice its area.
 
         e = p1 - p0
         f = p2 - p0
@@ -48,8 +47,8 @@ def corner_products(p0, p1, p2, n0, n1, n2):
 
 @inline
 def corner_cotangents(p0, p1, p2):
-    """The angles of a triangle with the corners p0, p1, p2: c0/L, c1/L and c2/L are their
-    cotangents. L is twice its area.
+    """Cotangents c0/L, c1/L, c2/L of the angles of a triangle with the corners p0, p1, p2. L is
+    twice its area.
 
         e = p1 - p0
         f = p2 - p0
@@ -86,8 +85,8 @@ def corner_cotangents(p0, p1, p2):
 
 @inline
 def border_spacing(r, k):
-    """How far apart points of a border are to be if the k-th nearest sample is r away: as far
-    as samples are of which k fill half a disk of radius r.
+    """Spacing of boundary points where the k-th nearest sample is at the distance r: that of
+    samples of which k fill half a disk of radius r.
 
         rho = 2*k/(pi*r**2)
         d = 1/sqrt(rho)
@@ -101,8 +100,8 @@ def border_spacing(r, k):
 
 @inline
 def edge_over_surface(p0, p1, n0, n1):
-    """The middle Bézier point of a quadratic curve from p0 to p1 that is as nearly as possible
-    perpendicular to the unit normals n0 and n1 at its ends.
+    """The middle Bézier point of a quadratic curve from p0 to p1 whose end tangents are
+    perpendicular to the unit normals n0 and n1, in the sense of least squares.
 
         e = p1 - p0
         beta = - (e·n0 - e·n1)/(4*(n0·n1 + 1))

@@ -149,8 +149,8 @@ def eliminated_forms(A, B, C, P, Q):
 
 @inline
 def polar_forms(A, B, C, P, Q, A_m, B_m, C_m, P_m, Q_m):
-    """The coefficients of s t in the quadratic forms at s n + t m, from the linear forms of two
-    normals n and m. With m = n they are twice the quadratic forms.
+    """Coefficients of s t in the quadratic forms at s n + t m, from the linear forms of the
+    normals n and m; for m = n, twice the quadratic forms.
 
         D = A*C_m + A_m*C - 2*B*B_m
         U = B*Q_m + B_m*Q - C*P_m - C_m*P
@@ -808,7 +808,7 @@ def sample(patch, n):
 
 @inline
 def curvature_at(patch, n, u, v):
-    """The curvatures where the parameters are known already, and n is the unit normal there.
+    """Gaussian and mean curvature at given parameters u, v, where n is the unit normal.
 
         A = n·a
         B = n·b
@@ -856,7 +856,7 @@ def curvature_at(patch, n, u, v):
 
 @inline
 def largest_curvature(K, H):
-    """The larger one of the moduli of the principal curvatures.
+    """The larger absolute value of the two principal curvatures.
 
         k = Abs(H) + sqrt(Abs(H**2 - K))
 

@@ -35,8 +35,8 @@ def model_at(A, B, C, P, Q, T0, T1, T2, T3, s, t):
 
 @inline
 def remainders(T0, T1, T2, T3):
-    """Bounds R and S over the cell of what a quadratic patch leaves out of the derivatives of
-    heights by s and t, from bounds T0, …, T3 of the third derivatives.
+    """Bounds R and S, over a cell, of the remainders of the derivatives of heights by s and t
+    beyond a quadratic patch, from bounds T0, …, T3 of the third derivatives.
 
         R = T0/2 + T1 + T2/2
         S = T1/2 + T2 + T3/2
@@ -50,10 +50,10 @@ def remainders(T0, T1, T2, T3):
 
 @inline
 def excesses(A, B, C, P, Q, R, S):
-    """If one of these four numbers is positive then no point of the cell has the normal n: the
-    derivatives of the height along n, or the combinations of them from which one parameter is
-    eliminated, exceed what they change over the cell. R and S are bounds of what a quadratic
-    patch leaves out of the derivatives.
+    """Four numbers; if one is positive, no point of the cell has the normal n: the derivatives
+    of the height along n, or their combinations with one parameter eliminated, are larger at
+    the centre than their change over the cell. R and S bound the remainders beyond a quadratic
+    patch.
 
         D = A*C - B**2
         e1 = Abs(P) - R - Abs(A) - Abs(B)

@@ -131,8 +131,8 @@ def offset(R, n):
 
 @inline
 def offset_curvature(K, H, R):
-    """Gaussian and mean curvature of the offset at the distance R, of use also where a radius
-    is infinite. s is how much the product of the radii grows: 0 where one becomes 0.
+    """Gaussian and mean curvature of the offset at the distance R; principal radii may be
+    infinite. s is the factor of the product of the radii, 0 where one of them becomes 0.
 
         s = 2*H*R + K*R**2 + 1
         K_offset = K/s
@@ -166,9 +166,9 @@ def offset_growth(K, H, R):
 
 @inline
 def curvature_from_hessian(n, hessian):
-    """Curvature from the Hessian of a support function at a unit normal n: half the sum m of
-    the principal radii, their product q, and the square S of half their difference, so that
-    they are m plus and minus its root; Gaussian and mean curvature.
+    """Gaussian and mean curvature from the Hessian of a support function at a unit normal n. m
+    is the mean of the principal radii, q their product and S the square of half their
+    difference: the radii are m ± S^{1/2}.
 
         m = (H_xx + H_yy + H_zz)/2
         T_xx = H_xx - m*(1 - n_x**2)
@@ -249,7 +249,7 @@ def parameters_at(patch, n):
 
 @inline
 def hessian_at(patch, n, u, v):
-    """The Hessian of the support function of a patch where the parameters are known already.
+    """The Hessian of the support function of a patch at given parameters.
 
         A = n·a
         B = n·b

@@ -240,8 +240,8 @@ def curvature_at_normal(patch, normals, K_values, H_values):
 
 
 def branch(patch, normals, u_values, v_values, points, hessians, K_values, H_values):
-    """What one patch has at the normal n, once its parameters are known: point, Hessian of the
-    support function, curvatures.
+    """Point, Hessian of the support function and curvatures of a patch at the normal n, given
+    its parameters.
 
         A = n·a
         B = n·b

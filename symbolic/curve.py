@@ -137,7 +137,7 @@ CURVATURE = Formula.build(
 
 SAMPLE = compose(
     "arc_sample",
-    "What a sample of a curve holds: the point, the tangent and the curvature.",
+    "Point, tangent and curvature of a sample of a curve.",
     [ENVELOPE, TANGENT, CURVATURE],
     source=f"eqs. (5)-(8), in the plane: {SECTION}",
     outputs=[*plane_vectors("x"), scalar("kappa")],

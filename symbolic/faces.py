@@ -107,8 +107,8 @@ def OFFSET_JET() -> Parts:
 OFFSET_SIDE = Formula.build(
     "offset_side",
     "A number $D$ with the sign of the product of the normals of a surface and of its offset by "
-    "$R$, from first and second derivatives of the surface and its unit normal $n$: the "
-    "determinant of the first fundamental form less $R$ times the second one.",
+    "$R$: the determinant of the first fundamental form minus $R$ times the second one, from "
+    "first and second derivatives of the surface and its unit normal $n$.",
     inputs=[*VECTORS, n, R],
     outputs=[
         (

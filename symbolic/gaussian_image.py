@@ -104,7 +104,7 @@ def EDGE_VECTORS() -> Parts:
 
 TANGENTIAL = Formula.build(
     "tangential",
-    "The part of $x$ perpendicular to $n$, times the square of the length of $n$.",
+    "The component of $x$ perpendicular to $n$, times $|n|^2$.",
     inputs=[x, n],
     outputs=[("y", Dot(n, n) * x - Dot(x, n) * n)],
 )
@@ -123,10 +123,9 @@ ARC = Formula.build(
 
 ARC_ZEROS = Formula.build(
     "boundary_arc_zeros",
-    "The two zeros of the component along $q$ of the normals of a boundary arc. Where the normals "
-    "vanish, at a singular point, that of every $q$ has a zero. $s$ is the sign of $z1$, so that "
-    "nothing cancels. A discriminant below zero, which rounding may leave of a double zero, counts "
-    "as zero.",
+    "The two zeros of $q·n$ along a boundary arc. At a singular point, where $n = 0$, it "
+    "vanishes for every $q$. $s$ is the sign of $z1$, which avoids cancellation. A negative "
+    "discriminant, the rounded value of a double zero, counts as zero.",
     inputs=[N0, N1, N2, q, s],
     terms=[
         *((f"z{k}", Dot(q, x)) for k, x in enumerate((N0, N1, N2))),
@@ -139,9 +138,9 @@ LENGTH: sp.Expr = sp.sqrt(Dot(n, n))
 
 SOLID_ANGLE = Formula.build(
     "solid_angle",
-    "What a curve $n$ of normals of any length, with the derivative $n_t$, adds to a solid angle: "
-    "the integral along the boundary of a region of the sphere is the solid angle of the region, "
-    "if it does not hold $-q$. $q$ is a unit vector.",
+    "Integrand of a solid angle along a curve $n$ of normals of any length, with the derivative "
+    "$n_t$: its integral along the boundary of a region of the sphere is the region's solid "
+    "angle, unless the region contains $-q$. $q$ is a unit vector.",
     inputs=[q, n, n_t],
     outputs=[("S_t", Det(q, n, n_t) / (LENGTH * (LENGTH + Dot(q, n))))],
 )
@@ -178,9 +177,9 @@ def PARABOLIC_DIRECTIONS() -> Parts:
 
 PARABOLIC_NORMAL = Formula.build(
     "parabolic_normal",
-    "The one normal along a parabolic line of direction $(s, t)$, up to its length and sign: three "
-    "vectors that are multiples of it. They do not all vanish, unless the patch is developable or "
-    "has no normal on the line.",
+    "Three multiples of the normal along a parabolic line of direction $(s, t)$, which is "
+    "constant there up to length and sign. At least one is non-zero, unless the patch is "
+    "developable or has no normal on the line.",
     source="Sect. 3.2",
     inputs=[*VECTORS, s, t],
     terms=[("f1", t * a - s * b), ("f2", t * b - s * c), ("f3", t * d - s * e)],

@@ -133,9 +133,9 @@ def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
 
 @formula(
     "polar_chart",
-    "The 2-jet in the regular chart $s = r x$, $t = r y$ at a pole, from that by the polar angle "
-    "($a$ and $d$ twice and once, $b$ mixed) and the distance $r > 0$ from the pole; $x$ and $y$ "
-    "are the cosine and the sine of the angle.",
+    "The 2-jet in the regular chart $s = r x$, $t = r y$ at a pole, from derivatives by the "
+    "polar angle (once $d$, twice $a$), by angle and distance ($b$) and by the distance $r > 0$; "
+    "$x$ and $y$ are the cosine and the sine of the angle.",
 )
 def POLAR_CHART() -> Parts:
     """Write the 2-jet by s and t, and check by the chain rule that it gives the one by φ and r.

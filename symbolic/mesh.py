@@ -15,9 +15,9 @@ r, k, beta = scalar("r"), scalar("k"), scalar("beta")
 
 CORNER_PRODUCTS = Formula.build(
     "corner_products",
-    "How a triangle with the corners $p0$, $p1$, $p2$ lies to the surface: $s0/L$, $s1/L$ and "
-    "$s2/L$ are the cosines of the angles between its normal and the unit normals $n0$, $n1$, "
-    "$n2$ of the surface there. $L$ is twice its area.",
+    "Cosines $s0/L$, $s1/L$, $s2/L$ of the angles between the normal of a triangle with the "
+    "corners $p0$, $p1$, $p2$ and the unit normals $n0$, $n1$, $n2$ of the surface there. $L$ is "
+    "twice its area.",
     inputs=[p0, p1, p2, n0, n1, n2],
     terms=[("e", p1 - p0), ("f", p2 - p0), ("N", Cross(e, f))],
     outputs=[("s0", Dot(N, n0)), ("s1", Dot(N, n1)), ("s2", Dot(N, n2)), ("L", sp.sqrt(Dot(N, N)))],
@@ -26,8 +26,8 @@ CORNER_PRODUCTS = Formula.build(
 
 CORNER_COTANGENTS = Formula.build(
     "corner_cotangents",
-    "The angles of a triangle with the corners $p0$, $p1$, $p2$: $c0/L$, $c1/L$ and $c2/L$ are "
-    "their cotangents. $L$ is twice its area.",
+    "Cotangents $c0/L$, $c1/L$, $c2/L$ of the angles of a triangle with the corners $p0$, $p1$, "
+    "$p2$. $L$ is twice its area.",
     inputs=[p0, p1, p2],
     terms=[("e", p1 - p0), ("f", p2 - p0), ("g", p2 - p1), ("N", Cross(e, f))],
     outputs=[("c0", Dot(e, f)), ("c1", -Dot(e, g)), ("c2", Dot(f, g)), ("L", sp.sqrt(Dot(N, N)))],
@@ -36,8 +36,8 @@ CORNER_COTANGENTS = Formula.build(
 
 BORDER_SPACING = Formula.build(
     "border_spacing",
-    "How far apart points of a border are to be if the $k$-th nearest sample is $r$ away: as far "
-    "as samples are of which $k$ fill half a disk of radius $r$.",
+    "Spacing of boundary points where the $k$-th nearest sample is at the distance $r$: that of "
+    "samples of which $k$ fill half a disk of radius $r$.",
     inputs=[r, k],
     terms=[("rho", k / (sp.pi * r**2 / 2))],
     outputs=[("d", 1 / sp.sqrt(scalar("rho")))],
@@ -46,8 +46,8 @@ BORDER_SPACING = Formula.build(
 
 @formula(
     "edge_over_surface",
-    "The middle Bézier point of a quadratic curve from $p0$ to $p1$ that is as nearly as possible "
-    "perpendicular to the unit normals $n0$ and $n1$ at its ends.",
+    "The middle Bézier point of a quadratic curve from $p0$ to $p1$ whose end tangents are "
+    "perpendicular to the unit normals $n0$ and $n1$, in the sense of least squares.",
 )
 def EDGE_OVER_SURFACE() -> Parts:
     """Solve for the shift of the middle Bézier point of an edge along n0 + n1, by least squares.

@@ -127,8 +127,8 @@ def _polar(form: sp.Expr) -> sp.Expr:
 
 POLAR_FORMS = Formula.build(
     "polar_forms",
-    "The coefficients of $s t$ in the quadratic forms at $s n + t m$, from the linear forms of two "
-    "normals $n$ and $m$. With $m = n$ they are twice the quadratic forms.",
+    "Coefficients of $s t$ in the quadratic forms at $s n + t m$, from the linear forms of the "
+    "normals $n$ and $m$; for $m = n$, twice the quadratic forms.",
     source="eq. (9)",
     inputs=[*LINEAR_FORMS, *OTHER_FORMS],
     outputs=[*((name, _polar(form)) for name, form in ELIMINATED[:3]), ELIMINATED[3]],
@@ -393,7 +393,7 @@ SAMPLE = compose(
 
 CURVATURE_AT = compose(
     "curvature_at",
-    "The curvatures where the parameters are known already, and $n$ is the unit normal there.",
+    "Gaussian and mean curvature at given parameters $u$, $v$, where $n$ is the unit normal.",
     [FORMS, TANGENTS, CURVATURE],
     source="eqs. (1), (9); curvatures beyond the paper",
     outputs=[K, H],
@@ -401,7 +401,7 @@ CURVATURE_AT = compose(
 
 LARGEST_CURVATURE = Formula.build(
     "largest_curvature",
-    "The larger one of the moduli of the principal curvatures.",
+    "The larger absolute value of the two principal curvatures.",
     inputs=[K, H],
     outputs=[("k", sp.Abs(H) + sp.sqrt(sp.Abs(H**2 - K)))],
 )

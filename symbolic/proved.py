@@ -65,8 +65,8 @@ def _largest(form: sp.Expr) -> sp.Expr:
 
 REMAINDERS = Formula.build(
     "remainders",
-    "Bounds $R$ and $S$ over the cell of what a quadratic patch leaves out of the derivatives of "
-    "heights by $s$ and $t$, from bounds $T0$, …, $T3$ of the third derivatives.",
+    "Bounds $R$ and $S$, over a cell, of the remainders of the derivatives of heights by $s$ and "
+    "$t$ beyond a quadratic patch, from bounds $T0$, …, $T3$ of the third derivatives.",
     inputs=THIRDS,
     outputs=[
         (
@@ -80,10 +80,10 @@ REMAINDERS = Formula.build(
 
 @formula(
     "excesses",
-    "If one of these four numbers is positive then no point of the cell has the normal $n$: the "
-    "derivatives of the height along $n$, or the combinations of them from which one parameter is "
-    "eliminated, exceed what they change over the cell. $R$ and $S$ are bounds of what a quadratic "
-    "patch leaves out of the derivatives.",
+    "Four numbers; if one is positive, no point of the cell has the normal $n$: the derivatives "
+    "of the height along $n$, or their combinations with one parameter eliminated, are larger at "
+    "the centre than their change over the cell. $R$ and $S$ bound the remainders beyond a "
+    "quadratic patch.",
 )
 def EXCESSES() -> Parts:
     """Bound both derivatives over the cell, and their combinations in s and in t alone."""

@@ -82,9 +82,9 @@ def _curvature_from_hessian() -> Content:
 
 CURVATURE_FROM_HESSIAN = Formula(
     "curvature_from_hessian",
-    "Curvature from the Hessian of a support function at a unit normal $n$: half the sum $m$ of "
-    "the principal radii, their product $q$, and the square $S$ of half their difference, so that "
-    "they are $m$ plus and minus its root; Gaussian and mean curvature.",
+    "Gaussian and mean curvature from the Hessian of a support function at a unit normal $n$. "
+    "$m$ is the mean of the principal radii, $q$ their product and $S$ the square of half their "
+    "difference: the radii are $m ± S^{1/2}$.",
     BEYOND_THE_PAPER,
     _curvature_from_hessian,
 )
@@ -101,8 +101,8 @@ def _in_radii(value: sp.Expr, change: sp.Expr = sp.S.Zero) -> sp.Expr:
 
 @formula(
     "offset_curvature",
-    "Gaussian and mean curvature of the offset at the distance $R$, of use also where a radius is "
-    "infinite. $s$ is how much the product of the radii grows: 0 where one becomes 0.",
+    "Gaussian and mean curvature of the offset at the distance $R$; principal radii may be "
+    "infinite. $s$ is the factor of the product of the radii, 0 where one of them becomes 0.",
 )
 def OFFSET_CURVATURE() -> Parts:
     """Add R to both radii, and write the result in the curvatures."""
@@ -134,8 +134,8 @@ def OFFSET_GROWTH() -> Parts:
 
 BRANCH = compose(
     "branch",
-    "What one patch has at the normal $n$, once its parameters are known: point, Hessian of the "
-    "support function, curvatures.",
+    "Point, Hessian of the support function and curvatures of a patch at the normal $n$, given "
+    "its parameters.",
     [FORMS, TANGENTS, ENVELOPE, HESSIAN, CURVATURE],
     source="eqs. (1), (5)-(9); curvatures beyond the paper",
     outputs=[x, *HESSIAN_SYMBOLS, scalar("K"), scalar("H")],
@@ -151,7 +151,7 @@ PARAMETERS_AT = compose(
 
 HESSIAN_AT = compose(
     "hessian_at",
-    "The Hessian of the support function of a patch where the parameters are known already.",
+    "The Hessian of the support function of a patch at given parameters.",
     [FORMS, TANGENTS, HESSIAN],
     source="eqs. (1), (9); Hessian beyond the paper",
     outputs=HESSIAN_SYMBOLS,
