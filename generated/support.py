@@ -168,7 +168,7 @@ def offset_growth(K, H, R):
 def curvature_from_hessian(n, hessian):
     """Gaussian and mean curvature from the Hessian of a support function at a unit normal n. m
     is the mean of the principal radii, q their product and S the square of half their
-    difference: the radii are m ± S^{1/2}.
+    difference.
 
         m = (H_xx + H_yy + H_zz)/2
         T_xx = H_xx - m*(1 - n_x**2)

@@ -123,9 +123,10 @@ ARC = Formula.build(
 
 ARC_ZEROS = Formula.build(
     "boundary_arc_zeros",
-    "The two zeros of $q·n$ along a boundary arc. At a singular point, where $n = 0$, it "
-    "vanishes for every $q$. $s$ is the sign of $z1$, which avoids cancellation. A negative "
-    "discriminant, the rounded value of a double zero, counts as zero.",
+    "The two zeros of the component along $q$ of the normals of a boundary arc. At a singular "
+    "point, where the normal vanishes, it is zero for every $q$. $s$ is the sign of $z1$, which "
+    "avoids cancellation. A negative discriminant, the rounded value of a double zero, counts as "
+    "zero.",
     inputs=[N0, N1, N2, q, s],
     terms=[
         *((f"z{k}", Dot(q, x)) for k, x in enumerate((N0, N1, N2))),

@@ -84,7 +84,7 @@ CURVATURE_FROM_HESSIAN = Formula(
     "curvature_from_hessian",
     "Gaussian and mean curvature from the Hessian of a support function at a unit normal $n$. "
     "$m$ is the mean of the principal radii, $q$ their product and $S$ the square of half their "
-    "difference: the radii are $m ± S^{1/2}$.",
+    "difference.",
     BEYOND_THE_PAPER,
     _curvature_from_hessian,
 )
