@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 
-from .inspection import NOT_FINITE, TEXTS, BadFileError, checked_format
+from .inspection import NOT_FINITE, TEXTS, BadFileError
 
-__all__ = ["LostFace", "Source", "numbers_of_entities", "prepared", "without_damaged_faces"]
+__all__ = ["COMMENT", "ENTITY", "LostFace", "numbers_of_entities", "without_damaged_faces"]
 
 COMMENT = re.compile(rb"/\*.*?\*/", re.DOTALL)
 ENTITY = re.compile(rb"#(\d+)\s*=\s*((?:'[^']*'|[^';])*);")
@@ -21,7 +20,6 @@ REFERENCE = re.compile(rb"#(\d+)")
 FACES = (b"ADVANCED_FACE", b"FACE_SURFACE")
 SHELLS = (b"CLOSED_SHELL", b"OPEN_SHELL", b"CONNECTED_FACE_SET")
 FIRST_TEXT = re.compile(rb"'([^']*)'")
-COPY = "copy.step"
 
 
 @dataclass(frozen=True)
@@ -121,37 +119,3 @@ def _name(number: int, body: bytes) -> str:
     text = FIRST_TEXT.search(body)
     name = text[1].decode("ascii", "replace").strip() if text else ""
     return name if name not in ("", "NONE") else f"#{number}"
-
-
-@dataclass(frozen=True)
-class Source:
-    """A file to read: its format, its content, and the faces left out of it.
-
-    `folder` is for temporary copies.
-    """
-
-    path: Path
-    folder: Path
-    format: str
-    content: bytes
-    lost: tuple[LostFace, ...] = ()
-
-    def without(self, damaged: Mapping[int, str]) -> Source | None:
-        """Return a STEP file without its damaged faces, or None if it has none.
-
-        `damaged` maps numbers of entities that cannot be read to reasons.
-        """
-        content, lost = without_damaged_faces(self.content, damaged)
-        if not lost:
-            return None
-        path = self.folder / COPY
-        path.write_bytes(content)
-        return replace(self, path=path, content=content, lost=self.lost + lost)
-
-
-def prepared(path: Path, folder: Path) -> Source:
-    """Return the readable content of a file; BadFileError with the reason if there is none."""
-    content = path.read_bytes()
-    form, finite = checked_format(content)
-    source = Source(path, folder, form, content)
-    return source if finite else source.without({}) or source

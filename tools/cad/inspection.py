@@ -12,6 +12,7 @@ from pathlib import Path
 
 from ...runtime.base.advice import CAD_SUFFIXES
 from ..files.numpy_files import array_file
+from ..files.reading import LFS, POINTER
 
 __all__ = [
     "HEAD",
@@ -62,6 +63,8 @@ def checked_format(content: bytes) -> tuple[str, bool]:
     """
     if not content.strip():
         raise BadFileError("is empty.")
+    if content.startswith(LFS):
+        raise BadFileError(POINTER)
     form = format_of(content[:HEAD])
     if form is None:
         raise BadFileError("is not a STEP, IGES or BREP file.")

@@ -22,6 +22,7 @@ from ...runtime.base.memory import GIB
 from ...runtime.base.progress import busy
 from ..files.lengths import checked_unit
 from ..files.paths import PathLike, checked_path, reason_of
+from ..files.reading import UnusableError, regular_file
 from .part import Part, read_part
 from .worker import ERROR, PART
 
@@ -127,13 +128,14 @@ def read_cad(
 
 def _check_file(path: Path) -> None:
     try:
-        if not path.is_file():
-            what = "is a folder" if path.is_dir() else "is no file"
-            raise FileError(f"'{path}' {what if path.exists() else 'does not exist'}.")
-        with open(path, "rb"):
+        with regular_file(path):
             pass
-    except FileError:
-        raise
+    except UnusableError as error:
+        raise FileError(f"'{path}' {error}") from error
+    except IsADirectoryError:
+        raise FileError(f"'{path}' is a folder.") from None
+    except FileNotFoundError:
+        raise FileError(f"'{path}' does not exist.") from None
     except (OSError, ValueError) as error:
         reason = reason_of(error) if isinstance(error, OSError) else str(error)
         raise FileError(f"'{path}' cannot be read: {reason}.") from error

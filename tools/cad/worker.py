@@ -36,8 +36,8 @@ def main(text: str) -> None:
 
 def _read(request: dict[str, str], folder: Path) -> str:
     """Write the part; return the reason if it cannot be read, else ""."""
-    from .damaged_step import prepared
     from .inspection import BadFileError
+    from .source import prepared
 
     try:  # before Open CASCADE is loaded, which takes a second
         source = prepared(Path(request["path"]), folder)

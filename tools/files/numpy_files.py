@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...runtime.base.checks import known_name
 from ...runtime.base.errors import FileError, GaussmapError, InputError
 from .archives import archive_of
-from .reading import UnusableError
+from .reading import UnusableError, regular_file
 
 __all__ = ["array_file", "is_array_file", "read_array"]
 
@@ -39,7 +39,7 @@ def read_array(source: str) -> NDArray[Any]:
     try:
         if not is_array_file(file_name):
             raise InputError(f"'{file_name}' is neither a .npy nor a .npz file; save it as one.")
-        with open(file_name, "rb") as file:
+        with regular_file(file_name) as file:
             return _unpacked(file, source, key)
     except (GaussmapError, MemoryError):
         raise

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from io import BufferedReader
@@ -10,11 +11,31 @@ from pathlib import Path
 from ...runtime.base.errors import FileError, InputError
 from .paths import reason_of
 
-__all__ = ["UnusableError", "opened", "readable"]
+__all__ = ["LFS", "POINTER", "UnusableError", "opened", "readable", "regular_file"]
+
+# The beginning of the files that Git leaves in place of large ones, and what they are.
+LFS = b"version https://git-lfs.github.com/spec/"
+POINTER = "is a Git LFS pointer, not the file itself; get that with 'git lfs pull'."
 
 
 class UnusableError(Exception):
     """The content of a file is invalid; the text continues "'path' …"."""
+
+
+def regular_file(path: Path | str) -> BufferedReader:
+    """Open a file for reading. Raises UnusableError for devices, pipes and Git LFS pointers.
+
+    To open a pipe into which nobody writes would take for ever.
+    """
+    path = Path(path)
+    mode = path.stat().st_mode
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+        raise UnusableError("is a device or a pipe; give the name of a file.")
+    file = open(path, "rb")  # noqa: SIM115 - returned open
+    if file.peek(len(LFS)).startswith(LFS):
+        file.close()
+        raise UnusableError(POINTER)
+    return file
 
 
 @contextmanager
@@ -24,7 +45,9 @@ def opened(path: Path, kind: str, content: str) -> Iterator[BufferedReader]:
     `kind` continues "is no", and `content` says what the file holds, for the sentences.
     """
     try:
-        file = open(path, "rb")  # noqa: SIM115 - an error here differs from one in the content
+        file = regular_file(path)  # an error here differs from one in the content
+    except UnusableError as error:
+        raise FileError(f"'{path}' {error}") from error
     except OSError as error:
         raise FileError(f"'{path}' cannot be read: {reason_of(error)}.") from error
     with file, readable(path, kind, content):

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import pytest
-from gaussmap.tools.cad.damaged_step import prepared, without_damaged_faces
+from gaussmap.tools.cad.damaged_step import without_damaged_faces
 from gaussmap.tools.cad.inspection import BadFileError, checked_format, faces_said
+from gaussmap.tools.cad.source import prepared
 
 from ...refusals import refused
 

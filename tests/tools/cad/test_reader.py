@@ -11,6 +11,7 @@ import time
 import gaussmap as gm
 import pytest
 from gaussmap.tools.cad import reader
+from gaussmap.tools.files.reading import LFS
 
 from ...refusals import refused
 
@@ -30,7 +31,11 @@ def path(tmp_path):
 
 @pytest.mark.parametrize(
     ("content", "reason"),
-    [(b"", "is empty."), (b"hello\n" * 9, "is not a STEP, IGES or BREP file.")],
+    [
+        (b"", "is empty."),
+        (b"hello\n" * 9, "is not a STEP, IGES or BREP file."),
+        (LFS + b"v1\n", "is a Git LFS pointer, not the file itself; get that with 'git lfs pull'."),
+    ],
 )
 def test_bad_files_are_refused_in_a_sentence(content, reason, path, installed):
     path.write_bytes(content)
@@ -42,7 +47,7 @@ def test_paths_that_are_no_files_are_refused(tmp_path):
     refused("is a folder", gm.read_cad, tmp_path, error=gm.errors.FileError)
     refused("does not exist", gm.read_cad, tmp_path / "part.step", error=gm.errors.FileError)
     os.mkfifo(tmp_path / "pipe.step")
-    refused("is no file", gm.read_cad, tmp_path / "pipe.step", error=gm.errors.FileError)
+    refused("is a device or a pipe", gm.read_cad, tmp_path / "pipe.step", error=gm.errors.FileError)
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,9 @@ from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TopoDS import TopoDS_Shape
 
 from ...files.lengths import METRES, unit_named
-from ..damaged_step import LostFace, Source, numbers_of_entities
+from ..damaged_step import LostFace, numbers_of_entities
 from ..inspection import BadFileError
+from ..source import Source
 from .documents import Document, PlacedShape, new_document, pieces_of
 from .shapes import sequence
 

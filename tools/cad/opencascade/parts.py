@@ -11,9 +11,10 @@ from OCP.TopoDS import TopoDS
 
 from ....runtime.base.wording import plural
 from ...files.lengths import METRES
-from ..damaged_step import LostFace, Source
-from ..inspection import BadFileError, faces_said
+from ..damaged_step import LostFace
+from ..inspection import BadFileError
 from ..records import FaceRecord, Geometry, PartRecord
+from ..source import Source
 from ..units import with_unit
 from .documents import Document
 from .edges import topology_of
@@ -29,8 +30,11 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
     """Return the part in a file, in a unit or its own; BadFileError with a reason if not."""
     document, lost = read_file(source)
     found = gathered(document)
-    said = faces_said(source.content, source.format)
+    said = source.faces_said()
+    _warn_of_part_files(document, source)
     if not found.faces and not lost:
+        if document.warnings and source.parts:
+            raise BadFileError(f"has no faces that can be read: {document.warnings[-1]}")
         raise BadFileError(
             f"is damaged: Open CASCADE can make none of its {said} faces; export it again."
             if said
@@ -41,7 +45,6 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
     if all(x.reason for x in faces):
         why = faces[0].reason if faces else lost[0].reason
         raise BadFileError(f"has no face that can be used: of the first one, {why}.")
-    said += len(source.lost)
     missing = said - _different(found.faces) - len(lost)
     if missing > 0:
         document.warnings.append(
@@ -63,6 +66,13 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         topology.vertices,
         document.warnings,
     )
+
+
+def _warn_of_part_files(document: Document, source: Source) -> None:
+    """Warn of part files without content; Open CASCADE makes empty shapes of references to them."""
+    if source.parts is not None and (which := source.parts.said()):
+        empty = plural(sum(x.shape.NbChildren() == 0 for x in document.pieces), "reference")
+        document.warnings.append(f"{which}; left out: {empty} to them.")
 
 
 def _others(document: Document) -> str:

@@ -9,9 +9,9 @@ import pytest
 
 pytest.importorskip("OCP")
 
-from gaussmap.tools.cad.damaged_step import prepared
 from gaussmap.tools.cad.opencascade.parts import part_record
 from gaussmap.tools.cad.part import part_of
+from gaussmap.tools.cad.source import prepared
 from OCP.BRepTools import BRepTools
 from OCP.IGESControl import IGESControl_Writer
 from OCP.Interface import Interface_Static

@@ -26,11 +26,11 @@ from scipy.spatial import KDTree
 
 pytest.importorskip("OCP")
 
-from gaussmap.tools.cad.damaged_step import prepared
 from gaussmap.tools.cad.opencascade.files import read_file
 from gaussmap.tools.cad.opencascade.parts import part_record
 from gaussmap.tools.cad.opencascade.solids import gathered
 from gaussmap.tools.cad.part import part_of
+from gaussmap.tools.cad.source import prepared
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeRevol
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Vec

@@ -17,6 +17,7 @@ from OCP.BRepTools import BRepTools
 from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
 from OCP.STEPCAFControl import STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_StepModelType
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
@@ -166,6 +167,55 @@ def test_assemblies_have_names_colours_and_placements(tmp_path, read, capfd):
         for k in (0, 1)
     ]
     assert lows == pytest.approx([0.0, 10.0])
+
+
+@pytest.fixture
+def assembly(tmp_path, capfd):
+    """Write an assembly in files of its own: two pins, and a frame with two more of them."""
+    document = TDocStd_Document(TCollection_ExtendedString("test"))
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    top, frame = tool.NewShape(), tool.NewShape()
+    pin, nut = (labelled(tool, box(*x), n) for x, n in (((1, 1, 8), "pin"), ((2, 2, 1), "nut")))
+    for owner, owned, x in (
+        (top, frame, 0.0), (top, pin, 10.0), (top, pin, 20.0),
+        (frame, pin, 30.0), (frame, pin, 40.0), (frame, nut, 50.0),
+    ):  # fmt: skip
+        place = gp_Trsf()
+        place.SetTranslation(gp_Vec(x, 0.0, 0.0))
+        tool.AddComponent(owner, owned, TopLoc_Location(place))
+    tool.UpdateAssemblies()
+    writer = STEPCAFControl_Writer()
+    writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs, "of-")
+    writer.Write(str(tmp_path / "top.step"))
+    capfd.readouterr()
+    return tmp_path / "top.step"
+
+
+def test_assemblies_in_several_files_are_read(assembly, read):
+    part = read(assembly)
+    assert (len(part.faces), len(part.solid_names), part.warnings) == (30, 5, [])
+
+
+@pytest.mark.parametrize("cut", [False, True])
+def test_part_files_that_are_missing_or_cut_are_a_warning(cut, assembly, read):
+    path = assembly.with_name("of-pin.stp")
+    content = path.read_bytes()
+    path.unlink()
+    if cut:
+        path.write_bytes(content[: len(content) // 2])
+    part = read(assembly)
+    assert (len(part.faces), len(part.solid_names)) == (6, 1)
+    (said,) = part.warnings
+    assert "1 of 2 part files cannot be read: 'of-pin.stp' " in said
+    assert ("is truncated" if cut else "does not exist") in said
+    assert said.endswith("; left out: 4 references to them.")
+
+
+def test_the_top_file_alone_says_which_files_it_refers_to(assembly, read):
+    for name in ("pin", "nut"):
+        assembly.with_name(f"of-{name}.stp").unlink()
+    said = refused("has no faces that can be read: 2 of 2", read, assembly, error=BadFileError)
+    assert "'of-nut.stp' does not exist; 'of-pin.stp' does not exist" in said
 
 
 # --- damage ---------------------------------------------------------------------------------------

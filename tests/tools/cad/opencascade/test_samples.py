@@ -8,9 +8,9 @@ import pytest
 
 pytest.importorskip("OCP")
 
-from gaussmap.tools.cad.damaged_step import prepared
 from gaussmap.tools.cad.opencascade.parts import part_record
 from gaussmap.tools.cad.part import part_of
+from gaussmap.tools.cad.source import prepared
 from OCP.BRepClass3d import BRepClass3d_SolidClassifier
 from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_State
