@@ -1,6 +1,7 @@
 """A CAD file before Open CASCADE reads it: its content, and the part files of an assembly.
 
-Open CASCADE leaves out part files that are missing or cut, and says nothing. So all of them are checked and copied beside each other, and references are renamed.
+Open CASCADE leaves out part files that are missing or cut, and says nothing. So all of them are
+checked and copied beside each other, and references are renamed.
 """
 
 from __future__ import annotations

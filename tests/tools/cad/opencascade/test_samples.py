@@ -25,8 +25,10 @@ from .shapes import (
     faces_of,
     forward,
     lie_on_faces,
+    loft,
     on_triangles,
     rounded,
+    torus,
 )
 
 IN, OUT = TopAbs_State.TopAbs_IN, TopAbs_State.TopAbs_OUT
@@ -85,3 +87,16 @@ def test_coverage_is_that_of_places_of_open_cascade(made, asked):
     said = samples.report.coverage
     assert said is not None
     assert 0.7 * asked < gaps.max() <= said <= asked
+
+
+@pytest.mark.parametrize(
+    ("shape", "flat"),
+    [(torus(2.0, 0.7), 0), (cut(ball(2.0), box(4.0, 4.0, 4.0, at=(-2.0, -2.0, -3.0))), 1),
+     (loft(), 1), (cylinder(1.0, 2.0), 3)],
+)  # fmt: skip
+def test_the_developable_share_is_that_of_planes_and_cylinders(shape, flat, part_with):
+    part = part_with(shape)
+    areas = [x.area for x in part.faces if x.kind in ("plane", "cylinder")]
+    assert len(areas) == flat
+    share = gm.sample(part, 100).report.developable_share
+    assert share == pytest.approx(sum(areas) / part.area, rel=1e-9)
