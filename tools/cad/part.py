@@ -179,7 +179,7 @@ class Part(Methods, Whole):
 
     @cached_property
     def area(self) -> float:
-        """The area of all faces inside their trims, in L²."""
+        """The area of all faces inside their trims, in L², to about 1e-6."""
         areas = self.arrays["area"]
         return float(areas[np.isfinite(areas)].sum())
 
@@ -205,10 +205,11 @@ class Part(Methods, Whole):
         """The volume of the solids, in L³, without their cavities.
 
         It is a third of the sum of area · (mean of x · n) over the faces. The means are integrals
-        along the boundaries of the faces, by Gauss's rule, exact for planes and faces without a
-        trim. Other boundaries are approximated by polygons (see `Face.loops`): where these deviate
-        by 1e-4 of the size of a face, the most in parts that `read_cad` reads, the relative error
-        of the volume of a cylinder with a slanted end is 3e-5. Where solids overlap, both count.
+        along the boundaries of the faces, by Gauss's rule: exact for planes, and to about 1e-6 for
+        faces whose boundaries are lines of constant u or v. Other boundaries are approximated by
+        polygons (see `Face.loops`): where these deviate by 1e-4 of the size of a face, the most in
+        parts that `read_cad` reads, the relative error of the volume of a cylinder with a slanted
+        end is 3e-5. Where solids overlap, both count.
 
         Raises SurfaceError unless all faces enclose solids (`oriented`) and none has failed: open
         shells have no volume.
@@ -361,7 +362,7 @@ class Face:
 
     @property
     def area(self) -> float:
-        """The area inside the trim, in L², computed by the CAD library."""
+        """The area inside the trim, in L², to about 1e-6: that of files, by Open CASCADE."""
         return float(self._row("area"))
 
     @property

@@ -27,6 +27,9 @@ Array = NDArray[np.float64]
 # The smallest area, in mm², that counts as positive: points within 1e-7 mm are equal to Open
 # CASCADE.
 LEAST_AREA = 1e-12
+# The estimated relative error at which Open CASCADE stops dividing a face. Areas are within 1e-6 of
+# closed forms then; without it, those of ellipsoids of one face are off by 3e-3.
+PRECISION = 1e-10
 
 
 class FaceReader:
@@ -92,7 +95,7 @@ def _forward(face: Any) -> Any:  # noqa: ANN401
 
 
 def area_of(face: Any) -> float:  # noqa: ANN401
-    """Return the area of a face."""
+    """Return the area of a face, to about 1e-6."""
     properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(face, properties)
+    BRepGProp.SurfaceProperties_s(face, properties, PRECISION, False)
     return float(properties.Mass())

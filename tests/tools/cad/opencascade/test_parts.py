@@ -5,16 +5,20 @@
 import itertools
 import re
 
+import gaussmap as gm
 import numpy as np
 import pytest
+from scipy.special import ellipeinc, ellipkinc
 
 pytest.importorskip("OCP")
 
 from gaussmap.tools.cad.inspection import BadFileError
 from gaussmap.tools.cad.opencascade.shapes import sequence
+from gaussmap.tools.cad.part import part_of
 from OCP.BRep import BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_GTransform
 from OCP.BRepTools import BRepTools
-from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
+from OCP.gp import gp_Dir, gp_GTrsf, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_StepModelType
@@ -65,6 +69,35 @@ def test_areas_are_those_of_the_shapes(write, read):
     part = read(write(drilled_box()))
     whole = 2 * (30 * 20 + 20 * 10 + 30 * 10) - 2 * np.pi * 16 + 2 * np.pi * 4 * 10
     assert sum(x.area for x in part.faces) == pytest.approx(whole, rel=1e-12)
+
+
+def ellipsoid(a, b, c):
+    """Return an ellipsoid whose half axes are a > b > c, as one NURBS face."""
+    stretched = gp_GTrsf()
+    for k, length in enumerate((a, b, c), 1):
+        stretched.SetValue(k, k, length)
+    return BRepBuilderAPI_GTransform(ball(1.0), stretched, True).Shape()
+
+
+def area_of_ellipsoid(a, b, c):
+    phi, k = np.arccos(c / a), (a * a * (b * b - c * c)) / (b * b * (a * a - c * c))
+    both = ellipeinc(phi, k) * np.sin(phi) ** 2 + ellipkinc(phi, k) * np.cos(phi) ** 2
+    return 2 * np.pi * (c * c + a * b / np.sin(phi) * both)
+
+
+@pytest.mark.parametrize(
+    ("shape", "area", "volume"),
+    [
+        (lambda: ellipsoid(3.0, 2.0, 1.0), area_of_ellipsoid(3.0, 2.0, 1.0), 8 * np.pi),
+        (lambda: shapes.as_nurbs(cylinder(1.0, 2.0)), 6 * np.pi, 2 * np.pi),
+        (lambda: shapes.as_nurbs(shapes.torus(2.0, 0.7)), 5.6 * np.pi**2, 1.96 * np.pi**2),
+    ],
+)
+def test_areas_and_volumes_of_nurbs_are_those_of_closed_forms(shape, area, volume, write, read):
+    part = part_of(read(write(shape())))
+    assert part.area == pytest.approx(area, rel=1e-6)
+    assert part.volume == pytest.approx(volume, rel=1e-6)
+    assert gm.sample(part, 50).weights().sum() == pytest.approx(area, rel=1e-6)
 
 
 # --- units ----------------------------------------------------------------------------------------
