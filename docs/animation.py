@@ -35,10 +35,8 @@ SPHERE, TORUS, MIDDLE = -2.7, 1.95, -0.2  # the centres, in inches from that of 
 RADIUS, SCALE = 1.2, 1.35  # inches for one unit of length
 # Milliseconds: of a frame while points move, and of the pictures before, after, and at the end.
 MOVE, HOLD = 80, (1800, 2000, 4000)
-FRAMES, LATEST = (
-    56,
-    0.45,
-)  # those in motion, and the share of them after which the last point leaves
+# The frames in motion, and the share of them after which the last point leaves.
+FRAMES, LATEST = 56, 0.45
 COLOURS = 44  # chosen for the picture, beside those that must be exact
 TEXTS = (
     f"{NORMALS:,} normals $n$, uniform on the sphere",

@@ -5,8 +5,6 @@ Every number on the page is measured here.
 
 from __future__ import annotations
 
-import re
-import textwrap
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,6 +14,7 @@ from gaussmap.docs import animation
 from gaussmap.docs.animation import palette_of, reduced, with_palette
 from gaussmap.docs.curve_figures import figure_4, figure_5
 from gaussmap.docs.dark import dark
+from gaussmap.docs.markdown import wrapped
 from gaussmap.docs.patch_figures import figure_2, figure_3
 from gaussmap.docs.search_figure import search_figure
 from gaussmap.docs.surface_figures import figure_6, figure_7
@@ -56,8 +55,8 @@ def page(folder: Path) -> str:
         with matplotlib.style.context(style):
             figure, caption = draw()
             save(figure, folder / f"figure_{number}.png")
-        text = filled(f"**Fig. {number}.** {caption}")
-        parts.append(f"\n![Fig. {number}](figures/figure_{number}.png)\n\n{text}\n")
+        text = wrapped(f"**Fig. {number}.** {caption}")
+        parts.append(f"\n![Fig. {number}](figures/figure_{number}.png)\n\n{text}")
     return "".join(parts)
 
 
@@ -80,13 +79,6 @@ def demo(made: Path, folder: Path) -> None:
         for ending, colours in (("", palette), ("_dark", dark(palette))):
             with atomic_path(folder / f"{name}{ending}.png") as temporary:
                 with_palette(numbers, colours).save(temporary, format="PNG", optimize=True)
-
-
-def filled(text: str) -> str:
-    """Break a text at 100 characters, but not in formulas or links."""
-    whole = re.sub(r"\$`.*?`\$", lambda found: found[0].replace(" ", "\0"), text)
-    lines = textwrap.fill(whole, 100, break_long_words=False, break_on_hyphens=False)
-    return lines.replace("\0", " ")
 
 
 if __name__ == "__main__":

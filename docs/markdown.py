@@ -17,14 +17,14 @@ def markdown(header: Sequence[str], rows: Iterable[Sequence[str]], others: str =
 
 
 def wrapped(text: str) -> str:
-    """Break paragraphs and items of a list at 100 characters."""
-    blocks = re.split(r"\n(?=- )|\n\n", text.rstrip("\n"))
-    lines = [
-        textwrap.fill(" ".join(x.split()), 100, subsequent_indent="  " * x.startswith("- "))
-        for x in blocks
-    ]
-    gaps = re.findall(r"\n(?=- )|\n\n", text.rstrip("\n"))
-    return "".join(x + gap for x, gap in zip(lines, [*gaps, "\n"], strict=True))
+    """Break paragraphs and items of a list at 100 characters, but not in formulas or links."""
+    whole = re.sub(r"\$`.*?`\$", lambda found: found[0].replace(" ", "\0"), text.rstrip("\n"))
+    parts = re.split(r"(\n(?=- )|\n\n)", whole)
+    wrapper = textwrap.TextWrapper(100, break_long_words=False, break_on_hyphens=False)
+    for k, block in enumerate(parts[::2]):
+        wrapper.subsequent_indent = "  " * block.startswith("- ")
+        parts[2 * k] = wrapper.fill(" ".join(block.split()))
+    return "".join(parts).replace("\0", " ") + "\n"
 
 
 def number(x: float) -> str:

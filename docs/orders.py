@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -19,7 +19,9 @@ import gaussmap as gm
 import numpy as np
 import sympy as sp
 from gaussmap.docs import poles
+from gaussmap.docs.exact import angles, derivatives_of, lengths
 from gaussmap.docs.markdown import above, code, listed, markdown, number, wrapped
+from gaussmap.runtime.onto_surface.on_spline import OnSpline
 from gaussmap.symbolic.notation import dot
 from gaussmap.symbolic.spline import triangles
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface
@@ -32,7 +34,6 @@ GRIDS = (16, 32, 64, 128, 256)
 LAST = 3  # the number of the finest grids for the second slope
 NORMALS = 40_000
 PARTS = 4  # every patch is compared at the barycentric lattice of step 1/PARTS
-STRIP = 4  # rows of cells at a time, which fit into the cache
 FLAT = 0.01  # of the largest |K|
 NEAR = 2.0  # cells
 STEPS = 8  # of Newton's method
@@ -96,7 +97,7 @@ class TrueSurface:
         )
         self.entry = replace(entry, parameters=parameters) if values else entry
         self.surface = gm.surfaces.surface(name, **values)
-        self.derivatives = _lambdified(self.entry)
+        self.derivatives = derivatives_of(self.entry)
 
     @property
     def reproduced(self) -> bool:
@@ -148,26 +149,6 @@ def singular_surfaces() -> list[str]:
     return names
 
 
-def _lambdified(entry: ParametricSurface) -> Callable[[Array, Array, int], Array]:
-    """Return f(s, t, order) → (..., 3, 3) or (..., 6, 3): x, x_s, x_t; also x_ss, x_st, x_tt."""
-    u, v = entry.u, entry.v
-    unit = {x: low + (high - low) * x for x, (low, high) in zip((u, v), entry.domain, strict=True)}
-    position = sp.Matrix(entry.position).xreplace({**entry.defaults, **unit})
-    orders = [(), (u,), (v,), (u, u), (u, v), (v, v)]
-    rows = [sp.diff(x, *by) if by else x for by in orders for x in position.flat()]
-    functions = {
-        1: sp.lambdify((u, v), rows[:9], modules="numpy", cse=True),
-        2: sp.lambdify((u, v), rows, modules="numpy", cse=True),
-    }
-
-    def derivatives(s: Array, t: Array, order: int) -> Array:
-        shape = np.broadcast_shapes(np.shape(s), np.shape(t))
-        values = [np.broadcast_to(x, shape) for x in functions[order](s, t)]
-        return np.stack(values, axis=-1).reshape(*shape, len(values) // 3, 3)
-
-    return derivatives
-
-
 def gaussian_curvature(derivatives: Array) -> Array:
     """Return K from x, x_u, x_v, x_uu, x_uv, x_vv, shape (..., 6, 3)."""
     normal = np.cross(derivatives[..., 1, :], derivatives[..., 2, :])
@@ -178,62 +159,26 @@ def gaussian_curvature(derivatives: Array) -> Array:
 # --- errors at equal parameters -------------------------------------------------------------------
 
 
-def _bernstein() -> tuple[Array, Array]:
-    """Return the lattice of barycentric coordinates (…, 3) and half the derivatives by them.
-
-    The latter are weights (3, …, 6) of the net b200, b020, b002, b110, b101, b011.
-    """
-    lattice = [x for x in product(range(PARTS + 1), repeat=3) if sum(x) == PARTS]
-    weights = np.array(lattice) / PARTS
-    r, s, t = weights.T
-    o = np.zeros_like(r)
-    rows = [[r, o, o, s, t, o], [o, s, o, r, o, t], [o, o, t, o, r, s]]
-    return weights, np.moveaxis(np.array(rows), 1, 2)
-
-
-LATTICE, HALF_DERIVATIVES = _bernstein()
-CORNERS = np.array(triangles([(0, 0)]), dtype=float)  # of the four patches of a cell
+LATTICE = np.array([x for x in product(range(PARTS + 1), repeat=3) if sum(x) == PARTS]) / PARTS
+# Those of the lattices of the four patches of a cell that differ, by their places in the cell.
+PLACES = np.unique((LATTICE @ np.array(triangles([(0, 0)]), dtype=float)).reshape(-1, 2), axis=0)
 
 
 def parameter_errors(true: TrueSurface, cells: int) -> Array:
     """Return the largest errors of positions, first derivatives and normals (in degrees)."""
-    nets = gm.fit(true.surface, (cells, cells)).control_nets.reshape(cells, cells, 4, 6, 3)
-    nets = np.moveaxis(nets, (2, 3), (0, 1))
-    strips = [
-        _strip_errors(true, nets[turn, :, first : first + STRIP], CORNERS[turn], first)
-        for first in range(0, cells, STRIP)
-        for turn in range(4)
-    ]
-    return np.max(strips, axis=0)
-
-
-def _strip_errors(true: TrueSurface, nets: Array, corners: Array, first: int) -> list[float]:
-    """Return the errors on one patch of each cell in a strip; `nets` has shape (6, …, N, 3)."""
-    rows, cells = nets.shape[1:3]
-    by_place = np.linalg.inv(np.column_stack([corners, np.ones(3)]).T)[:, :2]
-    point = np.einsum("lk,klb->lb", LATTICE, HALF_DERIVATIVES)
-    along = 2 * cells * np.einsum("kd,klb->dlb", by_place, HALF_DERIVATIVES)
-    p, p_u, p_v = (np.tensordot(weights, nets, 1) for weights in (point, *along))
-    u, v = (LATTICE @ corners + 0.5).T[:, :, None, None]
-    u = (np.arange(first, first + rows)[:, None] + u) / cells
-    v = (np.arange(cells) + v) / cells
-    x, x_u, x_v = np.moveaxis(true.derivatives(u, v, 1), -2, 0)
-    return [
-        float(lengths(x - p).max()),
-        float(max(lengths(x_u - p_u).max(), lengths(x_v - p_v).max())),
-        float(angles(np.cross(x_u, x_v), np.cross(p_u, p_v)).max()),
-    ]
-
-
-def lengths(vectors: Array) -> Array:
-    """Return the lengths of vectors (..., 3)."""
-    return np.sqrt(np.einsum("...x,...x->...", vectors, vectors))
-
-
-def angles(left: Array, right: Array) -> Array:
-    """Return the angles between vectors in degrees, accurate when they are small."""
-    chord = left / lengths(left)[..., None] - right / lengths(right)[..., None]
-    return np.degrees(2 * np.arcsin(np.minimum(lengths(chord) / 2, 1.0)))
+    jets = OnSpline(gm.fit(true.surface, (cells, cells))).jets
+    (u0, u1), (v0, v1) = true.surface.domain
+    t = (np.arange(cells)[:, None] + 0.5 + PLACES[:, 1]).ravel() / cells
+    largest = np.zeros(3)
+    for row in range(cells):
+        s = np.tile((row + 0.5 + PLACES[:, 0]) / cells, cells)
+        x, x_s, x_t = np.moveaxis(true.derivatives(s, t, 1), -2, 0)
+        p, p_u, p_v, *_ = np.moveaxis(jets(u0 + (u1 - u0) * s, v0 + (v1 - v0) * t), 1, 0)
+        p_s, p_t = (u1 - u0) * p_u, (v1 - v0) * p_v
+        slopes = np.maximum(lengths(x_s - p_s), lengths(x_t - p_t))
+        normals = angles(np.cross(x_s, x_t), np.cross(p_s, p_t))
+        largest = np.maximum(largest, [lengths(x - p).max(), slopes.max(), normals.max()])
+    return largest
 
 
 # --- errors at equal normals ----------------------------------------------------------------------
@@ -263,7 +208,8 @@ def support_errors(true: TrueSurface, cells: int, normals: Array) -> SupportErro
     with np.errstate(all="ignore"):
         derivatives = true.derivatives(end[:, 0], end[:, 1], 2)
         curvature = gaussian_curvature(derivatives)
-        found = has_normal(derivatives, samples.normals)
+        turned = angles(np.cross(derivatives[:, 1], derivatives[:, 2]), samples.normals)
+        found = turned < 1e-7  # orientation included
         found &= np.abs(end - start).max(axis=1) * cells <= NEAR
     here = gaussian_curvature(true.derivatives(start[:, 0], start[:, 1], 2))
     reasons = {
@@ -294,11 +240,6 @@ def preimages(true: TrueSurface, places: Array, normals: Array) -> Array:
             step = np.stack([B * Q - C * P, B * P - A * Q], axis=1) / (A * C - B * B)[:, None]
             places = places + step
     return places
-
-
-def has_normal(derivatives: Array, normals: Array) -> NDArray[np.bool_]:
-    """Say where x_u × x_v has the direction of the normal, orientation included."""
-    return angles(np.cross(derivatives[:, 1], derivatives[:, 2]), normals) < 1e-7
 
 
 def closed_form(true: TrueSurface, normals: Array, curvature: Array) -> Array | None:
@@ -388,16 +329,10 @@ def page(measurements: Sequence[Measurement]) -> str:
     tables = {x.title: table(x, measurements) for x in QUANTITIES} | {
         "counts": counts(measurements)
     }
-    tables |= {x: of_poles(grids, x) for x in ("positions", "normals")}
+    tables |= {x: poles.table(grids, x) for x in ("positions", "normals")}
     return re.sub(
         r"^\[([\w ]+)\]\n", lambda found: tables[found[1]], wrapped(text), flags=re.MULTILINE
     )
-
-
-def of_poles(grids: Sequence[int], quantity: str) -> str:
-    """Return the table of "positions" or "normals" next to poles."""
-    header, *rows = poles.table(grids, quantity)
-    return markdown(header, rows)
 
 
 def table(quantity: Quantity, measurements: Sequence[Measurement]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import cast
@@ -10,11 +10,12 @@ from typing import cast
 import gaussmap as gm
 import numpy as np
 import sympy as sp
-from gaussmap.docs.markdown import code, number
+from gaussmap.docs.exact import angles, derivatives_of, lengths
+from gaussmap.docs.markdown import code, markdown, number
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface, u, v
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["EGG", "REGIONS", "PoleErrors", "measure", "measured", "surfaces", "table"]
+__all__ = ["EGG", "REGIONS", "PoleErrors", "measured", "surfaces", "table"]
 
 Array = NDArray[np.float64]
 
@@ -61,65 +62,42 @@ def surfaces() -> list[ParametricSurface]:
     return [x for x in CATALOGUE.values() if "pole" in x.boundary[1]] + [EGG]
 
 
-def exact(entry: ParametricSurface, s: ArrayLike, t: ArrayLike) -> tuple[Array, Array]:
-    """Return points and unit normals of the rotated surface at its parameters."""
-    s, t = np.broadcast_arrays(s, t)
-    values = np.stack([np.broadcast_to(x, s.shape) for x in _compiled(entry)(s, t)], axis=-1)
-    normals = values[..., 3:] @ ROTATION.T * np.linalg.det(ROTATION)
-    lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
-    return values[..., :3] @ ROTATION.T, normals / np.where(lengths > 0.0, lengths, 1.0)
-
-
 @cache
-def _compiled(entry: ParametricSurface) -> Callable[[Array, Array], list[Array]]:
-    """Return the function of the components of position and normal field, not rotated."""
-    rows = [x.xreplace(entry.defaults) for x in (*entry.position, *entry.normal_field)]
-    return sp.lambdify((entry.u, entry.v), rows, cse=True)
+def measured(name: str, cells: int) -> PoleErrors:
+    """Measure the spline of the surface of that name, which has poles at both ends of v."""
+    entry = next(x for x in surfaces() if x.name == name)
+    derivatives = derivatives_of(entry)
 
+    def exact(s: ArrayLike, t: ArrayLike) -> tuple[Array, Array]:
+        """Return points and normals, not of unit length, of the rotated surface."""
+        x, x_s, x_t = np.moveaxis(derivatives(s, t, 1) @ ROTATION.T, -2, 0)
+        return x, np.cross(x_s, x_t)
 
-def measure(entry: ParametricSurface, cells: int) -> PoleErrors:
-    """Measure the spline of a surface with poles at both ends of v."""
-    domain = tuple((float(low), float(high)) for low, high in entry.domain)
+    square = ((0.0, 1.0), (0.0, 1.0))
     surface = gm.Surface.from_callable(
-        lambda s, t: exact(entry, s, t)[0], domain, entry.boundary, name=entry.name
+        lambda s, t: exact(s, t)[0], square, entry.boundary, name=entry.name
     )
     spline = gm.fit(surface, (cells, cells))
-    (s0, s1), (t0, t1) = domain
-    s = s0 + (s1 - s0) * (np.arange(cells)[:, None] + ALONG).ravel() / cells
+    s = (np.arange(cells)[:, None] + ALONG).reshape(-1, 1) / cells
     rows = (range(1), range(1, 2), range(2, 4), range(cells // 4, cells // 2))
     positions, normals = np.zeros(len(rows)), np.zeros(len(rows))
     for k, region in enumerate(rows):
         steps = (np.array(region)[:, None] + ACROSS).ravel() / cells
-        for t in (t0 + (t1 - t0) * steps, t1 - (t1 - t0) * steps):
-            x, n = exact(entry, s[:, None], t)
-            gap = np.linalg.norm(spline.evaluate(s[:, None], t) - x, axis=-1)
-            angle = angles(spline.normals(s[:, None], t), n)
-            positions[k] = max(positions[k], gap.max())
-            normals[k] = max(normals[k], angle.max())
-    tiny = 1e-9 * (t1 - t0)
-    ends = np.array([t0 + tiny, t1 - tiny])
-    at_pole = angles(spline.normals(s0 + 0.1, ends), exact(entry, s0 + 0.1, ends)[1])
+        x, n = exact(s, t := np.concatenate([steps, 1.0 - steps]))
+        positions[k] = lengths(spline.evaluate(s, t) - x).max()
+        normals[k] = angles(spline.normals(s, t), n).max()
+    ends = np.array([1e-9, 1.0 - 1e-9])
+    at_pole = angles(spline.normals(0.1, ends), exact(0.1, ends)[1])
     return PoleErrors(positions, normals, float(at_pole.max()))
 
 
-def angles(left: Array, right: Array) -> Array:
-    """Return the angles between unit vectors in degrees, accurate when they are small."""
-    return np.degrees(2.0 * np.arcsin(np.linalg.norm(left - right, axis=-1) / 2.0))
-
-
-def table(grids: Sequence[int], quantity: str) -> list[list[str]]:
-    """Return the rows of a table of "positions" or "normals", a header first."""
+def table(grids: Sequence[int], quantity: str) -> str:
+    """Return the table of "positions" or "normals" next to poles."""
     header = ["surface", "where", *(f"N = {x}" for x in grids), "slope"]
-    rows = [header]
+    rows = []
     for entry in surfaces():
         errors = np.array([getattr(measured(entry.name, x), quantity) for x in grids])
         for k, region in enumerate(REGIONS):
             slope = -np.polyfit(np.log(grids), np.log(errors[:, k]), 1)[0]
             rows.append([code(entry.name), region, *map(number, errors[:, k]), f"{slope:.2f}"])
-    return rows
-
-
-@cache
-def measured(name: str, cells: int) -> PoleErrors:
-    """Return the errors for the surface of that name."""
-    return measure(next(x for x in surfaces() if x.name == name), cells)
+    return markdown(header, rows)

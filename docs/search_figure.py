@@ -10,7 +10,7 @@ from gaussmap.runtime.search.index import Index, index_of
 from gaussmap.runtime.search.kernels.lists import FINEST, order_normals, write_caps
 from gaussmap.runtime.search.search import find
 from gaussmap.tools.pictures.palette import GRID, HYPERBOLIC, INK, PALE
-from gaussmap.tools.pictures.scene import quadrangles
+from gaussmap.tools.pictures.scene import quadrangles, view
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -21,8 +21,6 @@ CELLS = (10, 8)
 NORMALS = 1500
 # The direction of the bin.
 MIDDLE = np.array([0.55, -0.3, 0.78])
-# The corners of the sides of a patch.
-SIDES = ((0, 2), (2, 1), (1, 0))
 
 
 def search_figure() -> Figure:
@@ -38,7 +36,8 @@ def search_figure() -> Figure:
     chosen = int(np.bincount(hits.patch_index[found]).argmax())
     own = hits.normal_index[found & (hits.patch_index == chosen)]
     figure, axes = panels(7.4, 3.9, 1, 2, left=0.01, right=0.99, bottom=0.1, top=0.93, wspace=0.02)
-    shown = seen_from(middles(index)[number])
+    x, y, z = middles(index)[number]
+    shown = view(np.degrees(np.arcsin(z)), np.degrees(np.arctan2(y, x)))
     whole = Globe(axes[0, 0], shown, "Images of patches, a cone, and a bin")
     near = Globe(axes[0, 1], shown, "The tile of the bin")
     for globe, width in ((whole, 0.25), (near, 0.8)):
@@ -51,9 +50,8 @@ def search_figure() -> Figure:
     near.points(normals[own], behind=0.0, s=40.0, color=GRID)
     zoom(near.axes, edge_of(index, number) @ shown.T)
     label = f"{len(pieces)} of {spline.patches} patches, {len(inside)} of {NORMALS} normals"
-    near.axes.text(
-        0.02, 0.02, label, transform=near.axes.transAxes, path_effects=HALO, zorder=9,
-    )  # fmt: skip
+    at = near.axes.transAxes
+    near.axes.text(0.02, 0.02, label, transform=at, path_effects=HALO, zorder=9)
     add_legend(figure)
     return figure
 
@@ -95,15 +93,11 @@ def draw(
     width: float,
 ) -> None:  # fmt: skip
     """Draw all images, those of a bin filled, the bin, and the cone of one piece."""
-    s = np.linspace(0.0, 1.0, 17)
     for k in range(spline.patches):
         patch = Patch(spline.control_nets[k])
-        corners = np.eye(3)
-        for i, j in SIDES:
-            side = (1.0 - s)[:, None] * corners[i] + s[:, None] * corners[j]
-            arc = unit(bezier(patch.control_normals, side))
-            if (np.mean(arc, axis=0) @ globe.view.T)[2] > 0.0:
-                globe.lines([arc], behind=0.0, colors=PALE, linewidths=width, zorder=4)
+        arcs = [arc.points(17) for arc in patch.image.arcs]
+        shown = [arc for arc in arcs if arc.mean(axis=0) @ globe.view[2] > 0.0]
+        globe.lines(shown, behind=0.0, colors=PALE, linewidths=width, zorder=4)
         if k in pieces:
             normals = unit(bezier(patch.control_normals, patch.mesh))
             colour = patch.tints if k != chosen else 0.85 * patch.tints
@@ -117,12 +111,6 @@ def draw(
     circle = np.cos(turn) * across + np.sin(turn) * np.cross(axis, across)
     cone = np.cos(angle) * axis + np.sin(angle) * circle
     globe.lines([cone], behind=0.0, colors=HYPERBOLIC, linewidths=1.4, zorder=6)
-
-
-def seen_from(direction: Floats) -> Floats:
-    """Return the view (3, 3) of the globe from a direction."""
-    right = unit(np.cross([0.0, 0.0, 1.0], direction))
-    return np.stack([right, np.cross(direction, right), direction])
 
 
 def zoom(axes: Axes, seen: Floats) -> None:

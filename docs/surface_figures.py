@@ -8,7 +8,7 @@ import gaussmap as gm
 import numpy as np
 from gaussmap.docs.drawing import MESH, TINTS, Floats, Globe, Picture, panels
 from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC, INK, PALE
-from gaussmap.tools.pictures.scene import Scene, quadrangles, view
+from gaussmap.tools.pictures.scene import quadrangles, scene_of, view
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -32,16 +32,16 @@ def figure_6() -> tuple[Figure, str]:
     )  # fmt: skip
     spline = gm.fit(ELLIPSOID)
     counts = []
-    seen_from = view(35.0, -50.0)
-    surface_picture(axes[0, 0], spline, seen_from, "A part of an ellipsoid", 0.75)
-    image_of(axes[1, 0], spline, seen_from, "Its Gaussian image")
+    eye = view(35.0, -50.0)
+    surface_picture(axes[0, 0], spline, eye, "A part of an ellipsoid", 0.75)
+    image_of(axes[1, 0], spline, eye, "Its Gaussian image")
     for k, frequency in enumerate((10, 20), start=1):
         normals = gm.icosphere(frequency)
         samples = gm.sample(spline, normals=normals)
-        picture = surface_picture(axes[0, k], spline, seen_from, f"{len(samples):,} samples", 0.75)
+        picture = surface_picture(axes[0, k], spline, eye, f"{len(samples):,} samples", 0.75)
         size = 10.0 / k**1.5
         picture.points(samples.points, s=size, color=ELLIPTIC)
-        globe = image_of(axes[1, k], spline, seen_from, f"{len(normals):,} uniform normals")
+        globe = image_of(axes[1, k], spline, eye, f"{len(normals):,} uniform normals")
         missed = np.delete(normals, samples.normal_index, axis=0)
         globe.points(missed, behind=0.0, s=0.6 * size, color=PALE)
         globe.points(samples.normals, behind=0.0, s=size, color=ELLIPTIC)
@@ -65,12 +65,12 @@ def figure_7() -> tuple[Figure, str]:
     """Draw a surface that is not convex, the spline, a sampling and its normals."""
     figure, axes = panels(7.4, 2.8, 1, 3, left=0.01, right=0.99, bottom=0.07, top=0.91, wspace=0.02)
     spline = gm.fit(gm.surfaces.wavy_graph(amplitude=0.35), cells=(16, 16))
-    seen_from = view(42.0, -65.0)
-    picture = surface_picture(axes[0, 0], spline, seen_from, "The approximating spline", lines=0)
+    eye = view(42.0, -65.0)
+    picture = surface_picture(axes[0, 0], spline, eye, "The approximating spline", lines=False)
     picture.lines(crisscross(spline), colors=INK, linewidths=0.3, zorder=3)
     normals = gm.icosphere(12)
     samples = gm.sample(spline, normals=normals)
-    picture = surface_picture(axes[0, 1], spline, seen_from, f"{len(samples):,} samples", lines=0)
+    picture = surface_picture(axes[0, 1], spline, eye, f"{len(samples):,} samples", lines=False)
     globe = image_of(axes[0, 2], spline, view(62.0, -65.0), "Their normals")
     for kind, colour in (("elliptic", ELLIPTIC), ("hyperbolic", HYPERBOLIC)):
         chosen = samples[getattr(samples, kind)]
@@ -107,31 +107,24 @@ def spread(counts: NDArray[np.int64]) -> str:
 
 
 def surface_picture(
-    axes: Axes,
-    spline: gm.Spline,
-    seen_from: Floats,
-    title: str,
-    shape: float = 1.0,
-    lines: int = 16,
-) -> Picture:
+    axes: Axes, spline: gm.Spline, eye: Floats, title: str, shape: float = 1.0,
+    lines: bool = True,
+) -> Picture:  # fmt: skip
     """Draw a spline with some parameter lines."""
-    (u0, u1), (v0, v1) = spline.domain
-    mesh = spline.evaluate(np.linspace(u0, u1, MESH + 1)[:, None], np.linspace(v0, v1, MESH + 1))
-    picture = Picture(axes, Scene(quadrangles(mesh), view=seen_from), title, shape)
+    scene = scene_of(spline, eye)
+    picture = Picture(axes, scene, title, shape)
     picture.surface("#dbe9f3")
     if lines:
-        at = range(0, MESH + 1, MESH // lines)
-        both = [mesh[k] for k in at] + [mesh[:, k] for k in at]
-        picture.lines(both, colors="white", linewidths=0.6, zorder=2)
+        picture.lines(list(scene.lines), colors="white", linewidths=0.6, zorder=2)
     return picture
 
 
-def image_of(axes: Axes, spline: gm.Spline, seen_from: Floats, title: str) -> Globe:
+def image_of(axes: Axes, spline: gm.Spline, eye: Floats, title: str) -> Globe:
     """Draw the Gaussian image of a spline."""
     (u0, u1), (v0, v1) = spline.domain
     u, v = np.linspace(u0, u1, MESH + 1)[:, None], np.linspace(v0, v1, MESH + 1)
     normals = spline.normals(u, v)
-    globe = Globe(axes, seen_from, title)
+    globe = Globe(axes, eye, title)
     quads = quadrangles(normals)
     globe.region(quads, np.tile(TINTS[2], (len(quads), 1)))
     return globe

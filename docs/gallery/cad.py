@@ -9,7 +9,6 @@
 import gaussmap as gm
 import matplotlib.pyplot as plt
 import numpy as np
-from scipy.spatial import KDTree
 
 # %% [markdown]
 # ## The file
@@ -33,53 +32,22 @@ for face in part.faces:
 # %% [markdown]
 # ## What it looks like
 #
-# Many samples with normals make a picture: each pixel shows one, in the light that falls on its
-# normal, and pixels where two faces meet are dark. (This cell is about drawing only.)
+# `part.plot` draws samples on the part, each in the colour of a value: on the left of the machined
+# faces, which have another colour in the file, on the right of the mean curvature.
 
 # %%
-dense = gm.sample(part, 80_000, density="uniform")
-BACK = np.array([0.72, -0.50, 0.48]) / np.linalg.norm([0.72, -0.50, 0.48])  # to the viewer
-RIGHT = np.cross([0, 0, 1], BACK) / np.hypot(*BACK[:2])
-AXES = np.stack([RIGHT, np.cross(BACK, RIGHT), BACK])
-LIGHT, PIXEL = np.array([-0.35, 0.55, 0.76]), 0.2  # from the left and above; mm
-
-# Of the samples that face the viewer, and are near a pixel: the nearest one that is in front.
-facing = np.flatnonzero(dense.normals @ BACK > 0)
-seen = dense.points[facing] @ AXES.T
-(x0, y0, _), (x1, y1, _) = seen.min(axis=0) - 1, seen.max(axis=0) + 1
-pixels = np.stack(np.meshgrid(np.arange(x0, x1, PIXEL), np.arange(y0, y1, PIXEL)), axis=-1)
-distance, near = KDTree(seen[:, :2]).query(pixels, k=12, distance_upper_bound=0.45)
-depth = np.append(seen[:, 2], -np.inf)[near]
-front = depth.max(axis=-1)
-distance[depth < front[..., None] - 1] = np.inf
-shown = np.take_along_axis(near, distance.argmin(axis=-1)[..., None], axis=-1)[..., 0]
-shown = np.where(np.isfinite(front), np.append(facing, -1)[shown], -1)
-
-
-def picture(axis, colours, title):
-    """Draw the part, with a colour (red, green, blue) for each of the dense samples."""
-    shade = 0.5 + 0.5 * np.clip(dense.normals @ AXES.T @ LIGHT, 0, 1)
-    image = np.append(colours * shade[:, None], [[1, 1, 1]], axis=0)[shown]
-    face = np.append(np.asarray(dense.face_index), -1)[shown]
-    for side in (0, 1):
-        image[face != np.roll(face, 1, side)] = 0.2
-    axis.imshow(image, origin="lower", extent=(x0, x1, y0, y1))
+LOOK = {"dpi": 80, "subplot_kw": {"projection": "3d"}, "layout": "constrained"}
+VIEW = (28, -35)
+dense = gm.sample(part, 5_000, density="uniform")
+machined = np.array([face.color != part.faces[0].color for face in part.faces])
+figure, axes = plt.subplots(1, 2, figsize=(8, 3.6), **LOOK)
+for axis, color, title in (
+    (axes[0], machined[dense.face_index].astype(float), "machined faces"),
+    (axes[1], np.clip(dense.mean_curvature, -0.3, 0.3), "mean curvature: concave to convex"),
+):
+    part.plot(dense, axes=axis, color=color, view=VIEW)
     axis.set_axis_off()
     axis.set_title(title)
-
-
-def visible(points, normals):
-    """Return which points the viewer sees."""
-    x, y, z = (points @ AXES.T).T
-    row, column = ((y - y0) / PIXEL).astype(int), ((x - x0) / PIXEL).astype(int)
-    return (normals @ BACK > 0) & (z > front[row, column] - 1)
-
-
-figure, axes = plt.subplots(1, 2, figsize=(8, 3.6), dpi=80, layout="constrained")
-of_file = np.array([face.color for face in part.faces])[dense.face_index]
-picture(axes[0], of_file, "colours of the file")
-by_curvature = plt.cm.coolwarm(0.5 + 2 * dense.mean_curvature)[:, :3]
-picture(axes[1], by_curvature, "mean curvature: convex red, concave blue")
 plt.show()
 
 # %% [markdown]
@@ -95,34 +63,14 @@ by_coverage = gm.sample(part, coverage=5.0)
 for samples in (by_count, by_angle, by_coverage):
     print(samples.summary())
 
-figure, axes = plt.subplots(1, 3, figsize=(10, 3.3), dpi=80, layout="constrained")
-for axis, samples, title in zip(
-    axes, (by_count, by_angle, by_coverage), ("count", "angle", "coverage"), strict=True
+figure, axes = plt.subplots(1, 3, figsize=(10, 3.3), **LOOK)
+for axis, name, samples in zip(
+    axes, ("count", "angle", "coverage"), (by_count, by_angle, by_coverage), strict=True
 ):
-    picture(axis, np.full((len(dense), 3), 0.93), f"{title}: {len(samples)} points")
-    in_sight = visible(samples.points, samples.normals)
-    axis.scatter(*(samples.points[in_sight] @ AXES[:2].T).T, s=5, color="tab:blue")
+    part.plot(samples, axes=axis, view=VIEW)
+    axis.set_axis_off()
+    axis.set_title(f"{name}: {len(samples)} points")
 plt.show()
-
-# %% [markdown]
-# ## A plan for the machine
-#
-# Only machined faces are measured: those that the file shows in brass colour. The probe starts
-# 5 mm away, outside of the material, since normals point out of the solid; the centre of its ball
-# (radius 1 mm) stops 1 mm from the point. Weights are areas: what a point stands for.
-
-# %%
-machined = [face.index for face in part.faces if face.color != part.faces[0].color]
-chosen = np.isin(np.asarray(by_coverage.face_index), machined)
-points, normals = by_coverage.points[chosen], by_coverage.normals[chosen]
-start, stop = points + 5.0 * normals, points + 1.0 * normals
-area = by_coverage.weights()
-np.testing.assert_allclose(area.sum(), part.area, rtol=1e-6)
-for index in machined:
-    of_face, face = by_coverage.face_index == index, part.faces[index]
-    print(
-        f"face {index:2} ({face.kind}): {of_face.sum():2} points for {area[of_face].sum():.1f} mm²"
-    )
 
 # %% [markdown]
 # ## Edges
@@ -139,18 +87,10 @@ print(
     f"{edge.sum()} points on edges; the normals differ by {angles.min():.0f} to {angles.max():.0f}°"
 )
 
-figure, axes = plt.subplots(1, 2, figsize=(8, 3.6), dpi=80, layout="constrained")
-in_sight = visible(points, normals)
-picture(axes[0], 0.6 + 0.4 * of_file, "paths of the probe to machined faces")
-paths = np.stack([start[in_sight], points[in_sight]]) @ AXES[:2].T
-axes[0].plot(paths[..., 0], paths[..., 1], color="tab:blue", linewidth=0.8)
-axes[0].scatter(*paths[1].T, s=6, color="tab:red", zorder=3)
-places = with_edges.points[edge]
-in_sight = visible(places + 0.3 * (normal + other), normal) | visible(places, other)
-picture(axes[1], np.full((len(dense), 3), 0.93), "points on edges, with both normals")
-for side, colour in ((normal, "tab:blue"), (other, "tab:orange")):
-    arrow = np.stack([places[in_sight], places[in_sight] + 2.5 * side[in_sight]]) @ AXES[:2].T
-    axes[1].plot(arrow[..., 0], arrow[..., 1], color=colour, linewidth=0.8)
+figure, axis = plt.subplots(figsize=(4.5, 3.6), **LOOK)
+part.plot(with_edges, axes=axis, color=edge.astype(float), view=VIEW)
+axis.set_axis_off()
+axis.set_title("points on edges (yellow) and on faces")
 plt.show()
 
 # %% [markdown]

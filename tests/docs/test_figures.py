@@ -8,6 +8,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.docs import curve_figures, figures, patch_figures
+from gaussmap.docs.markdown import wrapped
 from gaussmap.generated import patch as kernels
 from gaussmap.runtime.base.formula_calls import python_function, vector
 from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC
@@ -122,7 +123,7 @@ def test_a_second_run_gives_the_same_bytes(drawn, tmp_path):
 
 def test_formulas_are_not_broken():
     formula = "$`" + " + ".join(["x y"] * 30) + "`$"
-    lines = figures.filled("word " * 30 + formula + " word" * 30).split("\n")
+    lines = wrapped("word " * 30 + formula + " word" * 30).split("\n")
     assert formula in lines
     assert all(len(line) <= 100 for line in lines if line != formula)
 

@@ -6,6 +6,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.docs import markdown, orders, poles
+from gaussmap.docs.exact import angles
 from gaussmap.docs.orders import ANGLES, DERIVATIVES, POSITIONS, QUANTITIES, SUPPORT
 
 pytestmark = pytest.mark.compiled
@@ -74,7 +75,7 @@ def test_errors_at_parameters_are_those_of_the_runtime(name):
     places = true.unit(np.stack([u, v], axis=-1))
     x_u, x_v = np.moveaxis(true.derivatives(places[..., 0], places[..., 1], 1)[..., 1:, :], -2, 0)
     exact = np.cross(x_u, x_v)
-    assert angle == pytest.approx(orders.angles(spline.normals(u, v), exact).max(), rel=0.05)
+    assert angle == pytest.approx(angles(spline.normals(u, v), exact).max(), rel=0.05)
 
 
 def test_newton_agrees_with_closed_forms():
@@ -140,7 +141,7 @@ def test_errors_next_to_poles():
 
 def test_tables_of_poles():
     for quantity in ("positions", "normals"):
-        assert orders.of_poles(GRIDS, quantity).count("| `egg` |") == len(poles.REGIONS)
+        assert poles.table(GRIDS, quantity).count("| `egg` |") == len(poles.REGIONS)
 
 
 def test_the_page_has_all_tables(measured):
