@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from ...runtime.base.aliases import Array, Indices
+from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.wording import plural
 from ...runtime.domain.domain import brought_inside
 from ...runtime.onto_surface.on_spline import OnSpline
@@ -17,10 +18,9 @@ from ...runtime.spline.spline import Spline
 from ...runtime.surface.derivatives import normals_of_jets
 from .polylines import distances, refined
 
-__all__ = ["ImageCurve", "Traced", "followed", "jets_of_spline"]
+__all__ = ["Curves", "ImageCurve", "Traced", "Zeros", "jets_of_spline"]
 
 OfPlaces = Callable[[Array], Array]
-NO_CUSPS: Indices = np.empty(0, dtype=np.int64)
 # Curves whose ends are closer than this, relative to their size, are closed.
 CLOSED = 1e-6
 # The nearest point of a curve is searched among this number of vertices, then among as many between
@@ -70,13 +70,11 @@ class ImageCurve:
 class Traced:
     """A curve on a surface or a spline.
 
-    `jets` returns 2-jets (k, 6, 3) at parameters (k, 2), and `onto` moves parameters on chords of
-    the curve to the curve.
+    `of` says what lies on it.
     """
 
     curve: ImageCurve
-    jets: OfPlaces
-    onto: OfPlaces
+    of: Curves
 
     def part(self, first: int, last: int) -> Traced:
         """Return the part of the curve through vertices [first, last)."""
@@ -101,7 +99,7 @@ class Traced:
             places = np.linspace(low, high, PLACES)
             index = np.minimum(places.astype(np.int64), last - 1)
             chord = uv[index] + (places - index)[..., None] * (uv[index + 1] - uv[index])
-            found = _points_and_normals(self.jets(self.onto(chord.reshape(-1, 2))))[1]
+            found = _points_and_normals(self.of.jets(self.of.onto(chord.reshape(-1, 2))))[1]
             image = found.reshape(*places.shape, 3)
             apart = np.nan_to_num(np.linalg.norm(image - normals, axis=2), nan=2.0)
             best = apart.argmin(axis=0)
@@ -113,28 +111,63 @@ class Traced:
         return 2.0 * np.arcsin(np.minimum(np.nanmin(sides, axis=0) / 2.0, 1.0))
 
 
-def followed(
-    uv: Array,
-    jets: OfPlaces,
-    size: float,
-    tolerance: float,
-    onto: OfPlaces = lambda places: places,
-    with_cusps: Callable[[Array], tuple[Array, Indices]] = lambda uv: (uv, NO_CUSPS),
-) -> Traced:
-    """Insert vertices into a polyline (k, 2) until it and its image are close to a curve.
+class Curves:
+    """Curves on a surface or a spline, given by polylines of the parameters; they are straight.
 
-    The tolerance is relative to the size of the surface, and in radians. `with_cusps` returns the
-    vertices with cusps inserted, and the indices of the cusps.
+    `jets` returns 2-jets (k, 6, 3) at parameters (k, 2); `size` is that of the surface.
     """
 
-    def both(uv: Array) -> Array:
-        points, normals = _points_and_normals(jets(uv))
-        return np.hstack([points / size if size else points, normals])
+    jets: OfPlaces
+    size: float
 
-    uv, cusps = with_cusps(refined(uv, both, tolerance, onto))
-    points, normals = _points_and_normals(jets(uv))
-    closed = math.dist(points[0], points[-1]) <= CLOSED * float(np.ptp(points, axis=0).max())
-    return Traced(ImageCurve(uv, points, normals, closed, cusps), jets, onto)
+    def onto(self, uv: Array) -> Array:
+        """Move parameters (k, 2) near the curves onto them."""
+        return uv
+
+    def with_cusps(self, uv: Array) -> tuple[Array, Indices]:
+        """Return a curve (k, 2) with the cusps of its image as vertices, and their indices."""
+        return uv, np.empty(0, dtype=np.int64)
+
+    def traced(self, uv: Array, tolerance: float) -> Traced:
+        """Insert vertices into a polyline (k, 2) until it and its image are close to a curve.
+
+        The tolerance is relative to the size of the surface, and in radians.
+        """
+
+        def both(uv: Array) -> Array:
+            points, normals = _points_and_normals(self.jets(uv))
+            return np.hstack([points / self.size if self.size else points, normals])
+
+        uv, cusps = self.with_cusps(refined(uv, both, tolerance, self.onto))
+        points, normals = _points_and_normals(self.jets(uv))
+        closed = math.dist(points[0], points[-1]) <= CLOSED * float(np.ptp(points, axis=0).max())
+        return Traced(ImageCurve(uv, points, normals, closed, cusps), self)
+
+
+class Zeros(Curves, ABC):
+    """The zeros of K of a surface or a spline: the parabolic points.
+
+    `flat` (m, n) are the cells in which K vanishes up to its error, between the parameters `lines`
+    along u and along v.
+    """
+
+    flat: Flags
+    lines: Sequence[Array]
+
+    @abstractmethod
+    def polylines(self) -> list[Array]:
+        """Return the curves (k, 2) across which K changes its sign."""
+
+    def curves(self, tolerance: float) -> list[Traced]:
+        """Return the curves, traced to a tolerance."""
+        return [self.traced(uv, tolerance) for uv in self.polylines()]
+
+    def isolated(self) -> list[tuple[Array, Array]]:
+        """Return the points (2,) at which K touches zero, with rectangles (2, 2) around them."""
+        return []
+
+    def warn(self, stacklevel: int) -> None:
+        """Warn if K is unknown on a part of the domain."""
 
 
 def jets_of_spline(spline: Spline) -> OfPlaces:

@@ -20,8 +20,8 @@ from ...runtime.domain.loops import Loops
 from ...runtime.map import GaussMap
 from ...runtime.onto_surface.on_spline import OnSpline
 from .curvature import Curvature
-from .image_curve import ImageCurve, Traced, followed, jets_of_spline
-from .parabolic import checked_tolerance, size_of_spline, traced_curves
+from .image_curve import Curves, ImageCurve, Traced, jets_of_spline
+from .parabolic import checked_tolerance, traced_curves
 
 __all__ = ["border_image", "folds", "margin"]
 
@@ -158,14 +158,12 @@ def _folds(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:
 
 def _borders(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:
     """Yield the boundaries of a geometry: open sides of the domain, and the loops of a trim."""
-    if geometry.surface is None:
-        jets = jets_of_spline(geometry.spline)
-    else:
-        jets = Curvature(geometry.surface).jets
-    size = size_of_spline(geometry.spline)
+    curves, surface = Curves(), geometry.surface
+    curves.jets = Curvature(surface).jets if surface else jets_of_spline(geometry.spline)
+    curves.size = geometry.spline.extent[0]
     for uv in [*_sides(geometry), *_loops(geometry)]:
         for first, last in _inside(geometry, uv):
-            yield followed(uv[first:last], jets, size, tolerance)
+            yield curves.traced(uv[first:last], tolerance)
 
 
 def _sides(geometry: OnSpline) -> Iterator[Array]:

@@ -2,52 +2,29 @@
 
 from __future__ import annotations
 
-import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ...runtime.base.aliases import Array, Indices
+from ...runtime.base.aliases import Array
 from ...runtime.base.checks import as_float, pair_of_cells
-from ...runtime.base.errors import GaussmapWarning, InputError, shown
+from ...runtime.base.errors import InputError, shown
 from ...runtime.base.wording import plural
 from ...runtime.fitting.fit import fit, spline_of
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
-from .classes import PatchClass, classify_patches
-from .critical_points import critical_zeros
-from .curvature import Curvature
-from .image_curve import ImageCurve, Traced, followed, jets_of_spline
-from .parabolic_spline import polylines_of
+from .image_curve import ImageCurve, Traced, Zeros
+from .parabolic_spline import ZerosOfSpline
+from .parabolic_surface import CELLS, MOST_CELLS, ZerosOfSurface
 from .rectangles import merged
-from .sign_grid import SignGrid
-from .zero_curves import zero_curves
 
 __all__ = [
     "ParabolicPoint",
     "ParabolicPoints",
     "checked_tolerance",
     "parabolic_points",
-    "size_of_spline",
     "traced_curves",
 ]
-
-# The numbers of cells of the grid along u and v. It is refined where curves are closer to each
-# other than a cell, or smaller, and where more than this share of its cells contains curves.
-CELLS, MOST_CELLS, CROWDED = 128, 512, 1 / 8
-# The least share of the domain without curvature that gets a warning.
-WORTH_A_WARNING = 1e-4
-# Isolated zeros of K whose cells are this close are one.
-TOGETHER = 4
-# Derivatives of K below this bound count as zero: along the direction in which the normal is
-# constant, relative to the gradient of K (so on curves with one normal, such as the top circle of a
-# torus); and the gradient itself, relative to its maximum on the curve, where curves cross.
-NO_CHANGE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,161 +163,28 @@ def parabolic_points(
     if isinstance(surface, Surface) and surface.grid is not None:
         surface, cells = fit(surface, cells), None
     if isinstance(surface, Spline):
-        return _of_spline(spline_of(surface, cells), limit)
-    if not isinstance(surface, Surface):
+        surface = spline_of(surface, cells)
+    elif not isinstance(surface, Surface):
         raise InputError(
             f"parabolic_points takes a Surface or a Spline, not {type(surface).__name__}."
         )
-    return _Zeros(surface, limit, _checked_cells(cells)).points()
+    zeros = _zeros_of(surface, limit, _checked_cells(cells))
+    zeros.warn(stacklevel=3)
+    isolated = [ParabolicPoint(uv, zeros.jets(uv[None])[0, 0], box) for uv, box in zeros.isolated()]
+    curves = tuple(x.curve for x in zeros.curves(limit))
+    flat = merged(zeros.flat, zeros.lines)
+    return ParabolicPoints(curves, tuple(isolated), flat, bool(zeros.flat.all()))
 
 
 def traced_curves(surface: Surface | Spline, tolerance: float) -> list[Traced]:
     """Return the curves of `parabolic_points`, in a form that can be refined."""
+    return _zeros_of(surface, tolerance, (CELLS, CELLS)).curves(tolerance)
+
+
+def _zeros_of(surface: Surface | Spline, tolerance: float, cells: tuple[int, int]) -> Zeros:
     if isinstance(surface, Spline):
-        return _curves_of_spline(surface, classify_patches(surface), tolerance)
-    return _Zeros(surface, tolerance, (CELLS, CELLS)).curves()
-
-
-# --- splines --------------------------------------------------------------------------------------
-
-
-def _of_spline(spline: Spline, tolerance: float) -> ParabolicPoints:
-    classes = classify_patches(spline)
-    curves = _curves_of_spline(spline, classes, tolerance)
-    flat = np.isin(classes, (PatchClass.PLANAR, PatchClass.DEVELOPABLE, PatchClass.SINGULAR))
-    cells = np.flatnonzero(flat.reshape(-1, 4).all(axis=1))
-    i, j = np.divmod(cells, spline.cells[1])
-    corners = np.stack([[i, j], [i + 1, j + 1]]).transpose(2, 0, 1)
-    boxes = spline.frame[:2] + corners * spline.frame[2:]
-    return ParabolicPoints(tuple(x.curve for x in curves), (), merged(boxes), bool(flat.all()))
-
-
-def _curves_of_spline(spline: Spline, classes: NDArray[np.int8], tolerance: float) -> list[Traced]:
-    jets, size = jets_of_spline(spline), size_of_spline(spline)
-    return [followed(uv, jets, size, tolerance) for uv in polylines_of(spline, classes)]
-
-
-def size_of_spline(spline: Spline) -> float:
-    """Return the diagonal of the bounding box of the coefficients."""
-    points = spline.coefficients[1:-1, 1:-1].reshape(-1, 3)
-    return math.hypot(*np.ptp(points, axis=0))
-
-
-# --- surfaces -------------------------------------------------------------------------------------
-
-
-class _Zeros:
-    """The zeros of K of a surface."""
-
-    def __init__(self, surface: Surface, tolerance: float, cells: tuple[int, int]) -> None:
-        self.surface, self.tolerance, self.curvature = surface, tolerance, Curvature(surface)
-        # Curves closer than this, relative to the domain, cross or are a point.
-        self.size = 0.125 * tolerance
-        while True:
-            self.grid = SignGrid(self.curvature, cells)
-            finer = 2 * cells[0], 2 * cells[1]
-            if self.grid.crossed.mean() <= CROWDED or max(finer) > MOST_CELLS:
-                self.critical = critical_zeros(self.grid, self.size)
-                if not self.critical.unclear or max(finer) > MOST_CELLS:
-                    break
-            cells = finer
-
-    def points(self) -> ParabolicPoints:
-        """Return the result of `parabolic_points`; warn if K is unknown on a part of the domain."""
-        grid = self.grid
-        unknown = float(grid.areas[grid.unknown].sum())
-        if unknown > WORTH_A_WARNING:
-            warnings.warn(
-                f"the curvature of {self.surface.name!r} cannot be computed on "
-                f"{100.0 * unknown:.3g} % of its domain, which is left out; the spline of the "
-                "surface (`fit`) has parabolic points everywhere.",
-                GaussmapWarning,
-                stacklevel=3,
-            )
-        curves = tuple(x.curve for x in self.curves())
-        whole = bool(grid.flat.all())
-        return ParabolicPoints(curves, self._isolated(), merged(grid.rectangles(grid.flat)), whole)
-
-    def curves(self) -> list[Traced]:
-        """Return the curves across which K changes its sign."""
-        K = self.curvature
-        return [
-            followed(uv, K.jets, K.size, self.tolerance, K.onto_zeros, self._with_cusps)
-            for uv in zero_curves(self.grid, self.critical.saddles)
-        ]
-
-    def _isolated(self) -> tuple[ParabolicPoint, ...]:
-        """Return the isolated zeros of K, one for each cluster, with boxes."""
-        from scipy.ndimage import label, maximum_filter
-
-        touched, reach = self.critical.touched, self.critical.reach
-        cells = self.grid.cells_at(touched)
-        here = np.zeros(self.grid.flat.shape, dtype=bool)
-        here[cells] = True
-        groups = np.zeros(here.shape, dtype=np.int64)
-        label(maximum_filter(here, 2 * TOGETHER + 1), output=groups)
-        found = []
-        for k in range(1, groups.max(initial=0) + 1):
-            own = groups[cells] == k
-            box = np.stack([(touched - reach)[own].min(axis=0), (touched + reach)[own].max(axis=0)])
-            middle = np.abs(touched[own] - box.mean(axis=0)).max(axis=1).argmin()
-            place = touched[own][middle]
-            box = np.clip(box, self.curvature.low, self.curvature.high)
-            found.append(ParabolicPoint(place, self.curvature.jets(place[None])[0, 0], box))
-        return tuple(found)
-
-    def _with_cusps(self, uv: Array) -> tuple[Array, Indices]:
-        """Return a curve (k, 2) with the cusps of its image as vertices, and the indices of these.
-
-        At a cusp, the derivative of K along the direction in which the normal is constant vanishes
-        and changes its sign.
-        """
-        change, along = self._change(uv)
-        known = np.flatnonzero(np.abs(change) > NO_CHANGE)
-        cusps, new = list[int](), dict[int, Array]()
-        for i, j in pairwise(known.tolist()):
-            turns = np.prod(np.sign(np.einsum("kx,kx->k", along[i:j], along[i + 1 : j + 1])))
-            if change[i] * change[j] * turns > 0.0:
-                continue
-            if j == i + 1:
-                new[j] = self._cusp_between(uv[i], uv[j], along[i])
-            cusps.append(i + 1 + sum(x <= i for x in new))
-        places = np.fromiter(new, np.int64, len(new))
-        values = np.reshape(list(new.values()), (-1, 2))
-        return np.insert(uv, places, values, axis=0), np.array(cusps, dtype=np.int64)
-
-    def _cusp_between(self, start: Array, end: Array, before: Array) -> Array:
-        """Return the cusp (2,) between two vertices."""
-        from scipy.optimize import brentq
-
-        def place(share: float) -> Array:
-            return self.curvature.onto_zeros(start[None] + share * (end - start))
-
-        def value(share: float) -> float:
-            change, along = self._change(place(share))
-            return float(change[0] * np.sign(along[0] @ before))
-
-        return place(float(brentq(value, 0.0, 1.0, xtol=1e-12)))[0]  # pyright: ignore[reportArgumentType]
-
-    def _change(self, uv: Array) -> tuple[Array, Array]:
-        """Return the derivative (k,) of K along the direction in which the normal is constant.
-
-        It is relative to the length of the gradient of K. Also returns the direction (k, 2),
-        relative to the domain.
-        """
-        _, gradient, _ = self.curvature.derivatives(uv)
-        u, v = self.curvature.extent
-        e, f, g = self.curvature.at(uv).second_form.T * [[u * u], [u * v], [v * v]]
-        along = np.where(np.abs(e) > np.abs(g), [-f, e], [g, -f]).T
-        with np.errstate(invalid="ignore"):
-            along = along / np.linalg.norm(along, axis=1, keepdims=True)
-            size = np.linalg.norm(gradient, axis=1)
-            changes = np.einsum("kx,kx->k", gradient, along) / size
-            changes = np.where(size > NO_CHANGE * np.nanmax(size), changes, 0.0)
-        return np.nan_to_num(changes), np.nan_to_num(along)
-
-
-# --- arguments ------------------------------------------------------------------------------------
+        return ZerosOfSpline(surface)
+    return ZerosOfSurface(surface, cells, 0.125 * tolerance)
 
 
 def checked_tolerance(tolerance: float) -> float:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from functools import reduce
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -211,18 +212,10 @@ def singular_points(patch: Patches) -> Array:
     them, unless all its parabolic lines coincide.
     """
     angle, roots = _roots(patch)
-    lines = []
-    for x in roots:
-        s, t = (
-            x * math.cos(angle) - math.sin(angle),
-            x * math.sin(angle) + math.cos(angle),
-        )
-        normals = np.array(patch.apply(formulas.parabolic_normal, s, t))[..., 0]
-        normal = normals[int(np.argmax(np.abs(normals).max(axis=1)))]
-        lines.append([y[0] for y in patch.apply(formulas.parabolic_line, Vector(*normal), s, t)])
+    c, s = math.cos(angle), math.sin(angle)
+    lines = [_row(patch, x * c - s, x * s + c)[0] for x in roots]
     found: list[Array] = []
-    for left, right in combinations(lines, 2):
-        meeting = np.cross(np.array(left), np.array(right))
+    for meeting in (np.cross(*pair) for pair in combinations(lines, 2)):
         with np.errstate(divide="ignore", invalid="ignore"):
             place = meeting[:2] / meeting[2]
         if np.isfinite(place).all() and np.abs(place.imag).max() <= DOUBLE_ROOT:
@@ -300,20 +293,26 @@ def _merged(angles: list[float]) -> list[tuple[float, int]]:
     return [(math.fsum(group) / len(group), len(group)) for group in groups]
 
 
-def _line(patch: Patches, s: float, t: float) -> tuple[float, Array] | None:
-    """Return ρ and the normal of the line with a direction; None for a line at infinity."""
+def _row(patch: Patches, s: complex, t: complex) -> tuple[NDArray[Any], NDArray[Any], float]:
+    """Return l and the unit normal of the line l·(u, v, 1) = 0 with a direction.
+
+    Also returns the length of the normal before it was divided by it.
+    """
     normals = np.array(patch.apply(formulas.parabolic_normal, s, t))[..., 0]
     lengths = np.linalg.norm(normals, axis=1)
-    if lengths.max() <= float(patch.normal_noise[0]):
+    length = float(lengths.max())
+    normal = normals[int(np.argmax(lengths))] / (length or 1.0)
+    row = patch.apply(formulas.parabolic_line, Vector(*normal), s, t)
+    return np.array([x[0] for x in row]), normal, length
+
+
+def _line(patch: Patches, s: float, t: float) -> tuple[float, Array] | None:
+    """Return ρ and the normal of the line with a direction; None for a line at infinity."""
+    row, normal, length = _row(patch, s, t)
+    slope = float(row[:2] @ [s, t])
+    if length <= patch.normal_noise[0] or abs(slope) <= VANISHING * patch.tangent[0]:
         return None
-    normal = normals[int(np.argmax(lengths))] / lengths.max()
-    l_u, l_v, l_1 = (
-        float(x[0]) for x in patch.apply(formulas.parabolic_line, Vector(*normal), s, t)
-    )
-    slope = l_u * s + l_v * t
-    if abs(slope) <= VANISHING * float(patch.tangent[0]):
-        return None
-    return l_1 / slope, normal
+    return float(row[2]) / slope, normal
 
 
 def _segment(s: float, t: float, rho: float) -> Array | None:

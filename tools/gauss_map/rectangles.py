@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-from numpy.typing import NDArray
+
+from ...runtime.base.aliases import Array, Flags
 
 __all__ = ["merged"]
 
-Array = NDArray[np.float64]
 
+def merged(cells: Flags, lines: Sequence[Array]) -> Array:
+    """Return the cells of a grid that are True, merged first along v and then along u.
 
-def merged(rectangles: Array) -> Array:
-    """Merge rectangles that share a whole side, first along v and then along u."""
-    for axis in (1, 0):
-        rectangles = _merged_along(rectangles, axis)
-    return rectangles
-
-
-def _merged_along(rectangles: Array, axis: int) -> Array:
-    if len(rectangles) == 0:
-        return rectangles
-    other = 1 - axis
-    keys = rectangles[:, 0, axis], rectangles[:, 1, other], rectangles[:, 0, other]
-    sorted_ = rectangles[np.lexsort(keys)]
-    follows = (
-        (sorted_[1:, 0, axis] == sorted_[:-1, 1, axis])
-        & (sorted_[1:, 0, other] == sorted_[:-1, 0, other])
-        & (sorted_[1:, 1, other] == sorted_[:-1, 1, other])
-    )
-    first, last = np.append(True, ~follows), np.append(~follows, True)
-    return np.stack([sorted_[first, 0], sorted_[last, 1]], axis=1)
+    `lines` are the parameters u and v of the nodes.
+    """
+    changes = np.argwhere(np.diff(cells, axis=1, prepend=False, append=False)).reshape(-1, 2, 2)
+    i, j, k = changes[:, 0, 0], changes[:, 0, 1], changes[:, 1, 1]
+    order = np.lexsort((i, k, j))
+    i, j, k = i[order], j[order], k[order]
+    new = np.append(True, (np.diff(i) != 1) | (np.diff(j) != 0) | (np.diff(k) != 0))[: len(i)]
+    first, last = np.flatnonzero(new), np.flatnonzero(np.append(new[1:], True)[: len(i)])
+    u, v = lines
+    low, high = [u[i[first]], v[j[first]]], [u[i[last] + 1], v[k[first]]]
+    return np.array([low, high]).transpose(2, 0, 1)

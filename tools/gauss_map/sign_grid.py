@@ -81,11 +81,6 @@ class SignGrid:
         )
         return i, j
 
-    def rectangles(self, which: Flags) -> Array:
-        """Return the rectangles (k, 2, 2), low and high corner, of the cells that are True."""
-        cells = np.argwhere(which)
-        return np.stack([self.at(cells), self.at(cells + 1)], axis=1)
-
     def at(self, nodes: Indices) -> Array:
         """Return the parameter pairs (..., 2) of nodes (..., 2)."""
         return np.stack([line[nodes[..., k]] for k, line in enumerate(self.lines)], axis=-1)
