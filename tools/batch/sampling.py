@@ -175,7 +175,7 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     }
     if plan.measured and len(samples):
         about["coverage"] = samples.coverage(threads=1)
-        about["angle"] = samples.normal_deviation(threads=1)
+        about["angle"] = samples.normal_deviation(threads=1).normal_space
     file = plan.file(task.input.part, task.input.name)
     if file is not None:
         samples.write(file)

@@ -389,12 +389,12 @@ def _distribution() -> list[Option]:
         Option(
             "--density HOW",
             "balanced (default): higher where a principal curvature is larger, by prescribed "
-            "normals and samples that fill the gaps. gauss: proportional to |K|, prescribed "
-            "normals only. aligned: on a grid of lines u = const and v = const, spaced by how fast "
-            "the normal turns. uniform: the same everywhere. A number A: proportional to |K|^A.",
+            "normals and samples that fill the gaps. gauss (default where normals alone are "
+            "given): proportional to |K|, prescribed normals only. aligned: on a grid of lines u = "
+            "const and v = const, spaced by how fast the normal turns. uniform: the same "
+            "everywhere. A number A: proportional to |K|^A.",
             density,
             group="how dense",
-            default="balanced",
             shell_complete=densities,
         ),
         Option(

@@ -16,7 +16,8 @@ from ...runtime.base.checks import finite_array, listed, real_values
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra
 from ...runtime.directions.unit import as_normals
-from ...runtime.sample import sample
+from ...runtime.sample import sample_and_normals
+from ...runtime.samples.request import checked_request
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
@@ -87,7 +88,7 @@ def plot(
     surface : Surface, Spline, Part or str
         The surface to draw, as in `sample`.
     samples : Samples, optional
-        Samples of the surface; by default 2,000 are made.
+        Samples of the surface; by default those at `normals`, or 2,000.
     color : str or (N,) array_like, default "gaussian_curvature"
         The colours of the samples: the name of a column, as in tables ("support", "z", "nx",
         "mean_curvature", "face_index" …), or a number for each sample.
@@ -134,7 +135,11 @@ def plot(
     if not isinstance(surface, Spline | Part):
         surface = named(surface)
     if samples is None:
-        samples = sample(surface, COUNT)
+        count = COUNT if normals is None else None
+        request = checked_request(normals, count, None, None, None, None)
+        samples, normals = sample_and_normals(
+            surface, request, cells=None, threads=None, progress=False
+        )
     return plot_samples(samples, surface, color=color, view=view, axes=axes, normals=normals)
 
 
@@ -152,7 +157,7 @@ def plot_part(
     Parameters
     ----------
     samples : Samples, optional
-        Samples of the part; by default 2,000 are made.
+        Samples of the part; by default those at `normals`, or 2,000.
     color, view, axes, normals : optional
         As in `plot`: the column or array shown in colour, elevation and azimuth in degrees, axes to
         draw into, the prescribed normals.

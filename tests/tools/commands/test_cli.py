@@ -167,22 +167,6 @@ def test_the_normals_of_an_icosphere() -> None:
     np.testing.assert_array_equal(samples.normals, gm.icosphere(3)[samples.normal_index])
 
 
-@pytest.mark.parametrize(
-    ("arguments", "normals"),
-    [
-        (["--healpix", "4"], gm.directions.healpix(4)),
-        (["--random", "150"], gm.directions.random(150)),
-        (["--random", "150", "--seed", "7"], gm.directions.random(150, seed=7)),
-        (["--seed", "0", "--random", "150"], gm.directions.random(150, seed=0)),
-    ],
-)
-def test_other_sets_of_normals(arguments: list[str], normals: np.ndarray) -> None:
-    assert main(["sample", "torus", *GAUSS, *arguments, *EIGHT, "-o", "a.npz"]) == 0
-    samples = gm.read_samples("a.npz")
-    assert samples.report.normals == len(normals)
-    np.testing.assert_array_equal(samples.normals, normals[samples.normal_index])
-
-
 @pytest.mark.usefixtures("files")
 @pytest.mark.parametrize("source", ["directions.npy", "both.npz:those"])
 def test_normals_from_a_file(source: str) -> None:
@@ -192,36 +176,6 @@ def test_normals_from_a_file(source: str) -> None:
     np.testing.assert_allclose(
         samples.normals, gm.icosphere(3)[samples.normal_index], rtol=0, atol=1e-15
     )
-
-
-@pytest.mark.parametrize(
-    ("arguments", "options"),
-    [
-        (["--count", "200"], {"count": 200}),
-        (["--angle", "20"], {"angle": 20.0}),
-        (["--coverage", "0.3"], {"coverage": 0.3}),
-        (["--count", "200", "--coverage", "0.5"], {"count": 200, "coverage": 0.5}),
-        (["--count", "200", "--density", "uniform"], {"count": 200, "density": "uniform"}),
-        (["--count", "200", "--density", "0.5"], {"count": 200, "density": 0.5}),
-        (["--count", "200", "--density", "gauss"], {"count": 200, "density": "gauss"}),
-        (["--frequency", "3"], {"normals": gm.icosphere(3), "density": "balanced"}),
-    ],
-)
-@compiled
-def test_how_many_and_where(arguments: list[str], options: dict[str, Any]) -> None:
-    assert main(["sample", "torus", *arguments, *EIGHT, "-o", "a.npz"]) == 0
-    expected = gm.sample(gm.surfaces.torus(), **options, cells=(8, 8))
-    samples = gm.read_samples("a.npz")
-    assert samples.report == expected.report
-    np.testing.assert_array_equal(samples.points, expected.points)
-
-
-def test_progressive() -> None:
-    arguments = ["sample", "torus", "--count", "200", *EIGHT]
-    assert main([*arguments, "-o", "a.npz"]) == 0
-    assert main([*arguments, "--progressive", "-o", "b.ply"]) == 0
-    ordered = gm.read_samples("a.npz").progressive()
-    np.testing.assert_array_equal(gm.read_samples("b.ply").points, ordered.points)
 
 
 def test_a_formula() -> None:
