@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError, SurfaceError
+from ...runtime.domain.trim import Trim
 from ...runtime.fitting.fit import spline_of
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.spline import Spline
@@ -168,20 +169,53 @@ def scene_of(surface: object, seen_from: Array | None = None, distance: float = 
 
 
 def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...]]:
-    """Return quadrangles of a spline, or of its offset, and parameter lines."""
-    u, v = (
-        np.linspace(low, high, min(max(MESH, count), MOST_MESH) + 1)
-        for (low, high), count in zip(spline.domain, spline.cells, strict=True)
-    )
+    """Return quadrangles of a spline, or of its offset, and parameter lines, inside its trim."""
+    u, v, inside = _grid_inside(spline)
     mesh = spline.evaluate(u[:, None], v)
     if distance:
         mesh = mesh + distance * np.nan_to_num(spline.normals(u[:, None], v))
+    beside = np.pad(inside, 1)  # a segment is drawn if a quadrangle beside it is
+    along_v = beside[1:, 1:-1] | beside[:-1, 1:-1]
+    along_u = beside[1:-1, 1:] | beside[1:-1, :-1]
     lines = [
         line
-        for side in (mesh, np.swapaxes(mesh, 0, 1))
-        for line in side[np.linspace(0, len(side) - 1, ISOLINES + 1).round().astype(np.int64)]
+        for side, there in ((mesh, along_v), (np.swapaxes(mesh, 0, 1), along_u.T))
+        for k in np.linspace(0, len(side) - 1, ISOLINES + 1).round().astype(np.int64)
+        for line in _parts(side[k], there[k])
     ]
-    return quadrangles(mesh), tuple(lines)
+    return quadrangles(mesh)[inside.ravel()], tuple(lines)
+
+
+def _grid_inside(spline: Spline) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Return values of u and v, and which rectangles between them are inside the trim.
+
+    The grid is as fine as always where a trim leaves only a small part of the domain.
+    """
+    counts = [min(max(MESH, count), MOST_MESH) for count in spline.cells]
+    ends = np.array(spline.domain)
+    u, v = (np.linspace(low, high, n + 1) for (low, high), n in zip(ends, counts, strict=True))
+    if spline.trim is None:
+        return u, v, np.ones((len(u) - 1, len(v) - 1), dtype=np.bool_)
+    inside = _inside(spline.trim, u, v)
+    if inside.any():
+        for k, values in enumerate((u, v)):
+            rows = np.flatnonzero(inside.any(axis=1 - k))
+            ends[k] = values[max(rows[0] - 1, 0)], values[min(rows[-1] + 2, len(values) - 1)]
+        u, v = (np.linspace(low, high, n + 1) for (low, high), n in zip(ends, counts, strict=True))
+        inside = _inside(spline.trim, u, v)
+    return u, v, inside if inside.any() else np.ones_like(inside)
+
+
+def _inside(trim: Trim, u: Array, v: Array) -> NDArray[np.bool_]:
+    """Return which rectangles between values of u and v have their centre inside a trim."""
+    centres = np.meshgrid(*((x[1:] + x[:-1]) / 2 for x in (u, v)), indexing="ij")
+    return trim.contains(np.stack(centres, axis=-1).reshape(-1, 2)).reshape(centres[0].shape)
+
+
+def _parts(line: Array, there: NDArray[np.bool_]) -> list[Array]:
+    """Return the parts of a line (k, 3) whose segments (k − 1,) are there."""
+    ends = np.flatnonzero(np.diff(np.pad(there, 1).astype(np.int8))).reshape(-1, 2)
+    return [line[first : last + 1] for first, last in ends]
 
 
 def _of_part(part: Part) -> tuple[Array, tuple[Array, ...], NDArray[np.int64]]:

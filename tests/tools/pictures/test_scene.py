@@ -162,3 +162,30 @@ def test_triangles_of_a_part_have_its_area():
     assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 == pytest.approx(
         part.area, rel=2e-3
     )
+
+
+def test_a_surface_is_drawn_where_there_are_data_only() -> None:
+    y, x = np.mgrid[:40, :50]
+    heights = 5.0 * np.sin(x / 9.0) * np.cos(y / 7.0)
+    missing = (x - 20) ** 2 + (y - 20) ** 2 < 50
+    heights[missing] = np.nan
+    drawn = scene_of(gm.Surface.from_grid(heights, spacing=(1, 1)))
+    centres = drawn.quadrangles[..., :2].mean(axis=1)
+    column, row = np.floor(centres).astype(int).T
+    corners = np.stack([missing[row + a, column + b] for a in (0, 1) for b in (0, 1)])
+    assert not corners.any()
+    # A patch depends on points at a distance of two cells: the hole is at most that much larger.
+    diagonals = (drawn.quadrangles[:, 2] - drawn.quadrangles[:, 0])[:, :2]
+    hole = 39 * 49 - np.prod(diagonals, axis=1).sum()
+    assert np.pi * 7**2 < hole < np.pi * (7 + 2 * np.sqrt(2)) ** 2
+    for line in drawn.lines:
+        assert np.hypot(*(line[:, :2] - 20).T).min() > 7.0
+        assert np.linalg.norm(np.diff(line[:, :2], axis=0), axis=1).max() < 1.0
+
+
+def test_a_small_part_of_a_domain_is_drawn_finely() -> None:
+    corner = gm.surfaces.torus().trimmed([[(1.0, 1.0), (1.2, 1.0), (1.0, 1.2)]])
+    drawn = scene_of(corner).quadrangles
+    size = np.linalg.norm(np.ptp(drawn.reshape(-1, 3), axis=0))
+    assert np.linalg.norm(drawn[:, 2] - drawn[:, 0], axis=1).max() < 0.05 * size
+    assert len(drawn) > 1000
