@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from .density.on_pieces import geometries_of
+from .base.checks import pair_of_cells
+from .base.errors import InputError, in_memory, shown
+from .base.threads import thread_count
+from .directions.regions import Cap
+from .directions.unit import as_normals
 from .map_methods import Methods
-from .sample import unwarned
-from .samples.request import checked_request
+from .onto_surface.on_spline import OnSpline
+from .onto_surface.on_surface import checked_place
+from .onto_surface.pieces import geometries_of, samples_of_pieces
+from .onto_surface.reach import in_reach
+from .samples.fields import checked_dtype, checked_fields
 from .samples.samples import Samples
 from .samples.whole import Whole
 from .spline.spline import Spline
 from .surface.surface import Surface
 from .surface.surfaces import named
 
-__all__ = ["GaussMap"]
+__all__ = ["GaussMap", "check_part", "kept_map"]
+
+# The number of surfaces whose maps are cached; splines and indices take some MB each.
+KEPT = 8
 
 
 class GaussMap(Methods):
@@ -70,10 +81,12 @@ class GaussMap(Methods):
         cells: Sequence[int] | None = None,
         on: str | None = None,
     ) -> None:
-        self._surface, self._cells, self._on = named(surface), cells, on
-        self._geometries = None
-        if not isinstance(self._surface, Whole):
-            self._geometries = geometries_of(self._surface, cells, on, indexed=True)
+        self._surface = named(surface)
+        self._pieces: tuple[OnSpline, ...] = ()
+        if isinstance(self._surface, Whole):
+            check_part(cells, on)
+        else:
+            self._pieces = geometries_of(self._surface, cells, on, indexed=True)
 
     @property
     def surface(self) -> Surface | Spline | Whole:
@@ -87,8 +100,7 @@ class GaussMap(Methods):
         It is an argument for `silhouette`, `SupportFunction.of_spline` and
         `gauss_map.GaussianImages`.
         """
-        known = self._geometries or ()
-        return known[0].spline if len(known) == 1 else None
+        return self._pieces[0].spline if len(self._pieces) == 1 else None
 
     def __repr__(self) -> str:
         return f"GaussMap({getattr(self.surface, 'name', self.surface)})"
@@ -145,7 +157,9 @@ class GaussMap(Methods):
         True
 
         """
-        return self._found(normals, fields, dtype, threads, progress, out)[0]
+        thread_count(threads)
+        directions = as_normals(normals, threads=threads)
+        return self._points(directions, fields, dtype, threads, progress, out)
 
     def count(self, normals: ArrayLike, *, threads: int | None = None) -> NDArray[np.int64]:
         """Return the number of points with each of the normals.
@@ -215,21 +229,65 @@ class GaussMap(Methods):
         self,
         normals: ArrayLike,
         fields: Sequence[str] | None,
+        threads: int | None = None,
+    ) -> tuple[Samples, NDArray[np.float64]]:
+        """Return the points with given normals, and the normals as unit vectors."""
+        thread_count(threads)
+        directions = as_normals(normals, threads=threads)
+        return self._points(directions, fields, threads=threads), directions
+
+    @in_memory
+    def _points(
+        self,
+        normals: NDArray[np.float64],
+        fields: Sequence[str] | None,
         dtype: DTypeLike = np.float64,
         threads: int | None = None,
         progress: bool = False,
         out: Samples | None = None,
-    ) -> tuple[Samples, NDArray[np.float64]]:
-        """Return the points with given normals, and the normals as unit vectors."""
-        return unwarned(
-            self.surface,
-            checked_request(normals, None, None, None, None, threads),
-            cells=self._cells,
-            on=self._on,
-            fields=fields,
-            dtype=dtype,
-            threads=threads,
-            progress=progress,
-            out=out,
-            geometries=self._geometries,
-        )
+        reach: Cap | None = None,
+    ) -> Samples:
+        """Return the points with unit normals (S, 3), those that are in a `reach`."""
+        if not isinstance(out, Samples | None):
+            raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
+        number, surface = checked_dtype(dtype), self._surface
+        if out is not None and (len(self._pieces) != 1 or self._pieces[0].on == "surface"):
+            raise InputError(
+                "out=... holds samples of one spline; those of a surface or part need new memory: "
+                'leave it out, or make the map with on="spline".'
+            )
+        if isinstance(surface, Whole):
+            wanted = checked_fields(fields, True, True, part=True)
+            return surface._samples_at(normals, wanted, number, threads, progress)
+        on_surface = self._pieces[0].on == "surface"
+        proved = len(self._pieces) == 1 and self._pieces[0].index is not None
+        wanted = checked_fields(fields, on_surface, proved)
+        memory = {} if out is None else out.arrays()
+        pieces = [x.used(number, threads, memory).within(reach) for x in self._pieces]
+        if len(pieces) == 1:
+            return pieces[0].samples_at(normals, wanted, number, progress)
+        assert isinstance(surface, Surface)
+        known = in_reach(surface, reach) if on_surface else None
+        return samples_of_pieces(surface.name, known, pieces, normals, wanted, number, progress)
+
+
+def check_part(cells: Sequence[int] | None, on: str | None) -> None:
+    """Raise InputError for arguments of splines, which parts do not have."""
+    if cells is not None:
+        raise InputError("cells=... are for splines; the faces of a part need none.")
+    if checked_place(on) == "spline":
+        raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
+
+
+def kept_map(
+    surface: Surface | Spline, cells: Sequence[int] | None = None, on: str | None = None
+) -> GaussMap:
+    """Return the map of a surface, cached for the last few surfaces."""
+    if not isinstance(surface, Surface | Spline):
+        return GaussMap(surface, cells=cells, on=on)  # raises
+    return _kept(surface, None if cells is None else pair_of_cells(cells), on)
+
+
+@lru_cache(KEPT)
+def _kept(surface: Surface | Spline, cells: tuple[int, int] | None, on: str | None) -> GaussMap:
+    return GaussMap(surface, cells=cells, on=on)

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .base.checks import yes_or_no
-from .base.errors import InputError, in_memory, shown
+from .base.errors import InputError, in_memory
 from .base.georeference import warn_of_rounding
 from .base.memory import check_memory
 from .base.progress import busy
-from .density.at_normals import samples_at
 from .density.chosen_normals import choose
 from .density.filling import fields_of, fill, target_of
 from .density.grid import lines_of, without_lines
-from .density.on_pieces import geometries_of, kept_geometries, report_of
 from .density.surface_piece import SurfacePiece, space_of
+from .map import check_part, kept_map
 from .onto_surface.on_spline import OnSpline
-from .onto_surface.on_surface import checked_place, place_of_samples
+from .onto_surface.on_surface import place_of_samples
+from .onto_surface.pieces import geometries_of, report_of
 from .onto_surface.reach import in_reach
 from .samples.fields import FLAG_NAMES, GRID_NAMES, bytes_of, checked_dtype, checked_fields
 from .samples.report import warn_of
@@ -32,7 +33,7 @@ from .spline.spline import Spline
 from .surface.surface import Surface
 from .surface.surfaces import named
 
-__all__ = ["sample", "sample_and_normals", "unwarned"]
+__all__ = ["sample", "sample_and_normals"]
 
 
 def sample(
@@ -232,17 +233,11 @@ def sample_and_normals(
     edges: bool = False,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return the result of `sample`, and the unit normals that were searched."""
-    samples, normals = unwarned(
-        surface,
-        request,
-        cells=cells,
-        threads=threads,
-        progress=progress,
-        fields=fields,
-        dtype=dtype,
-        on=on,
-        edges=edges,
-    )
+    given = Arguments(
+        request, cells, on, fields, checked_dtype(dtype), threads, progress,
+        yes_or_no(edges, "edges"),
+    )  # fmt: skip
+    samples, normals = _sampled(named(surface), given)
     filled = request.density != "gauss"
     warn_of(samples.report, request.count, 4, coverage=request.coverage, filled=filled)
     rounded = "points" in samples.fields and samples.points.dtype == np.float32
@@ -251,109 +246,102 @@ def sample_and_normals(
     return samples, normals
 
 
-@in_memory
-def unwarned(
-    surface: Surface | Spline | Whole | str,
-    request: Request,
-    *,
-    cells: Sequence[int] | None,
-    threads: int | None,
-    progress: bool,
-    fields: Sequence[str] | None,
-    dtype: DTypeLike,
-    on: str | None,
-    edges: bool = False,
-    out: Samples | None = None,
-    geometries: Sequence[OnSpline] | None = None,
-) -> tuple[Samples, NDArray[np.float64]]:
-    """Return the same, without warnings of missing samples.
+class Arguments(NamedTuple):
+    """The checked arguments of `sample`, but for `cells`, `on` and `fields`."""
 
-    `geometries` are those of the surface if they are already known, and `out` provides memory for
-    samples of a spline at normals, see `GaussMap.points`.
-    """
-    edges = yes_or_no(edges, "edges")
-    if not isinstance(out, Samples | None):
-        raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
-    number = checked_dtype(dtype)
-    if isinstance(surface, NetSpline) and request.density != "gauss":
+    request: Request
+    cells: Sequence[int] | None
+    on: str | None
+    fields: Sequence[str] | None
+    dtype: np.dtype[np.floating]
+    threads: int | None
+    progress: bool
+    edges: bool
+
+
+@in_memory
+def _sampled(
+    surface: Surface | Spline | Whole, given: Arguments
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return samples and the normals that were searched: here it is decided by which way."""
+    density, normals = given.request.density, given.request.normals
+    if isinstance(surface, Whole):
+        return _of_part(surface, given)
+    if given.edges:
+        raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
+    if density == "gauss" and normals is not None:
+        return _at_normals(surface, normals, given), normals
+    if isinstance(surface, NetSpline) and density != "gauss":
         raise InputError(
             f"{surface.name!r} is a spline of nets, which has no parameters in which gaps could be "
             'filled: use density="gauss", with normals=... or count=....'
         )
-    if isinstance(surface, Whole):
-        _refuse_memory(out)
-        at_normals = request.density == "gauss" and request.count is None and not edges
-        wanted = checked_fields(fields, True, at_normals, part=True, edges=edges)
-        if cells is not None:
-            raise InputError("cells=... are for splines; the faces of a part need none.")
-        if checked_place(on) == "spline":
-            raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
-        return surface._sampled(request, wanted, number, threads, progress, edges)
-    if edges:
-        raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
-    asked, surface = surface, named(surface)
-    place = place_of_samples(surface, on)
-    may_be_proved = place == "surface" and request.density == "gauss" and request.count is None
-    has = {"surface": place == "surface", "grid": request.density == "aligned"}
-    wanted = checked_fields(fields, **has, proved=may_be_proved)
-    if place == "surface":
-        _refuse_memory(out)
-    memory = {} if out is None else out.arrays()
+    pieces, fields = _pieces(surface, given)
+    if density == "gauss" and len(pieces) == 1:
+        chosen = choose(pieces[0], given.request.normals_or_count, given.progress)
+        return chosen.samples(pieces[0], fields, given.dtype, given.progress)
+    return _filled(surface, pieces, fields, given)
+
+
+def _of_part(part: Whole, given: Arguments) -> tuple[Samples, NDArray[np.float64]]:
+    """Return samples of a CAD part."""
+    check_part(given.cells, given.on)
+    request = given.request
+    at_normals = request.density == "gauss" and request.count is None and not given.edges
+    fields = checked_fields(given.fields, True, at_normals, part=True, edges=given.edges)
+    return part._sampled(request, fields, given.dtype, given.threads, given.progress, given.edges)
+
+
+def _at_normals(
+    surface: Surface | Spline, normals: NDArray[np.float64], given: Arguments
+) -> Samples:
+    """Return all points with prescribed normals."""
+    checked_fields(
+        given.fields, proved=True, surface=place_of_samples(surface, given.on) == "surface"
+    )
+    known, reach = kept_map(surface, given.cells, given.on), given.request.reach
+    return known._points(
+        normals, given.fields, given.dtype, given.threads, given.progress, reach=reach
+    )
+
+
+def _pieces(surface: Surface | Spline, given: Arguments) -> tuple[list[OnSpline], tuple[str, ...]]:
+    """Return the pieces of a surface to sample by a density, and the fields."""
+    request, on_surface = given.request, place_of_samples(surface, given.on) == "surface"
+    fields = checked_fields(given.fields, on_surface, grid=request.density == "aligned")
     if request.count is not None:
-        check_memory(request.cost, request.count, bytes_of(wanted, number))
-    if geometries is None:
-        make = geometries_of if request.normals is None else kept_geometries
-        geometries = make(asked, cells, on)
-    if len(geometries) > 1:
-        _refuse_memory(out)
-    geometries = [x.used(number, threads, memory).within(request.reach) for x in geometries]
-    if may_be_proved and (len(geometries) > 1 or geometries[0].index is None):
-        wanted = checked_fields(fields, **has)
-    if request.density != "gauss" or len(geometries) > 1:
-        known = geometries[0].surface if len(geometries) == 1 else surface
-        known = known if isinstance(known, Surface) and place == "surface" else None
-        known = known if len(geometries) == 1 else in_reach(known, request.reach)
-        samples, normals = _filled(
-            surface.name, geometries, known, request, wanted, number, progress
-        )
+        check_memory(request.cost, request.count, bytes_of(fields, given.dtype))
+    if request.normals is None:
+        pieces = geometries_of(surface, given.cells, given.on)
     else:
-        chosen = choose(geometries[0], request.normals_or_count, progress)
-        samples, normals = samples_at(geometries[0], chosen, wanted, number, progress)
-    return (without_lines(samples) if fields is None else samples), normals
-
-
-def _refuse_memory(out: Samples | None) -> None:
-    """Raise InputError if `out` is given and would not be used."""
-    if out is not None:
-        raise InputError(
-            "out=... holds samples of one spline; those of a surface or part need new memory: "
-            'leave it out, or make the map with on="spline".'
-        )
+        pieces = kept_map(surface, given.cells, given.on)._pieces
+    return [x.used(given.dtype, given.threads).within(request.reach) for x in pieces], fields
 
 
 def _filled(
-    name: str,
+    surface: Surface | Spline,
     geometries: Sequence[OnSpline],
-    surface: Surface | None,
-    request: Request,
     fields: tuple[str, ...],
-    dtype: np.dtype[np.floating],
-    progress: bool,
+    given: Arguments,
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return samples for any density of all pieces of a surface, and the normals searched."""
-    space = space_of(geometries, geometries[0].threads, target_of(request))
-    cover = fill(space, request, progress)
-    flags = FLAG_NAMES if geometries[0].on == "surface" else ()
-    wanted = [x for x in dict.fromkeys([*fields, *flags]) if x not in GRID_NAMES]
-    arrays = fields_of(cover, wanted, dtype)
+    request, on_surface = given.request, geometries[0].on == "surface"
+    space = space_of(geometries, given.threads, target_of(request))
+    cover = fill(space, request, given.progress)
+    wanted = dict.fromkeys([*fields, *(FLAG_NAMES if on_surface else ())])
+    arrays = fields_of(cover, [x for x in wanted if x not in GRID_NAMES], given.dtype)
     arrays |= lines_of(cover.grid, cover.count, fields)
-    pieces = [x for x in space.pieces if isinstance(x, SurfacePiece)]
-    report = report_of(name, pieces, cover.at_normals, arrays)
+    at = cover.at_normals
+    pieces = [x.geometry for x in space.pieces if isinstance(x, SurfacePiece)]
+    report = report_of(surface.name, pieces, len(at.normals), at.density, at.developable, arrays)
     is_on_grid = cover.grid is not None and bool((cover.grid.rows >= 0).any())
     density = "aligned" if is_on_grid else None
     report = replace(report, coverage=cover.coverage, angle=cover.angle, density=density)
-    spline = geometries[0].spline if len(geometries) == 1 else None
+    whole, spline = geometries[0].surface, geometries[0].spline
+    if len(geometries) > 1:
+        spline, whole = None, None
+        if on_surface and isinstance(surface, Surface):
+            whole = in_reach(surface, request.reach)
     held = {name: arrays[name] for name in fields}
-    return Samples(
-        **held, report=report, spline=spline, surface=surface, offset_of=None
-    ), cover.at_normals.normals
+    samples = Samples(**held, report=report, spline=spline, surface=whole, offset_of=None)
+    return (without_lines(samples) if given.fields is None else samples), at.normals

@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike, DTypeLike
 from .base.checks import whole_number, yes_or_no
 from .base.errors import InputError
 from .base.threads import shown
-from .density.at_normals import samples_at
 from .density.chosen_normals import choose
-from .density.on_pieces import geometries_of, kept_geometries, pieces_to_sample
+from .map import kept_map
 from .onto_surface.on_spline import FieldsOfSamples, OnSpline
 from .onto_surface.on_surface import place_of_samples
+from .onto_surface.pieces import geometries_of, pieces_to_sample
 from .samples.fields import checked_dtype, checked_fields
 from .samples.report import SamplingReport, count_infinite, warn_of
 from .samples.request import Request, checked_request
@@ -103,8 +103,11 @@ def sample_stream(
         )
     if request.normals is not None:  # the caller may change them before the last chunk
         request = replace(request, normals=request.normals.copy())
-    make = geometries_of if request.normals is None else kept_geometries
-    geometry = make(surface, cells, on)[0].used(number, threads)
+    if request.normals is None:
+        pieces = geometries_of(surface, cells, on)
+    else:
+        pieces = kept_map(surface, cells, on)._pieces
+    geometry = pieces[0].used(number, threads)
     if geometry.index is None:
         wanted = checked_fields(fields, is_on_surface)
     shows = yes_or_no(progress, "progress")
@@ -157,8 +160,9 @@ class _Stream:
         starts = range(0, total, NORMALS_AT_A_TIME)
         for first in shown(iter(starts), len(starts), self.progress and len(starts) > 1):
             normals = chosen.part(first, first + NORMALS_AT_A_TIME, self.geometry.threads)
-            block = replace(chosen, source=normals)
-            found = samples_at(self.geometry, block, self.fields, self.dtype, self.progress)[0]
+            found = self.geometry.samples_at(
+                normals, self.fields, self.dtype, self.progress, chosen.density
+            )
             for start in range(0, max(len(found), 1), self.size):
                 if start or len(found) or (first == starts[-1] and not came):
                     part = found[start : start + self.size]

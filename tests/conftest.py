@@ -35,7 +35,7 @@ OF_KERNELS = (
     "runtime/spline/test_spline.py",
 )
 SOME = (
-    "runtime/density/test_on_pieces.py",
+    "runtime/onto_surface/test_pieces.py",
     "runtime/domain/test_trim.py",
     "runtime/spline/test_developable.py",
     "tools/gauss_map/test_silhouette.py",
@@ -125,8 +125,13 @@ def parts() -> ModuleType:
 @pytest.fixture
 def unproved(monkeypatch: pytest.MonkeyPatch) -> None:
     """All surfaces are those without bounds of derivatives: samples are moved from the spline."""
+    import gaussmap as gm
     from gaussmap.runtime import sample, stream
-    from gaussmap.runtime.density.on_pieces import geometries_of
+    from gaussmap.runtime.onto_surface import on_surface
 
-    monkeypatch.setattr(sample, "kept_geometries", geometries_of)
-    monkeypatch.setattr(stream, "kept_geometries", geometries_of)
+    def made(surface: gm.Surface, cells: tuple[int, int] | None, on: str | None) -> gm.GaussMap:
+        return gm.GaussMap(surface, cells=cells, on=on)
+
+    monkeypatch.setattr(on_surface, "index_of", lambda surface: None)
+    monkeypatch.setattr(sample, "kept_map", made)
+    monkeypatch.setattr(stream, "kept_map", made)

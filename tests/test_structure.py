@@ -28,11 +28,12 @@ EXCEPTIONS = {
     "conftest.py": {
         "gaussmap.tools.commands.cli.main",  # the command line in this process
         "gaussmap.tools.cad.examples",  # parts, which else come from files only
-        "gaussmap.runtime.density.on_pieces.geometries_of",  # what is not proved
+        "gaussmap.runtime.onto_surface.on_surface",
+        "gaussmap.runtime.onto_surface.on_surface.index_of",  # what is not proved
         "gaussmap.runtime.sample",
-        "gaussmap.runtime.sample.kept_geometries",
+        "gaussmap.runtime.sample.kept_map",
         "gaussmap.runtime.stream",
-        "gaussmap.runtime.stream.kept_geometries",
+        "gaussmap.runtime.stream.kept_map",
     },
     "test_any_argument.py": {"gaussmap.tools.cad.examples.box"},
     # Faces of parts alone have borders that are sampled.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from operator import attrgetter
@@ -16,16 +16,13 @@ from numpy.typing import DTypeLike, NDArray
 from ..base.aliases import Array, Indices
 from ..base.errors import GaussmapError, GaussmapWarning
 from ..onto_surface.on_spline import OnSpline
-from ..onto_surface.proved import proved_samples
-from ..proof.index import ProvedIndex
 from ..samples.fields import ARRAY_NAMES_ON_SURFACE, dtype_of, row_shape
 from ..samples.samples import Samples
-from ..search.search import developable_patches, find
 from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
 from .fibonacci_lattice import Lattice
 from .space import Space
 
-__all__ = ["Given", "at_count", "at_lattices", "at_normals", "samples_at"]
+__all__ = ["Given", "at_count", "at_lattices", "at_normals"]
 
 
 # A lattice that gives too many samples is replaced by one with this part of the normals that would
@@ -116,7 +113,8 @@ def at_normals(space: Space, normals: Array, curved: Iterable[int], progress: bo
             found += [Found(k, x, normals) for x in proved]
 
     def search(geometry: OnSpline) -> tuple[Samples, Array]:
-        return _with_all_fields(geometry, choose(geometry, normals, progress), progress)
+        fields = ARRAY_NAMES_ON_SURFACE
+        return geometry.samples_at(normals, fields, np.float64, progress), normals
 
     found += _searched(space, (k for k in curved if k in estimated), search)
     found.sort(key=attrgetter("piece"))
@@ -148,7 +146,7 @@ def at_count(space: Space, counts: Indices, progress: bool) -> Given:
         def search(geometry: OnSpline, count: int = int(counts[piece])) -> tuple[Samples, Array]:
             chosen = choose(geometry, count, progress)
             densities.append(chosen.density)
-            return _with_all_fields(geometry, chosen, progress)
+            return _at_chosen(geometry, chosen, progress)
 
         parts += _searched(space, [piece], search)
     return _given(space, max(densities), tuple(parts))
@@ -184,48 +182,11 @@ def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Sam
         return None
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * image), 1000))
     chosen = Chosen(lattice, min(density, densest))
-    samples, normals = _with_all_fields(geometry, chosen, progress)
+    samples, normals = _at_chosen(geometry, chosen, progress)
     # Nobody has asked for these normals: others take the place of those without a point.
     return (samples if samples.on_surface is None else samples[samples.on_surface]), normals
 
 
-def samples_at(
-    geometry: OnSpline, chosen: Chosen, fields: Sequence[str], dtype: DTypeLike, progress: bool
-) -> tuple[Samples, Array]:
-    """Return the samples at chosen normals, with the fields that are requested, and these."""
-    threads = geometry.threads
-    if geometry.index is not None and not isinstance(chosen.source, Lattice):
-        return _proved(geometry, geometry.index, chosen, fields, dtype)
-    normals, hits = chosen.found or (chosen.part(0, len(chosen), threads), None)
-    if hits is None:
-        hits = find(geometry.spline, normals, threads, progress)
-    found = geometry.at_hits(normals, hits, fields, dtype)
-    report = geometry.report(
-        len(normals), chosen.density, hits.developable, found.fields, unrefined=found.unrefined
-    )
-    return geometry.samples(found.fields, report), normals
-
-
-def _proved(
-    geometry: OnSpline,
-    index: ProvedIndex,
-    chosen: Chosen,
-    fields: Sequence[str],
-    dtype: DTypeLike,
-) -> tuple[Samples, Array]:
-    """Return all points of a surface at prescribed normals, and these."""
-    normals, threads = chosen.part(0, len(chosen), geometry.threads), geometry.threads
-    assert geometry.surface is not None
-    found, proof = proved_samples(
-        geometry.surface, geometry.spline, index, normals, fields, dtype, threads
-    )
-    developable = developable_patches(geometry.spline, threads)
-    report = geometry.report(
-        len(normals), chosen.density, developable, found.fields, unrefined=found.unrefined,
-        **proof._asdict(),
-    )  # fmt: skip
-    return geometry.samples(found.fields, report), normals
-
-
-def _with_all_fields(geometry: OnSpline, chosen: Chosen, progress: bool) -> tuple[Samples, Array]:
-    return samples_at(geometry, chosen, ARRAY_NAMES_ON_SURFACE, np.float64, progress)
+def _at_chosen(geometry: OnSpline, chosen: Chosen, progress: bool) -> tuple[Samples, Array]:
+    """Return the samples at the normals of a lattice, with all fields, and these."""
+    return chosen.samples(geometry, ARRAY_NAMES_ON_SURFACE, np.float64, progress)

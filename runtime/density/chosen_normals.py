@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from ..base.limits import MOST
 from ..onto_surface.on_spline import OnSpline
+from ..samples.samples import Samples
 from ..search.fill import fill
 from ..search.search import Hits, find
 from ..spline.inside import count_of, samples_inside
@@ -51,6 +53,21 @@ class Chosen:
         if isinstance(self.source, Lattice):
             return self.source.normals(self.density, first, last, threads)
         return self.source[first:last]
+
+    def samples(
+        self, geometry: OnSpline, fields: Sequence[str], dtype: DTypeLike, progress: bool
+    ) -> tuple[Samples, NDArray[np.float64]]:
+        """Return the samples at the normals, which are searched unless they are found, and these.
+
+        Those of a lattice are searched on the spline.
+        """
+        if not isinstance(self.source, Lattice):
+            return geometry.samples_at(self.source, fields, dtype, progress), self.source
+        threads = geometry.threads
+        normals, hits = self.found or (self.part(0, len(self), threads), None)
+        if hits is None:
+            hits = find(geometry.spline, normals, threads, progress)
+        return geometry.samples_at_hits(normals, hits, fields, dtype, self.density), normals
 
 
 def choose(geometry: OnSpline, request: NDArray[np.float64] | int, progress: bool) -> Chosen:

@@ -16,6 +16,7 @@ from ..base.shares import apportioned
 from ..base.threads import counted
 from ..base.tolerances import FLAT_SURFACE, LENGTH_ERROR
 from ..directions.sets import frequency_within
+from ..onto_surface.pieces import LEAST_IMAGE
 from ..samples.fields import dtype_of
 from ..samples.request import BY_CURVATURE, Request
 from .angles import choose_apart, cover_normals
@@ -55,9 +56,6 @@ SAVED = 0.25
 # A piece has samples at the normals of a lattice if these are at least this part of all samples:
 # its spline takes as long as many samples.
 LATTICE = 0.1
-# Pieces whose Gaussian images have less than this solid angle have no samples at prescribed
-# normals.
-LEAST_IMAGE = 1e-9
 # If some of several pieces have no lattice: the part of a count that is placed where normals are
 # farthest from those of all samples.
 FOR_NORMALS = 0.05

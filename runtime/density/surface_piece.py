@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,8 +11,8 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array
-from ..base.errors import SurfaceError
 from ..onto_surface.on_spline import OnSpline
+from ..onto_surface.pieces import with_area
 from .kernels.sizing import TargetDensity
 from .piece import Piece, boxes_between
 from .space import Space
@@ -23,8 +22,6 @@ __all__ = ["SurfacePiece", "space_of"]
 
 # About this number of boxes along u and along v; their sides are lines between cells.
 BOXES = 32
-# A piece smaller than this part of the largest is degenerate, and gets no samples.
-NO_SIZE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -59,10 +56,7 @@ class SurfacePiece(Piece):
     @cached_property
     def size(self) -> float:
         """The root of the area inside the trim, in L; 0 if it is rounding error."""
-        spline = self.geometry.spline
-        extents = np.ptp(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * spline.scale, axis=0)
-        diagonal, area = float(np.linalg.norm(extents)), float(spline.measure[0].sum())
-        return diagonal * math.sqrt(area) / spline.scale if area * diagonal > spline.noise else 0.0
+        return self.geometry.size
 
     @property
     def boxes(self) -> Array:
@@ -106,27 +100,5 @@ def space_of(
 
     Raises SurfaceError if none has.
     """
-    firsts = np.cumsum([0, *(x.spline.patches for x in geometries)]).tolist()
-    pieces = [SurfacePiece.of(x, first) for x, first in zip(geometries, firsts[:-1], strict=True)]
-    label, sizes = pieces[0].label, np.array([_size_of(x, len(pieces) > 1) for x in pieces])
-    real = sizes > NO_SIZE * sizes.max()
-    if not real.any():
-        raise SurfaceError(
-            f"{label} has no area beyond rounding: all its points lie on one curve or are one "
-            'point; only density="gauss" takes it.'
-            if len(pieces) == 1
-            else f"{label} and the other pieces have no area beyond rounding, or their trim leaves "
-            "nothing of them."
-        )
-    kept = tuple(piece for piece, is_real in zip(pieces, real, strict=True) if is_real)
-    return Space(label, kept, target, threads)
-
-
-def _size_of(piece: SurfacePiece, is_one_of_many: bool) -> float:
-    """Return the size of a piece; 0 if the trim leaves nothing of one of many."""
-    try:
-        return piece.size
-    except SurfaceError:
-        if is_one_of_many:
-            return 0.0
-        raise
+    pieces = tuple(SurfacePiece.of(x, first) for first, x in with_area(geometries))
+    return Space(f"surface {geometries[0].spline.name!r}", pieces, target, threads)

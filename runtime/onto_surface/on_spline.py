@@ -7,8 +7,10 @@ functions and solid angles take the curvature of the surface from the Gauss poin
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -27,7 +29,7 @@ from ..samples.report import SamplingReport, sampling_report
 from ..samples.samples import Samples
 from ..search.fill import fill
 from ..search.kernels.tile import fill_known
-from ..search.search import Hits
+from ..search.search import Hits, find
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside, with_uv
 from ..spline.kernels.forms import forms_of_jets, jets_on_spline, patches_at
@@ -123,7 +125,45 @@ class OnSpline:
         """How far the points of what is sampled are from those of the spline, at most."""
         return 0.0
 
+    @cached_property
+    def size(self) -> float:
+        """The root of the area inside the trim, in L; 0 if it is rounding error."""
+        spline = self.spline
+        extents = np.ptp(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * spline.scale, axis=0)
+        diagonal, area = float(np.linalg.norm(extents)), float(spline.measure[0].sum())
+        return diagonal * math.sqrt(area) / spline.scale if area * diagonal > spline.noise else 0.0
+
     # --- samples at normals -----------------------------------------------------------------------
+
+    def samples_at(
+        self,
+        normals: Array,
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        progress: bool = False,
+        density: float | None = None,
+    ) -> Samples:
+        """Return all points that have one of the unit normals (S, 3).
+
+        They are among `density` normals per steradian, by default S on the sphere.
+        """
+        hits = find(self.spline, normals, self.threads, progress)
+        return self.samples_at_hits(normals, hits, fields, dtype, density)
+
+    def samples_at_hits(
+        self,
+        normals: Array,
+        hits: Hits,
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        density: float | None = None,
+    ) -> Samples:
+        """Return the samples at hits, with their report; see `samples_at`."""
+        found = self.at_hits(normals, hits, fields, dtype)
+        report = self.report(
+            len(normals), density, hits.developable, found.fields, unrefined=found.unrefined
+        )
+        return self.samples(found.fields, report)
 
     def at_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
@@ -149,13 +189,14 @@ class OnSpline:
     def report(
         self,
         normals: int,
-        density: float,
+        density: float | None,
         developable: int | None,
         arrays: Fields,
         **known: Any,  # noqa: ANN401
     ) -> SamplingReport:
         """Return the report of samples with some fields; see `sampling_report`."""
         count, cells = count_of(arrays) if arrays else 0, self.cell_measure
+        density = normals / (4 * math.pi) if density is None else density
         return sampling_report(
             self.spline, normals, count, density, developable, arrays, cells, on=self.on, **known
         )

@@ -15,7 +15,8 @@ from ..base.kept import kept
 from ..fitting.fit import spline_of
 from ..samples.fields import FLAG_NAMES
 from ..samples.report import PLACES
-from ..search.search import Hits
+from ..samples.samples import Samples
+from ..search.search import Hits, developable_patches
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside
 from ..spline.spline import Spline
@@ -26,7 +27,7 @@ from .moved_samples import as_fields, moved_samples, part_of
 from .newton import evaluate_on_surface
 from .on_spline import Array, Fields, FieldsOfSamples, OnSpline
 from .pole_charts import PoleChart, pole_charts
-from .proved import index_of
+from .proved import index_of, proved_samples
 from .repeats import kept_once
 
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
@@ -141,6 +142,28 @@ class OnSurface(OnSpline):
         return found
 
     # --- samples at normals -----------------------------------------------------------------------
+
+    def samples_at(
+        self,
+        normals: Array,
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        progress: bool = False,
+        density: float | None = None,
+    ) -> Samples:
+        """Return all points that have one of the unit normals (S, 3): proved with an `index`."""
+        if self.index is None:
+            return super().samples_at(normals, fields, dtype, progress, density)
+        assert self.surface is not None
+        found, proof = proved_samples(
+            self.surface, self.spline, self.index, normals, fields, dtype, self.threads
+        )
+        developable = developable_patches(self.spline, self.threads)
+        report = self.report(
+            len(normals), density, developable, found.fields, unrefined=found.unrefined,
+            **proof._asdict(),
+        )  # fmt: skip
+        return self.samples(found.fields, report)
 
     def at_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike

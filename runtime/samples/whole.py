@@ -10,7 +10,6 @@ from numpy.typing import DTypeLike, NDArray
 
 if TYPE_CHECKING:
     from ..directions.regions import Cap
-    from .request import Request
 
 __all__ = ["FaceColumn", "NormalDeviation", "Whole"]
 
@@ -59,11 +58,15 @@ class Whole:
         """The unit L of all lengths, as "mm" or "in"; empty if it is not known."""
         raise NotImplementedError
 
-    def _sampled(
-        self, request: Request, fields: Sequence[str], dtype: DTypeLike, threads: int | None,
-        progress: bool, edges: bool,
-    ) -> tuple[Any, NDArray[np.float64]]:  # fmt: skip
+    def _sampled(self, *given: object) -> tuple[Any, NDArray[np.float64]]:
         """Return the result of `sample`, and the unit normals that were searched."""
+        raise NotImplementedError
+
+    def _samples_at(
+        self, normals: NDArray[np.float64], fields: Sequence[str], dtype: DTypeLike,
+        threads: int | None, progress: bool,
+    ) -> Any:  # noqa: ANN401  # fmt: skip
+        """Return all points that have one of the unit normals (S, 3)."""
         raise NotImplementedError
 
     def _space(self, threads: int | None, *, reach: Cap | None = None) -> Any:  # noqa: ANN401

@@ -7,6 +7,7 @@ import math
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
@@ -166,7 +167,13 @@ def named(value: T | str) -> T | Surface:
     """
     if isinstance(value, str) and value not in CATALOGUE and (advice := file_advice(value)):
         raise UnknownNameError(f"there is no surface {shown(value)}; {advice}.")
-    return surface(value) if isinstance(value, str) else value
+    return _default(value) if isinstance(value, str) else value
+
+
+@cache
+def _default(name: str) -> Surface:
+    """Return the surface of the catalogue with the default parameters, each time the same."""
+    return surface(name)
 
 
 def _maker(name: str) -> Callable[..., Surface]:

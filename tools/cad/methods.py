@@ -29,4 +29,5 @@ class Methods:
     _volume_of = Later(MEASURES, "volume_of")
 
     _sampled = Later(SAMPLING, "sample_part")
+    _samples_at = Later(SAMPLING, "samples_at")
     _space = Later(RESULTS, "space_of")

@@ -9,4 +9,5 @@ class Methods:
     from .measures import volume_of as _volume_of
     from .results import space_of as _space
     from .sampling import sample_part as _sampled
+    from .sampling import samples_at as _samples_at
     from .selection import select as select

@@ -25,7 +25,7 @@ from .part import Part
 from .results import PartSpace, space_of
 from .smooth_edges import each_once
 
-__all__ = ["sample_part"]
+__all__ = ["sample_part", "samples_at"]
 
 Array = NDArray[np.float64]
 
@@ -60,6 +60,19 @@ def sample_part(
         report = replace(report, samples=total, edge_samples=total - cover.count)
     _warn(part, report, len(space.failed), request.angle)
     return Samples(**arrays, report=report, surface=part), cover.at_normals.normals
+
+
+def samples_at(
+    part: Part,
+    normals: Array,
+    fields: Sequence[str],
+    dtype: DTypeLike,
+    threads: int | None,
+    progress: bool,
+) -> Samples:
+    """Return all points of a part that have one of the unit normals (S, 3)."""
+    request = Request(normals, None, None, None, "gauss")
+    return sample_part(part, request, fields, dtype, threads, progress)[0]
 
 
 def _check(request: Request) -> None:

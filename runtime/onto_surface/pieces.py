@@ -1,0 +1,198 @@
+"""Surfaces of several smooth pieces: their samples at normals, and their common report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.aliases import Array
+from ..base.checks import pair_of_cells
+from ..base.errors import InputError, SurfaceError
+from ..samples.fields import (
+    ARRAY_NAMES,
+    ARRAY_NAMES_ON_SURFACE,
+    FLAG_NAMES,
+    dtype_of,
+    row_shape,
+)
+from ..samples.report import SamplingReport, count_unrefined
+from ..samples.samples import Samples
+from ..spline.spline import Spline
+from ..surface.surface import Surface
+from .on_spline import OnSpline
+from .on_surface import geometry_of, place_of_samples
+
+__all__ = [
+    "LEAST_IMAGE",
+    "cells_of_piece",
+    "geometries_of",
+    "pieces_to_sample",
+    "report_of",
+    "samples_of_pieces",
+    "with_area",
+]
+
+
+# Each piece is fitted and searched by itself, which takes 20 ms.
+MOST_PIECES = 2000
+FEWEST_CELLS = 4
+# A piece smaller than this part of the largest is degenerate, and gets no samples.
+NO_SIZE = 1e-6
+# Pieces whose Gaussian images have less than this solid angle have no samples at prescribed
+# normals.
+LEAST_IMAGE = 1e-9
+SUMS = ("patches", "apexes")
+LARGEST = ("fit_distance", "fit_angle")
+
+
+def pieces_to_sample(surface: object) -> tuple[Surface, ...]:
+    """Return the pieces of a surface that has more than one, and () for any other.
+
+    Raises InputError if there are too many.
+    """
+    pieces = surface.pieces() if isinstance(surface, Surface) else ()
+    if len(pieces) > MOST_PIECES and isinstance(surface, Surface):
+        raise InputError(
+            f"surface {surface.name!r} has {len(pieces):,} smooth pieces between creases, "
+            f"and at most {MOST_PIECES:,} are sampled as one; gm.fit(surface) gives one "
+            "spline, which rounds the creases."
+        )
+    return pieces if len(pieces) > 1 else ()
+
+
+def geometries_of(
+    surface: Surface | Spline,
+    cells: Sequence[int] | None,
+    on: str | None,
+    indexed: bool = False,
+) -> tuple[OnSpline, ...]:
+    """Return a geometry for each piece of a surface; see `geometry_of`."""
+    place_of_samples(surface, on)
+    if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
+        return tuple(geometry_of(x, cells_of_piece(surface, x, cells), on, indexed) for x in pieces)
+    return (geometry_of(surface, cells, on, indexed),)
+
+
+def cells_of_piece(
+    surface: Surface, piece: Surface, cells: Sequence[int] | None
+) -> tuple[int, int] | None:
+    """Return the cells of a piece, in proportion to its part of the domain of the whole surface."""
+    if cells is None:
+        return None
+    m, n = (
+        max(math.ceil(count * (part[1] - part[0]) / (whole[1] - whole[0])), FEWEST_CELLS)
+        for count, part, whole in zip(
+            pair_of_cells(cells), piece.domain, surface.domain, strict=True
+        )
+    )
+    return m, n
+
+
+def with_area(geometries: Sequence[OnSpline]) -> list[tuple[int, OnSpline]]:
+    """Return the geometries that have an area, with the number of the first patch of each.
+
+    Raises SurfaceError if none has.
+    """
+    firsts = np.cumsum([0, *(x.spline.patches for x in geometries[:-1])]).tolist()
+    sizes = np.array([_size_of(x, len(geometries) > 1) for x in geometries])
+    real = sizes > NO_SIZE * sizes.max()
+    if not real.any():
+        label = f"surface {geometries[0].spline.name!r}"
+        raise SurfaceError(
+            f"{label} has no area beyond rounding: all its points lie on one curve or are one "
+            'point; only density="gauss" takes it.'
+            if len(geometries) == 1
+            else f"{label} and the other pieces have no area beyond rounding, or their trim leaves "
+            "nothing of them."
+        )
+    return [(first, x) for first, x, kept in zip(firsts, geometries, real, strict=True) if kept]
+
+
+def _size_of(geometry: OnSpline, is_one_of_many: bool) -> float:
+    """Return the size of a piece; 0 if the trim leaves nothing of one of many."""
+    try:
+        return geometry.size
+    except SurfaceError:
+        if is_one_of_many:
+            return 0.0
+        raise
+
+
+def samples_of_pieces(
+    name: str,
+    surface: Surface | None,
+    geometries: Sequence[OnSpline],
+    normals: Array,
+    fields: Sequence[str],
+    dtype: np.dtype[np.floating],
+    progress: bool,
+) -> Samples:
+    """Return all points of a surface of several pieces that have one of the unit normals (S, 3).
+
+    `name` is that of the report, and `surface` that of the samples, None for those on splines.
+    Pieces whose Gaussian image has no area beyond rounding have none.
+    """
+    kept, parts, developable = with_area(geometries), list[dict[str, Any]](), list[int]()
+    on_surface = geometries[0].on == "surface"
+    names = ARRAY_NAMES_ON_SURFACE if on_surface else ARRAY_NAMES
+    for first, geometry in kept:
+        if float(np.abs(geometry.measure[1]).sum()) <= LEAST_IMAGE:
+            continue
+        found = geometry.samples_at(normals, names, np.float64, progress)
+        developable.append(found.report.developable_patches or 0)
+        arrays = found.arrays()
+        arrays["patch_index"] = arrays["patch_index"] + first
+        parts.append(arrays)
+    arrays: dict[str, Any] = {
+        x: np.concatenate([
+            np.empty((0, *row_shape(x)), dtype_of(x, dtype)),
+            *(part[x].astype(dtype_of(x, dtype), copy=False) for part in parts),
+        ])
+        for x in names if x in fields or x in FLAG_NAMES
+    }  # fmt: skip
+    report = report_of(
+        name, [x for _, x in kept], len(normals), None,
+        sum(developable) if parts else None, arrays,
+    )  # fmt: skip
+    return Samples(**{x: arrays[x] for x in fields}, report=report, surface=surface)
+
+
+def report_of(
+    name: str,
+    pieces: Sequence[OnSpline],
+    normals: int,
+    density: float | None,
+    developable: int | None,
+    arrays: Mapping[str, NDArray[Any]],
+) -> SamplingReport:
+    """Return the report of all pieces: sums, the largest errors, and means over the area."""
+    reports = [x.report(normals, density, developable, dict(arrays)) for x in pieces]
+    sizes = np.array([x.size for x in pieces])
+    areas = (sizes / sizes.max()) ** 2
+
+    def values(field: str) -> list[Any]:
+        return [getattr(x, field) for x in reports]
+
+    def mean(field: str, power: float) -> float | None:
+        if None in values(field):
+            return None
+        found = np.array(values(field), dtype=np.float64)
+        largest = float(found.max()) or 1.0
+        powers = areas / areas.sum() * (found / largest) ** power
+        return largest * float(powers.sum()) ** (1.0 / power)
+
+    return replace(
+        reports[0],
+        surface=name,
+        on=pieces[0].on,
+        unrefined=count_unrefined(arrays),
+        developable_share=mean("developable_share", 1.0),
+        fit_rms=mean("fit_rms", 2.0),
+        **{x: sum(values(x)) for x in SUMS},
+        **{x: None if None in values(x) else max(values(x)) for x in LARGEST},
+    )
