@@ -9,10 +9,8 @@ from .runtime.directions import fibonacci as fibonacci
 from .runtime.directions import icosphere as icosphere
 from .runtime.fitting.fit import fit as fit
 from .runtime.map import GaussMap as GaussMap
-from .runtime.sample import sample as sample
 from .runtime.samples.samples import Samples as Samples
 from .runtime.spline.spline import Spline as Spline
-from .runtime.stream import sample_stream as sample_stream
 from .runtime.surface import surfaces as surfaces
 from .runtime.surface.surface import Surface as Surface
 from .tools import curves as curves
@@ -28,6 +26,8 @@ from .tools.files.formats import read_samples as read_samples
 from .tools.gauss_map.silhouette import silhouette as silhouette
 from .tools.meshes.mesh import Mesh as Mesh
 from .tools.pictures.plot import plot as plot
+from .tools.sampling.sample import sample as sample
+from .tools.sampling.stream import sample_stream as sample_stream
 from .tools.support.convolution import convolve as convolve
 from .tools.support.function import SupportFunction as SupportFunction
 from .tools.terrain.terrain import terrain as terrain

@@ -1,4 +1,4 @@
-"""The thin runtime: surface → spline → search → place → density → samples."""
+"""The thin runtime: from a surface and normals to points (`map.GaussMap`)."""
 
 import lazy_loader
 

@@ -188,8 +188,8 @@ class GaussMap(Methods):
         array([2, 2])
 
         """
-        found, asked = self._found(normals, ("normal_index",), threads=threads)
-        return np.bincount(found.normal_index, minlength=len(asked))
+        found = self.points(normals, fields=("normal_index",), threads=threads)
+        return np.bincount(found.normal_index, minlength=found.report.normals or 0)
 
     def degree(self, normals: ArrayLike, *, threads: int | None = None) -> NDArray[np.int64]:
         """Return Σ sign K over the points with each of the normals.
@@ -221,20 +221,9 @@ class GaussMap(Methods):
 
         """
         fields = ("normal_index", "gaussian_curvature")
-        found, asked = self._found(normals, fields, threads=threads)
-        signs = np.copysign(1.0, found.gaussian_curvature)
-        return np.bincount(found.normal_index, signs, minlength=len(asked)).astype(np.int64)
-
-    def _found(
-        self,
-        normals: ArrayLike,
-        fields: Sequence[str] | None,
-        threads: int | None = None,
-    ) -> tuple[Samples, NDArray[np.float64]]:
-        """Return the points with given normals, and the normals as unit vectors."""
-        thread_count(threads)
-        directions = as_normals(normals, threads=threads)
-        return self._points(directions, fields, threads=threads), directions
+        found = self.points(normals, fields=fields, threads=threads)
+        signs, asked = np.copysign(1.0, found.gaussian_curvature), found.report.normals or 0
+        return np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
 
     @in_memory
     def _points(

@@ -20,7 +20,7 @@ HERE = Path(__file__).parent
 OF_KERNELS = (
     "generated",
     "tools/curves",
-    "runtime/density",
+    "tools/density",
     "tools/gauss_map",
     "runtime/tape",
     "tools/meshes",
@@ -126,8 +126,8 @@ def parts() -> ModuleType:
 def unproved(monkeypatch: pytest.MonkeyPatch) -> None:
     """All surfaces are those without bounds of derivatives: samples are moved from the spline."""
     import gaussmap as gm
-    from gaussmap.runtime import sample, stream
     from gaussmap.runtime.onto_surface import on_surface
+    from gaussmap.tools.sampling import sample, stream
 
     def made(surface: gm.Surface, cells: tuple[int, int] | None, on: str | None) -> gm.GaussMap:
         return gm.GaussMap(surface, cells=cells, on=on)

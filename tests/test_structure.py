@@ -30,14 +30,14 @@ EXCEPTIONS = {
         "gaussmap.tools.cad.examples",  # parts, which else come from files only
         "gaussmap.runtime.onto_surface.on_surface",
         "gaussmap.runtime.onto_surface.on_surface.index_of",  # what is not proved
-        "gaussmap.runtime.sample",
-        "gaussmap.runtime.sample.kept_map",
-        "gaussmap.runtime.stream",
-        "gaussmap.runtime.stream.kept_map",
+        "gaussmap.tools.sampling.sample",
+        "gaussmap.tools.sampling.sample.kept_map",
+        "gaussmap.tools.sampling.stream",
+        "gaussmap.tools.sampling.stream.kept_map",
     },
     "test_any_argument.py": {"gaussmap.tools.cad.examples.box"},
     # Faces of parts alone have borders that are sampled.
-    "tools/cad/test_sampling.py": {"gaussmap.runtime.density.space.PLACES_AT_A_TIME"},
+    "tools/cad/test_sampling.py": {"gaussmap.tools.density.space.PLACES_AT_A_TIME"},
 }
 # What tests of all rooms use.
 SHARED = {path.stem for path in TESTS.glob("*.py") if not path.stem.startswith("test_")}
@@ -151,7 +151,7 @@ def test_public_names_are_used(path: Path) -> None:
 @pytest.mark.parametrize(
     ("source", "room"),
     [
-        ("import gaussmap.runtime.search.bins", "gaussmap.runtime.stream"),
+        ("import gaussmap.runtime.search.bins", "gaussmap.tools.sampling.stream"),
         ("from gaussmap.runtime.base.errors import InputError", "gaussmap.runtime.search"),
         ("from gaussmap.runtime.base.errors import shown", None),
         ("from gaussmap.runtime import search", None),
@@ -181,8 +181,8 @@ def test_what_is_inside_of_a_room_is_found(source: str, room: str | None) -> Non
         ("from gaussmap.runtime.search.exact import decide", "gaussmap.runtime.search"),
         ("from gaussmap.runtime.search import exact; exact.SAME_PLACE", "gaussmap.runtime.search"),
         (
-            "from gaussmap.runtime import stream; x.setattr(stream, 'N', 1)",
-            "gaussmap.runtime.stream",
+            "from gaussmap.tools.sampling import stream; x.setattr(stream, 'N', 1)",
+            "gaussmap.tools.sampling.stream",
         ),
         ("from gaussmap.generated.patch import forms", "gaussmap.runtime.search"),
         ("from .made import samples", None),

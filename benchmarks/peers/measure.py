@@ -8,8 +8,8 @@ from functools import cache
 from statistics import median
 
 import gaussmap as gm
-from gaussmap.runtime.sample import sample_and_normals
-from gaussmap.runtime.samples.request import checked_request
+from gaussmap.tools.density.request import checked_request
+from gaussmap.tools.sampling.sample import sample_and_normals
 
 from .catalogue import MILLION
 from .forms import Array, ClosedForm

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from functools import cache
 
 import gaussmap as gm
-from gaussmap.runtime.sample import sample_and_normals
-from gaussmap.runtime.samples.request import checked_request
+from gaussmap.tools.density.request import checked_request
+from gaussmap.tools.sampling.sample import sample_and_normals
 
 from ..peers.cad import gmsh_by_curvature, opencascade_by_angle
 from ..peers.forms import Array, ClosedForm

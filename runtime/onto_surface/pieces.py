@@ -13,13 +13,7 @@ from numpy.typing import NDArray
 from ..base.aliases import Array
 from ..base.checks import pair_of_cells
 from ..base.errors import InputError, SurfaceError
-from ..samples.fields import (
-    ARRAY_NAMES,
-    ARRAY_NAMES_ON_SURFACE,
-    FLAG_NAMES,
-    dtype_of,
-    row_shape,
-)
+from ..samples.fields import FLAG_NAMES, dtype_of, new_field
 from ..samples.report import SamplingReport, count_unrefined
 from ..samples.samples import Samples
 from ..spline.spline import Spline
@@ -137,28 +131,18 @@ def samples_of_pieces(
     `name` is that of the report, and `surface` that of the samples, None for those on splines.
     Pieces whose Gaussian image has no area beyond rounding have none.
     """
-    kept, parts, developable = with_area(geometries), list[dict[str, Any]](), list[int]()
-    on_surface = geometries[0].on == "surface"
-    names = ARRAY_NAMES_ON_SURFACE if on_surface else ARRAY_NAMES
+    on_surface, kept = geometries[0].on == "surface", with_area(geometries)
+    wanted = list(dict.fromkeys([*fields, *(FLAG_NAMES if on_surface else ())]))
+    parts, developable = [{x: new_field(x, 0, dtype_of(x, dtype)) for x in wanted}], None
     for first, geometry in kept:
-        if float(np.abs(geometry.measure[1]).sum()) <= LEAST_IMAGE:
-            continue
-        found = geometry.samples_at(normals, names, np.float64, progress)
-        developable.append(found.report.developable_patches or 0)
-        arrays = found.arrays()
-        arrays["patch_index"] = arrays["patch_index"] + first
-        parts.append(arrays)
-    arrays: dict[str, Any] = {
-        x: np.concatenate([
-            np.empty((0, *row_shape(x)), dtype_of(x, dtype)),
-            *(part[x].astype(dtype_of(x, dtype), copy=False) for part in parts),
-        ])
-        for x in names if x in fields or x in FLAG_NAMES
-    }  # fmt: skip
-    report = report_of(
-        name, [x for _, x in kept], len(normals), None,
-        sum(developable) if parts else None, arrays,
-    )  # fmt: skip
+        if float(np.abs(geometry.measure[1]).sum()) > LEAST_IMAGE:
+            found = geometry.samples_at(normals, wanted, dtype, progress)
+            developable = (developable or 0) + (found.report.developable_patches or 0)
+            parts.append(found.arrays())
+            if "patch_index" in wanted:
+                parts[-1]["patch_index"] = parts[-1]["patch_index"] + first
+    arrays: dict[str, Any] = {x: np.concatenate([part[x] for part in parts]) for x in wanted}
+    report = report_of(name, [x for _, x in kept], len(normals), None, developable, arrays)
     return Samples(**{x: arrays[x] for x in fields}, report=report, surface=surface)
 
 

@@ -10,7 +10,7 @@ from ..base.later import Later
 
 __all__ = ["Methods"]
 
-DENSITY, TOOLS = "gaussmap.runtime.density.methods", "gaussmap.tools.methods"
+DENSITY, TOOLS = "gaussmap.tools.density.methods", "gaussmap.tools.methods"
 OTHERS = "gaussmap.tools.files.of_samples"
 
 

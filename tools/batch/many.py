@@ -14,13 +14,13 @@ from ...runtime.base.checks import known_name, yes_or_no
 from ...runtime.base.errors import GaussmapError, GaussmapWarning, InputError, shown
 from ...runtime.base.threads import seen
 from ...runtime.onto_surface.on_surface import checked_place
-from ...runtime.sample import sample_and_normals
 from ...runtime.samples.fields import checked_dtype, checked_fields
-from ...runtime.samples.request import Request, checked_request
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
+from ..density.request import Request, checked_request
 from ..files.paths import PathLike
+from ..sampling.sample import sample_and_normals
 from .dataset import Dataset, open_dataset
 from .inputs import Source
 from .making import make

@@ -16,7 +16,7 @@ from numpy.typing import DTypeLike, NDArray
 from ...runtime.base.checks import known_name, listed, pair_of_cells
 from ...runtime.onto_surface.on_surface import checked_place
 from ...runtime.samples.fields import FLOAT_NAMES, PART_NAMES, checked_dtype, checked_fields
-from ...runtime.samples.request import Request
+from ..density.request import Request
 from ..files.formats import SUFFIXES
 from ..sources.named import Named
 from .folder import CODECS, FILES, NORMALS, Settings, file_name

@@ -65,7 +65,7 @@ def serve(pipe: Connection, memory: float, parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent process
     limit(RLIMIT_DATA=int(memory * GIB))
     os.dup2(2, 1)
-    from ...runtime.sample import sample  # noqa: F401 - which takes its time, and that is not a part's
+    from ..sampling.sample import sample  # noqa: F401 - which takes its time, and that is not a part's
 
     _say(pipe, {})
     while True:
@@ -140,10 +140,10 @@ def _source(task: Task) -> tuple[Any, dict[str, str]]:
 def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: ANN401
     """Return numbers for the manifest, and the samples; write the file in another format."""
     from ...runtime.onto_surface.on_surface import place_of_samples
-    from ...runtime.sample import sample
     from ...runtime.samples.fields import checked_fields
     from ..cad.part import Part
     from ..files.lengths import unit_of
+    from ..sampling.sample import sample
     from ..sources.surface_of import with_tolerance
 
     plan, settings = task.plan, task.plan.settings

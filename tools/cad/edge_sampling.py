@@ -11,9 +11,9 @@ from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.trees import tree_of
-from ...runtime.density.filling import spacing
-from ...runtime.density.space import Space
 from ...runtime.samples.fields import EDGE_NAMES, INTEGER_NAMES, dtype_of, row_shape
+from ..density.filling import spacing
+from ..density.space import Space
 from .edges import Edges, Sides, edges_of, exact_places, sides_at
 from .results import PartSpace
 

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from ...runtime.density.cells import grouped
 from ...runtime.spline.kernels.jets import evaluate_jets
+from ..density.cells import grouped
 from .faces import own_parameters
 from .part import Part
 from .results import PartSpace

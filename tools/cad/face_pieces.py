@@ -17,7 +17,6 @@ from ...runtime.base.errors import GaussmapError, GaussmapWarning
 from ...runtime.base.kept import kept
 from ...runtime.base.memory import check_memory
 from ...runtime.base.scales import scale_to_one
-from ...runtime.density.piece import Piece, boxes_between
 from ...runtime.directions.regions import Cap
 from ...runtime.domain.domain import Domain
 from ...runtime.onto_surface.on_spline import OnSpline
@@ -30,6 +29,7 @@ from ...runtime.samples.samples import Samples
 from ...runtime.spline.kernels.jets import evaluate_jets
 from ...runtime.surface.derivatives import normals_of_jets
 from ...runtime.surface.surface import Surface
+from ..density.piece import Piece, boxes_between
 from .face_indices import face_index
 from .face_places import FaceIndex, FacePlaces
 from .faces import own_parameters

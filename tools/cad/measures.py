@@ -8,7 +8,7 @@ import numpy as np
 
 from ...runtime.base.aliases import Array
 from ...runtime.base.errors import SurfaceError
-from ...runtime.density.cells import RADIUS, by_piece
+from ..density.cells import RADIUS, by_piece
 from .edges import edges_of, sides_at
 from .face_pieces import FacePiece
 from .part import Part

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from ...runtime.density.cells import grouped
+from ..density.cells import grouped
 from .edges import at_places
 from .faces import own_parameters
 from .mesh_spacing import Spacing, least_enough

@@ -15,8 +15,8 @@ import numpy as np
 
 from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.trees import tree_of
-from ...runtime.density.along_borders import BorderLines
-from ...runtime.density.cells import Cells, grouped, merged
+from ..density.along_borders import BorderLines
+from ..density.cells import Cells, grouped, merged
 from .edge_sampling import step_of
 from .mesh_edges import MeshEdges
 from .results import PartSpace

@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from ...runtime.density.kernels.sizing import TargetDensity
-from ...runtime.density.piece import Piece
-from ...runtime.density.space import Space
 from ...runtime.onto_surface.on_spline import OnSpline
 from ...runtime.surface.derivatives import normals_of_jets
+from ..density.kernels.sizing import TargetDensity
+from ..density.piece import Piece
+from ..density.space import Space
 from .edge_sampling import step_of
 from .face_pieces import FacePiece
 from .results import PartSpace

@@ -21,13 +21,13 @@ from ...runtime.base.errors import GaussmapWarning, InputError, SurfaceError
 from ...runtime.base.extras import check_extra
 from ...runtime.base.memory import check_memory
 from ...runtime.base.wording import plural
-from ...runtime.density.cells import Cells, by_piece
-from ...runtime.density.cover import Cover
-from ...runtime.density.filling import Filling, target_of
-from ...runtime.density.grid import Grid
-from ...runtime.density.space import Space
-from ...runtime.samples.request import Request, checked_request
 from ...runtime.samples.samples import Samples
+from ..density.cells import Cells, by_piece
+from ..density.cover import Cover
+from ..density.filling import Filling, target_of
+from ..density.grid import Grid
+from ..density.request import Request, checked_request
+from ..density.space import Space
 from ..meshes.creased import mean_normals
 from ..meshes.kernels.flips import flip_edges
 from ..meshes.links import edge_numbers, neighbours

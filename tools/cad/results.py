@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import MissingFieldError, SurfaceError
 from ...runtime.base.kept import kept
 from ...runtime.base.trees import tree_of
-from ...runtime.density.cells import AREA, by_piece
-from ...runtime.density.kernels.sizing import TargetDensity
-from ...runtime.density.space import Space
 from ...runtime.directions.regions import Cap
 from ...runtime.samples.samples import Samples
+from ..density.cells import AREA, by_piece
+from ..density.kernels.sizing import TargetDensity
+from ..density.space import Space
 from .face_pieces import FacePiece, pieces_of
 from .part import Part
 

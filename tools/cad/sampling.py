@@ -14,12 +14,12 @@ from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.base.memory import check_memory
-from ...runtime.density.cover import Cover
-from ...runtime.density.filling import fields_of, fill, target_of
 from ...runtime.samples.fields import EDGE_NAMES, FLAG_NAMES
 from ...runtime.samples.report import SamplingReport, count_unrefined
-from ...runtime.samples.request import Request
 from ...runtime.samples.samples import Samples
+from ..density.cover import Cover
+from ..density.filling import fields_of, fill, target_of
+from ..density.request import Request
 from .edge_sampling import with_edges
 from .part import Part
 from .results import PartSpace, space_of

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...runtime.base.aliases import Indices
 from ...runtime.base.kept import kept
-from ...runtime.density.at_normals import Given
+from ..density.at_normals import Given
 from .part import Part
 from .results import PartSpace
 

@@ -14,11 +14,11 @@ from ...runtime import directions
 from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import InputError
 from ...runtime.base.progress import busy
-from ...runtime.sample import sample_and_normals
-from ...runtime.samples.request import Request, checked_request
 from ...runtime.samples.samples import Samples
 from ..cad.part import Part
+from ..density.request import Request, checked_request
 from ..files.numpy_files import array_file, is_array_file, read_array
+from ..sampling.sample import sample_and_normals
 from ..sources.elevations import is_raster_file
 from ..sources.named import Named
 from ..sources.surface_of import surface_of, with_tolerance

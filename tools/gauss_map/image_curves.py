@@ -142,11 +142,11 @@ def _tracings(gauss_map: GaussMap) -> list[Traced]:
 
 
 def _geometries(gauss_map: GaussMap) -> Sequence[OnSpline]:
-    if gauss_map._geometries is None:
+    if not gauss_map._pieces:
         raise InputError(
             "folds, borders and margins are for surfaces, not for parts; take a face.surface."
         )
-    return gauss_map._geometries
+    return gauss_map._pieces
 
 
 def _folds(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:

@@ -15,7 +15,6 @@ from ...runtime.base.checks import whole_number
 from ...runtime.base.formula_calls import patch, python_function, vector
 from ...runtime.base.threads import thread_count
 from ...runtime.base.tolerances import NORMAL_ERROR
-from ...runtime.density.chosen_normals import NEAR_ENOUGH, NORMALS_PER_SAMPLE
 from ...runtime.directions.circle import circle
 from ...runtime.directions.unit import as_normals, perpendicular, unit_vector
 from ...runtime.onto_surface.on_spline import OnSpline
@@ -29,6 +28,7 @@ from ...runtime.spline.inside import count_of, samples_inside
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
+from ..density.chosen_normals import NEAR_ENOUGH, NORMALS_PER_SAMPLE
 from .contours import polylines_of
 
 __all__ = ["Silhouette", "great_circle", "silhouette"]

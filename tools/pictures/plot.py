@@ -16,14 +16,14 @@ from ...runtime.base.checks import finite_array, listed, real_values
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra
 from ...runtime.directions.unit import as_normals
-from ...runtime.sample import sample_and_normals
-from ...runtime.samples.request import checked_request
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from ..cad.part import Part
+from ..density.request import checked_request
 from ..files import paths
+from ..sampling.sample import sample_and_normals
 from .colours import CURVATURE, checked_values, colours_of, draw_scale
 from .marked import Marked, marked
 from .palette import PALE, STYLE

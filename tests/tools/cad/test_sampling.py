@@ -366,7 +366,7 @@ def test_places_along_borders_are_inside_with_limits_of_their_face():
 
 
 def test_five_percent_of_a_count_go_where_normals_are_missing(monkeypatch):
-    filling = pkgutil.resolve_name("gaussmap.runtime.density.filling")
+    filling = pkgutil.resolve_name("gaussmap.tools.density.filling")
     numbers = noted(monkeypatch, filling, "choose_apart", lambda given, _: given[4])
     samples = gm.sample(KINDS, 300)
     assert numbers == [15]
@@ -438,7 +438,7 @@ def test_dense_nets_have_one_first_cell_for_each_span(points, cells):
 def test_borders_are_measured_in_groups(monkeypatch):
     """What is found does not depend on the size of the groups."""
     whole = space_of(made.CYLINDER, 1).borders
-    monkeypatch.setattr("gaussmap.runtime.density.space.PLACES_AT_A_TIME", 1000)
+    monkeypatch.setattr("gaussmap.tools.density.space.PLACES_AT_A_TIME", 1000)
     some = space_of(made.CYLINDER, 1).borders
     assert len(whole.rows) > 2000
     for name in ("pieces", "starts", "places", "rows", "limits"):

@@ -1,0 +1,117 @@
+"""Cells make up their pieces, lie within their radii, and bound the normals in them."""
+
+from dataclasses import replace
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.density.cells import Cells
+from gaussmap.tools.density.methods import space_on
+
+NAMES = ("torus", "wavy_graph", "ellipsoid", "cone")
+
+
+def space_of(surface, on: str = "surface"):
+    return space_on(gm.fit(surface, (24, 24)), surface if on == "surface" else None, None)
+
+
+def places_in(cells: Cells, share: float) -> np.ndarray:
+    """Return parameters (4, M, 2) on the way from the places to corners."""
+    u0, v0, u1, v1 = cells.boxes.T
+    corners = np.array([(u0, v0), (u1, v0), (u0, v1), (u1, v1)]).transpose(0, 2, 1)
+    return cells.places + share * (corners - cells.places)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_cells_make_up_the_surface(name):
+    """By the rule of midpoints, whose error is a part h²/24 of fourth derivatives."""
+    space = space_of(gm.surfaces.surface(name))
+    for cells in (space.first, space.cut(0.1 * np.sqrt(space.area))):
+        assert cells.numbers[:, 6].sum() == pytest.approx(space.area, rel=4e-3)
+        boxes = cells.boxes[:, 2:] - cells.boxes[:, :2]
+        assert boxes.prod(axis=1).sum() == pytest.approx(space.sizes.prod(), rel=1e-12)
+    halves = space.halves(space.first)
+    np.testing.assert_array_equal(halves.pieces, np.repeat(space.first.pieces, 2))
+
+
+@pytest.mark.parametrize("on", ["surface", "spline"])
+@pytest.mark.parametrize(
+    "name", ["torus", *(pytest.param(name, marks=pytest.mark.compiled) for name in NAMES[1:])]
+)
+def test_no_point_of_a_cell_is_outside_of_its_radius(name, on):
+    surface = gm.surfaces.surface(name)
+    space = space_of(surface, on)
+    (piece,) = space.pieces
+    cells = space.cut(0.2 * np.sqrt(space.area))
+    for share in (1.0, 0.5):
+        for places in places_in(cells, share):
+            points = space.scaled_points(piece.jets(*places.T.copy())[:, 0])
+            lengths = np.linalg.norm(points - cells.rows[:, :3], axis=1)
+            assert (lengths <= cells.radii * (1 + 1e-9) + 1e-12).all()
+
+
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "ellipsoid"])
+def test_normals_of_a_cell_are_within_its_chord(name):
+    surface = gm.surfaces.surface(name)
+    space = space_of(surface)
+    (piece,) = space.pieces
+    cells = space.cut(0.05 * np.sqrt(space.area))
+    for places in places_in(cells, 0.99):
+        jets = piece.jets(*places.T.copy())
+        normals = np.cross(jets[:, 1], jets[:, 2])
+        normals /= np.linalg.norm(normals, axis=1)[:, None]
+        chords = np.linalg.norm(normals - cells.rows[:, 3:6], axis=1)
+        known = cells.chords < 2.0
+        assert known.mean() > 0.9
+        # Third derivatives are left out: of cells of width h, a part of h².
+        size = cells.radii[known] / np.sqrt(space.area)
+        assert (chords[known] <= cells.chords[known] + 10.0 * size**2).all()
+
+
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "ellipsoid", "enneper"])
+def test_derivatives_of_a_spline(name):
+    """They are those of the points, up to differences, where one patch is."""
+    spline = gm.fit(name, (7, 5))
+    (piece,), frame = space_on(spline, None, None).pieces, spline.frame
+    random = np.random.default_rng(1)
+    # In the southern patches, a quarter of a cell from all others.
+    cells = random.integers(0, [7, 5], (50, 2)) + np.array([0.5, 0.2])
+    step = 0.01
+    u, v = (frame[:2] + frame[2:] * cells).T.copy()
+    (_, _, du, dv), jets = frame, piece.jets(u, v)
+    points = {
+        (i, j): spline.evaluate(u + i * step * du, v + j * step * dv)
+        for i in (-1, 0, 1)
+        for j in (-1, 0, 1)
+    }
+    along_u, along_v = step * du, step * dv
+    expected = [
+        points[0, 0],
+        (points[1, 0] - points[-1, 0]) / 2 / along_u,
+        (points[0, 1] - points[0, -1]) / 2 / along_v,
+        (points[1, 0] - 2 * points[0, 0] + points[-1, 0]) / along_u**2,
+        (points[1, 1] - points[1, -1] - points[-1, 1] + points[-1, -1]) / 4 / along_u / along_v,
+        (points[0, 1] - 2 * points[0, 0] + points[0, -1]) / along_v**2,
+    ]
+    for row, values in enumerate(expected):
+        scale = np.abs(values).max() + np.abs(points[0, 0]).max()
+        np.testing.assert_allclose(jets[:, row], values, rtol=0, atol=1e-9 * scale)
+
+
+def test_cells_bound_what_the_curvature_of_a_ridge_counts():
+    """Its radius of curvature, 1e-6, is far smaller than a cell: it counts as the width of that."""
+    ridge = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, np.sqrt(u * u + 1e-12)], axis=-1), ((-1, 1), (0, 1))
+    )
+    space = space_on(gm.fit(ridge, (31, 7)), ridge, None)
+    target = space.target._replace(floor=0.0, curvature_weight=1.0)
+    cells = replace(space, target=target).first
+    largest, bound = cells.rows[:, 6].max(), 1.0 / cells.numbers[:, 7] ** 2
+    assert (cells.rows[:, 6] <= bound * (1 + 1e-12)).all()
+    assert largest == pytest.approx(bound[cells.rows[:, 6].argmax()])
+
+
+@pytest.mark.compiled
+def test_a_surface_within_a_predicate():
+    torus = gm.surfaces.torus().trimmed(within=lambda u, v: u < 3)
+    assert len(gm.sample(torus, 100, cells=(12, 8))) == 100

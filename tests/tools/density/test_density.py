@@ -1,0 +1,340 @@
+"""How many samples come, which ones, in which order, and how dense they are where."""
+
+import math
+from dataclasses import replace
+from typing import Any, cast
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.density import candidates, space
+from gaussmap.tools.density.methods import space_on
+
+from ...products import covering
+from ...shapes import klein_bottle
+
+DENSITIES = ["balanced", "uniform", 0.5, 1.0, 3.0]
+TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+# Dents of a plane, so that all kinds of points are there, and flat parts between them.
+DENTS = gm.Surface.from_callable(
+    lambda u, v: np.stack([u, v, 0.2 * np.exp(-8 * ((u + 0.5) ** 2 + v * v))], axis=-1),
+    ((-1.0, 1.0), (-1.0, 1.0)),
+)
+
+
+SQUARE = ((0.0, 1.0), (0.0, 1.0))
+
+
+def same(one: gm.Samples, other: gm.Samples) -> None:
+    assert one.fields == other.fields
+    for name in one.fields:
+        assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
+
+
+# --- how many -------------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("density", DENSITIES)
+@pytest.mark.parametrize("name", [*gm.surfaces.names(), "klein bottle"])
+@pytest.mark.quick_for("torus", "sphere", "plane", "monkey_saddle")
+def test_counts_are_exact(name, density):
+    surface = klein_bottle() if name == "klein bottle" else gm.surfaces.surface(name)
+    for cells in ((4, 3), (16, 16)):
+        spline = gm.fit(surface, cells)
+        for count in (1, 2, 3, 10, 800):
+            samples = gm.sample(spline, count=count, density=density)
+            assert len(samples) == samples.report.samples == count
+            for field in samples.fields:
+                assert np.isfinite(getattr(samples, field)).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("density", DENSITIES)
+def test_samples_lie_on_the_spline(density):
+    spline = gm.fit(DENTS, (9, 8))
+    samples = gm.sample(spline, count=200, density=density)
+    at_uv = spline.evaluate(*samples.uv.T)
+    np.testing.assert_allclose(samples.points, at_uv, rtol=0, atol=1e-14)
+    normals = spline.normals(*samples.uv.T)
+    np.testing.assert_allclose(samples.normals, normals, rtol=0, atol=1e-9)
+    lengths = np.linalg.norm(samples.normals, axis=1)
+    np.testing.assert_allclose(lengths, 1.0, rtol=0, atol=4 * np.finfo(float).eps)
+    support = (samples.points * samples.normals).sum(axis=1)
+    np.testing.assert_allclose(samples.support, support, rtol=0, atol=1e-14)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("density", ["gauss", "uniform"])
+def test_samples_on_a_spline_have_its_curvatures(density):
+    """By its 2-jets, where K has one sign and the other; H is positive where it is convex."""
+    spline = gm.fit(gm.surfaces.torus(major=70.0, minor=20.0), (9, 8))
+    samples = gm.sample(spline, count=300, density=density)
+    s, t = np.modf((samples.uv - spline.frame[:2]) / spline.frame[2:])[0].T
+    inside = np.min([s, t, 1.0 - s, 1.0 - t, abs(s - t), abs(s + t - 1.0)], axis=0) > 1e-6
+    assert inside.sum() > 100  # of a patch: there are two curvatures at an edge
+    samples = samples[inside]
+    (piece,) = space_on(spline, None, None).pieces
+    (_, x_u, x_v, *seconds) = np.moveaxis(piece.jets(*samples.uv.T.copy()), 1, 0)
+    e, f, g = (-np.einsum("kx,kx->k", x, samples.normals) for x in seconds)
+    E, F, G = (np.einsum("kx,kx->k", x, y) for x, y in ((x_u, x_u), (x_u, x_v), (x_v, x_v)))
+    K = (e * g - f * f) / (E * G - F * F)
+    H = (e * G - 2.0 * f * F + g * E) / (2.0 * (E * G - F * F))
+    assert (K > 0.0).any()
+    assert (K < 0.0).any()
+    largest = (H**2 - K).max() + (H**2).max()
+    np.testing.assert_allclose(samples.gaussian_curvature, K, rtol=0, atol=1e-9 * largest)
+    np.testing.assert_allclose(samples.mean_curvature, H, rtol=0, atol=1e-9 * largest**0.5)
+
+
+@pytest.mark.compiled
+def test_added_samples_have_the_curvatures_of_their_place():
+    """On a sphere, a cylinder and a plane: the spline is of first order in its cells."""
+    for name, K, H in (("sphere", 1.0, 1.0), ("cylinder", 0.0, 0.5), ("plane", 0.0, 0.0)):
+        samples = gm.sample(gm.surfaces.surface(name), count=500, density="uniform")
+        away = np.abs(samples.points[:, 2]) < 0.9  # from the poles of the sphere
+        np.testing.assert_allclose(samples.gaussian_curvature[away], K, rtol=0, atol=0.1)
+        np.testing.assert_allclose(np.abs(samples.mean_curvature[away]), H, rtol=0, atol=0.05)
+
+
+@pytest.mark.compiled
+def test_what_has_no_area_is_refused():
+    line = gm.Surface.from_callable(lambda u, v: np.stack([u, 0 * u, 0 * u], axis=-1), SQUARE)
+    amounts = [{"count": 10}, {"coverage": 0.1}, {"angle": 20.0}, {"normals": [[0, 0, 1]]}]
+    for asked in cast("list[dict[str, Any]]", amounts):
+        with pytest.raises(gm.errors.SurfaceError, match="has no area"):
+            gm.sample(line, cells=(3, 3), density="balanced", **asked)
+
+
+# --- which ones -----------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "ellipsoid"])
+@pytest.mark.quick_for("torus", "moebius_band")
+def test_all_samples_of_the_normals_are_kept(name):
+    spline = gm.fit(gm.surfaces.surface(name), (16, 16))
+    for normals in (gm.icosphere(8), gm.fibonacci(500)):
+        plain = gm.sample(spline, normals=normals)
+        samples = gm.sample(spline, normals=normals, density="balanced")
+        same(samples[: len(plain)], plain)
+        assert len(samples) > len(plain)
+        assert (samples.kind[: len(plain)] == "normal").all()
+        assert (samples.kind[len(plain) :] == "filling").all()
+        assert (samples.normal_index[len(plain) :] == -1).all()
+        assert samples.report.normals == len(normals)
+        assert (plain.kind == "normal").all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("asked", [{"count": 300}, {"angle": 15.0}, {"coverage": 0.3}])
+def test_samples_of_normals_come_first(asked):
+    samples = gm.sample(gm.fit(TORUS, (12, 12)), **asked)
+    given = int((samples.kind == "normal").sum())
+    assert 0 < given < len(samples)
+    assert (samples.kind[:given] == "normal").all()
+    pairs = samples.normal_index[:given] * 10**9 + samples.patch_index[:given]
+    assert (np.diff(pairs) > 0).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("density", ["uniform", 1.0])
+def test_covers_alone_answer_no_normals(density):
+    samples = gm.sample(gm.fit(TORUS, (8, 8)), count=100, density=density)
+    assert (samples.kind == "filling").all()
+    assert samples.report.normals == 0
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    "asked",
+    [{"count": 700}]
+    + [
+        pytest.param(asked, marks=pytest.mark.slow)
+        for asked in (
+            {"angle": 9.0},
+            {"count": 900, "coverage": 0.12},
+            {"count": 700, "density": "uniform"},
+            {"count": 500, "density": 0.7},
+            {"coverage": 0.1},
+            {"normals": gm.icosphere(5), "density": "balanced"},
+        )
+    ],
+)
+def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
+    monkeypatch.setattr(space, "CELLS_AT_A_TIME", 100)
+    monkeypatch.setattr(candidates, "PART", 1 << 9)
+    for surface in (TORUS, DENTS):
+        expected = gm.sample(surface, threads=1, **asked)
+        for threads in (2, 3):
+            found = gm.sample(surface, threads=threads, **asked)
+            same(found, expected)
+            assert found.report == expected.report
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", ["torus", "wavy_graph", "plane"])
+def test_parts_make_covers_hardly_worse(name, monkeypatch):
+    """Parts of 1,000 places meet in borders, where they do not always know of one another."""
+    spline = gm.fit(gm.surfaces.surface(name), (32, 32))
+    whole = gm.sample(spline, coverage=0.05, density="uniform")
+    monkeypatch.setattr(candidates, "PART", 1000)
+    parts = gm.sample(spline, coverage=0.05, density="uniform")
+    assert (parts.report.coverage or 1.0) <= 0.05
+    assert abs(len(parts) - len(whole)) <= 0.08 * len(whole)
+
+
+@pytest.mark.compiled
+def test_arrays_and_splines_are_left_alone():
+    spline = gm.fit(TORUS, (16, 16))
+    before = spline.coefficients.copy()
+    first = gm.sample(spline, count=500)
+    points = first.points.copy()
+    first.points[:] = 0.0
+    assert (spline.coefficients == before).all()
+    assert (gm.sample(spline, count=500).points == points).all()
+
+
+# --- what they hold -------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@covering(
+    fields=[("points",), ("normal_index", "uv"), ("normals", "support")],
+    dtype=[np.float32, np.float64],
+)
+def test_fields_and_types(fields, dtype):
+    spline = gm.fit(TORUS, (8, 8))
+    whole = gm.sample(spline, count=200)
+    part = gm.sample(spline, count=200, fields=fields, dtype=dtype)
+    assert set(part.fields) == set(fields)
+    for name in fields:
+        expected = getattr(whole, name)
+        expected = expected if name == "normal_index" else expected.astype(dtype)
+        assert getattr(part, name).tobytes() == expected.tobytes()
+    # Without the curvatures nobody knows which of them are infinite.
+    assert part.report == replace(whole.report, infinite_curvatures=None)
+
+
+@pytest.mark.compiled
+def test_several_surfaces():
+    surfaces = [gm.fit(TORUS, (8, 8)), gm.fit(gm.surfaces.plane(), (4, 4))]
+    found = list(gm.sample_many(surfaces, count=60, progress=False))
+    assert [len(x) for x in found] == [60, 60]
+    for k, (samples, surface) in enumerate(zip(found, surfaces, strict=True)):
+        alone = gm.sample(surface, count=60)
+        same(samples, alone)
+        assert samples.report == replace(alone.report, index=k)
+
+
+# --- how dense ------------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("alpha", [0.25, 0.5, 1.0, 1.5])
+@pytest.mark.quick_for("0.25", "1.5")
+def test_density_is_a_power_of_the_curvature(alpha):
+    """On a torus, K dA = cos v du dv and dA = r (R + r cos v) du dv: counts of two bands of v.
+
+    N samples of a cover, none of them nearer than its radius, differ from the integral by what the
+    borders of a band hold: a row of them at each of four borders, of one sample per radius each.
+    """
+    R, r, count = 1.0, 0.35, 20_000
+    samples = gm.sample(gm.fit(TORUS, (128, 128)), count=count, density=alpha)
+    v = np.angle(np.exp(1j * samples.uv[:, 1]))
+
+    def wanted(low: float, high: float) -> float:
+        x = np.linspace(low, high, 2001)
+        K = np.cos(x) / (r * (R + r * np.cos(x)))
+        return float(np.trapezoid(np.abs(K) ** alpha * (R + r * np.cos(x)), x))
+
+    bands = [(0.0, 0.4), (0.8, 1.2), (2.6, 3.0)]
+    counts = [int(((np.abs(v) > low) & (np.abs(v) < high)).sum()) for low, high in bands]
+    shares = [wanted(low, high) for low, high in bands]
+    whole = wanted(0.0, math.pi)
+    for found, share in zip(counts, shares, strict=True):
+        expected = count * share / whole
+        width = 0.4 * r  # of a band; a row is a spacing wide
+        spacing = math.sqrt(2 * math.pi * R * width * 2 / expected)
+        assert abs(found - expected) <= expected * 2 * spacing / width
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("count", [500, 5000, 20_000])
+def test_uniform_goes_by_area(count):
+    """Not by parameters: with x = u³, half of the cells have an eighth of the area.
+
+    Where no sample is nearer to another than r, and there is no room for one more, there are
+    between 0.385 (hexagons as wide as can be) and 1.155 (as dense as can be) of them for an r².
+    """
+    surface = gm.Surface.from_callable(
+        lambda u, v: np.stack([u**3, v, 0 * u], axis=-1), ((-1.0, 1.0), (0.0, 1.0))
+    )
+    samples = gm.sample(surface, count=count, density="uniform", cells=(40, 20))
+    inner = int((np.abs(samples.uv[:, 0]) < 0.5).sum())
+    assert 1 / 3 < 7 * inner / (count - inner) < 3
+
+
+@pytest.mark.compiled
+def test_balanced_is_dense_where_it_bends_and_not_blind_where_it_is_flat():
+    """A cylinder beside a plane: κ² against λ, which is 0.8 of the mean of κ²."""
+    radius, flat = 0.5, 4.0
+
+    def profile(u, v):
+        s = np.clip(u, 0.0, math.pi * radius)
+        x = radius * np.sin(s / radius) + np.minimum(u, 0.0)
+        z = radius * (1.0 - np.cos(s / radius))
+        return np.stack([x, v, z], axis=-1)
+
+    surface = gm.Surface.from_callable(profile, ((-flat, math.pi * radius), (0.0, 3.0)))
+    samples = gm.sample(surface, count=4000, cells=(256, 16))
+    length, k = math.pi * radius, 1.0 / radius**2
+    floor = 0.8 * k * length / (length + flat)
+    bent = samples.uv[:, 0] > 0.0
+    expected = k * length / (k * length + floor * flat)
+    rows = 2 * 3.0 * math.sqrt(4000 * k / (3.0 * (k * length + floor * flat)))
+    assert abs(bent.sum() - 4000 * expected) <= 2 * rows  # one between them, and the outer ones
+    assert (~bent).sum() > 300
+
+
+@pytest.mark.compiled
+def test_a_surface_without_curvature_is_covered_evenly_by_any_power():
+    spline = gm.fit(gm.surfaces.cylinder(), (8, 6))
+    uniform = gm.sample(spline, count=100, density="uniform")
+    same(gm.sample(spline, count=100, density=2.0), uniform)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("alpha", [0.5, 1.0, 4.0])
+def test_gaps_of_a_power_are_bounded_where_the_surface_is_flat(alpha):
+    """A dent in a strip that is 120,000 times as long as it is wide.
+
+    On average, n samples in an area A cover it within r = √(0.6 A/n). In the strip neighbours are
+    between 1 and 2 times 1,000 r apart: 7 to 14 samples.
+    """
+    length, count = 0.2 * math.sinh(14.0), 1000
+
+    def dented(u, v):
+        x = 0.1 * np.sinh(14.0 * u)
+        return np.stack([x, v + 0.0 * x, 0.3 * np.exp(-4.0 * (x * x + v * v))], axis=-1)
+
+    surface = gm.Surface.from_callable(dented, ((-1.0, 1.0), (-0.5, 0.5)))
+    samples = gm.sample(surface, count, density=alpha, cells=(160, 16))
+    most = length / (1000.0 * math.sqrt(0.6 * length / count))
+    assert most / 2.0 < (np.abs(samples.points[:, 0]) > 5.0).sum() < most
+
+
+@pytest.mark.compiled
+def test_nothing_warns_of_what_is_covered():
+    for name in ("plane", "cylinder", "cone"):
+        samples = gm.sample(gm.surfaces.surface(name), count=60, cells=(12, 12))
+        assert samples.report.developable_share == pytest.approx(1.0)
+
+
+@pytest.mark.compiled
+def test_a_count_is_divided_well():
+    """With fewer samples at normals, angles are wider; with more, gaps are."""
+    samples = gm.sample("catenoid", 1000, cells=(32, 32))
+    deviation = samples.normal_deviation()
+    assert deviation.space < 4.53
+    assert deviation.normal_space < 4.4

@@ -1,0 +1,107 @@
+"""The normals for a wanted count: a cap that holds the Gaussian image, evenly filled."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from gaussmap.tools.density.fibonacci_lattice import Lattice
+
+from ...products import covering
+
+ULP = 2.0**-52
+OPEN_NAMES = ["elliptic_paraboloid", "wavy_graph", "monkey_saddle", "hyperbolic_paraboloid"]
+FULL_NAMES = ["torus", "sphere", "moebius_band", "catenoid", "ellipsoid_patch"]
+
+
+def spline_of(name, turned):
+    surface = gm.surfaces.surface(name)
+    moved = gm.Surface(
+        name, lambda u, v: surface.evaluate(u, v) @ turned.T, surface.domain, surface.boundary
+    )
+    return gm.fit(moved, (16, 16))
+
+
+def rotation(rng):
+    q, r = np.linalg.qr(rng.standard_normal((3, 3)))
+    q *= np.sign(np.diag(r))
+    return q * np.sign(np.linalg.det(q))
+
+
+def all_normals(spline, count=60):
+    """Return normals over the domain, its border included."""
+    u, v = (np.linspace(low, high, count) for low, high in spline.domain)
+    normals = spline.normals(u[:, None], v).reshape(-1, 3)
+    return normals[np.isfinite(normals).all(axis=1)]
+
+
+@pytest.mark.parametrize("name", OPEN_NAMES)
+@pytest.mark.parametrize(
+    "seed", [None, *(pytest.param(seed, marks=pytest.mark.compiled) for seed in (0, 1, 2))]
+)
+def test_cap_holds_all_normals_and_little_more(name, seed):
+    turned = np.eye(3) if seed is None else rotation(np.random.default_rng(seed))
+    spline = spline_of(name, turned)
+    lattice = Lattice.around(spline)
+    assert np.linalg.norm(lattice.axis) == pytest.approx(1.0, abs=2 * ULP)
+    least = float((all_normals(spline) @ lattice.axis).min())
+    assert 0.0 < lattice.cosine <= least
+    assert np.arccos(lattice.cosine) < 1.6 * np.arccos(least)
+
+
+@pytest.mark.parametrize("name", FULL_NAMES)
+def test_closed_surfaces_need_the_whole_sphere(name):
+    lattice = Lattice.around(spline_of(name, np.eye(3)))
+    assert lattice.cosine == -1.0
+    assert lattice.solid_angle == pytest.approx(4 * np.pi)
+    np.testing.assert_array_equal(lattice.normals(100 / (4 * np.pi)), gm.fibonacci(100))
+
+
+def test_a_surface_without_normals_gets_the_whole_sphere():
+    point = gm.Surface.from_callable(lambda u, v: np.zeros((*u.shape, 3)), ((0, 1), (0, 1)))
+    assert Lattice.around(gm.fit(point, (4, 4))).cosine == -1.0
+
+
+@covering(cosine=[0.999999, 0.99, 0.7, 0.3, -1.0], count=[1, 2, 10, 1000])
+def test_normals_fill_the_cap_evenly(cosine, count):
+    axis = np.array([2.0, -3.0, 6.0]) / 7.0 if cosine > 0 else np.array([0.0, 0.0, 1.0])
+    lattice = Lattice(axis, cosine)
+    density = lattice.density_of(count)
+    normals = lattice.normals(density * (1 + 1e-12))
+    assert normals.shape == (count, 3)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0, rtol=0, atol=2 * ULP)
+    cosines = normals @ axis
+    assert (cosines >= cosine - 2 * ULP).all()
+    # every ring of the same solid angle holds the same number
+    depth = (1.0 - cosines) / (1.0 - cosine)
+    np.testing.assert_allclose(np.sort(depth), (np.arange(count) + 0.5) / count, rtol=0, atol=1e-6)
+    if count == 1000:
+        across = normals - cosines[:, None] * axis
+        assert np.linalg.norm(across.mean(axis=0)) < 3e-3 * np.linalg.norm(across, axis=1).max()
+        products = normals @ normals.T
+        np.fill_diagonal(products, -1.0)
+        gaps = np.linalg.norm(normals - normals[products.argmax(axis=1)], axis=1)
+        ideal = np.sqrt(2 / (np.sqrt(3) * density))
+        assert gaps.min() > 0.65 * ideal
+        assert gaps.max() < 1.3 * ideal
+
+
+@pytest.mark.parametrize("axis", [*np.eye(3), *-np.eye(3), np.ones(3) / np.sqrt(3)])
+def test_any_axis(axis):
+    lattice = Lattice(axis, 0.9)
+    normals = lattice.normals(lattice.density_of(500))
+    assert len(normals) == pytest.approx(500, abs=1)
+    assert (normals @ axis >= 0.9 - 2 * ULP).all()
+    mean = normals.mean(axis=0)
+    np.testing.assert_allclose(mean / np.linalg.norm(mean), axis, rtol=0, atol=1e-3)
+
+
+def test_there_is_always_one_normal():
+    for lattice in (Lattice.everywhere(), Lattice(np.array([0.0, 0.0, 1.0]), 0.9)):
+        assert len(lattice.normals(1e-9)) == 1
+        assert lattice.normals(1e-9)[0] @ lattice.axis >= lattice.cosine
+
+
+def test_density_does_not_depend_on_the_cap():
+    """A smaller cap round the same axis holds the same normals: it only ends earlier."""
+    axis = np.array([0.6, 0.0, 0.8])
+    wide, narrow = Lattice(axis, 0.5).normals(1000.0), Lattice(axis, 0.95).normals(1000.0)
+    np.testing.assert_array_equal(wide[: len(narrow)], narrow)

@@ -1,0 +1,385 @@
+"""From a surface to its samples: how many, where, in which order, and what is said about it."""
+
+import math
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+from gaussmap.symbolic.surfaces import CATALOGUE
+
+from ...refusals import refused
+from ...shapes import moved
+
+DEVELOPABLE = ("plane", "cylinder", "cone")
+CURVED = [name for name in gm.surfaces.names() if name not in DEVELOPABLE]
+SQUARE = ((0.0, 1.0), (0.0, 1.0))
+TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
+# The corners of the triangles south, east, north, west of a cell, from its centre.
+CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
+
+
+def broken(u, v):
+    raise RuntimeError("no such surface")
+
+
+BROKEN = gm.Surface.from_callable(broken, SQUARE, name="broken")
+
+
+# --- how many -------------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", CURVED)
+def test_count(name):
+    spline = gm.fit(gm.surfaces.surface(name))
+    for count in (300, 2000, 10_000):
+        samples = gm.sample(spline, count=count, density="gauss")
+        assert abs(len(samples) - count) <= 0.05 * count + 1
+        assert samples.report.samples == len(samples)
+        assert samples.report.developable_share == 0.0
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", CURVED)
+@pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+@pytest.mark.quick_for("torus", "sphere", "moebius_band", "wavy_graph")
+def test_small_counts(name):
+    """A symmetric surface has not every number, but nothing far from it."""
+    spline = gm.fit(gm.surfaces.surface(name))
+    for count in (1, 2, 10):
+        assert abs(len(gm.sample(spline, count=count, density="gauss")) - count) <= 8
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("factor", [1e-12, 1e12, 1e-200, 1e200])
+@pytest.mark.parametrize("name", ["wavy_graph", "torus"])
+def test_count_in_any_unit_of_length(name, factor):
+    surface = moved(gm.surfaces.surface(name), factor, 10.0 * factor)
+    samples = gm.sample(surface, count=2000, density="gauss", cells=(24, 24))
+    assert abs(len(samples) - 2000) <= 100
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("cells", [(4, 4), (5, 4), (6, 5)])
+def test_count_where_the_first_guess_is_wrong(cells):
+    """On so few cells the quadrature of the solid angle is 6 to 12 % off."""
+    spline = gm.fit(gm.surfaces.moebius_band(), cells)
+    samples = gm.sample(spline, count=2000, density="gauss")
+    assert abs(len(samples) - 2000) <= 40
+
+
+@pytest.mark.compiled
+def test_count_on_a_thin_gaussian_image():
+    """A graph so flat that its normals fill 10⁻⁶ of the sphere: the lattice is cut to them."""
+    dish = gm.surfaces.elliptic_paraboloid(a=30.0, b=40.0)
+    for surface in (dish, moved(dish, 1e6)):
+        samples = gm.sample(surface, count=2000, density="gauss", cells=(24, 24))
+        assert abs(len(samples) - 2000) <= 100
+
+
+@pytest.mark.compiled
+def test_count_is_not_met_and_said_so():
+    """A ribbon round a great circle: the Gaussian image is too thin for a hundredfold lattice."""
+    ribbon = gm.Surface.from_callable(
+        lambda u, v: np.stack(
+            [(1 - 1e-6 * v * v) * np.cos(u), (1 - 1e-6 * v * v) * np.sin(u), v], axis=-1
+        ),
+        ((0, 2 * np.pi), (-1, 1)),
+        (True, False),
+    )
+    with pytest.warns(gm.GaussmapWarning, match=r"\d+ samples instead of the requested 500"):
+        samples = gm.sample(ribbon, count=500, density="gauss", cells=(64, 16))
+    assert len(samples) < 450
+
+
+@pytest.mark.parametrize("count", [0, -5, 1.0, 10.5, True, np.nan, "10", [10], np.float64(10)])
+def test_counts_that_are_none(count):
+    calls = [
+        lambda: gm.sample(TORUS, count=count),
+        lambda: gm.sample(BROKEN, count=count),  # before the surface is looked at
+        lambda: next(gm.sample_many([TORUS], count=count)),
+    ]
+    for call in calls:
+        refused("count must be a whole number of at least 1, not", call)
+
+
+def test_normals_or_a_count_or_an_angle_or_a_coverage():
+    amounts = {"normals": [[0, 0, 1]], "count": 5, "angle": 3.0, "coverage": 0.1}
+    pairs = [("normals", "count"), ("normals", "angle"), ("count", "angle")]
+    for asked in ({}, *({x: amounts[x] for x in pair} for pair in pairs), amounts):
+        for call in (gm.sample, lambda x, **asked: next(gm.sample_many([x], **asked))):
+            said = refused("say how many samples by one of normals=", call, BROKEN, **asked)
+            assert ("none is given" in said) == (not asked)
+            assert all(name in said.split(";")[1] for name in asked)
+
+
+def test_cells_are_for_surfaces():
+    spline = gm.fit(TORUS, (4, 4))
+    refused("this spline already has its cells", gm.sample, spline, count=5, cells=(4, 4))
+    assert gm.sample(spline, count=50).report.patches == 64
+    assert gm.sample(TORUS, count=50, cells=(5, 4)).report.patches == 80
+
+
+# --- what is flat ---------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", DEVELOPABLE)
+def test_developable_surfaces_are_warned_of(name):
+    surface = gm.surfaces.surface(name)
+    why = rf"surface '{name}': 100 % of its area is flat or developable \(K = 0\), which no set"
+    with pytest.warns(gm.GaussmapWarning, match=why) as caught:
+        samples = gm.sample(surface, normals=gm.icosphere(8))
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+    assert samples.report.developable_share == pytest.approx(1.0)
+    with pytest.warns(gm.GaussmapWarning, match=why + ".* samples instead of the requested 500"):
+        gm.sample(surface, count=500, density="gauss")
+
+
+@pytest.mark.compiled
+def test_normals_outside_the_gaussian_image_are_warned_of():
+    with pytest.warns(gm.GaussmapWarning, match="none of the normals lies in its Gaussian image"):
+        samples = gm.sample(
+            gm.surfaces.wavy_graph(), normals=[[0, 0, -1], [1, 0, 0]], cells=(16, 16)
+        )
+    assert len(samples) == 0
+    assert samples.points.shape == (0, 3)
+    assert samples.report.normals == samples.report.proved == 2
+
+
+@pytest.mark.compiled
+def test_a_surface_whose_bending_is_lost_in_rounding_is_warned_of():
+    wire = gm.surfaces.torus(minor=1e-14)
+    with pytest.warns(gm.GaussmapWarning, match="developable up to the rounding"):
+        samples = gm.sample(wire, normals=gm.icosphere(8), cells=(16, 16), on="spline")
+    assert len(samples) == 0
+    assert (
+        len(gm.sample(gm.surfaces.torus(minor=1e-6), normals=gm.icosphere(8), cells=(16, 16)))
+        > 1200
+    )
+
+
+@pytest.mark.compiled
+def test_half_a_surface_is_flat():
+    bent = gm.Surface.from_callable(
+        lambda u, v: np.stack([u, v, 0.1 * np.maximum(u, 0) ** 3 * (1 + v * v)], axis=-1),
+        ((-1, 1), (-1, 1)),
+    )
+    with pytest.warns(gm.GaussmapWarning, match="5[0-4] % of its area is flat") as caught:
+        samples = gm.sample(bent, count=1000, density="gauss")
+    assert "were asked" not in str(caught[0].message)
+    assert (samples.uv[:, 0] > -0.05).all()
+
+
+# --- what comes -----------------------------------------------------------------------------------
+
+SURFACES = ["torus", "moebius_band", "wavy_graph", "dupin_cyclide", "catenoid", "enneper"]
+
+
+@pytest.mark.parametrize("name", SURFACES)
+@pytest.mark.parametrize("cells", [(10, 7), (7, 12)])
+def test_samples_answer_their_normals(name, cells):
+    spline = gm.fit(gm.surfaces.surface(name), cells)
+    normals = gm.fibonacci(700) @ np.array([[2, -1, 2], [2, 2, -1], [-1, 2, 2.0]])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    samples = gm.sample(spline, normals=normals)
+    assert len(samples) > 100
+    report = samples.report
+    assert (report.surface, report.normals, report.samples) == (name, 700, len(samples))
+    assert report.patches == spline.patches
+    np.testing.assert_array_equal(samples.normals, normals[samples.normal_index])
+    pairs = samples.normal_index * spline.patches + samples.patch_index
+    assert (np.diff(pairs) > 0).all()  # by normal, then by patch, and no pair twice
+    np.testing.assert_allclose(
+        samples.support, (samples.normals * samples.points).sum(axis=1), rtol=0, atol=4e-15
+    )
+    size = np.abs(spline.coefficients).max()
+    at_uv = spline.evaluate(*samples.uv.T)
+    np.testing.assert_allclose(samples.points, at_uv, rtol=0, atol=1e-13 * size)
+    found = spline.normals(*samples.uv.T)
+    np.testing.assert_allclose(np.cross(found, samples.normals), 0.0, rtol=0, atol=1e-9)
+    assert ((found * samples.normals).sum(axis=1) > 0).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("name", SURFACES)
+@pytest.mark.parametrize("cells", [(10, 7), (7, 12)])
+def test_patch_index_is_that_of_uv(name, cells):
+    spline = gm.fit(gm.surfaces.surface(name), cells)
+    samples = gm.sample(spline, normals=gm.icosphere(10))
+    assert (samples.patch_index >= 0).all()
+    assert (samples.patch_index < spline.patches).all()
+    place = (samples.uv - spline.frame[:2]) / spline.frame[2:]
+    cell, turn = np.divmod(samples.patch_index, 4)
+    local = place - np.stack(np.divmod(cell, cells[1]), axis=1) - 0.5
+    matrices = np.stack([CORNERS[turn], CORNERS[turn + 1]], axis=-1)
+    weights = np.linalg.solve(matrices, local[..., None])[..., 0]
+    assert weights.min() > -1e-12
+    assert weights.sum(axis=1).max() < 1 + 1e-12
+    low, high = np.array(spline.domain).T
+    assert (samples.uv >= low - 1e-12).all()
+    assert (samples.uv <= high + 1e-12).all()
+
+
+@pytest.mark.compiled
+def test_samples_of_a_list_and_of_one_normal():
+    several = gm.sample(TORUS, normals=[[0, 0, 1], [3, 0, 0], [0, 1, 1]], cells=(16, 16))
+    assert np.bincount(several.normal_index).tolist()[1:] == [2, 2]
+    single = gm.sample(TORUS, normals=((1, 2, 3),), cells=(16, 16))
+    assert len(single) == 2
+    np.testing.assert_allclose(
+        single.normals, [np.array([1, 2, 3]) / math.sqrt(14)] * 2, rtol=1e-15
+    )
+
+
+def test_a_normal_that_is_asked_twice_is_answered_twice():
+    normals = np.repeat(gm.fibonacci(50), 3, axis=0)
+    samples = gm.sample(TORUS, normals=normals, cells=(12, 12))
+    assert np.bincount(samples.normal_index).tolist() == [2] * 150
+    single = gm.sample(TORUS, normals=gm.fibonacci(50), cells=(12, 12))
+    order = np.argsort(samples.normal_index, kind="stable").reshape(50, 3, 2)
+    points = samples.points[order]
+    assert (points == points[:, :1]).all()
+    expected = single.points[np.argsort(single.normal_index, kind="stable")].reshape(50, 1, 2, 3)
+    assert (points == expected).all()
+
+
+@pytest.mark.parametrize("factor", [2.0**-900, 0.3, 7.0, 1e-300, 1e300])
+def test_the_length_of_normals_does_not_matter(factor):
+    normals = gm.fibonacci(300)
+    factors = factor * np.linspace(0.5, 1.0, 300)[:, None]
+    plain = gm.sample(TORUS, normals=normals, cells=(12, 12))
+    scaled = gm.sample(TORUS, normals=factors * normals, cells=(12, 12))
+    for name in ("normal_index", "patch_index"):
+        np.testing.assert_array_equal(getattr(scaled, name), getattr(plain, name))
+    for name in ("points", "normals", "uv", "support"):
+        np.testing.assert_allclose(getattr(scaled, name), getattr(plain, name), rtol=0, atol=1e-12)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("exponent", [-300, -1, 1, 300])
+@pytest.mark.parametrize("name", ["torus", "moebius_band", "sphere"])
+def test_powers_of_two_change_no_bit(name, exponent):
+    surface, factor = gm.surfaces.surface(name), 2.0**exponent
+    plain, scaled = (
+        gm.sample(x, normals=gm.icosphere(6), cells=(12, 12), on="spline")
+        for x in (surface, moved(surface, factor))
+    )
+    powers = {"points": 1, "support": 1, "gaussian_curvature": -2, "mean_curvature": -1}
+    for array in plain.fields:
+        expected = getattr(plain, array) * factor ** powers.get(array, 0)
+        np.testing.assert_array_equal(getattr(scaled, array), expected)
+
+
+def test_opposite_normals_see_the_other_side():
+    """Exchanging u and v turns the surface inside out: n and −n give the same points."""
+    turned = gm.Surface("turned", lambda u, v: TORUS.evaluate(v, u), TORUS.domain, TORUS.boundary)
+    normals = gm.fibonacci(200)
+    outside = gm.sample(TORUS, normals=normals, cells=(12, 16))
+    inside = gm.sample(turned, normals=-normals, cells=(16, 12))
+    first, second = (np.lexsort((x.gaussian_curvature, x.normal_index)) for x in (outside, inside))
+    for name, sign in (("points", 1), ("gaussian_curvature", 1), ("mean_curvature", -1),
+                       ("support", -1)):  # fmt: skip
+        left, right = getattr(outside, name)[first], sign * getattr(inside, name)[second]
+        np.testing.assert_allclose(left, right, rtol=1e-9, atol=1e-12)
+    turns = (outside.uv[first] - inside.uv[second][:, ::-1]) / (2 * math.pi)
+    np.testing.assert_allclose(turns, np.round(turns), rtol=0, atol=1e-12)
+
+
+@pytest.mark.compiled
+def test_arrays_and_surfaces_are_left_alone():
+    normals = np.array([[0.0, 0.0, 2.0], [0.0, 3.0, 0.0], [1.0, 1.0, 1.0]])
+    normals.setflags(write=False)
+    spline = gm.fit(TORUS, (8, 8))
+    before = spline.coefficients.copy()
+    samples = gm.sample(spline, normals=normals)
+    assert (spline.coefficients == before).all()
+    again = gm.sample(spline, normals=normals)
+    samples.points[:] = 0.0
+    samples.normals[:] = 0.0
+    assert np.abs(again.points).max() > 1.0
+    np.testing.assert_array_equal(gm.sample(spline, normals=normals).points, again.points)
+
+
+@pytest.mark.compiled
+def test_sizes_at_the_end_of_double_precision():
+    """The same normals, and curvatures that overflow with their sign; smaller ones are refused."""
+    plain = gm.sample(TORUS, normals=gm.icosphere(5), cells=(16, 16))
+    for factor in (2.0**-990, 2.0**990):
+        samples = gm.sample(moved(TORUS, factor), normals=gm.icosphere(5), cells=(16, 16))
+        assert np.isfinite(samples.points).all()
+        assert len(samples) == len(plain)
+        assert samples.elliptic.sum() == plain.elliptic.sum()
+        assert not np.isnan(samples.gaussian_curvature).any()
+        assert not np.isnan(samples.mean_curvature).any()
+    with pytest.raises(gm.errors.SurfaceError, match="too small to compute with"):
+        gm.sample(moved(TORUS, 2.0**-1030), normals=gm.icosphere(5), cells=(16, 16))
+
+
+# --- density --------------------------------------------------------------------------------------
+
+
+@pytest.mark.compiled
+def test_the_torus_is_sampled_by_solid_angle():
+    """The outer half has more area than the inner one, and the same curvature in total."""
+    samples = gm.sample(TORUS, normals=gm.fibonacci(20_000))
+    outer = np.hypot(samples.points[:, 0], samples.points[:, 1]) > 1.0
+    assert outer.sum() == pytest.approx(20_000, abs=60)
+    assert (~outer).sum() == pytest.approx(20_000, abs=60)
+    assert (samples.elliptic == outer).mean() > 0.995
+    areas = [math.pi * 0.35 * (2 * math.pi + sign * 4 * 0.35) for sign in (1, -1)]
+    assert areas[0] / areas[1] > 1.5  # uniform by area, the halves would differ by so much
+    # within each half K dA = ± cos v du dv: uniform in u and in sin v
+    for half in (outer, ~outer):
+        u, v = samples.uv[half].T
+        for values, low, high in ((u, 0, 2 * math.pi), (np.sin(v), -1, 1)):
+            shares = np.histogram(values, bins=20, range=(low, high))[0] / half.sum()
+            np.testing.assert_allclose(shares, 1 / 20, rtol=0.05)
+
+
+def solid_angles_and_areas(name, bins):
+    """Return ∫|K| dA and ∫dA over bins × bins rectangles of the domain, by the midpoint rule."""
+    exact, fine = CATALOGUE[name], 40
+    length = sp.sqrt(sum(x * x for x in exact.normal_field))
+    functions = [
+        sp.lambdify((exact.u, exact.v), x.xreplace(exact.defaults), "numpy", cse=True)
+        for x in (exact.gaussian_curvature, length)
+    ]
+    (u0, u1), (v0, v1) = gm.surfaces.surface(name).domain
+    middles = (np.arange(bins * fine) + 0.5) / (bins * fine)
+    u, v = u0 + (u1 - u0) * middles[:, None], v0 + (v1 - v0) * middles
+    K, element = (np.broadcast_to(f(u, v), (u.size, v.size)) for f in functions)
+    cell = (u1 - u0) * (v1 - v0) / (bins * fine) ** 2
+    return [
+        (values * cell).reshape(bins, fine, bins, fine).sum(axis=(1, 3))
+        for values in (np.abs(K) * element, element)
+    ]
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(
+    "name", ["ellipsoid", "ellipsoid_patch", "catenoid", "helicoid", "wavy_graph", "moebius_band"]
+)
+def test_density_is_gaussian_curvature(name):
+    """Counts follow ∫|K| dA closer than independent samples would, and do not follow area."""
+    bins = 8
+    samples = gm.sample(gm.surfaces.surface(name), count=20_000, density="gauss", cells=(96, 96))
+    low, high = np.array(gm.surfaces.surface(name).domain).T
+    place = np.clip((bins * (samples.uv - low) / (high - low)).astype(int), 0, bins - 1)
+    counts = np.zeros((bins, bins))
+    np.add.at(counts, tuple(place.T), 1)
+    by_curvature, by_area = (x * len(samples) / x.sum() for x in solid_angles_and_areas(name, bins))
+    chi_square = ((counts - by_curvature) ** 2 / np.maximum(by_curvature, 1)).sum()
+    assert chi_square < bins**2
+    assert ((counts - by_area) ** 2 / by_area).sum() > 20 * bins**2
+
+
+@pytest.mark.compiled
+def test_total_curvature_counts_samples():
+    """With S normals, S/4π samples come for each steradian of the Gaussian image."""
+    normals = gm.fibonacci(50_000)
+    for name, solid_angle in (("catenoid", 4 * math.pi * math.tanh(1)), ("torus", 8 * math.pi)):
+        samples = gm.sample(gm.surfaces.surface(name), normals=normals)
+        assert len(samples) == pytest.approx(50_000 * solid_angle / (4 * math.pi), rel=2e-3)

@@ -1,0 +1,122 @@
+"""Candidates for samples along the boundaries of pieces."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Indices
+from ...runtime.base.trees import tree_of
+from .cells import LIMIT, Cells
+from .kernels.sizing import TargetDensity
+from .trims import Trims
+
+__all__ = ["BorderLines", "places_along", "polygons_of"]
+
+# Boundaries are measured at steps of at most this part of the domain.
+FINE = 1.0 / 48.0
+# In a search for neighbours, domains have width 1 and pieces are this far apart.
+FAR = 16.0
+PLACES_AT_A_TIME = 1 << 17
+
+
+@dataclass(frozen=True, eq=False)
+class BorderLines:
+    """Closed polygons, the boundaries of `pieces` (L,): vertices (k, 2), the first one repeated.
+
+    Polygon l has the vertices [starts[l], starts[l + 1]). rows (k, 8) and limits (k,) are those of
+    cells at the vertices.
+    """
+
+    pieces: Indices
+    starts: Indices
+    places: Array
+    rows: Array
+    limits: Array
+
+
+def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Array, Array]:
+    """Return the closed polygons of all trimmed pieces: the pieces (L,), and `starts`.
+
+    Vertices (k, 2) are at most `FINE` apart. Also return the vertices modulo periods, and the
+    limits (k,) of the first cells near them.
+    """
+    used = np.unique(first.pieces)
+    numbers, lines = list[int](), [np.empty((0, 2))]
+    for k in used[trims.trimmed[used]].tolist():
+        lines += trims.pieces[k].border_lines(FINE)
+        numbers += [k] * (len(lines) - 1 - len(numbers))
+    counts = [len(x) for x in lines[1:]]
+    pieces, places = np.repeat(np.array(numbers, np.int64), counts), np.concatenate(lines)
+    low, high = trims.domains[pieces, :, 0], trims.domains[pieces, :, 1]
+    inside = np.clip(trims.wrapped(pieces, places), low, high)
+    near = first[trims.trimmed[first.pieces]]
+    limits = np.empty(len(places))
+    if len(places):  # a tree takes long to load
+        tree = tree_of(_apart(near.pieces, near.places, trims))
+        limits[:] = near.numbers[tree.query(_apart(pieces, inside, trims))[1], LIMIT]
+    return np.array(numbers, np.int64), np.cumsum([0, *counts]), places, inside, limits
+
+
+def _apart(pieces: Indices, places: Array, trims: Trims) -> Array:
+    """Return parameters relative to the domain of their piece, shifted apart from other pieces."""
+    low, high = trims.domains[pieces, :, 0], trims.domains[pieces, :, 1]
+    found = np.empty((len(places), 3))
+    found[:, :2], found[:, 2] = places / (high - low), FAR * pieces
+    return found
+
+
+def places_along(
+    trims: Trims,
+    lines: BorderLines,
+    target: TargetDensity,
+    step: float,
+    turn: float,
+) -> tuple[Indices, Array, Array]:
+    """Return parameters just inside boundaries, about step/√w apart, w the target density.
+
+    Between neighbours, normals turn by about `turn` radians at most. Return the pieces (k,), the
+    parameters (k, 2), and the limits (k,). Along each line, the points on its left come first.
+    """
+    owner, number, share = _spaced(lines, target, step, turn)
+    steps = lines.places[number + 1] - lines.places[number]
+    on = lines.places[number] + share[:, None] * steps
+    pieces, found = lines.pieces[owner], [(np.empty((0, 2)), *np.empty((2, 0), np.int64))]
+    for first in range(0, len(owner), PLACES_AT_A_TIME):
+        here = slice(first, first + PLACES_AT_A_TIME)
+        inside, numbers, sides = trims.beside(pieces[here], on[here], steps[here])
+        found.append((inside, first + numbers, sides))
+    places, numbers, sides = map(np.concatenate, zip(*found, strict=True))
+    order = np.lexsort((numbers, sides, owner[numbers]))
+    every = numbers[order]
+    return pieces[every], places[order], lines.limits[number[every]]
+
+
+def _spaced(
+    lines: BorderLines, target: TargetDensity, step: float, turn: float
+) -> tuple[Indices, Indices, Array]:
+    """Return positions along polygons: lines (k,), preceding vertices, and fractions beyond these.
+
+    The fractions are those of the way to the next vertex of the line.
+    """
+    rates = np.sqrt(np.clip(lines.rows[:, 6], target.floor, target.ceiling))
+    lengths = np.linalg.norm(np.diff(lines.rows[:, :3], axis=0), axis=1)
+    costs = lengths * np.maximum(rates[1:], rates[:-1]) / step
+    normals = lines.rows[:, 3:6]
+    chords = np.linalg.norm(np.diff(normals, axis=0), axis=1)
+    regular = np.asarray(normals.any(axis=1))
+    turns = np.where(regular[1:] & regular[:-1], chords, 0.0) / turn
+    costs = np.maximum(costs, turns)
+    owners, numbers, shares = [np.empty(0, np.int64)], [np.empty(0, np.int64)], [np.empty(0)]
+    for k, (first, last) in enumerate(itertools.pairwise(lines.starts.tolist())):
+        total = np.concatenate([[0.0], np.cumsum(costs[first : last - 1])])
+        count = math.ceil(total[-1])
+        at = np.interp(total[-1] * (np.arange(count) + 0.5) / count, total, np.arange(len(total)))
+        before = np.minimum(at.astype(np.int64), len(total) - 2)
+        owners.append(np.full(count, k))
+        numbers.append(first + before)
+        shares.append(at - before)
+    return np.concatenate(owners), np.concatenate(numbers), np.concatenate(shares)

@@ -1,0 +1,110 @@
+"""Covering in normal space: a bound for the angle from any normal to that of a sample."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Indices
+from ...runtime.base.threads import thread_count
+from ...runtime.base.trees import tree_of, tree_of_directions
+from .candidates import Candidates
+from .cover import STEP, Cover
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
+# Normals at candidates are covered within an angle that is smaller by this part, which is left for
+# the normals around them: along boundaries, half a step between candidates.
+MARGIN = 0.02
+# For normals far from all others, the radii of the greedy choice fall from this multiple on.
+FIRST = 2.0
+
+__all__ = ["choose_apart", "cover_normals"]
+
+
+def cover_normals(cover: Cover, angle: float) -> float:
+    """Add samples until every normal of the surface is within `angle` degrees of one of theirs.
+
+    If the samples are at normals of that density, only points at the boundary of the Gaussian image
+    are uncovered: the nearest of these normals may lie outside of it. Return the largest angle from
+    any normal, in degrees; `angle` if there are singular points, next to which normals are known
+    only at the places of cells.
+    """
+    limit = 2.0 * math.sin(math.radians(angle) / 2.0)
+    cover.evaluate_exactly()
+    near, largest, cells = (1.0 - MARGIN) * limit, 0.0, cover.whole(2.0 * MARGIN * limit)
+    first, threads = cover.count, cover.space.threads
+    trees = [tree_of_directions(cover.points[:, 3:])]
+    while len(cells):
+        distances = _distances(trees, cells.rows, threads)
+        far = distances > near
+        if far.any():
+            chosen = choose_apart(cells.rows[far, 3:6], near, threads)
+            cover.add(cells[np.flatnonzero(far)[chosen]])
+            trees[1:] = [tree_of_directions(cover.points[first:, 3:])]
+            distances[far] = _distances(trees[1:], cells.rows[far], threads)
+        chords = distances + cells.chords
+        far = (chords > limit) & ~cover.space.deepest(cells)
+        largest = max(largest, float(chords[~far].max(initial=0.0)))
+        cells = cover.space.quarters(cells[far])
+    return angle if largest >= limit else math.degrees(2.0 * math.asin(largest / 2.0))
+
+
+def _distances(trees: Sequence[KDTree], rows: Array, threads: int | None) -> Array:
+    """Return the chords (M,) from normals of rows to the nearest ones in trees.
+
+    The chord is 0 for a row without a normal.
+    """
+    workers = thread_count(threads)
+    chords = [x.query(rows[:, 3:6], workers=workers)[0] for x in trees]
+    return np.where(rows[:, 3:6].any(axis=1), np.min(chords, axis=0), 0.0)
+
+
+def choose_apart(
+    normals: Array,
+    near: float,
+    threads: int | None,
+    widest: float | None = None,
+    most: int | None = None,
+    known: Array | None = None,
+) -> Indices:
+    """Choose some of normals (M, 3), so that each is within the chord `near` of a chosen one.
+
+    At most `most` are chosen, the widest gaps first; `known` normals (N, 3), no two of them nearly
+    equal, count as chosen.
+    """
+    rows, radius = np.arange(len(normals)), widest or FIRST * near
+    if known is not None:
+        rows, radius = _apart(normals, known, near, radius, threads)
+    room = len(rows) if most is None else most
+    candidates = Candidates(_in_normal_space(normals[rows]), radius, threads)
+    if known is not None:
+        candidates.update_distances(_in_normal_space(known)[:, :6], radius)
+    chosen = np.empty(0, dtype=np.int64)
+    while radius > near and len(chosen) < room:
+        radius = max(STEP * radius, near)
+        chosen = np.append(chosen, candidates.choose(radius, room - len(chosen)))
+    return rows[chosen]
+
+
+def _apart(
+    normals: Array, known: Array, near: float, widest: float, threads: int | None
+) -> tuple[Indices, float]:
+    """Return the indices of normals farther than `near` from known ones, and the largest distance.
+
+    That distance is at most `widest`. Radii that fall from it on save most updates of distances.
+    """
+    distances = tree_of(known).query(normals, workers=thread_count(threads))[0]
+    far = (distances > near) & normals.any(axis=1)
+    return np.flatnonzero(far), min(widest, float(distances[far].max(initial=near)) / STEP)
+
+
+def _in_normal_space(normals: Array) -> Array:
+    """Return candidates (M, 8) whose points are the normals, with one normal and one density."""
+    rows = np.zeros((len(normals), 8))
+    rows[:, :3], rows[:, 3], rows[:, 6] = normals, 1.0, 1.0
+    return rows

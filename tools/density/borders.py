@@ -1,0 +1,66 @@
+"""The boundary of a trim on a raster over the parameters, to find boxes that it may intersect."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.domain.domain import Domain
+from ...runtime.domain.trim import Trim
+
+__all__ = ["Border"]
+
+
+@dataclass(frozen=True, eq=False)
+class Border:
+    """The boundary of a trim on a raster of n × n pixels over the domain."""
+
+    trim: Trim
+    domain: Domain
+    n: int
+
+    def passes(self, boxes: Array) -> Flags:
+        """Return which boxes (M, 4), u0, v0, u1, v1, the boundary may intersect."""
+        i, j, k, m = self._pixels(boxes)
+        sums = self._sums
+        return sums[k + 1, m + 1] - sums[i, m + 1] - sums[k + 1, j] + sums[i, j] > 0
+
+    def near(self, boxes: Array, places: Array) -> Flags:
+        """Return which parameters (k, 2) are in pixels that one of the boxes (M, 4) intersects."""
+        marks = np.zeros((self.n + 1, self.n + 1), dtype=np.int64)
+        i, j, k, m = self._pixels(boxes)
+        np.add.at(marks, (i, j), 1)
+        np.add.at(marks, (k + 1, m + 1), 1)
+        np.add.at(marks, (i, m + 1), -1)
+        np.add.at(marks, (k + 1, j), -1)
+        covered = marks.cumsum(axis=0).cumsum(axis=1) > 0
+        i, j = self._pixels(places)
+        return covered[i, j]
+
+    def _pixels(self, places: Array) -> Indices:
+        """Return the pixels (2, k) of points (k, 2), or (4, k) of the corners of boxes (k, 4)."""
+        low, rates = self._frame
+        found = np.floor((places.reshape(-1, 2) - low) * rates).astype(np.int64)
+        return found.clip(0, self.n - 1).reshape(places.shape).T
+
+    @cached_property
+    def _frame(self) -> tuple[Array, Array]:
+        """The smallest parameters (2,), and the pixels per unit of the parameters (2,)."""
+        low, high = np.array(self.domain).T
+        return low, self.n / (high - low)
+
+    @cached_property
+    def _sums(self) -> NDArray[np.signedinteger]:
+        """(n + 1, n + 1): the number of boundary pixels below and left of each corner."""
+        passed, all_known = self.trim.cells_of_border(self.domain, (self.n, self.n))
+        dtype = np.int16 if self.n**2 <= np.iinfo(np.int16).max else np.int32
+        sums = np.zeros((self.n + 1, self.n + 1), dtype=dtype)
+        np.cumsum(passed, axis=0, out=sums[1:, 1:])
+        np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
+        return (
+            sums if all_known else np.multiply.outer(np.arange(self.n + 1), np.arange(self.n + 1))
+        )

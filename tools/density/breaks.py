@@ -1,0 +1,79 @@
+"""Lines u = const or v = const at which the curvature of a surface jumps, or K changes its sign.
+
+Such lines are joints of a plane and a fillet, knots, and parabolic curves that are parameter lines.
+The lines of a grid stay half a step away from them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...runtime.base.aliases import Array
+from ...runtime.onto_surface.on_spline import OnSpline
+from .lines import Axis
+
+__all__ = ["breaks_along"]
+
+
+# Forms are compared along this number of lines.
+ACROSS = 8
+# A value may jump if it changes by more than JUMP between neighbouring points, relative to the
+# largest value; it does if REMAINS of this change is left after BISECTIONS.
+JUMP, REMAINS, BISECTIONS = 0.1, 0.4, 8
+# Not 1/2: by symmetry, the line K = 0 would be hit exactly.
+HALF = 0.47
+# K has to change its sign along this part of a line.
+ALONG = 0.75
+# K is 0 below this part of the largest one.
+FLAT = 1e-6
+# More breaks than this are not joints, and are ignored.
+MOST = 64
+
+
+def breaks_along(geometry: OnSpline, axes: tuple[Axis, Axis], forms: Array, along: int) -> Array:
+    """Return the breaks along parameter `along` (0 or 1), in cells.
+
+    `forms` (7, k, l) are the fundamental forms at the midpoints of axes.
+    """
+    scales = np.array([forms[3].max(), forms[5].max(), np.abs(forms[6]).max()])
+    if not scales.all():
+        scales[scales == 0.0] = 1.0
+    middles, others = axes[along].middles, axes[1 - along].middles
+    chosen = np.arange(ACROSS) * len(others) // ACROSS
+    values = _values(np.take(np.swapaxes(forms, 1, 2) if along == 0 else forms, chosen, 1), scales)
+    changes = _changes(values[:, :, :-1], values[:, :, 1:])
+    places = np.flatnonzero(changes > JUMP)
+    low, high, change = middles[places], middles[places + 1], changes[places]
+    ends = values[:, :, places], values[:, :, places + 1]
+    for _ in range(BISECTIONS):
+        if len(low) == 0:
+            return low
+        half = low + HALF * (high - low)
+        found = _values(_forms_at(geometry, half, others[chosen], along), scales)
+        first, second = _changes(ends[0], found), _changes(found, ends[1])
+        later = second > first
+        low, high = np.where(later, half, low), np.where(later, high, half)
+        ends = np.where(later, found, ends[0]), np.where(later, ends[1], found)
+        real = np.maximum(first, second) > REMAINS * change
+        low, high, change = low[real], high[real], change[real]
+        ends = ends[0][:, :, real], ends[1][:, :, real]
+    return (low + high) / 2.0 if len(low) <= MOST else low[:0]
+
+
+def _forms_at(geometry: OnSpline, places: Array, others: Array, along: int) -> Array:
+    """Return forms (7, l, k) at values (k,) of one parameter and values (l,) of the other."""
+    lines = np.meshgrid(others, places, indexing="ij")
+    cells = np.stack(lines[::-1] if along == 0 else lines, axis=-1).reshape(-1, 2)
+    return geometry.forms(cells).T.reshape(7, len(others), len(places))
+
+
+def _values(forms: Array, scales: Array) -> Array:
+    """Return values that may jump (3, l, k): rates of the normal by u and v, and sign of K."""
+    signs = forms[6] / (np.abs(forms[6]) + FLAT * scales[2])
+    return np.stack([np.sqrt(forms[3] / scales[0]), np.sqrt(forms[5] / scales[1]), signs])
+
+
+def _changes(low: Array, high: Array) -> Array:
+    """Return the changes (k,) of values (3, l, k): the means along the other parameter."""
+    along_u, along_v, signs = np.abs(high - low).mean(axis=1)
+    return np.maximum(np.maximum(along_u, along_v), np.where(signs < 2.0 * ALONG, 0.0, signs))

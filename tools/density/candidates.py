@@ -1,0 +1,168 @@
+"""The choice of samples among candidates far from all samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.aliases import Array, Indices
+from ...runtime.base.threads import over_ranges
+from .kernels.greedy import choose_far, update_distances
+from .kernels.hash_grids import LEVELS, SQUARE, HashGrids, measure, sort_candidates
+
+__all__ = ["Block", "Candidates"]
+
+Numbers = NDArray[np.int32]
+Result = TypeVar("Result")
+
+# The size of the parts into which candidates are split for threads, about, and their maximum.
+PART, MOST = 1 << 16, 64
+# Candidates nearer to a sample than this part of a radius are left out of the next searches.
+LEFT_OUT = 0.7
+
+
+class Candidates:
+    """Candidates for samples, each with its distance from the nearest sample.
+
+    Candidates are rows (M, 8) of point, unit normal, density w, and one more number; those without
+    a normal are never chosen. All distances are multiplied by √w of the candidate. A sample counts
+    only for candidates on its side of the surface: the angle between their normals is at most 60
+    degrees.
+
+    Samples update the distances of the candidates around them. In total, a candidate is updated by
+    a few dozen samples.
+    """
+
+    def __init__(
+        self, rows: Array, radius: float, threads: int | None = None, split: bool = False
+    ) -> None:
+        """Sort candidates into grids for searches with radii of about `radius` or less.
+
+        With `split`, many candidates are split into parts for the threads; then consecutive rows
+        should be neighbours in space.
+        """
+        count, self.radius, self.threads = len(rows), radius, threads
+        parts = min(max(count // PART, 1), MOST) if split else 1
+        self._order, self._sorted = np.empty(count, dtype=np.int32), np.empty((count, 8))
+        self._nearest = np.full(count, -1, dtype=np.int32)
+        edges = np.linspace(0, count, parts + 1).astype(np.int64)
+
+        def part(k: int) -> Block:
+            here = slice(int(edges[k]), int(edges[k + 1]))
+            order = self._order[here]
+            made = Block(rows[here], radius, order, self._sorted[here], self._nearest[here])
+            order += np.int32(here.start)
+            return made
+
+        self.parts = self._each(part, parts)
+
+    @property
+    def distances(self) -> Array:
+        """The distances (M,) from the nearest samples, as of the last updates.
+
+        They are infinite for candidates without a normal.
+        """
+        known, squares = np.empty(len(self._order)), self._sorted[:, SQUARE]
+        known[self._order] = np.sqrt(np.where(squares < 0.0, np.inf, squares))
+        return known
+
+    def update_distances(self, samples: Array, radius: float) -> None:
+        """Update the distances within a radius of samples (N, 6), point and unit normal."""
+        samples = np.ascontiguousarray(samples)
+        self._each(lambda k: self.parts[k].update_distances(samples, radius), len(self.parts))
+
+    def update_far(self, samples: Array, radius: float) -> None:
+        """Update the distances of all parts that contain infinite ones."""
+        samples = np.ascontiguousarray(samples)
+
+        def update(k: int) -> None:
+            if np.isinf(self.parts[k].grids.candidates[:, SQUARE]).any():
+                self.parts[k].update_distances(samples, radius)
+
+        self._each(update, len(self.parts))
+
+    def reset_distances(self) -> None:
+        """Make all distances infinite again."""
+        self._each(lambda k: self.parts[k].reset_distances(), len(self.parts))
+
+    def choose(self, radius: float, most: int) -> Indices:
+        """Choose candidates until all others are within a radius of a sample or a chosen one.
+
+        Return their rows. If more than `most` are chosen, return `most` of them, from all over the
+        surface; then the distances of other candidates are too small.
+        """
+        found = dict[int, Numbers]()
+        # First the even parts, then the odd ones: neighbouring parts at the same time would choose
+        # candidates close to one another.
+        for turn in (0, 1):
+            now = range(turn, len(self.parts), 2)
+            rows = self._each(lambda i, now=now: self.parts[now[i]].choose(radius), len(now))
+            found |= zip(now, rows, strict=True)
+            self._update_other_parts(dict(zip(now, rows, strict=True)), radius)
+        rows = [part.order[found[k]] for k, part in enumerate(self.parts)]
+        chosen = np.concatenate(rows).astype(np.int64)
+        return chosen if len(chosen) <= most else chosen[np.arange(most) * len(chosen) // most]
+
+    def _update_other_parts(self, chosen: Mapping[int, Numbers], radius: float) -> None:
+        """Update the distances of every part by the candidates chosen in all other parts."""
+        numbers = np.zeros(len(self.parts) + 1, dtype=np.int64)
+        for k, rows in chosen.items():
+            numbers[k + 1] = len(rows)
+        ends = np.cumsum(numbers)
+        if ends[-1] == 0 or len(self.parts) == 1:
+            return
+        samples = np.concatenate(
+            [self.parts[k].grids.candidates[rows, :6] for k, rows in chosen.items()]
+        )
+
+        def update(k: int) -> None:
+            for others in (samples[: ends[k]], samples[ends[k + 1] :]):
+                if len(others):
+                    self.parts[k].update_distances(others, radius)
+
+        self._each(update, len(self.parts))
+
+    def _each(self, work: Callable[[int], Result], count: int) -> list[Result]:
+        return list(over_ranges(lambda first, last: work(first), count, 1, self.threads))
+
+
+class Block:
+    """Some of the candidates, in hash grids of their own."""
+
+    def __init__(
+        self, rows: Array, radius: float, order: Numbers, candidates: Array, nearest: Numbers
+    ) -> None:
+        """Sort rows into arrays of the same length."""
+        count = len(rows)
+        box, sizes = np.empty((2, 3)), np.zeros(LEVELS)
+        finest, coarsest = measure(rows, box, sizes)
+        starts = np.zeros((1 << max(count - 1, 1).bit_length()) + 1, dtype=np.int32)
+        sizes = sizes[finest : coarsest + 1].copy()
+        self.grids = HashGrids(candidates, nearest, starts, sizes, box, radius)
+        sort_candidates(rows, finest, self.grids, np.empty(count, dtype=np.int32), order)
+        self.order = order
+        # Candidates that are still farther than `least` from all samples.
+        self.searched, self.least = np.empty(0, dtype=np.int32), np.inf
+
+    def update_distances(self, samples: Array, radius: float) -> None:
+        """See `Candidates`."""
+        update_distances(self.grids, radius, samples)
+
+    def reset_distances(self) -> None:
+        """See `Candidates`."""
+        squares = self.grids.candidates[:, SQUARE]
+        squares[squares >= 0.0] = np.inf
+        self.grids.nearest[:], self.least = -1, np.inf
+
+    def choose(self, radius: float) -> Numbers:
+        """Choose candidates; returns their rows in the grids. See `Candidates`."""
+        if radius <= self.least:
+            self.least = LEFT_OUT * radius
+            self.searched = np.arange(len(self.order), dtype=np.int32)
+        chosen = np.empty(len(self.searched), dtype=np.int32)
+        kept, count = choose_far(self.grids, radius, self.least, self.searched, chosen)
+        self.searched = self.searched[:kept]
+        return chosen[:count]

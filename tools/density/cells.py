@@ -1,0 +1,191 @@
+"""Cells: rectangles of parameters, each with a place, a parameter pair that may become a sample.
+
+The place of a cell is inside the trim: its midpoint, or one of its subplaces if the trim cuts the
+cell. Where the inside is too narrow for that, parameter pairs next to the boundary replace the
+cells; they are cells without an extent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.memory import check_memory
+
+__all__ = [
+    "Cells",
+    "by_piece",
+    "grouped",
+    "halved",
+    "into_parts",
+    "joined",
+    "merged",
+    "new_cells",
+    "points_of",
+    "runs",
+]
+
+
+# The columns of `numbers`, see kernels/cells.py.
+RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)
+SIDES, NUMBERS = slice(8, 14), 14
+# The size of a cell without an extent, relative to the domain of its piece.
+POINT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """M cells: the indices of their `pieces` (M,), boxes (M, 4), u0, v0, u1, v1, places (M, 2).
+
+    `whole` (M,) is True for cells that no boundary intersects. `limits` (M,) are least radii of
+    curvature: smaller ones count as these; 0 if unknown. `rows` (M, 8) and `numbers` (M, 14) are
+    those of kernels/cells.py, lengths and curvatures scaled as in `Space`. They take most of the
+    memory, and are (M, 0) for cells that are not evaluated.
+    """
+
+    pieces: Indices
+    boxes: Array
+    places: Array
+    whole: Flags
+    limits: Array
+    rows: Array
+    numbers: Array
+
+    def __len__(self) -> int:
+        return len(self.pieces)
+
+    def __getitem__(self, chosen: Indices | Flags | slice) -> Cells:
+        """Return some of the cells."""
+        return Cells(*(x[chosen] for x in self._arrays))
+
+    def __add__(self, other: Cells) -> Cells:
+        """Return these cells, followed by others."""
+        return joined([self, other])
+
+    @property
+    def _arrays(self) -> tuple[NDArray, ...]:
+        return (
+            self.pieces, self.boxes, self.places, self.whole, self.limits, self.rows, self.numbers,
+        )  # fmt: skip
+
+    def with_rows(self) -> Cells:
+        """Return the same cells with rows and numbers that are 0, except for the limits."""
+        numbers = np.zeros((len(self), NUMBERS))
+        numbers[:, LIMIT] = self.limits
+        return replace(
+            self, limits=numbers[:, LIMIT], rows=np.zeros((len(self), 8)), numbers=numbers
+        )
+
+    def without_rows(self) -> Cells:
+        """Return the same cells, not evaluated; their limits are known."""
+        nothing = np.empty((len(self), 0))
+        return replace(self, limits=self.limits.copy(), rows=nothing, numbers=nothing)
+
+    def sorted(self) -> Cells:
+        """Return the same cells, sorted by their pieces."""
+        if (np.diff(self.pieces) < 0).any():
+            return self[np.argsort(self.pieces, kind="stable")]
+        return self
+
+    def write(self, rows: Indices, cells: Cells) -> None:
+        """Replace some of the cells by as many others."""
+        for mine, others in zip(self._arrays, cells._arrays, strict=True):
+            mine[rows] = others
+
+    # --- what covers ask of them ------------------------------------------------------------------
+
+    @property
+    def radii(self) -> Array:
+        """Radii (M,) of balls around the places that contain the cells."""
+        return self.numbers[:, RADIUS]
+
+    @property
+    def chords(self) -> Array:
+        """The largest chord (M,) from a normal of each cell to that at its place, 2 if unknown."""
+        return self.numbers[:, CHORD]
+
+
+def joined(parts: Sequence[Cells]) -> Cells:
+    """Return the cells of all parts, concatenated."""
+    parts = [x for x in parts if len(x)] or parts[:1]
+    if len(parts) == 1:
+        return parts[0]
+    arrays = zip(*(x._arrays for x in parts), strict=True)
+    return Cells(*(np.concatenate(x) for x in arrays))
+
+
+def merged(parts: Sequence[Cells]) -> Cells:
+    """Return the cells of all parts, sorted by their pieces.
+
+    Arrays are sorted one by one: copies of all of them would be large.
+    """
+    pieces = np.concatenate([x.pieces for x in parts])
+    if (np.diff(pieces) >= 0).all():
+        return joined(parts)
+    order, arrays = np.argsort(pieces, kind="stable"), zip(*(x._arrays for x in parts), strict=True)
+    return Cells(*(np.concatenate(x)[order] for x in arrays))
+
+
+def halved(cells: Cells, along_u: Flags) -> Cells:
+    """Return the halves (2 M) of cells, along u or along v; they are not evaluated."""
+    return into_parts(cells, np.where(along_u[:, None], (2, 1), (1, 2)))
+
+
+def into_parts(cells: Cells, parts: Indices) -> Cells:
+    """Return cells cut into parts (M, 2) along u and v; they are not evaluated."""
+    total = parts.prod(axis=1)
+    check_memory("candidates", total.sum())
+    owner = np.repeat(np.arange(len(cells)), total)
+    number = np.arange(len(owner)) - np.repeat(np.cumsum(total) - total, total)
+    place = np.stack(np.divmod(number, parts[owner, 1]), axis=1)
+    low, sizes = cells.boxes[owner, :2], (cells.boxes[:, 2:] - cells.boxes[:, :2])[owner]
+    steps = sizes / parts[owner]
+    boxes = np.concatenate([low + place * steps, low + (place + 1) * steps], axis=1)
+    last = place + 1 == parts[owner]
+    boxes[:, 2:] = np.where(last, cells.boxes[owner, 2:], boxes[:, 2:])
+    return new_cells(cells.pieces[owner], boxes, cells.whole[owner], cells.limits[owner])
+
+
+def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
+    """Yield the pieces of cells that are sorted by piece, with the rows of each."""
+    yield from runs(cells.pieces)
+
+
+def runs(numbers: Indices) -> Iterator[tuple[int, slice]]:
+    """Yield runs of equal numbers (k,): the number, and its rows."""
+    ends = (np.flatnonzero(np.diff(numbers)) + 1).tolist()
+    if len(numbers):
+        firsts = [0, *ends]
+        yield from zip(
+            numbers[firsts].tolist(), map(slice, firsts, [*ends, len(numbers)]), strict=True
+        )
+
+
+def grouped(numbers: Indices) -> Iterator[tuple[int, Indices]]:
+    """Yield the distinct numbers (k,), sorted, with the rows of each."""
+    rows = np.argsort(numbers, kind="stable")
+    for number, part in runs(numbers[rows]):
+        yield number, rows[part]
+
+
+def new_cells(
+    pieces: Indices, boxes: Array, whole: Flags | bool = False, limits: Array | float = 0.0
+) -> Cells:
+    """Return cells of pieces (M,) that are not evaluated."""
+    count = len(pieces)
+    places, nothing = (boxes[:, :2] + boxes[:, 2:]) / 2.0, np.empty((count, 0))
+    whole, limits = np.full(count, whole), np.full(count, limits, dtype=np.float64)
+    return Cells(pieces, boxes, places, whole, limits, nothing, nothing)
+
+
+def points_of(pieces: Indices, places: Array, sizes: Array, limits: Array | float = 0.0) -> Cells:
+    """Return cells without an extent at parameters (k, 2) of pieces (k,), not evaluated.
+
+    `sizes` (k, 2) are the lengths of their domains.
+    """
+    boxes = np.concatenate([places - POINT * sizes, places + POINT * sizes], axis=1)
+    return new_cells(pieces, boxes, True, limits)

@@ -1,0 +1,121 @@
+"""The normals to search for: prescribed ones, or a lattice that yields a number of samples."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...runtime.base.limits import MOST
+from ...runtime.onto_surface.on_spline import OnSpline
+from ...runtime.samples.samples import Samples
+from ...runtime.search.fill import fill
+from ...runtime.search.search import Hits, find
+from ...runtime.spline.inside import count_of, samples_inside
+from .fibonacci_lattice import Lattice
+
+__all__ = ["Chosen", "choose"]
+
+# The relative accuracy of the number of samples, and the largest number of attempts.
+NEAR_ENOUGH = 0.01
+ATTEMPTS = 20
+# The first attempts scale the density by the ratio of the counts. The others vary it up and down by
+# this step: if samples are few, several appear or vanish together.
+IN_PROPORTION, DITHER = 6, 0.008
+# The largest number of normals per requested sample (a thin Gaussian image has few samples).
+NORMALS_PER_SAMPLE = 100
+# For larger counts, the density is extrapolated from this count.
+PILOT = 1_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Chosen:
+    """The normals to search for: an array, or a lattice with `density` normals per steradian.
+
+    `found` holds the normals and the hits if the search is already done.
+    """
+
+    source: NDArray[np.float64] | Lattice
+    density: float
+    found: tuple[NDArray[np.float64], Hits] | None = None
+
+    def __len__(self) -> int:
+        """Return the number of normals."""
+        if isinstance(self.source, Lattice):
+            return self.source.size(self.density)
+        return len(self.source)
+
+    def part(self, first: int, last: int, threads: int | None) -> NDArray[np.float64]:
+        """Return the normals [first, last)."""
+        if isinstance(self.source, Lattice):
+            return self.source.normals(self.density, first, last, threads)
+        return self.source[first:last]
+
+    def samples(
+        self, geometry: OnSpline, fields: Sequence[str], dtype: DTypeLike, progress: bool
+    ) -> tuple[Samples, NDArray[np.float64]]:
+        """Return the samples at the normals of a lattice, and these.
+
+        They are searched on the spline, unless they are already found.
+        """
+        threads = geometry.threads
+        normals, hits = self.found or (self.part(0, len(self), threads), None)
+        if hits is None:
+            hits = find(geometry.spline, normals, threads, progress)
+        return geometry.samples_at_hits(normals, hits, fields, dtype, self.density), normals
+
+
+def choose(geometry: OnSpline, count: int, progress: bool) -> Chosen:
+    """Return a lattice with about `count` samples.
+
+    For more samples than `PILOT`, the density is extrapolated from that of `PILOT` samples.
+    """
+    pilot = min(count, PILOT)
+    chosen, samples = _adapted(geometry, pilot, progress)
+    if pilot == count or not isinstance(chosen.source, Lattice):
+        return chosen
+    most = chosen.source.density_of(min(NORMALS_PER_SAMPLE * count, MOST))
+    return Chosen(chosen.source, min(chosen.density * count / (samples or pilot), most))
+
+
+def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, int]:
+    """Adapt the density of a lattice to `count` samples; return it and the number of samples."""
+    spline, threads = geometry.spline, geometry.threads
+    lattice = Lattice.around(spline, geometry.reach)
+    densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))
+    total = float(np.abs(geometry.measure[1]).sum())
+    resolved = geometry.cell_measure.curved_solid_angle(min(count / max(total, 1e-300), densest))
+    if resolved == 0.0:
+        lattice, density = Lattice.everywhere(), count / (4 * math.pi)
+    else:
+        density = count / resolved
+    best: Chosen | None = None
+    samples = 0
+    for attempt in range(1, ATTEMPTS + 1):
+        density = min(density, densest)
+        normals = lattice.normals(density, threads=threads)
+        hits = find(spline, normals, threads, progress)
+        number = _number_inside(geometry, normals, hits)
+        if best is None or abs(number - count) < abs(samples - count):
+            best, samples = Chosen(lattice, density, (normals, hits)), number
+        if abs(number - count) <= NEAR_ENOUGH * count or resolved == 0.0:
+            break
+        if attempt < IN_PROPORTION or number == 0:
+            density *= count / number if number else 2.0
+        else:
+            step = attempt - IN_PROPORTION + 1
+            density = count / resolved * (1.0 + (-1) ** step * (step // 2) * DITHER)
+    assert best is not None
+    return best, samples
+
+
+def _number_inside(geometry: OnSpline, normals: NDArray[np.float64], hits: Hits) -> int:
+    """Return the number of hits inside the trim of a spline."""
+    spline = geometry.spline
+    if spline.trim is None:
+        return len(hits)
+    uv = fill(spline, normals, hits, geometry.threads, ("uv",))
+    return count_of(samples_inside(spline.trim, uv, ("uv",)))

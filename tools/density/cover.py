@@ -1,0 +1,345 @@
+"""Greedy covering of the pieces of a surface or a part with samples, the widest gaps first."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Indices
+from .at_normals import Given
+from .candidates import Candidates
+from .cells import CHORD, LIMIT, RADIUS, Cells, joined, merged
+from .grid import Grid
+from .space import Space
+from .voronoi import Voronoi
+
+__all__ = ["STEP", "Cover"]
+
+# Samples are chosen with radii that fall from WIDEST times the expected radius, by the factor STEP.
+WIDEST, STEP = 1.25, 0.98
+# For a maximal set of n samples that are no closer to one another than r, relative to the sizing
+# function, n r² is about this part of the integral of the target density.
+PACKED = 0.6
+# The radii of the cells of candidates, relative to the covering radius. They are cut again when the
+# covering radius has fallen by the factor SMALLER.
+FINE, SMALLER = 0.4, 1.3
+# To cover the whole surface, and not only candidates, cells that may hold an uncovered point are
+# bisected until they have this radius, relative to the covering radius.
+FINEST = 0.07
+# Boundaries are covered at points that are apart by twice this part of the covering radius.
+ON_BORDERS = 0.05
+# All but a few samples move by less than this part of the radius when they move to centres.
+HARDLY = 0.3
+# The part of the samples that `spread` keeps for the widest gaps after the others have moved. With
+# half of it, samples in a row leave wider gaps than without moving.
+REST = 0.2
+# Gaps are at most this much wider than the radius while samples are missing.
+WIDEST_GAP = 2.0
+# Gaps between candidates are searched down to the radius, then to this part of it, and so on.
+STEP_DOWN, ROUNDS = 0.9, 3
+# The largest number of cells that are bisected at a time, to bound the memory.
+BLOCK = 1 << 18
+
+
+class Cover:
+    """Samples of a space: given ones, and others that are added until it is covered.
+
+    A point is covered if a sample is within radius/√w, with the target density w of the space.
+    Lengths are scaled as in `Space`. The samples are rows of `points` (N, 6), point and unit
+    normal, and `curvatures` (N,), K. The first `given` samples are those `at_normals`, the others
+    lie at the places of the cells `added`, which begin with those of the `grid`, if there is one.
+
+    Samples are chosen among the places of `cells`. `show_count` is called with the number of
+    samples whenever it grows.
+
+    The first `fixed` samples, given or on the grid, are never removed.
+
+    `coverage`, in L, and `angle`, in degrees, are bounds that the cover has reached, if known.
+    """
+
+    coverage: float | None = None
+    angle: float | None = None
+
+    def __init__(
+        self,
+        space: Space,
+        given: Given | None = None,
+        show_count: Callable[[int], object] = lambda count: None,
+        grid: Grid | None = None,
+    ) -> None:
+        """Begin with samples at normals, and those of a grid."""
+        self.space, self.show_count, self.grid = space, show_count, grid
+        self.at_normals = Given(space) if given is None else given
+        rows = self.at_normals.rows
+        self._points, self._curvatures = rows[:, :6], rows[:, 6]
+        self._added, self._waiting = space.nothing(), list[Cells]()
+        self.given = self.fixed = len(rows)
+        if grid is not None:
+            self._append(grid.cells)
+            self.fixed = self.count
+
+    @property
+    def points(self) -> Array:
+        """The points and unit normals (N, 6) of the samples."""
+        return self._joined()._points
+
+    @property
+    def curvatures(self) -> Array:
+        """K (N,) of the samples."""
+        return self._joined()._curvatures
+
+    @property
+    def added(self) -> Cells:
+        """The cells at whose places the added samples lie."""
+        return self._joined()._added
+
+    @property
+    def count(self) -> int:
+        """The number of samples."""
+        return len(self._points) + sum(map(len, self._waiting))
+
+    def to_radius(self, radius: float, most: int | None = None) -> None:
+        """Add samples until every point is within radius/√w of one, or there are `most`."""
+        first = radius if most is None else max(radius, self._radius_for(most))
+        self.take_candidates(first, WIDEST * first)
+        self.narrow(WIDEST * first, radius, most)
+        if self.count != most:
+            start = self.count
+            self._cover_cells(self.cells, self._candidates, radius, most)
+            self._cover_small_cells(self._borders(radius), radius, most)
+            self._candidates.update_distances(self.points[start:], radius)
+
+    def to_count(self, count: int) -> None:
+        """Add samples until there are `count`."""
+        radius, largest = WIDEST * self._radius_for(count), self._largest_radius
+        self._begin(radius, count)
+        while self.count == count > self.fixed + 1 and radius < largest:
+            # The first candidates have used up the count, and may not be in the widest gaps.
+            self.remove_added()
+            radius *= 2.0
+            self._begin(radius, count)
+        self.fill_up(count)
+
+    def spread(self, count: int) -> None:
+        """Add samples until there are `count`; most of them are moved once.
+
+        The move takes each sample towards the centre of the smallest ball around its Voronoi cell:
+        Lloyd's method for a high power of the distance instead of the mean of the squares.
+        """
+        self.to_count(count - round(REST * (count - self.count)))
+        if self.count > self.fixed:
+            widest = WIDEST_GAP * self.radius
+            self.renew_distances(widest)
+            self.fill_gaps(self.move_to_centres(), widest, count)
+
+    def fill_up(self, count: int) -> None:
+        """Add samples in the widest gaps until there are `count`."""
+        self.narrow(self.radius, 0.0, count)
+
+    def narrow(self, widest: float, least: float, most: int | None) -> None:
+        """Add samples, with radii that fall from `widest` to `least`, until there are `most`."""
+        radius = widest
+        while self.count != most and radius > least:
+            radius = max(STEP * radius, least)
+            self.sweep(radius, most)
+
+    def sweep(self, radius: float, most: int | None = None) -> None:
+        """Add candidates until all of them are covered within a radius, or there are `most`."""
+        if radius < self._candidates.radius / SMALLER:
+            self.take_candidates(radius / SMALLER, radius)
+        self.radius = radius
+        self._choose(self.cells, self._candidates, radius, most)
+
+    def take_candidates(self, radius: float, widest: float) -> None:
+        """Make candidates for sweeps with radii that fall from `widest` to this radius.
+
+        They are the places of cells whose radii are FINE times the radius.
+        """
+        for name in ("cells", "_candidates"):  # free the former ones, which take as much memory
+            vars(self).pop(name, None)
+        self.radius, self.cells = widest, self.space.cut(FINE * radius)
+        self._candidates = self._with_distances(self.cells.rows, radius, widest)
+
+    def whole(self, turn: float) -> Cells:
+        """Return a few cells that make up the surface, and cells along its boundaries.
+
+        Normals turn by about `turn` radians between the latter, and by half of it around each.
+        """
+        space = self.space
+        borders = space.along_borders(math.inf, turn)
+        borders.numbers[:, CHORD] += turn / 2.0
+        return merged([space.evaluated(space.first), borders])
+
+    def missing(self) -> Cells:
+        """Return a cell near the middle of each piece without a sample, if it has a cell."""
+        held = np.concatenate([self.at_normals.pieces, self.added.pieces])
+        return self.space.middles(np.setdiff1d(self.space.first.pieces, held))
+
+    def remove_last(self, number: int) -> None:
+        """Remove samples that were added last, as long as their pieces have others."""
+        numbers = np.bincount(self.added.pieces, minlength=len(self.space.pieces))
+        removed: list[int] = []
+        for k in range(len(self.added) - 1, self.fixed - self.given - 1, -1):
+            if len(removed) == number:
+                break
+            if numbers[self.added.pieces[k]] > 1:
+                numbers[self.added.pieces[k]] -= 1
+                removed.append(k)
+        self._replace_added(self.added[np.setdiff1d(np.arange(len(self.added)), removed)])
+        self.renew_distances(self.radius)
+
+    def add(self, cells: Cells) -> None:
+        """Add the places of some cells as samples."""
+        first = self.count
+        self._append(cells)
+        self._candidates.update_distances(self.points[first:], self.radius)
+
+    def evaluate_exactly(self) -> None:
+        """From now on, take points and normals from the sampled surface itself."""
+        space, added = self.space.exact, self.added
+        if space is not self.space:
+            self.space = space
+            self._replace_added(space.known(added, keep=True))
+
+    def renew_distances(self, widest: float) -> None:
+        """Compute the distances of all candidates from the samples again, within `widest`."""
+        self._candidates.reset_distances()
+        # Nearly all candidates are within this distance of a sample; the others need the wide
+        # search.
+        near = min((1.0 + HARDLY) * self.radius, widest)
+        self._candidates.update_distances(self.points, near)
+        self._candidates.update_far(self.points, widest)
+
+    def move_to_centres(self) -> Voronoi:
+        """Move the samples that are not fixed to about the centres of their Voronoi cells.
+
+        The distances of the candidates have to be renewed before and after the call. Return the
+        Voronoi cells, for `fill_gaps`.
+        """
+        margin = HARDLY * self.radius
+        reach = self.radius + 2.0 * FINE * self.radius + margin
+        voronoi = Voronoi(self._candidates, self.cells, self.points, reach, margin)
+        moved, rows, places = voronoi.centres(self.points, self.fixed)
+        cells, order = self._evaluated_at(rows, places)
+        regular = np.flatnonzero(cells.rows[:, 3:6].any(axis=1))
+        moved, cells = moved[order][regular], cells[regular]
+        self.points[moved], self.curvatures[moved] = cells.rows[:, :6], cells.rows[:, 7]
+        self.added.write(moved - self.given, cells)
+        return voronoi
+
+    def fill_gaps(self, voronoi: Voronoi, widest: float, count: int) -> None:
+        """Add samples at fine points of the cells, the widest gaps first, until there are `count`.
+
+        The search begins with gaps of the radius `widest`.
+        """
+        least = self.radius
+        for _ in range(ROUNDS):
+            if self.count == count:
+                return
+            cells, _ = self._evaluated_at(*voronoi.widest(self.points, least))
+            candidates, radius = self._with_distances(cells.rows, least, widest), widest
+            while radius > least and self.count < count:
+                radius = max(STEP * radius, least)
+                self._choose(cells, candidates, radius, count)
+            widest, least = least, STEP_DOWN * least
+        self.renew_distances(widest)
+        self.narrow(widest, 0.0, count)
+
+    def _evaluated_at(self, rows: Indices, places: Array) -> tuple[Cells, Indices]:
+        """Return cells without an extent at points (k, 2) of candidates, and their order."""
+        order = np.argsort(self.cells.pieces[rows], kind="stable")
+        near = self.cells[rows[order]]
+        found = self.space.at(near.pieces, places[order], near.numbers[:, LIMIT], keep=True)
+        return found, order
+
+    def remove_added(self) -> None:
+        """Remove all samples that were added, except those of the grid."""
+        self._replace_added(self.added[: self.fixed - self.given])
+
+    def _radius_for(self, count: int) -> float:
+        """Return the radius at which about `count` samples cover the surface.
+
+        On a strip narrower than the radius, the samples stand in a row.
+        """
+        packed = math.sqrt(PACKED * self.space.integral / count)
+        return max(packed, 0.5 * self.space.longest / count)
+
+    @property
+    def _largest_radius(self) -> float:
+        """A radius at which a few samples cover the surface, even a narrow strip."""
+        return max(math.sqrt(self.space.integral), 0.5 * self.space.longest)
+
+    def _begin(self, radius: float, count: int) -> None:
+        self.take_candidates(radius / WIDEST, radius)
+        self.sweep(radius, count)
+
+    def _choose(
+        self, cells: Cells, candidates: Candidates, radius: float, most: int | None
+    ) -> None:
+        """Add those places of given cells that are far from all samples."""
+        room = len(cells) if most is None else most - self.count
+        if room > 0:
+            self._append(cells[candidates.choose(radius, room)])
+            self.show_count(self.count)
+
+    def _append(self, cells: Cells) -> None:
+        if len(cells):
+            self._waiting.append(cells)
+
+    def _replace_added(self, cells: Cells) -> None:
+        self._points, self._curvatures = self._points[: self.given], self._curvatures[: self.given]
+        self._added, self._waiting = self.space.nothing(), [cells]
+
+    def _joined(self) -> Cover:
+        """Append pending samples to the arrays: concatenating many at once is faster."""
+        if self._waiting:
+            added = joined(self._waiting)
+            self._waiting = []
+            self._points = np.concatenate([self._points, added.rows[:, :6]])
+            self._curvatures = np.concatenate([self._curvatures, added.rows[:, 7]])
+            self._added = self._added + added
+        return self
+
+    def _cover_cells(
+        self, cells: Cells, candidates: Candidates, radius: float, most: int | None
+    ) -> None:
+        """Add samples until cells whose places are covered are covered as a whole."""
+        shares = cells.radii * np.sqrt(cells.rows[:, 6]) / radius
+        far, small = candidates.distances > (1.0 - shares) * radius, shares <= FINEST
+        large = np.flatnonzero(far & ~small)
+        for first in range(0, len(large), BLOCK):
+            if self.count == most:
+                return
+            halves = self.space.halves(cells[large[first : first + BLOCK]])
+            places = self._with_distances(halves.rows, radius, radius)
+            self._choose(halves, places, radius, most)
+            self._cover_cells(halves, places, radius, most)
+        self._cover_small_cells(cells[far & small], radius, most)
+
+    def _borders(self, radius: float) -> Cells:
+        """Return cells along boundaries whose radii reach halfway to their neighbours.
+
+        In tips too narrow for other cells, these cells cover the surface.
+        """
+        borders = self.space.along_borders(2.0 * ON_BORDERS * radius)
+        borders.numbers[:, RADIUS] += ON_BORDERS * radius / np.sqrt(borders.rows[:, 6])
+        return borders
+
+    def _cover_small_cells(self, cells: Cells, radius: float, most: int | None) -> None:
+        """Add places of small cells until these are covered as a whole."""
+        if not len(cells):
+            return
+        rows = cells.rows.copy()
+        # A sample covers a cell if its distance from the place, plus the radius of the cell, is
+        # small enough.
+        rows[:, 6] /= (1.0 - cells.radii * np.sqrt(rows[:, 6]) / radius) ** 2
+        self._choose(cells, self._with_distances(rows, radius, radius), radius, most)
+
+    def _with_distances(self, rows: Array, radius: float, widest: float) -> Candidates:
+        """Return rows as candidates with their distances from all samples, within `widest`."""
+        candidates = Candidates(rows, radius, self.space.threads, split=True)
+        for samples in (self._points, *(x.rows[:, :6] for x in self._waiting)):
+            candidates.update_distances(samples, widest)
+        return candidates

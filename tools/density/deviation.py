@@ -1,0 +1,85 @@
+"""Normal deviation: angles between the normals of a surface and those of its samples."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from ...runtime.base.aliases import Array
+from ...runtime.base.threads import thread_count
+from ...runtime.base.trees import tree_of, tree_of_directions
+from ...runtime.samples.whole import NormalDeviation
+from .cells import Cells
+from .space import Space
+
+__all__ = ["normal_deviation", "widest_angle"]
+
+# The number of test points for each sample at first, and the least number of test points.
+PLACES, FEWEST = 16, 20_000
+# Then cells that may hold a larger angle than the largest found so far are cut, at most this often.
+CUTS = 6
+# At most MOST test points are used at first; beyond that, their cells are cut further, BLOCK of
+# them at a time, to bound the memory.
+MOST, BLOCK = 1 << 21, 1 << 16
+
+
+def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDeviation:
+    """Return the largest angles that are found; `points` (N, 3) are scaled as in `Space`.
+
+    The angles are 180 degrees if there are no samples.
+    """
+    if len(points) == 0:
+        return NormalDeviation(180.0, 180.0)
+    tree, workers = tree_of(points), thread_count(space.threads)
+
+    def nearest_point(rows: Array) -> Array:
+        samples = tree.query(rows[:, :3], workers=workers)[1]
+        return np.linalg.norm(rows[:, 3:6] - normals[samples], axis=1)
+
+    return NormalDeviation(
+        widest_angle(space, normals), _largest(space, len(points), nearest_point)
+    )
+
+
+def widest_angle(space: Space, normals: Array, least: float = 0.0) -> float:
+    """Return the largest angle found, in degrees, from a normal to the nearest of normals (N, 3).
+
+    Return `least` if it is larger, which saves the search for smaller angles.
+    """
+    if len(normals) == 0:
+        return 180.0
+    tree, workers = tree_of_directions(normals), thread_count(space.threads)
+
+    def nearest_normal(rows: Array) -> Array:
+        return tree.query(rows[:, 3:6], workers=workers)[0]
+
+    return _largest(space, len(normals), nearest_normal, least)
+
+
+def _largest(
+    space: Space, samples: int, chord_of: Callable[[Array], Array], least: float = 0.0
+) -> float:
+    """Return the largest angle found, in degrees, from chords at test points; at least `least`."""
+    even = space.uniform.exact
+    begin = found = 2.0 * math.sin(math.radians(least) / 2.0)
+    wanted = max(PLACES * samples, FEWEST)
+    first = min(wanted, MOST)
+    cells, cuts = even.cut(math.sqrt(even.area / first)), CUTS
+    while first < wanted:
+        first, cuts = 4 * first, cuts + 1
+
+    def search(cells: Cells, cuts: int) -> None:
+        nonlocal found
+        chords = np.where(cells.rows[:, 3:6].any(axis=1), chord_of(cells.rows), 0.0)
+        found = max(found, float(chords.max(initial=0.0)))
+        # Within a cell the normal turns by no more than this.
+        bounds = chords + cells.chords
+        far = np.flatnonzero(bounds > found)
+        for start in range(0, len(far) if cuts else 0, BLOCK):
+            some = far[start : start + BLOCK]
+            search(even.quarters(cells[some[bounds[some] > found]]), cuts - 1)
+
+    search(cells, cuts - 1)
+    return least if found == begin else math.degrees(2.0 * math.asin(min(found, 2.0) / 2.0))

@@ -1,0 +1,376 @@
+"""Samples for all densities but "gauss": at normals, and in the gaps that these leave."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from ...runtime.base.aliases import Array
+from ...runtime.base.errors import InputError
+from ...runtime.base.threads import counted
+from ...runtime.base.tolerances import FLAT_SURFACE, LENGTH_ERROR
+from ...runtime.directions.sets import frequency_within
+from ...runtime.onto_surface.pieces import LEAST_IMAGE
+from ...runtime.samples.fields import dtype_of
+from .angles import choose_apart, cover_normals
+from .at_normals import Given, at_count, at_lattices, at_normals
+from .cells import Cells, by_piece, joined
+from .cover import Cover
+from .coverage import coverage
+from .deviation import widest_angle
+from .kernels.sizing import TargetDensity
+from .on_grid import cover_on_grid
+from .piece import Piece
+from .request import BY_CURVATURE, Request
+from .shares import apportioned
+from .space import Space
+
+__all__ = ["Filling", "fields_of", "fill", "spacing", "target_of"]
+
+# Twice the area of a hexagon of circumradius 1.
+HEXAGON = 3.0 * math.sqrt(3.0)
+# If n samples of a greedy cover have the covering radius r, relative to the sizing function, the
+# integral of the target density is about n r² times this.
+GREEDY = 1.85
+# Balanced: the covering radius of the added samples, relative to that of the normals.
+WIDER = 2.0
+# Balanced: the floor of the target density, relative to the mean of κ²; and the ceiling of κ, for a
+# count or a coverage, relative to the root of the floor.
+FLOOR, MOST_CURVED = 0.8, 20.0
+# For an angle, the mean of κ² is that of the capped κ: mean and ceiling are iterated until the
+# ratio of consecutive means exceeds this.
+SETTLED = 0.9
+# An angle is refused if it would take more samples than this, minutes of work, and more than on
+# this number of spheres: then the reason is narrow faces, and not a small angle.
+MOST_FOR_ANGLE, SPHERES = 2e6, 300.0
+# |K|^α vanishes with K; gaps there are wider than the mean by at most this factor.
+WIDEST_GAP = 1000.0
+# The number of added samples that a sample at a normal is assumed to save. It saves up to 0.7; a
+# smaller value leaves more samples for the wide gaps of the density |K|.
+SAVED = 0.25
+# A piece has samples at the normals of a lattice if these are at least this part of all samples:
+# its spline takes as long as many samples.
+LATTICE = 0.1
+# If some of several pieces have no lattice: the part of a count that is placed where normals are
+# farthest from those of all samples.
+FOR_NORMALS = 0.05
+# The chord between the normals of candidates for these samples, relative to the spacing of as many
+# points on a sphere, and about the number of these candidates in addition to the number of samples.
+NORMALS_APART, CANDIDATES = 0.2, 200_000
+# The smallest such chord.
+LEAST_CHORD = math.radians(0.5)
+# Normals of samples are distinct when rounded to this number of decimals.
+DIGITS = 6
+# Each piece gets a sample if there are at least this many samples per piece.
+SAMPLES_A_PIECE = 2
+# The bisection for the radius of a balanced cover that leaves enough samples for a coverage: its
+# steps, the part of the count at which it ends, and the logarithm of the ratio of its bounds.
+BISECTIONS, NEAR_ENOUGH, WIDEST_RADIUS = 10, 0.97, 10.0
+
+
+def target_of(request: Request) -> TargetDensity:
+    """Return the target density of a request, without its floor."""
+    if isinstance(request.density, str):
+        return TargetDensity(curvature_weight=float(request.density in BY_CURVATURE))
+    return TargetDensity(gauss_weight=1.0, exponent=float(request.density))
+
+
+def fill(
+    space: Space,
+    request: Request,
+    progress: bool,
+    each_once: Callable[[Given], Given] | None = None,
+) -> Cover:
+    """Sample a space whose target density has no floor; raises the errors of `sample`.
+
+    With `each_once`, a sample at a prescribed normal that several pieces share is returned once.
+    """
+    with counted(request.count, progress) as show_count:
+        filling = Filling(space, request, progress, show_count, each_once)
+        cover = filling.cover()
+        if request.angle is not None:
+            cover.angle = cover_normals(cover, request.angle)
+            if any(x.trim is not None for x in space.pieces):
+                # Tips may be too narrow for cells, so that the angle is not yet reached there.
+                cover.angle = widest_angle(space, cover.points[:, 3:], cover.angle)
+        if request.coverage is not None:
+            cover.coverage = filling.reached(cover) / space.unit
+    return cover
+
+
+def fields_of(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
+    """Return fields of the samples at normals, followed by the others."""
+    added = cover.added
+    order = np.argsort(added.pieces, kind="stable")
+    added = added[order]
+    pieces = cover.space.pieces
+    parts = [_of_piece(pieces[k], added[rows], fields, dtype) for k, rows in by_piece(added)]
+    found = {}
+    for name in fields:
+        given = cover.at_normals.array(name, dtype)
+        new = np.empty((len(order), *given.shape[1:]), dtype=dtype_of(name, dtype))
+        if parts:
+            new[order] = np.concatenate([x[name] for x in parts])
+        found[name] = np.concatenate([given, new])
+    return found
+
+
+def _of_piece(
+    piece: Piece, cells: Cells, fields: Sequence[str], dtype: DTypeLike
+) -> dict[str, NDArray[Any]]:
+    """Return fields of samples at the places of cells of one piece."""
+    found = piece.fields_at(cells.places, cells.rows, fields, dtype)
+    for name, number in piece.indices.items():
+        if name in fields:
+            found[name] = found.get(name, np.zeros(len(cells), dtype=np.int64)) + number
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Filling:
+    """The sampling of a space for a request; `show_count` is called with the number of samples.
+
+    `each_once` is that of `fill`.
+    """
+
+    space: Space
+    request: Request
+    progress: bool
+    show_count: Callable[[int], object]
+    each_once: Callable[[Given], Given] | None = None
+
+    def cover(self) -> Cover:
+        """Return the requested cover."""
+        request = self.request
+        if request.density == "gauss":
+            return self._new(self.space, self._at_normals())
+        if request.density == "aligned":
+            return cover_on_grid(self.balanced(), request, self._asked, self.show_count)
+        if request.density in BY_CURVATURE:
+            if request.count is None:
+                return self._by_radius()
+            cover = self._by_count(self.balanced(capped=True), request.count)
+            asked = request.coverage
+            if asked is None or self.reached(cover) <= asked * self.space.unit:
+                return cover
+            return self._by_count_and_coverage(request.count)
+        space = self._by_power
+        if request.count is not None:
+            return self._by_count(space, request.count)
+        assert self._asked is not None
+        return self._to_radius(space, Given(space), self._asked)
+
+    def reached(self, cover: Cover) -> float:
+        """Return a bound of the scaled distance of any point from samples on its side."""
+        asked = math.inf if self.request.coverage is None else self.request.coverage
+        return coverage(self.space, cover.points, asked * self.space.unit)
+
+    # --- the target density -----------------------------------------------------------------------
+
+    def balanced(self, *, capped: bool = False) -> Space:
+        """Return the space with the floor of "balanced", and, if it is capped, a ceiling.
+
+        For an angle, the floor follows from the capped density: else tiny fillets would make all
+        flat parts dense.
+        """
+        floor = self._floor(math.inf)
+        if not capped:
+            return self.space.between(floor)
+        lower = self._floor(MOST_CURVED**2 * floor)
+        while self.request.angle is not None and lower < SETTLED * floor:
+            floor, lower = lower, self._floor(MOST_CURVED**2 * lower)
+        return self.space.between(floor, MOST_CURVED**2 * floor)
+
+    def _floor(self, ceiling: float) -> float:
+        """Return the floor of "balanced" for a target density with a ceiling."""
+        request, space = self.request, self.space.between(self.space.target.floor, ceiling)
+        # Normals and angles do not depend on the size: flat parts count as parts of a sphere.
+        absolute = request.normals is not None or request.angle is not None
+        least = request.solid_angle if absolute else FLAT_SURFACE
+        return FLOOR * max(space.integral, least) / space.area
+
+    @property
+    def _by_power(self) -> Space:
+        """The space with the floor of "uniform" or a power of |K|.
+
+        A power of |K| is replaced by a constant on pieces whose curvature is an error of their
+        spline.
+        """
+        if self.request.density == "uniform":
+            return self.space.between(1.0)
+        images = self.space.solid_angles((self.request.count or 0) / (4 * math.pi))
+        flat = frozenset(np.flatnonzero(images <= LEAST_IMAGE).tolist())
+        if len(flat) == len(images):
+            return self.space.uniform
+        space = replace(self.space, developable=flat, _held={})
+        return space.between(space.integral / space.area / WIDEST_GAP**2)
+
+    @property
+    def _asked(self) -> float | None:
+        """The requested coverage as a scaled length, between the rounding error and the size.
+
+        If the cells are on a spline and the samples on the surface, twice the distance between
+        spline and surface is subtracted; at least half of the coverage is left.
+        """
+        asked, space = self.request.coverage, self.space
+        if asked is None:
+            return None
+        asked = max(asked - 2.0 * space.distance, asked / 2.0)
+        return min(max(asked * space.unit, LENGTH_ERROR * space.size), space.size)
+
+    # --- covers -----------------------------------------------------------------------------------
+
+    def _by_radius(self) -> Cover:
+        """Sample at requested normals, or at a lattice for a coverage, and fill the gaps."""
+        request, asked = self.request, self._asked
+        space = self.balanced(capped=request.angle is not None)
+        if request.angle is not None:
+            frequency_within(request.angle)  # or InputError
+            radius = WIDER * math.radians(request.angle)
+            _refuse_too_many(space, radius, request)
+            given = self._at_lattices(radius, space)
+        elif request.normals is not None:
+            given = self._at_normals()
+            radius = WIDER * spacing(given.samples_per_steradian)
+        else:
+            assert asked is not None
+            radius = asked * math.sqrt(max(space.target.floor, space.smallest))
+            space.parts(radius)  # or InputError, before the search
+            given = self._at_lattices(radius, space)
+        if asked is not None:
+            floor = (radius / asked) ** 2
+            most = MOST_CURVED**2 * floor
+            is_free = request.angle is None and request.normals is None
+            space = space.between(floor, most if is_free else max(most, space.target.ceiling))
+        return self._to_radius(space, given, radius)
+
+    def _to_radius(self, space: Space, given: Given, radius: float) -> Cover:
+        """Cover a space within a radius, with a sample on each piece unless these are too many."""
+        cover = self._new(space, given)
+        cover.to_radius(radius)
+        missing = cover.missing()
+        if SAMPLES_A_PIECE * len(space.pieces) <= cover.count + len(missing):
+            cover.add(missing)
+        return cover
+
+    def _by_count(self, space: Space, count: int) -> Cover:
+        """Divide a count between samples at normals and others, which fill gaps.
+
+        Among several pieces, some of the latter cover the normals of pieces without a lattice.
+        """
+        given, rest = Given(space), 0
+        if self.request.density in BY_CURVATURE:
+            given = self._for_count(space, count)
+            if len(given.found) < len(space.pieces) > 1:
+                rest = math.floor(FOR_NORMALS * count)
+        cover = self._new(space, given)
+        cover.spread(max(count - rest, cover.count))
+        missing = cover.missing()
+        if SAMPLES_A_PIECE * len(space.pieces) <= count and len(missing):
+            room = count - cover.count
+            if len(missing) > room:
+                cover.remove_last(len(missing) - room)
+            cover.add(missing[: count - cover.count])
+        if cover.count < count and rest:
+            _fill_normals(cover, count - cover.count)
+        if cover.count < count:
+            cover.renew_distances(cover.radius)
+        cover.fill_up(count)
+        return cover
+
+    def _by_count_and_coverage(self, count: int) -> Cover:
+        """Find the smallest radius that leaves enough samples for a coverage."""
+        asked, best = self._asked, None
+        assert asked is not None
+        high = math.log(count)
+        low = high - WIDEST_RADIUS
+        for _ in range(BISECTIONS):
+            radius = WIDER * spacing(math.exp((low + high) / 2))
+            floor = (radius / asked) ** 2
+            space = self.space.between(floor, MOST_CURVED**2 * floor)
+            cover = self._new(space, self._at_lattices(radius, space))
+            cover.to_radius(radius, count + 1)
+            if cover.count > count:
+                high = (low + high) / 2
+                continue
+            low, best = (low + high) / 2, cover
+            if cover.count > NEAR_ENOUGH * count:
+                break
+        if best is None:  # not possible even without samples at normals
+            best = self._new(self.space.uniform, Given(self.space))
+            best.to_count(count)
+        best.fill_up(count)
+        return best
+
+    def _new(self, space: Space, given: Given) -> Cover:
+        return Cover(space, given, self.show_count)
+
+    # --- samples at normals -----------------------------------------------------------------------
+
+    def _at_normals(self) -> Given:
+        """Return the samples at the requested normals."""
+        space, count = self.space, self.request.count
+        if count is None:
+            curved = np.flatnonzero(space.images > LEAST_IMAGE)
+            found = at_normals(space, self.request.directions, curved, self.progress)
+            return found if self.each_once is None else self.each_once(found)
+        seen = space.solid_angles(count / (4 * math.pi))
+        counts = apportioned(count, seen if seen.any() else space.areas)
+        return at_count(space, counts, self.progress)
+
+    def _for_count(self, space: Space, count: int) -> Given:
+        """Return the samples at lattices of normals for a count of samples."""
+        seen = space.solid_angles(count / (4 * math.pi))
+        # The number of filling samples for a lattice of one normal per steradian.
+        filling = space.integral / (GREEDY * (WIDER * spacing(1.0)) ** 2)
+        chosen, density = np.arange(len(seen)), 0.0
+        for _ in range(2):  # with all pieces, then with those that have a lattice
+            curved = float(seen[chosen].sum())
+            density = count / (curved + max(filling - SAVED * curved, 0.0))
+            chosen = np.flatnonzero((seen > 0.0) & (density * seen >= LATTICE * count))
+        return at_lattices(space, density, chosen, self.progress, count)
+
+    def _at_lattices(self, radius: float, space: Space) -> Given:
+        """Return the samples at lattices of normals for a covering radius."""
+        density = 2.0 / (HEXAGON * (radius / WIDER) ** 2)
+        expected = density * space.solid_angles(density)
+        least = max(LATTICE * space.integral / (GREEDY * radius**2), 0.5)
+        return at_lattices(space, density, np.flatnonzero(expected >= least), self.progress)
+
+
+def _refuse_too_many(space: Space, radius: float, request: Request) -> None:
+    """Raise InputError if narrow faces make an angle take too many samples."""
+    counts, angle = space.integrals / (GREEDY * radius**2), request.angle
+    total = float(counts.sum())
+    if angle is None or total <= MOST_FOR_ANGLE or space.integral <= SPHERES * request.solid_angle:
+        return
+    most, enough = int(counts.argmax()), angle * math.sqrt(total / MOST_FOR_ANGLE)
+    raise InputError(
+        f"{space.label} would take about {total / 1e6:,.1f} million samples for angle={angle:g}, "
+        f"{counts[most] / total:.0%} of them on {space.pieces[most].label}, which is narrow and "
+        f"sharply curved; ask for angle={enough:.2g} or more, or for a count."
+    )
+
+
+def _fill_normals(cover: Cover, number: int) -> None:
+    """Add samples where normals are farthest from those of all samples."""
+    chord = NORMALS_APART * spacing(max(cover.count + number, 1) / (4 * math.pi))
+    most = CANDIDATES + cover.count
+    cells, normals = list[Cells](), list[Array]()
+    for block in cover.space.cut_by_normals(max(chord, LEAST_CHORD), most):
+        normals.append(block.rows[:, 3:6].copy())
+        cells.append(block.without_rows())  # rows take most of the memory
+    known = np.unique(cover.points[:, 3:].round(DIGITS), axis=0)
+    opposite, threads = 2.0, cover.space.threads  # the largest chord between normals
+    chosen = choose_apart(np.concatenate(normals), chord, threads, opposite, number, known)
+    cover.add(cover.space.known(joined(cells)[chosen]))
+
+
+def spacing(density: float) -> float:
+    """Return the covering radius of a hexagonal lattice of `density` points per area."""
+    return math.sqrt(2.0 / (HEXAGON * density))

@@ -1,0 +1,78 @@
+"""Samples on a grid of parameter lines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...runtime.base.aliases import Indices
+from ...runtime.samples.fields import GRID_NAMES
+from ...runtime.samples.samples import Samples
+from .cells import Cells
+
+__all__ = ["Grid", "lines_of", "without_lines"]
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Samples on a grid: cells whose places they are, and the numbers of their lines.
+
+    `rows` and `columns` (N,) are the indices of the lines v = const and u = const, −1 between
+    lines.
+    """
+
+    cells: Cells
+    rows: Indices
+    columns: Indices
+    lines: tuple[int, int]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __add__(self, other: Grid) -> Grid:
+        """Return this grid, followed by one of another piece."""
+        rows, columns = (
+            np.concatenate([x, np.where(y < 0, -1, y + first)])
+            for x, y, first in zip(
+                (self.rows, self.columns),
+                (other.rows, other.columns),
+                self.lines[::-1],
+                strict=True,
+            )
+        )
+        lines = self.lines[0] + other.lines[0], self.lines[1] + other.lines[1]
+        return Grid(self.cells + other.cells, rows, columns, lines)
+
+    @property
+    def border(self) -> int:
+        """The number of samples that lack a neighbour in some direction within the domain."""
+        inside = np.zeros(self.lines, dtype=np.bool_)
+        on = self.rows >= 0
+        inside[self.columns[on], self.rows[on]] = True
+        near = np.zeros_like(inside)
+        for axis in (0, 1):
+            changes = np.diff(inside, axis=axis)
+            low, high = ((slice(None, -1), slice(1, None)) for _ in range(2))
+            ends = (slice(None),) * axis
+            near[(*ends, low[0])] |= changes
+            near[(*ends, high[1])] |= changes
+        return int((near & inside).sum())
+
+
+def lines_of(grid: Grid | None, count: int, fields: Sequence[str]) -> dict[str, Indices]:
+    """Return the requested ones of the fields row and column; samples of the grid come first."""
+    found = {name: np.full(count, -1, dtype=np.int64) for name in GRID_NAMES if name in fields}
+    if grid is not None:
+        for name, numbers in zip(GRID_NAMES, (grid.rows, grid.columns), strict=True):
+            if name in found:
+                found[name][: len(grid)] = numbers
+    return found
+
+
+def without_lines(samples: Samples) -> Samples:
+    """Return samples without the fields row and column if none of them is on a grid."""
+    if samples.row is None or samples.column is None or (samples.row >= 0).any():
+        return samples
+    return replace(samples, row=None, column=None)

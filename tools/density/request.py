@@ -1,0 +1,128 @@
+"""The checked arguments of a sampling: normals, count, angle, coverage and density."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...runtime.base.checks import checked_count, known_name, positive_number
+from ...runtime.base.errors import InputError, UnknownNameError
+from ...runtime.base.threads import thread_count
+from ...runtime.directions.regions import Cap, checked_reach
+from ...runtime.directions.sets import frequency_within, icosphere
+from ...runtime.directions.unit import as_normals
+
+__all__ = ["BY_CURVATURE", "DENSITIES", "Request", "checked_request"]
+
+# The densities that follow the larger principal curvature.
+BY_CURVATURE = ("balanced", "aligned")
+DENSITIES = ("gauss", "balanced", "aligned", "uniform")
+BALANCED = [[x] for x in ("normals", "count", "angle", "coverage")] + [
+    [x, "coverage"] for x in ("normals", "count", "angle")
+]
+# For larger α, |K|^α is so uneven that all samples crowd around the point of the largest |K|.
+LARGEST_POWER = 8.0
+
+
+@dataclass(frozen=True, eq=False)
+class Request:
+    """A checked request: one of normals (S, 3), a count, an angle in degrees and a coverage.
+
+    A coverage may also be given with one of the others. `density` is one of `DENSITIES`, or α for
+    |K|^α. Normals outside of `reach` get no samples.
+    """
+
+    normals: NDArray[np.float64] | None
+    count: int | None
+    angle: float | None
+    coverage: float | None
+    density: str | float
+    reach: Cap | None = None
+
+    @property
+    def cost(self) -> str:
+        """The entry of `memory.COSTS` for the samples."""
+        return self.density if isinstance(self.density, str) else "uniform"
+
+    @property
+    def solid_angle(self) -> float:
+        """The solid angle of the normals that may have samples."""
+        return 4 * math.pi if self.reach is None else self.reach.solid_angle
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """The normals, or those of an icosphere whose covering radius is at most the angle."""
+        if self.normals is not None:
+            return self.normals
+        assert self.angle is not None
+        return icosphere(frequency_within(self.angle))
+
+
+def checked_request(
+    normals: ArrayLike | None,
+    count: int | None,
+    angle: float | None,
+    coverage: float | None,
+    density: str | float | None,
+    threads: int | None,
+    reach: Any = None,  # noqa: ANN401
+) -> Request:
+    """Return a request; InputError (or UnknownNameError) if the arguments are invalid."""
+    thread_count(threads)
+    number = None if count is None else checked_count(count)
+    amounts = {"normals": normals, "count": count, "angle": angle, "coverage": coverage}
+    given = [name for name, value in amounts.items() if value is not None]
+    if not given or len({*given} - {"coverage"}) > 1:
+        raise InputError(
+            "say how many samples by one of normals=..., count=..., angle=... and coverage=...; "
+            + (f"{' and '.join(given)} do not go together." if given else "none is given.")
+        )
+    kind = _density(density, "gauss" if given == ["normals"] else "balanced")
+    _check_that_they_fit(kind, given)
+    cap = checked_reach(reach)
+    if cap is not None and kind == "aligned":
+        raise InputError(
+            'density="aligned" is a grid on all of a surface; with reach=... use "balanced".'
+        )
+    return Request(
+        None if normals is None else as_normals(normals, threads=threads),
+        number,
+        None if angle is None else positive_number(angle, "angle", " degrees", most=90.0),
+        None if coverage is None else positive_number(coverage, "coverage"),
+        kind,
+        cap,
+    )
+
+
+def _density(density: str | float | None, default: str) -> str | float:
+    if density is None:
+        return default
+    if isinstance(density, str):
+        if density == "isotropic":  # of version 0.1
+            raise UnknownNameError(
+                'density="isotropic" has another name: write density="balanced".'
+            )
+        return known_name(density, DENSITIES, "density")
+    return positive_number(density, "density, as the power of |K|,", most=LARGEST_POWER)
+
+
+def _check_that_they_fit(density: str | float, given: list[str]) -> None:
+    """Raise InputError for amounts that a density does not support."""
+    fitting = {
+        # No angle: next to open boundaries, normals alone leave gaps wider than their covering
+        # radius.
+        "gauss": [["normals"], ["count"]],
+        "balanced": BALANCED,
+        "aligned": [x for x in BALANCED if "normals" not in x],
+        "uniform": [["count"], ["coverage"]],
+    }.get(str(density), [["count"]])
+    if given not in fitting:
+        shown = f'"{density}"' if isinstance(density, str) else density
+        raise InputError(
+            f"density={shown} does not go with {' and '.join(f'{x}=...' for x in given)}; "
+            f"use {' or '.join(f'{x[0]}=...' for x in fitting if len(x) == 1)}."
+        )

@@ -1,0 +1,471 @@
+"""The space that is sampled: all pieces as one surface, with cells and a target density."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.checks import finite_array
+from ...runtime.base.errors import InputError
+from ...runtime.base.scales import scale_to_one
+from ...runtime.base.threads import over_ranges
+from .along_borders import BorderLines, places_along, polygons_of
+from .cells import (
+    ALONG_U,
+    ALONG_V,
+    AREA,
+    BEND_U,
+    BEND_V,
+    CHORD,
+    RADIUS,
+    Cells,
+    by_piece,
+    halved,
+    into_parts,
+    merged,
+    new_cells,
+    points_of,
+    runs,
+)
+from .kernels.cells import evaluate_cells
+from .kernels.sizing import TargetDensity
+from .piece import Piece
+from .sifting import beside, placed, sifted
+from .trims import Trims
+
+__all__ = ["Space"]
+
+# The first cells bend by at most this along u and along v, in radians.
+FLAT = 0.3
+MOST_BENDS = 24
+# First cells without a place inside are quartered this many times.
+MOST_LOST = 4
+# The least and the largest number of pixels along u and v of the rasters of boundaries.
+FEWEST_PIXELS, MOST_PIXELS = 64, 512
+# Cells that the boundary intersects are cut in two steps if they have more parts than this.
+AT_ONCE = 64
+# The smallest cells, relative to the domain of their piece and to its size.
+DEEPEST = 2.0**-14
+MOST_CELLS = 2e9
+# The factor by which cells are coarsened if they are too many.
+COARSER = 1.2
+# The number of points on boundaries that are evaluated at a time.
+PLACES_AT_A_TIME = 1 << 17
+# The largest number of cells that are evaluated at a time, and the number of ranges per thread,
+# about.
+CELLS_AT_A_TIME, RANGES = 1 << 12, 32
+# `cut_by_normals` evaluates cells in blocks of about this number.
+BLOCK = 1 << 16
+# A cell counts as developable if |K| is below this part of 1/area.
+FLAT_CURVATURE = 1e-6
+# Where K is looked at once more: this part of the way from the place of a cell to its corner.
+BESIDE = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class Space:
+    """The pieces of a surface or a part, with a target density.
+
+    Lengths are multiplied by `unit`, and points are relative to `centre`, in L. The target density
+    of `first` has no floor and no ceiling, so that spaces that differ in these share it. On the
+    `developable` pieces, K is rounding error, and a power of it counts as 0.
+    """
+
+    label: str
+    pieces: tuple[Piece, ...]
+    target: TargetDensity
+    threads: int | None
+    developable: frozenset[int] = frozenset()
+    _held: dict[str, Any] = field(default_factory=dict, repr=False)
+
+    # --- the whole --------------------------------------------------------------------------------
+
+    @cached_property
+    def unit(self) -> float:
+        """The scaled length of a length 1: a power of two."""
+        return scale_to_one(max(x.size for x in self.pieces))
+
+    @cached_property
+    def areas(self) -> Array:
+        """The areas (P,) of the pieces, scaled."""
+        return (np.array([x.size for x in self.pieces]) * self.unit) ** 2
+
+    @cached_property
+    def centre(self) -> Array:
+        """The origin of scaled points, in L."""
+        return self.pieces[0].jets(*self.pieces[0].middle)[0, 0]
+
+    @cached_property
+    def sizes(self) -> Array:
+        """The lengths (P, 2) of the domains of the pieces."""
+        return np.array([x.sizes for x in self.pieces])
+
+    @cached_property
+    def trims(self) -> Trims:
+        """The trims of the pieces."""
+        return Trims(self.pieces)
+
+    @property
+    def size(self) -> float:
+        """The diagonal of a box around the first cells."""
+        points, radii = self.first.rows[:, :3], self.first.numbers[:, [RADIUS]]
+        low, high = (points - radii).min(axis=0), (points + radii).max(axis=0)
+        return float(np.linalg.norm(high - low))
+
+    @property
+    def area(self) -> float:
+        """The area of all pieces, scaled."""
+        return float(self.areas.sum())
+
+    @property
+    def integral(self) -> float:
+        """The integral of the target density over all pieces."""
+        return float(self.integrals.sum())
+
+    @property
+    def integrals(self) -> Array:
+        """The integrals (P,) of the target density over the pieces."""
+        cells = self.first
+        weights, count = cells.numbers[:, AREA], len(self.pieces)
+        values = self.densities
+        sums = np.bincount(cells.pieces, weights, count)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            means = np.bincount(cells.pieces, weights * values, count) / sums
+        means = np.where(np.isfinite(means), means, self.target.floor)
+        return means * self.areas
+
+    @property
+    def longest(self) -> float:
+        """The longest extent of a piece along an axis, times √w for the least density w."""
+        points = (self.first.rows[found, :3] for _, found in by_piece(self.first))
+        return math.sqrt(self.smallest) * max(float(np.ptp(x, axis=0).max()) for x in points)
+
+    @property
+    def smallest(self) -> float:
+        """The smallest target density of a cell."""
+        return float(self.densities.min())
+
+    @property
+    def images(self) -> Array:
+        """The solid angles (P,) of the Gaussian images of the pieces, with multiplicity."""
+        weights = np.abs(self.first.rows[:, 7]) * self.first.numbers[:, AREA]
+        return np.bincount(self.first.pieces, weights, len(self.pieces)).astype(np.float64)
+
+    def solid_angles(self, density: float) -> Array:
+        """Return the solid angles of the normals that a lattice of this density samples."""
+        known = (x.solid_angle(density) for x in self.pieces)
+        return np.array([y if x is None else x for x, y in zip(known, self.images, strict=True)])
+
+    @property
+    def distance(self) -> float:
+        """A bound of the distance between the sampled surface and that of the cells, in L."""
+        return max(x.distance for x in self.pieces)
+
+    @property
+    def developable_share(self) -> float:
+        """The part of the area that is developable; 0 if no cell is known."""
+        cells, count = self.first, len(self.pieces)
+        chosen = np.flatnonzero(self._is_flat(cells))
+        # K may vanish at one place of a curved cell, as on two circles of a torus.
+        corners, places = cells.boxes[chosen, :2], cells.places[chosen]
+        others = places + BESIDE * (corners - places)
+        chosen = chosen[self._is_flat(self.at(cells.pieces[chosen], others, keep=True))]
+        weights = cells.numbers[:, AREA]
+        flat = np.bincount(cells.pieces[chosen], weights[chosen], count)
+        # Areas of cells at boundaries are approximate, those of pieces are not.
+        known = np.maximum(np.bincount(cells.pieces, weights, count), np.finfo(np.float64).tiny)
+        return float(np.sum(flat / known * self.areas) / self.area)
+
+    def _is_flat(self, cells: Cells) -> Flags:
+        return np.asarray(np.abs(cells.rows[:, 7]) * self.area < FLAT_CURVATURE)
+
+    @property
+    def uniform(self) -> Space:
+        """The same pieces with the target density 1."""
+        first = replace(self.first, rows=self.first.rows.copy())
+        first.rows[:, 6] = 0.0
+        target, held = TargetDensity(floor=1.0), {"first": first}
+        space = replace(self, target=target, developable=frozenset(), _held=held)
+        space.__dict__.update(self._shared)
+        return space
+
+    @property
+    def exact(self) -> Space:
+        """The same space with the derivatives of the sampled surface, which may take longer."""
+        pieces = tuple(x.exact for x in self.pieces)
+        if all(x is y for x, y in zip(pieces, self.pieces, strict=True)):
+            return self
+        made = replace(self, pieces=pieces)
+        made.__dict__.update(self._shared)
+        return made
+
+    def to_power(self, exponent: float) -> Self:
+        """Return the same space with another exponent of the target density, and its cells.
+
+        The target density is a power of κ, without a Gauss weight.
+        """
+        first, borders = (replace(x, rows=x.rows.copy()) for x in (self.first, self.borders))
+        for found in (first, borders):
+            found.rows[:, 6] **= exponent / self.target.exponent
+        target, held = self.target._replace(exponent=exponent), {"first": first, "borders": borders}
+        made = replace(self, target=target, _held=held)
+        made.__dict__.update(self._shared)
+        return made
+
+    def between(self, floor: float, ceiling: float = math.inf) -> Space:
+        """Return the same space with another floor and ceiling of the target density."""
+        made = replace(self, target=self.target._replace(floor=floor, ceiling=ceiling))
+        made.__dict__.update(self._shared)
+        return made
+
+    @property
+    def densities(self) -> Array:
+        """The target densities of the first cells."""
+        return np.clip(self.first.rows[:, 6], self.target.floor, self.target.ceiling)
+
+    @property
+    def _shared(self) -> dict[str, object]:
+        """The attributes that spaces of the same pieces share."""
+        return {x: getattr(self, x) for x in ("areas", "unit", "centre", "sizes", "trims")}
+
+    def scaled_points(self, points: NDArray[np.floating]) -> Array:
+        """Return scaled points (N, 3); InputError unless they are finite."""
+        return (finite_array(points, (len(points), 3), "points") - self.centre) * self.unit
+
+    # --- cells ------------------------------------------------------------------------------------
+
+    def nothing(self) -> Cells:
+        """Return no cells."""
+        return new_cells(np.empty(0, dtype=np.int64), np.empty((0, 4))).with_rows()
+
+    @property
+    def first(self) -> Cells:
+        """Cells of all pieces, as large as flatness allows; their density has no floor."""
+        if "first" not in self._held:
+            self._held["first"] = self._first()
+        return self._held["first"]
+
+    @property
+    def borders(self) -> BorderLines:
+        """The boundaries of all pieces; the density there has no floor."""
+        if "borders" not in self._held:
+            self._held["borders"] = self._borders()
+        return self._held["borders"]
+
+    def along_borders(self, step: float, turn: float = math.inf) -> Cells:
+        """Return cells without an extent along boundaries; see `places_along`."""
+        return self.known(self._beside_borders(step, turn))
+
+    def at(
+        self, pieces: Indices, places: Array, limits: Array | float = 0.0, *, keep: bool = False
+    ) -> Cells:
+        """Return cells without an extent at parameters (k, 2) of pieces (k,); see `known`."""
+        return self.known(points_of(pieces, places, self.sizes[pieces], limits), keep=keep)
+
+    def middles(self, pieces: Indices) -> Cells:
+        """Return the cell nearest to the middle of each of the given pieces."""
+        first, rows, wanted = self.first, [], set(pieces.tolist())
+        for k, found in by_piece(first):
+            if k in wanted:
+                points, areas = first.rows[found, :3], first.numbers[found, AREA]
+                regular = first.rows[found, 3:6].any(axis=1)
+                weights = areas if areas.any() else np.ones(len(areas))
+                middle = (points * weights[:, None]).sum(axis=0) / weights.sum()
+                distances = np.where(regular, ((points - middle) ** 2).sum(axis=1), np.inf)
+                if regular.any():
+                    rows.append(found.start + int(distances.argmin()))
+        return first[np.array(rows, dtype=np.int64)]
+
+    def cut(self, radius: float) -> Cells:
+        """Return cells that lie within radius/√w of their places, w the target density there.
+
+        Also return cells without an extent along boundaries, about as far apart.
+        """
+        return self.known(self._cut(radius))
+
+    def _cut(self, radius: float) -> Cells:
+        """Return the cells of `cut`, not evaluated."""
+        cells, parts, pixels = self.first, self.parts(radius), self._pixels(radius)
+        many = (parts.prod(axis=1) > AT_ONCE) & ~cells.whole
+        steps = np.where(many[:, None], np.ceil(np.sqrt(parts)).astype(np.int64), 1)
+        owner = np.repeat(np.arange(len(steps)), steps.prod(axis=1))
+        cells, owner = sifted(self.trims, into_parts(cells, steps), pixels, owner)
+        cells = self._inside(into_parts(cells, -(-parts[owner] // steps[owner])), pixels)
+        return merged([cells, self._beside_borders(radius)])
+
+    def parts(self, radius: float) -> Indices:
+        """Return the numbers (M, 2) of parts of each first cell along u and v in `cut`.
+
+        Raises InputError if the parts are too many.
+        """
+        lengths = self.first.numbers[:, [ALONG_U, ALONG_V]]
+        with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+            rates = np.sqrt(self.densities) / (math.sqrt(2.0) * radius)
+            parts = np.fmax(np.ceil(np.fmin(lengths * rates[:, None], MOST_CELLS)), 1.0)
+        if parts.prod(axis=1).sum() > MOST_CELLS:
+            raise self._too_many()
+        return parts.astype(np.int64)
+
+    def _too_many(self) -> InputError:
+        """Return the error that the surface would have to be cut into more cells than allowed."""
+        return InputError(
+            f"{self.label} would have to be searched in more than {MOST_CELLS:.0e} places; ask for "
+            "a larger coverage or angle, or for fewer samples or normals."
+        )
+
+    def cut_by_normals(self, chord: float, most: float) -> Iterator[Cells]:
+        """Yield, in blocks, cells whose normals are within about a chord of that at their places.
+
+        The chord is increased until there are at most about `most` cells.
+        """
+        first = self.first
+        bends = np.where(first.numbers[:, [CHORD]] > chord, first.numbers[:, [BEND_U, BEND_V]], 0.0)
+        parts = np.maximum(np.ceil(bends / (2.0 * chord)), 1.0)
+        while parts.prod(axis=1).sum() > most + len(first):
+            chord *= COARSER
+            parts = np.maximum(np.ceil(bends / (2.0 * chord)), 1.0)
+        blocks = np.cumsum(parts.prod(axis=1)) // BLOCK
+        for _, rows in runs(blocks):
+            yield self.evaluated(into_parts(first[rows], parts[rows].astype(np.int64)))
+
+    def evaluated(self, cells: Cells, pixels: Indices | None = None) -> Cells:
+        """Return the cells that have a place inside the trim, evaluated."""
+        return self.known(self._inside(cells, self._fewest if pixels is None else pixels))
+
+    def halves(self, cells: Cells) -> Cells:
+        """Return cells bisected across their longer sides, without those outside the trim."""
+        along_u = cells.numbers[:, ALONG_U] >= cells.numbers[:, ALONG_V]
+        return self.evaluated(halved(cells, along_u))
+
+    def quarters(self, cells: Cells) -> Cells:
+        """Return cells bisected along u and along v.
+
+        Near singular points, normals turn most along the shorter side.
+        """
+        return self.evaluated(into_parts(cells, np.full((len(cells), 2), 2)))
+
+    def deepest(self, cells: Cells) -> NDArray[np.bool_]:
+        """Return which cells are too small to be cut further."""
+        sizes = cells.boxes[:, 2:] - cells.boxes[:, :2]
+        small = np.all(sizes <= DEEPEST * self.sizes[cells.pieces], axis=1)
+        return small | (cells.radii <= DEEPEST * np.sqrt(self.areas[cells.pieces]))
+
+    # --- steps ------------------------------------------------------------------------------------
+
+    def _inside(self, cells: Cells, pixels: Indices) -> Cells:
+        """Return the cells that have a place inside the trim, which is set."""
+        return placed(self.trims, sifted(self.trims, cells.sorted(), pixels)[0])[0]
+
+    def _beside_borders(self, step: float, turn: float = math.inf) -> Cells:
+        """Return the cells of `along_borders`, not evaluated."""
+        pieces, *found = places_along(self.trims, self.borders, self.target, step, turn)
+        return points_of(pieces, found[0], self.sizes[pieces], found[1])
+
+    def _first(self) -> Cells:
+        boxes = [x.boxes for x in self.pieces]
+        pieces = np.repeat(np.arange(len(boxes)), [len(x) for x in boxes])
+        space = self.between(0.0)
+        cells = new_cells(pieces, np.concatenate(boxes))
+        done = [space.nothing()]
+        for step in range(MOST_BENDS):
+            cells = replace(cells, limits=np.zeros(len(cells)))
+            cells, _ = sifted(self.trims, cells, self._fewest)
+            cells, lost = placed(self.trims, cells)
+            cells = space.known(cells)
+            bends = cells.numbers[:, [BEND_U, BEND_V]]
+            bent = (bends > FLAT).any(axis=1) & ~self.deepest(cells)
+            done.append(cells[~bent] if bent.any() else cells)
+            cells = halved(cells[bent], bends[bent, 0] >= bends[bent, 1])
+            if len(lost) and step < MOST_LOST:
+                cells += into_parts(lost, np.full((len(lost), 2), 2))
+                cells = cells.sorted()
+            elif len(lost):
+                done.append(space.at(*beside(self.trims, lost, self._fewest)))
+            if not len(cells):
+                break
+        return merged(done)
+
+    def _borders(self) -> BorderLines:
+        numbers, starts, places, inside, near = polygons_of(self.trims, self.first)
+        owners, space = np.repeat(numbers, np.diff(starts)), self.between(0.0)
+        rows, limits = np.empty((len(owners), 8)), np.empty(len(owners))
+        for first in range(0, len(owners), PLACES_AT_A_TIME):
+            some = slice(first, first + PLACES_AT_A_TIME)
+            cells = space.at(owners[some], inside[some], near[some], keep=True)
+            rows[some], limits[some] = cells.rows, cells.limits
+        return BorderLines(numbers, starts, places, rows, limits)
+
+    @cached_property
+    def _fewest(self) -> Indices:
+        return np.full(len(self.pieces), FEWEST_PIXELS)
+
+    def _pixels(self, radius: float) -> Indices:
+        """Return the number of pixels for each piece: half a radius wide, within the limits."""
+        cells, count = self.first, len(self.pieces)
+        rates = np.sqrt(self.densities)
+        low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+        np.minimum.at(low, cells.pieces, cells.rows[:, :3])
+        np.maximum.at(high, cells.pieces, cells.rows[:, :3])
+        mean = np.bincount(cells.pieces, rates, count) / np.maximum(
+            np.bincount(cells.pieces, minlength=count), 1
+        )
+        extent = np.where(np.isfinite(high - low), high - low, 0.0)
+        wanted = np.linalg.norm(extent, axis=1) * mean * 2.0 / radius
+        power = np.ceil(np.log2(np.clip(wanted, FEWEST_PIXELS, MOST_PIXELS)))
+        return (2**power).astype(np.int64)
+
+    def known(self, cells: Cells, *, keep: bool = False) -> Cells:
+        """Return cells, sorted by their pieces, with rows and numbers.
+
+        Cells that are not finite are left out, or, with `keep`, marked as singular.
+        """
+
+        def work(first: int, last: int) -> None:
+            for parts in groups[first:last]:
+                jets = [self.pieces[k].jets(*cells.places[rows].T.copy()) for k, rows in parts]
+                (k, begin), (_, end) = parts[0], parts[-1]
+                rows = slice(begin.start, end.stop)
+                evaluate_cells(
+                    jets[0] if len(jets) == 1 else np.concatenate(jets),
+                    cells.boxes[rows], cells.places[rows], self.unit, self.centre,
+                    self.pieces[k].finest, self._target_of(k),
+                    cells.rows[rows], cells.numbers[rows],
+                )  # fmt: skip
+
+        cells = cells.with_rows()
+        groups = self._groups(cells)
+        list(over_ranges(work, len(groups), len(groups) // RANGES + 1, self.threads))
+        rows, numbers = (np.isfinite(x).all(axis=1) for x in (cells.rows, cells.numbers))
+        finite = np.asarray(rows & numbers)
+        if keep:
+            cells.rows[~finite] = 0.0
+            return cells
+        return cells if finite.all() else cells[finite]
+
+    def _groups(self, cells: Cells) -> list[list[tuple[int, slice]]]:
+        """Return groups of cells to evaluate at a time: pieces, with the rows of each.
+
+        Cells of a group have the same `finest` and target density: each piece may have few cells.
+        """
+        groups, last, room = list[list[tuple[int, slice]]](), None, 0
+        for k, rows in by_piece(cells):
+            kind = k in self.developable, *self.pieces[k].finest.tolist()
+            for first in range(rows.start, rows.stop, CELLS_AT_A_TIME):
+                part = slice(first, min(first + CELLS_AT_A_TIME, rows.stop))
+                room -= part.stop - part.start
+                if kind != last or room < 0:
+                    groups.append([])
+                    last, room = kind, CELLS_AT_A_TIME - (part.stop - part.start)
+                groups[-1].append((k, part))
+        return groups
+
+    def _target_of(self, piece: int) -> TargetDensity:
+        flat = piece in self.developable
+        return self.target._replace(gauss_weight=0.0) if flat else self.target

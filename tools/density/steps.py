@@ -1,0 +1,180 @@
+"""The steps of a graded grid: the distances of its lines for the same error everywhere.
+
+With steps a along u and b along v, the corners of a cell of a grid are farther apart than
+
+    √(e a² + 2 |f| a b + g b²)    and    √(E a² + 2 |F| a b + G b²)
+
+in normal space and in space, with the third and the first fundamental form. Lines u = const share
+the step a(u), lines v = const the step b(v).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...runtime.base.aliases import Array
+from .kernels.steps import shared_steps
+
+__all__ = ["Forms", "Steps", "equal_steps", "steps_for_count"]
+
+_Arrays = tuple[Array, Array, Array, Array, float]
+
+# The shares of the limits for steps along u: the best of SHARES, refined by SEARCHES, with forms on
+# a coarser grid.
+SHARES, SEARCHES, COARSE = np.linspace(0.15, 0.95, 7), 4, 24
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+# The longest and the shortest step, as parts of the domain.
+LONGEST, SHORTEST = 0.5, 1e-9
+# The angle that gives a count is searched up to WIDEST, until the count is met within CLOSE.
+WIDEST, CLOSE, TRIALS = math.pi, 0.002, 12
+# A distance that needs too many samples is increased until this factor of the count is spare.
+LARGER = 1.1
+
+
+@dataclass(frozen=True, eq=False)
+class Forms:
+    """Two fundamental forms at the middles of a grid, each (3, k, l); widths (k,) and (l,)."""
+
+    third: Array
+    first: Array
+    widths: tuple[Array, Array]
+
+    def coarser(self, number: int) -> Forms:
+        """Return the largest entries on blocks of neighbours, at most `number` along u and v."""
+        third, first, widths = self.third, self.first, list(self.widths)
+        for axis in (0, 1):
+            count = len(widths[axis])
+            if count > number:
+                starts = np.arange(number) * count // number
+                third, first = (
+                    np.maximum.reduceat(np.abs(x), starts, axis=axis + 1) for x in (third, first)
+                )
+                widths[axis] = np.add.reduceat(widths[axis], starts)
+        return Forms(third, first, (widths[0], widths[1]))
+
+    @cached_property
+    def swapped(self) -> Forms:
+        """The same forms with u and v exchanged."""
+        third, first = (
+            np.ascontiguousarray(x[::-1].transpose(0, 2, 1)) for x in (self.third, self.first)
+        )
+        return Forms(third, first, (self.widths[1], self.widths[0]))
+
+    @cached_property
+    def arrays(self) -> tuple[_Arrays, _Arrays]:
+        """The arguments of the kernel: the forms, and those with u and v exchanged."""
+        along_u, along_v = (
+            (x.third, x.first, x.third[0].max(axis=1), x.first[0].max(axis=1), x.widths[0].sum())
+            for x in (self, self.swapped)
+        )
+        return along_u, along_v
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Steps along u (k,) and along v (l,) for an error, with the number of samples of the grid.
+
+    `lengths` are the numbers of steps along u and v, `angle` and `distance` halves of the
+    longest diagonals of cells in normal space and in space.
+    """
+
+    along: tuple[Array, Array]
+    lengths: tuple[float, float]
+    angle: float
+    distance: float
+
+    @property
+    def count(self) -> float:
+        """The number of samples."""
+        return self.lengths[0] * self.lengths[1]
+
+
+def equal_steps(forms: Forms, angle: float, distance: float) -> Steps:
+    """Return the steps that give the fewest samples.
+
+    Half the diagonals of cells are at most `angle` in normal space (as a length), and `distance` in
+    space.
+    """
+    limits, coarse = ((2.0 * angle) ** 2, (2.0 * distance) ** 2), forms.coarser(COARSE)
+    share = _least(lambda x: _steps(coarse, limits, x).count)
+    return _steps(forms, limits, share)
+
+
+def steps_for_count(forms: Forms, count: float, distance: float) -> Steps:
+    """Return the steps that give a count of samples and the smallest angle, for a distance.
+
+    If the distance needs more samples, it is made larger.
+    """
+    coarse = forms.coarser(COARSE)
+    fewest = equal_steps(coarse, WIDEST, distance).count
+    if fewest * LARGER > count:
+        distance *= math.sqrt(LARGER * fewest / count)
+    guess = [math.sqrt(_typical(coarse) / count)]
+
+    def angle(share: float) -> float:
+        steps, guess[0] = _steps_at_share(coarse, share, count, distance, guess[0])
+        return guess[0] * max(steps.count / count, 1.0)
+
+    share = _least(angle)
+    return _steps_at_share(forms, share, count, distance, angle(share))[0]
+
+
+def _least(value: Callable[[float], float]) -> float:
+    """Return the share with the smallest value."""
+    values = [value(float(x)) for x in SHARES]
+    best = int(np.argmin(values))
+    low, high = (float(SHARES[min(max(k, 0), len(SHARES) - 1)]) for k in (best - 1, best + 1))
+    places = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)]
+    found = [value(x) for x in places]
+    for _ in range(SEARCHES):
+        k = int(found[0] < found[1])
+        # The part beyond the worse point is dropped, and a new point taken in the rest.
+        low, high = (low, places[1]) if k else (places[0], high)
+        places[k], found[k] = places[1 - k], found[1 - k]
+        new = high - GOLDEN * (high - low) if k else low + GOLDEN * (high - low)
+        places[1 - k], found[1 - k] = new, value(new)
+    k = int(np.argmin(found))
+    return places[k] if found[k] < values[best] else float(SHARES[best])
+
+
+def _steps_at_share(
+    forms: Forms, share: float, count: float, distance: float, angle: float
+) -> tuple[Steps, float]:
+    """Return the steps for a share that give a count, and their angle, starting from a guess."""
+
+    def steps_at(angle: float) -> Steps:
+        return _steps(forms, ((2.0 * angle) ** 2, (2.0 * distance) ** 2), share)
+
+    low, high = 0.0, WIDEST
+    steps = steps_at(angle)
+    for _ in range(TRIALS):
+        ratio = steps.count / count
+        if abs(ratio - 1.0) < CLOSE or high - low < CLOSE * high:
+            break
+        low, high = (angle, high) if ratio > 1.0 else (low, angle)
+        # The count is proportional to a power of the angle between −2 and 0.
+        angle *= ratio if ratio > 1.0 else math.sqrt(ratio)
+        if not low < angle < high:
+            angle = math.sqrt(low * high) if low > 0.0 else high / 2.0
+        steps = steps_at(angle)
+    return steps, angle
+
+
+def _typical(forms: Forms) -> float:
+    """Return the product of a count and the square of its angle, roughly."""
+    u, v = (np.sqrt(forms.third[k].max(axis=1 - k // 2)) for k in (0, 2))
+    lengths = (u * forms.widths[0]).sum() * (v * forms.widths[1]).sum()
+    return max(float(lengths) / 2.0, 1e-9)
+
+
+def _steps(forms: Forms, limits: tuple[float, float], share: float) -> Steps:
+    """Return steps of which those along u use a share of the limits."""
+    along = np.empty(len(forms.widths[0])), np.empty(len(forms.widths[1]))
+    shared_steps(*forms.arrays, limits, share, SHORTEST, LONGEST, *along)
+    lengths = tuple(float((w / x).sum()) for w, x in zip(forms.widths, along, strict=True))
+    return Steps(along, (lengths[0], lengths[1]), *(math.sqrt(x) / 2.0 for x in limits))

@@ -1,0 +1,210 @@
+"""`sample_stream`: the samples of a surface in chunks, in bounded memory."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Generator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike
+
+from ...runtime.base.checks import whole_number, yes_or_no
+from ...runtime.base.errors import InputError
+from ...runtime.base.threads import shown
+from ...runtime.map import kept_map
+from ...runtime.onto_surface.on_spline import FieldsOfSamples, OnSpline
+from ...runtime.onto_surface.on_surface import place_of_samples
+from ...runtime.onto_surface.pieces import geometries_of, pieces_to_sample
+from ...runtime.samples.fields import checked_dtype, checked_fields
+from ...runtime.samples.report import SamplingReport, count_infinite, warn_of
+from ...runtime.samples.samples import Samples
+from ...runtime.search.search import developable_patches, find_in_turn
+from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
+from ...runtime.surface.surfaces import named
+from ..density.chosen_normals import Chosen, choose
+from ..density.request import Request, checked_request
+
+__all__ = ["sample_stream"]
+
+# The number of normals in a block; with their samples they take about 150 MB.
+NORMALS_AT_A_TIME = 1 << 20
+
+
+def sample_stream(
+    surface: Surface | Spline | str,
+    count: int | None = None,
+    *,
+    normals: ArrayLike | None = None,
+    chunk: int = 1_000_000,
+    cells: Sequence[int] | None = None,
+    on: str | None = None,
+    fields: Sequence[str] | None = None,
+    dtype: DTypeLike = np.float64,
+    threads: int | None = None,
+    progress: bool = False,
+) -> Generator[Samples, None, None]:
+    """Return the samples of a surface in chunks, in bounded memory.
+
+    The samples are those of `sample` with ``density="gauss"``. 10⁹ samples that are reduced on the
+    fly take less than 1 GiB; with `count`, even the normals are made in blocks.
+
+    Parameters
+    ----------
+    surface : Surface, Spline or str
+        The surface, or its name in the catalogue.
+    count, normals, cells, on, fields, dtype, threads, progress : optional
+        As in `sample`; either `count` or `normals` is given.
+    chunk : int, default 1,000,000
+        The largest number of samples in a chunk.
+
+    Returns
+    -------
+    generator of Samples
+        The chunks, at least one; all but the last one of each block of 1,048,576 normals are full,
+        unless a spline is trimmed. The report of a chunk has the number of its samples, and does
+        not count developable patches.
+
+    Raises
+    ------
+    GaussmapError
+        As `sample`; all arguments are checked, and the surface is evaluated, before the generator
+        is returned.
+
+    Warns
+    -----
+    GaussmapWarning
+        As `sample`, after the last chunk.
+
+    Notes
+    -----
+    ``Samples.concatenate(sample_stream(…))`` is ``sample(…, density="gauss")``, bit for bit and in
+    the same order. Normals are searched in blocks of 1,048,576. Closing the generator ends the
+    work.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> chunks = gm.sample_stream("torus", normals=gm.icosphere(4), chunk=100)
+    >>> sum(len(chunk) for chunk in chunks) == len(gm.sample("torus", normals=gm.icosphere(4)))
+    True
+
+    """
+    size = whole_number(chunk, "chunk")
+    surface, number = named(surface), checked_dtype(dtype)
+    is_on_surface = place_of_samples(surface, on) == "surface"
+    wanted = checked_fields(fields, is_on_surface, proved=is_on_surface)
+    request = checked_request(normals, count, None, None, "gauss", threads)
+    if pieces := pieces_to_sample(surface):
+        raise InputError(
+            f"surface {surface.name!r} has {len(pieces)} smooth pieces between creases; "
+            "stream each of surface.pieces(), or gm.fit(surface), which rounds the creases."
+        )
+    if request.normals is not None:  # the caller may change them before the last chunk
+        request = replace(request, normals=request.normals.copy())
+    if request.normals is None:
+        pieces = geometries_of(surface, cells, on)
+    else:
+        pieces = kept_map(surface, cells, on)._pieces
+    geometry = pieces[0].used(number, threads)
+    if geometry.index is None:
+        wanted = checked_fields(fields, is_on_surface)
+    shows = yes_or_no(progress, "progress")
+    return _Stream(geometry, request, size, wanted, number, shows).chunks()
+
+
+@dataclass(frozen=True, eq=False)
+class _Stream:
+    geometry: OnSpline
+    request: Request
+    size: int
+    fields: tuple[str, ...]
+    dtype: np.dtype[np.floating]
+    progress: bool
+
+    @property
+    def _chosen(self) -> Chosen:
+        """The normals: the prescribed ones, or those of a lattice for the count."""
+        if self.request.count is not None:
+            return choose(self.geometry, self.request.count, self.progress)
+        normals = self.request.directions
+        return Chosen(normals, len(normals) / (4 * math.pi))
+
+    def chunks(self) -> Generator[Samples, None, None]:
+        """Yield the chunks of all blocks of normals, at least one, and warn at the end."""
+        if self.geometry.index is not None:
+            yield from self._proved_chunks()
+            return
+        geometry, threads = self.geometry, self.geometry.threads
+        chosen = self._chosen
+        chosen, total = replace(chosen, found=None), len(chosen)  # frees the hits
+        report = geometry.report(total, chosen.density, None, {})
+        starts = range(0, total, NORMALS_AT_A_TIME)
+        alone = len(starts) == 1
+        came, unrefined, nothing = 0, 0, None
+        for first in shown(iter(starts), len(starts), self.progress and not alone):
+            last = min(first + NORMALS_AT_A_TIME, total)
+            normals = chosen.part(first, last, threads)
+            hits = find_in_turn(geometry.spline, normals, threads, self.progress and alone)
+            for part in geometry.at_hits_in_turn(normals, hits, self.fields, self.dtype, self.size):
+                samples = self._samples(part, first, report)
+                came, unrefined = came + part.number, unrefined + (part.unrefined or 0)
+                if part.number:
+                    yield samples
+                else:
+                    nothing = samples
+            del normals, hits  # before the next block is made
+        if came == 0 and nothing is not None:
+            yield nothing
+        developable = developable_patches(geometry.spline, threads)
+        report = replace(report, samples=came, developable_patches=developable)
+        warn_of(replace(report, unrefined=unrefined), self.request.count, stacklevel=3)
+
+    def _proved_chunks(self) -> Generator[Samples, None, None]:
+        """Yield the chunks of a proved search."""
+        chosen = self._chosen
+        total, came, report = len(chosen), 0, None
+        starts = range(0, total, NORMALS_AT_A_TIME)
+        for first in shown(iter(starts), len(starts), self.progress and len(starts) > 1):
+            normals = chosen.part(first, first + NORMALS_AT_A_TIME, self.geometry.threads)
+            found = self.geometry.samples_at(
+                normals, self.fields, self.dtype, self.progress, chosen.density
+            )
+            for start in range(0, max(len(found), 1), self.size):
+                if start or len(found) or (first == starts[-1] and not came):
+                    part = found[start : start + self.size]
+                    yield _chunk(part, first, total, is_first=start == 0)
+            came, report = came + len(found), found.report
+        assert report is not None
+        warn_of(replace(report, samples=came), self.request.count, stacklevel=4)
+
+    def _samples(self, found: FieldsOfSamples, start: int, report: SamplingReport) -> Samples:
+        """Return a chunk; its normals are numbered from `start` on."""
+        arrays = found.fields
+        if start and "normal_index" in arrays:
+            arrays["normal_index"] = arrays["normal_index"] + start
+        report = replace(
+            report, samples=found.number, infinite_curvatures=count_infinite(arrays),
+            unrefined=found.unrefined,
+        )  # fmt: skip
+        return self.geometry.samples(arrays, report)
+
+
+def _chunk(found: Samples, start: int, total: int, is_first: bool) -> Samples:
+    """Return a chunk of a block of normals from `start` on; the first chunk has the proof."""
+    arrays: dict[str, Any] = found.arrays()
+    report = found.report
+    if start and "normal_index" in arrays:
+        arrays["normal_index"] = arrays["normal_index"] + start
+    undecided = [x._replace(normal=x.normal + start) for x in report.undecided or ()]
+    report = replace(
+        report,
+        normals=total,
+        samples=len(found),
+        infinite_curvatures=count_infinite(arrays),
+        proved=report.proved if is_first else 0,
+        undecided=tuple(undecided) if is_first else (),
+    )
+    return Samples(**arrays, report=report, spline=found.spline, surface=found.surface)
