@@ -14,10 +14,10 @@ from ..base.threads import over_ranges
 from ..samples.fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
+from .hits import Hits
 from .in_nets import fields_in_nets
 from .kernels.fill import fill_samples
 from .kernels.tile import fill_known, new_tile
-from .search import Hits
 
 __all__ = ["fill", "fill_hits"]
 

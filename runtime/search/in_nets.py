@@ -24,6 +24,7 @@ from ..base.kept import kept
 from ..base.tolerances import DATA_ERROR, FORM_ERROR
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
+from ..spline.tips import tips_of
 from .exact import Decision
 from .integers import Integers, integers, integers_by_row, ratio, sign
 from .long_integers import displaced_forms, exact_forms, leading_sign
@@ -82,9 +83,13 @@ def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decis
 def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
     """Return whether normals are those of patches at places (k, 2), or near singular ones.
 
-    At a singular point the tangents are perpendicular to a whole circle of directions.
+    At a singular point the tangents are perpendicular to a whole circle of directions. A tip has no
+    normal with which tangents of patches there could be made to agree.
     """
     N, singular = spline.normals_in_patches(patches, places)
+    tips = tips_of(spline)
+    if tips is not None:
+        singular |= tips.touching[patches]
     least = np.where(singular, SAME_NORMAL, 0.0) * np.linalg.norm(N, axis=1)
     return np.einsum("kx,kx->k", N, normals) > least
 

@@ -15,6 +15,7 @@ from ..base.threads import over_ranges
 from ..directions.unit import perpendicular
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
+from ..spline.tips import tips_of
 from .in_nets import errors_of
 from .kernels.lists import FINEST, Lists, list_pieces, order_normals, place_members, write_caps
 from .kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
@@ -67,7 +68,7 @@ def index_of(spline: Spline, threads: int | None, first: int = 0) -> Index:
         last = min(first + MOST_PATCHES, spline.patches)
         pieces = _of_nets(spline, first, last) if isinstance(spline, NetSpline) else None
         pieces = pieces or _of_grid(spline, first, last, threads)
-        lists = listed(pieces.cones)
+        lists = _listed(spline, pieces.cones, first)
         return Index(pieces, lists, first, int(np.diff(lists.starts).max()))
 
     return kept(spline, Index, make) if spline.patches <= MOST_PATCHES else make()
@@ -105,6 +106,16 @@ def _of_nets(spline: NetSpline, first: int, last: int) -> Pieces:
     )
     write_net_pieces(vectors, control, angles, bounds, np.empty((6, 4)), pieces)
     return pieces
+
+
+def _listed(spline: Spline, cones: Array, first: int) -> Lists:
+    """Return the lists of patches from `first` on, without those at tips."""
+    tips = tips_of(spline)
+    if tips is None:
+        return listed(cones)
+    kept = np.flatnonzero(~tips.collapsed[first : first + len(cones)])
+    lists = listed(cones[kept])
+    return lists._replace(members=kept.astype(np.int32)[lists.members[: lists.starts[-1]]])
 
 
 def listed(cones: Array) -> Lists:

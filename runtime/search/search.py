@@ -7,10 +7,8 @@ by exact arithmetic.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator
 from contextlib import closing
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +20,10 @@ from ..base.threads import over_ranges
 from ..spline.kernels.developable import count_developable
 from ..spline.nets import NetSpline
 from ..spline.spline import Spline
+from ..spline.tips import tips_of
 from .exact import decide
+from .fill import fill
+from .hits import Hits
 from .in_nets import decide_in_nets, flat_nets
 from .index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 from .kernels.lists import NUMBER
@@ -39,73 +40,6 @@ RANGE, ROOM = 1 << 13, 1 << 15
 PATCHES_AT_A_TIME = 1 << 14
 
 
-@dataclass(frozen=True, eq=False)
-class Hits:
-    """The hits, a normal and one of its patches each, sorted by normal and then by patch.
-
-    `keys` (N,) are number of the normal << 32 | patch. `exact` (k,) are the numbers of the hits
-    that were decided exactly, `local` (k, 5) that of `Decision`. `developable` is the number of
-    patches that are developable up to the rounding of their coordinates.
-    """
-
-    keys: Indices
-    exact: Indices
-    local: Array
-    developable: int
-
-    @classmethod
-    def none(cls, developable: int) -> Hits:
-        """Return no hits."""
-        return cls(np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, 5)), developable)
-
-    @classmethod
-    def joined(cls, parts: Sequence[Hits]) -> Hits:
-        """Return the hits of consecutive ranges of normals."""
-        if len(parts) == 1:
-            return parts[0]
-        starts = np.cumsum([0, *(len(part) for part in parts[:-1])])
-        return cls(
-            np.concatenate([part.keys for part in parts]),
-            np.concatenate([x.exact + start for x, start in zip(parts, starts, strict=True)]),
-            np.concatenate([part.local for part in parts]),
-            parts[0].developable,
-        )
-
-    def __len__(self) -> int:
-        """Return the number of samples."""
-        return len(self.keys)
-
-    @cached_property
-    def patch_index(self) -> Indices:
-        """The patch number of each hit."""
-        return self.keys & NUMBER
-
-    @cached_property
-    def normal_index(self) -> Indices:
-        """The number of the normal of each hit."""
-        return self.keys >> 32
-
-    def __getitem__(self, key: slice) -> Hits:
-        """Return consecutive hits."""
-        first, last, _ = key.indices(len(self))
-        low, high = np.searchsorted(self.exact, (first, last))
-        exact = self.exact[low:high] - first
-        return Hits(self.keys[first:last], exact, self.local[low:high], self.developable)
-
-    def whole_normals(self, size: int) -> Iterator[Hits]:
-        """Yield the hits in groups, at least one, of at most `size` hits or of one normal."""
-        first = 0
-        while True:
-            last = len(self)
-            if last - first > size:
-                number = max(self.keys[first + size] >> 32, (self.keys[first] >> 32) + 1)
-                last = int(np.searchsorted(self.keys, number << 32))
-            yield self[first:last]
-            if last == len(self):
-                return
-            first = last
-
-
 def find(
     spline: Spline, normals: Array, threads: int | None = None, progress: bool = False
 ) -> Hits:
@@ -119,7 +53,9 @@ def find_in_turn(
 ) -> Iterator[Hits]:
     """Yield the hits of consecutive ranges of normals, at least one; their memory is bounded."""
     developable = developable_patches(spline, threads)
-    if developable == spline.patches or len(normals) == 0:
+    tips = tips_of(spline)
+    nothing = developable == spline.patches or (tips is not None and tips.collapsed.all())
+    if nothing or len(normals) == 0:
         yield Hits.none(developable)
         return
     first, size = 0, NORMALS_AT_A_TIME
@@ -200,9 +136,23 @@ def _decided(
     if len(exact) > 0:
         order_few(keys)
     exact = np.searchsorted(keys, exact)
+    found = _without_tips(spline, normals, Hits(keys, exact, local, developable))
     if first:
-        keys += first << 32
-    return Hits(keys, exact, local, developable)
+        found.keys[:] += first << 32
+    return found
+
+
+def _without_tips(spline: Spline, normals: Array, hits: Hits) -> Hits:
+    """Return the hits but those at a tip, where the surface has no normal."""
+    tips = tips_of(spline)
+    if tips is None:
+        return hits
+    near = np.flatnonzero(tips.touching[hits.patch_index])
+    part = hits.rows(near)
+    points = fill(spline, normals, part, fields=("points",))["points"]
+    kept = np.ones(len(hits), np.bool_)
+    kept[near[tips.hold(points)]] = False
+    return hits if kept.all() else hits.rows(np.flatnonzero(kept))
 
 
 def developable_patches(spline: Spline, threads: int | None) -> int:

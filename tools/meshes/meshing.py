@@ -13,10 +13,11 @@ from ...runtime.base.memory import check_memory
 from ...runtime.domain.domain import Boundary, BoundaryCondition
 from ...runtime.onto_surface.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
+from ...runtime.spline.tips import collapsed_sides
 from ...runtime.surface.surface import Surface
 from .links import neighbours
 from .mesh import Mesh
-from .places import apexes_of, boundary_of, uv_at
+from .places import boundary_of, uv_at
 from .triangulated import Triangulated, checked_prefer, flip_edges, improved, too_few
 from .triangulation import triangulations
 from .trimming import trimmed_triangles
@@ -86,7 +87,7 @@ def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -
 def _with_points_as_poles(spline: Spline, boundary: Boundary) -> Boundary:
     """Return the boundary conditions, where every side that is one point is a pole."""
     ends: list[list[BoundaryCondition]] = [[*kinds] for kinds in boundary]
-    for axis, place in apexes_of(spline):
+    for axis, place in collapsed_sides(spline):
         ends[axis][place] = "pole"
     return (ends[0][0], ends[0][1]), (ends[1][0], ends[1][1])
 
@@ -163,7 +164,7 @@ def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[A
 
 def _apexes(vertices: Vertices, spline: Spline) -> Iterator[Indices]:
     """Yield the vertices on each side that is an apex, where the surface has no normal."""
-    for axis, place in apexes_of(spline):
+    for axis, place in collapsed_sides(spline):
         yield np.flatnonzero(vertices.positions[:, axis] == place)
 
 

@@ -11,13 +11,13 @@ from ...generated.mesh import border_spacing
 from ...runtime.base.formula_calls import python_function
 from ...runtime.domain.domain import Boundary, BoundaryCondition, BoundaryPair
 from ...runtime.spline.spline import Spline
+from ...runtime.spline.tips import is_point
 
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
 __all__ = [
     "ON_SIDE",
-    "apexes_of",
     "boundary_of",
     "on_side",
     "points_at",
@@ -82,24 +82,8 @@ def boundary_of(spline: Spline) -> Boundary:
     for axis, ends in enumerate(spline.boundary):
         closes = spline.boundary[1 - axis][0] == "periodic"
         kinds: list[BoundaryCondition] = [
-            "pole" if closes and end == "open" and _is_point(spline, axis, place) else end
+            "pole" if closes and end == "open" and is_point(spline, axis, place) else end
             for place, end in enumerate(ends)
         ]
         found.append((kinds[0], kinds[1]))
     return found[0], found[1]
-
-
-def apexes_of(spline: Spline) -> list[tuple[int, int]]:
-    """Return the axis and the end, 0 or 1, of each open side that is a single point."""
-    return [
-        (axis, place)
-        for axis, place in np.ndindex(2, 2)
-        if spline.boundary[axis][place] == "open" and _is_point(spline, axis, place)
-    ]
-
-
-def _is_point(spline: Spline, axis: int, place: int) -> bool:
-    size = float(np.ptp(spline.coefficients, axis=(0, 1)).max()) * spline.scale
-    t = np.linspace(0.0, 1.0, spline.cells[1 - axis] + 1)
-    side = points_at(spline, on_side(axis, place, t))
-    return bool(np.ptp(side, axis=0).max() <= ON_SIDE * size)

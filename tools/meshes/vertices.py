@@ -14,8 +14,9 @@ from ...runtime.base.trees import tree_of
 from ...runtime.domain.domain import Boundary
 from ...runtime.samples.fields import GRID_NAMES, missing_fields
 from ...runtime.spline.spline import Spline
+from ...runtime.spline.tips import collapsed_sides
 from .measured_line import CLOSE, MeasuredLine
-from .places import ON_SIDE, apexes_of, on_side, points_at, spacings_at, wrapped
+from .places import ON_SIDE, on_side, points_at, spacings_at, wrapped
 
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
@@ -53,7 +54,7 @@ class Vertices:
     def of(cls, samples: Samples, spline: Spline, boundary: Boundary) -> Vertices:
         """Return the samples, one for each position, with vertices on open sides and at poles."""
         positions = np.clip(spline.in_cells(samples.uv.astype(np.float64)) / spline.cells, 0.0, 1.0)
-        for axis, place in apexes_of(spline):
+        for axis, place in collapsed_sides(spline):
             positions[np.abs(positions[:, axis] - place) <= ON_SIDE, 1 - axis] = 0.0
         pairs = _unique(positions, boundary).view(np.complex128)[:, 0]
         sample = np.sort(np.unique(pairs, return_index=True)[1])

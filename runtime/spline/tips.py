@@ -1,0 +1,118 @@
+"""Tips of splines: edges of patches that are one point, as at the apex of a cone.
+
+A quadratic patch with such an edge is developable: its normals depend only on the distance from the
+tip. Rounding gives it others, so it has no samples. Smooth poles, with one normal, are no tips.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.aliases import Array, Flags
+from ..base.kept import kept
+from .joints import EDGES, merged_points
+from .nets import NetSpline
+from .spline import Spline
+
+__all__ = ["Tips", "collapsed_sides", "is_point", "tips_of"]
+
+# Points within this distance, relative to the size of a surface, are one.
+SAME_POINT = 1e-9
+
+
+class Tips(NamedTuple):
+    """The tips (T, 3) of a spline, and its patches (patches,) with an edge or a corner there.
+
+    Points within a distance `same` of a tip are that tip.
+    """
+
+    points: Array
+    collapsed: Flags
+    touching: Flags
+    same: float
+
+    def hold(self, points: NDArray[np.floating]) -> Flags:
+        """Return which points (k, 3) are a tip."""
+        away = points[:, None] - self.points
+        return (np.linalg.norm(away, axis=2) <= self.same).any(axis=1)
+
+
+def is_point(spline: Spline, axis: int, end: int) -> bool:
+    """Return whether the lower (0) or upper (1) side of the domain along an axis is one point."""
+    points = _side(spline, axis, end)
+    return bool(np.ptp(points, axis=0).max() <= SAME_POINT * _size(spline))
+
+
+def collapsed_sides(spline: Spline) -> list[tuple[int, int]]:
+    """Return the axis and the end, 0 or 1, of each open side that is a single point."""
+    return [
+        (axis, end)
+        for axis, end in np.ndindex(2, 2)
+        if spline.boundary[axis][end] == "open" and is_point(spline, axis, end)
+    ]
+
+
+def tips_of(spline: Spline) -> Tips | None:
+    """Return the tips of a spline, which are kept with it; None if there are none."""
+
+    def make() -> Tips | None:
+        return _of_nets(spline) if isinstance(spline, NetSpline) else _of_grid(spline)
+
+    return kept(spline, Tips, make)
+
+
+def _of_grid(spline: Spline) -> Tips | None:
+    """Return the tips of a spline on a grid of cells: open sides."""
+    sides = collapsed_sides(spline)
+    if not sides:
+        return None
+    flags = np.zeros((2, *spline.cells, 4), np.bool_)
+    for axis, end in sides:
+        row = np.moveaxis(flags, 1 + axis, 1)[:, -end]
+        row[0, :, (3, 1)[end] if axis == 0 else (0, 2)[end]] = True
+        row[1] = True
+    points = np.array([_side(spline, *x)[0] for x in sides])
+    return Tips(points, flags[0].ravel(), flags[1].ravel(), SAME_POINT * _size(spline))
+
+
+def _of_nets(spline: NetSpline) -> Tips | None:
+    """Return the tips of a spline of nets.
+
+    They are collapsed edges at which the normals of the patches differ, unlike at smooth poles.
+    """
+    nets, size = spline.control_nets, float(np.ptp(spline.control_nets, axis=(0, 1)).max())
+    rows = [[x.start, x.middle, x.end] for x in EDGES]
+    patch, edge = np.nonzero(np.ptp(nets[:, rows], axis=2).max(axis=2) <= SAME_POINT * size)
+    if len(patch) == 0:
+        return None
+    beside = np.array([[x.start, x.start_beside, x.end_beside] for x in EDGES])[edge]
+    start, first, second = np.moveaxis(nets[patch[:, None], beside], 1, 0)
+    normals = np.cross(first - start, second - start)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+    points, group = merged_points(start)
+    firsts = np.unique(group, return_index=True)[1]
+    cosines = np.ones(len(points))
+    np.minimum.at(cosines, group, np.einsum("kx,kx->k", normals, normals[firsts][group]))
+    sharp = cosines < np.cos(np.radians(spline.smooth))
+    if not sharp.any():
+        return None
+    collapsed = np.zeros(len(nets), np.bool_)
+    collapsed[patch[sharp[group]]] = True
+    tips = Tips(points[sharp], collapsed, np.zeros(0, np.bool_), SAME_POINT * size)
+    corners = nets[:, :3].reshape(-1, 3)
+    return tips._replace(touching=tips.hold(corners).reshape(-1, 3).any(axis=1))
+
+
+def _side(spline: Spline, axis: int, end: int) -> Array:
+    """Return the points on a side, at the corners of cells and half way between."""
+    along = np.linspace(*spline.domain[1 - axis], 2 * spline.cells[1 - axis] + 1)
+    place = np.full_like(along, spline.domain[axis][end])
+    return spline.evaluate(*((place, along) if axis == 0 else (along, place)))
+
+
+def _size(spline: Spline) -> float:
+    return float(np.ptp(spline.coefficients, axis=(0, 1)).max())
