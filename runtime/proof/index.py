@@ -32,9 +32,9 @@ from .kernels.answers import BORDER, BOX, KINDS, Answers, merge_places
 from .kernels.cells import OPEN, REACH, WIDE, Cells, Work, cut_cells
 from .kernels.discs import decide_discs
 from .kernels.places import Boxes, decide_normals
-from .kernels.search import Found, Index, Tiles, evaluate_pairs
+from .kernels.search import Found, Index, Joints, Tiles, evaluate_pairs
 from .kernels.sorting import Sorted, count_places, order_places, put_places, start_normals
-from .lines import lines_of
+from .lines import joints_of, lines_of
 
 __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
@@ -187,7 +187,8 @@ class ProvedIndex:
         if sizes[cut.cone[:, 3] >= OPEN].sum() > MOST_OPEN * sizes.sum():
             return None
         both = Cells(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
-        index = Index(both, len(cut.place))
+        joints = Joints(*(joints_of(tape, k, domain, boundary) for k in (0, 1)))
+        index = Index(both, len(cut.place), joints)
         pieces = _pieces_of(index)
         return cls(tape, box, index, pieces, listed(pieces.cones), discs, unbounded)
 

@@ -6,10 +6,16 @@ import numpy as np
 
 from ...generated.elementary import SPLINE
 from ..base.aliases import Array
+from ..domain.domain import Boundary, Domain
 from ..tape.kernels.points import Tape
 from ..tape.kernels.spline_bounds import SLACK
+from ..tape.tapes import jets_of
+from .kernels.cells import SMOOTH
 
-__all__ = ["jumps_of", "lines_of"]
+__all__ = ["joints_of", "jumps_of", "lines_of"]
+
+# Normals on both sides of a line are compared at about this number of places.
+PLACES = 64
 
 
 def jumps_of(tape: Tape, axis: int, low: float, high: float) -> Array:
@@ -34,3 +40,33 @@ def lines_of(tape: Tape, axis: int, ends: Array, count: int) -> Array:
         for low, high, k in zip(pieces[:-1], pieces[1:], counts, strict=True)
     ]
     return np.append(np.concatenate(parts), high)
+
+
+def joints_of(tape: Tape, axis: int, domain: Domain, boundary: Boundary) -> Array:
+    """Return the u (axis 0) or v of lines where derivatives may jump, but not the tangent plane.
+
+    The seam of a period is one of them. Normals of both sides are compared at some places.
+    """
+    low, high = domain[axis]
+    lines = [(x, x) for x in jumps_of(tape, axis, low, high).tolist()]
+    if boundary[axis][0] == "periodic" and len(tape.spline.breaks_u) > 0:
+        lines.append((low, high))
+    smooth = [
+        above for above, below in lines if _turning(tape, axis, domain, below, above) <= SMOOTH
+    ]
+    return np.array(smooth, dtype=np.float64)
+
+
+def _turning(tape: Tape, axis: int, domain: Domain, below: float, above: float) -> float:
+    """Return the largest angle of the normals below and above a line, at some places of it."""
+    other = lines_of(tape, 1 - axis, np.array(domain[1 - axis]), PLACES)
+    along = (0.5 * (other[1:] + other[:-1])).ravel()
+    step = 4.0 * np.spacing(max(map(abs, domain[axis])))
+    normals = []
+    for end in (below - step, above + step):
+        places = [np.full_like(along, end), along]
+        jets = jets_of(tape, *(places if axis == 0 else places[::-1]))
+        normal = np.cross(jets[:, 1], jets[:, 2])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            normals.append(normal / np.linalg.norm(normal, axis=1, keepdims=True))
+    return float(np.fmax.reduce(np.linalg.norm(normals[1] - normals[0], axis=1), initial=0.0))

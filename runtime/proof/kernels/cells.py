@@ -29,6 +29,9 @@ __all__ = [
     "OPEN",
     "REACH",
     "SECOND",
+    "SMOOTH",
+    "TOLERANCE_S",
+    "TOLERANCE_T",
     "WIDE",
     "Cells",
     "cut_cells",
@@ -46,8 +49,12 @@ EPS = 2.0**-52
 INFLATED = 1.0 + 1.0 / 16.0
 # The columns of `hot`: five vectors of the patch, then what it leaves out.
 HOT = 17
-# The columns of `noise`: of derivatives by s and t, of second derivatives; then how far bounds go.
-FIRST_S, FIRST_T, SECOND, REACH = range(4)
+# The columns of `noise`: of derivatives by s and t, of second derivatives; then how far bounds go,
+# and tolerances of derivatives.
+FIRST_S, FIRST_T, SECOND, REACH, TOLERANCE_S, TOLERANCE_T = range(6)
+NOISE = 6
+# Normals of both sides of a joint differ by at most this angle, in radians.
+SMOOTH = 1e-9
 # The chord of a cone: from here on its half angle is too wide to tell n from −n; no bound at all.
 WIDE, OPEN = 1.3, 2.1
 # A normal that is a bound of the cell has a smaller contraction than this in a regular cell.
@@ -63,8 +70,9 @@ class Cells(NamedTuple):
     hot (k, 17): the vectors a, b, c, d, e of the patch that osculates at the centre, and bounds of
     what it leaves out of x_s and x_t.
     thirds (k, 24): x_sss, x_sst, x_stt, x_ttt, then how far they may be from these.
-    noise (k, 4): the rounding of x_s and x_t, and of second derivatives; the largest |s|, |t| for
-    which all bounds hold, 0 if there are none.
+    noise (k, 6): the rounding of x_s and x_t, and of second derivatives; the largest |s|, |t| for
+    which all bounds hold, 0 if there are none, 1 if they end at a joint. There the normals of both
+    sides differ a little: n·x_s and n·x_t of points with the normal n are at most the last two.
     cone (k, 4): the axis of a cone that holds the normals of the cell, and its chord, the distance
     of its border on the sphere from the axis.
     """
@@ -78,7 +86,7 @@ class Cells(NamedTuple):
     @classmethod
     def new(cls, count: int) -> Cells:
         """Return room for some cells."""
-        return cls(*(np.zeros((count, columns)) for columns in (4, HOT, 24, 4, 4)))
+        return cls(*(np.zeros((count, columns)) for columns in (4, HOT, 24, NOISE, 4)))
 
 
 class Work(NamedTuple):
@@ -197,13 +205,15 @@ def write_rest(cells, j):
     t0, t1, t2, t3 = third_sizes(cells.thirds, j)
     rest_s, rest_t = remainders(t0, t1, t2, t3)
     a, b, c = length(patch.a), length(patch.b), length(patch.c)
+    d, e = length(patch.d), length(patch.e)
     second = 2.0 * noise[j, SECOND]
-    hot[j, REST_S] = (
-        rest_s * (1.0 + 4.0 * gap) + noise[j, FIRST_S] + second + gap * (a + b + length(patch.d))
-    )
-    hot[j, REST_T] = (
-        rest_t * (1.0 + 4.0 * gap) + noise[j, FIRST_T] + second + gap * (b + c + length(patch.e))
-    )
+    rest_s = rest_s * (1.0 + 4.0 * gap) + noise[j, FIRST_S] + second + gap * (a + b + d)
+    rest_t = rest_t * (1.0 + 4.0 * gap) + noise[j, FIRST_T] + second + gap * (b + c + e)
+    at_joint = noise[j, REACH] == 1.0
+    noise[j, TOLERANCE_S] = SMOOTH * (d + a + b + rest_s) if at_joint else 0.0
+    noise[j, TOLERANCE_T] = SMOOTH * (e + b + c + rest_t) if at_joint else 0.0
+    hot[j, REST_S] = rest_s + noise[j, TOLERANCE_S]
+    hot[j, REST_T] = rest_t + noise[j, TOLERANCE_T]
 
 
 @inline
@@ -409,8 +419,9 @@ def is_done(cells, j):
 def copy_cell(cells, j, target, k):
     """Copy cell j to row k of others."""
     for x in range(4):
-        target.place[k, x], target.noise[k, x] = cells.place[j, x], cells.noise[j, x]
-        target.cone[k, x] = cells.cone[j, x]
+        target.place[k, x], target.cone[k, x] = cells.place[j, x], cells.cone[j, x]
+    for x in range(NOISE):
+        target.noise[k, x] = cells.noise[j, x]
     for x in range(HOT):
         target.hot[k, x] = cells.hot[j, x]
     for x in range(24):

@@ -20,6 +20,8 @@ from .cells import (
     FIRST_T,
     REACH,
     SECOND,
+    TOLERANCE_S,
+    TOLERANCE_T,
     gap_of,
     inverse_of,
     linear_forms_of,
@@ -53,13 +55,14 @@ __all__ = [
 
 # The rows of a tile of pairs, of LANES numbers: the normal, the cell, the forms of the pair, bounds
 # (see `Cells`), the inverse of the Hessian and bounds of its product with it (see `inverse_of`),
-# and the solution: s, t, its error bound, D, the number of evaluations, a state.
+# how far solutions within the tolerances may be from exact ones; and the solution: s, t, its error
+# bound, D, the number of evaluations, a state.
 (
     NX, NY, NZ, U0, V0, HU, HV, A, B, C, P, Q, T0, T1, T2, T3, R0, R1, R2, R3,
-    ROUND_S, ROUND_T, ROUND_2, REACHED,
-    Y11, Y12, Y22, CHANGE, NOISE, BASE, S, T, RADIUS, DETERMINANT, ROUND, STATE,
-) = (np.uint64(k * LANES) for k in range(36))  # fmt: skip
-ROWS = 36
+    ROUND_S, ROUND_T, ROUND_2, REACHED, TOL_S, TOL_T,
+    Y11, Y12, Y22, CHANGE, NOISE, BASE, SLACK, S, T, RADIUS, DETERMINANT, ROUND, STATE,
+) = (np.uint64(k * LANES) for k in range(39))  # fmt: skip
+ROWS = 39
 # States of a pair: no solution, one, needs another evaluation, not decided here, one near a side.
 NONE, ONE, MORE, HARD, EDGE = 0.0, 1.0, 2.0, 3.0, 4.0
 # The largest product of the inverse of the Hessian with its change.
@@ -85,6 +88,7 @@ def load_pair(t, k, cells, j, n):
     ) = thirds_of(cells.thirds, j, n)  # fmt: skip
     t[i + ROUND_S], t[i + ROUND_T] = cells.noise[j, FIRST_S], cells.noise[j, FIRST_T]
     t[i + ROUND_2], t[i + REACHED] = cells.noise[j, SECOND], cells.noise[j, REACH]
+    t[i + TOL_S], t[i + TOL_T] = cells.noise[j, TOLERANCE_S], cells.noise[j, TOLERANCE_T]
 
 
 @loop
@@ -100,6 +104,10 @@ def load_box(t, k, cells, j, n, u, v, size):
     t[i + R0], t[i + R1], t[i + R2], t[i + R3] = cube * r0, cube * r1, cube * r2, cube * r3
     t[i + ROUND_S], t[i + ROUND_T] = size * cells.noise[j, FIRST_S], size * cells.noise[j, FIRST_T]
     t[i + ROUND_2], t[i + REACHED] = size * size * cells.noise[j, SECOND], cells.noise[j, REACH]
+    t[i + TOL_S], t[i + TOL_T] = (
+        size * cells.noise[j, TOLERANCE_S],
+        size * cells.noise[j, TOLERANCE_T],
+    )
 
 
 @loop
@@ -124,6 +132,12 @@ def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t,
     rest_t = rest_t * (1.0 + 4.0 * gap) + round_t + 2.0 * round_2 + gap * (abs(b) + abs(c) + abs(q))
     e1, e2, e3, e4 = excesses(a, b, c, p, q, rest_s, rest_t)
     return max(max(e1, e2), max(e3, e4)) > 0.0
+
+
+@inline
+def most_of(reached, gap):
+    """Return the largest |s|, |t| in a cell at which the tape gives its own derivatives."""
+    return 1.0 if reached > 1.0 else 1.0 - gap
 
 
 @inline
@@ -162,27 +176,31 @@ def bound_pairs(t, first, count):
         t0, t1, t2, t3 = t[i + T0], t[i + T1], t[i + T2], t[i + T3]
         r0, r1, r2, r3 = t[i + R0], t[i + R1], t[i + R2], t[i + R3]
         round_s, round_t, round_2 = t[i + ROUND_S], t[i + ROUND_T], t[i + ROUND_2]
+        tol_s, tol_t = t[i + TOL_S], t[i + TOL_T]
         gap = gap_of(t[i + U0], t[i + V0], t[i + HU], t[i + HV])
         none = is_excluded(
-            a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap
-        )
+            a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s + tol_s, round_t + tol_t,
+            round_2, gap,
+        )  # fmt: skip
         y11, y12, y22, change, noise = inverse_of(a, b, c, t0, t1, t2, t3, r0, r1, r2, r3, round_2)
         whole = change * t[i + REACHED] + noise
         i11, i12, i22 = abs(y11), abs(y12), abs(y22)
         rounding = max(i11 * round_s + i12 * round_t, i12 * round_s + i22 * round_t)
+        tolerance = max(i11 * tol_s + i12 * tol_t, i12 * tol_s + i22 * tol_t)
         s, z = model_start(a, b, c, p, q, t0, t1, t2, t3, y11, y12, y22)
-        # The residual at the nearest point of the cell, by the model.
-        s1, z1 = min(max(s, -1.0), 1.0), min(max(z, -1.0), 1.0)
+        # The residual at the nearest point of the cell, by the model; at joints inside of it.
+        most = most_of(t[i + REACHED], gap)
+        s1, z1 = min(max(s, -most), most), min(max(z, -most), most)
         _, _, _, p1, q1 = model_at(a, b, c, p, q, t0, t1, t2, t3, s1, z1)
         rest_s, rest_t = remainders(r0, r1, r2, r3)
-        error = (
-            max(i11 * rest_s + i12 * rest_t, i12 * rest_s + i22 * rest_t) + rounding + 2.0 * noise
-        )
+        error = max(i11 * rest_s + i12 * rest_t, i12 * rest_s + i22 * rest_t)
+        error += rounding + tolerance + 2.0 * noise
         beyond = is_beyond(s1, z1, y11 * p1 + y12 * q1, y12 * p1 + y22 * q1, error + gap, whole)
         alone = whole < CONTRACTING
         t[i + Y11], t[i + Y12], t[i + Y22] = y11, y12, y22
         t[i + CHANGE], t[i + NOISE] = change, noise
         t[i + BASE] = rounding / (1.0 - whole) + 0.25 * gap
+        t[i + SLACK] = tolerance / (1.0 - whole)
         t[i + S], t[i + T], t[i + ROUND] = s1, z1, 0.0
         state = NONE if alone and beyond else MORE if alone else HARD
         t[i + STATE] = NONE if none else state
@@ -219,22 +237,29 @@ def improve_pairs(t, count, registers, outputs, u, v):
         n = Vector(t[i + NX], t[i + NY], t[i + NZ])
         h_u, h_v = t[i + HU], t[i + HV]
         a, b, c, p, q = forms_at(registers, x + i, y + i, z + i, n, h_u, h_v)
-        s, w, base = t[i + S], t[i + T], t[i + BASE]
+        s, w, base, slack = t[i + S], t[i + T], t[i + BASE], t[i + SLACK]
         y11, y12, y22 = t[i + Y11], t[i + Y12], t[i + Y22]
         whole = t[i + CHANGE] * t[i + REACHED] + t[i + NOISE]
-        inside = max(abs(s), abs(w)) <= 1.0
-        beyond = is_beyond(s, w, y11 * p + y12 * q, y12 * p + y22 * q, base, whole)
+        gap = gap_of(t[i + U0], t[i + V0], h_u, h_v)
+        most = most_of(t[i + REACHED], gap)
+        inside = max(abs(s), abs(w)) <= most
+        beyond = is_beyond(s, w, y11 * p + y12 * q, y12 * p + y22 * q, base + slack, whole)
         away = distance(p, q, y11, y12, y22, whole, base)
         s1, w1, d = newton(a, b, c, p, q, s, w)
         radius = after_step(away, t[i + CHANGE], t[i + NOISE], whole, base)
         good = max(abs(s), abs(w)) + away <= t[i + REACHED] and d != 0.0
+        largest = max(abs(s1), abs(w1))
+        at_joint = t[i + REACHED] <= 1.0
+        limit = most if at_joint else OUTSIDE
+        s1, w1 = min(max(s1, -limit), limit), min(max(w1, -limit), limit)
         u[k] += h_u * (s1 - s)
         v[k] += h_v * (w1 - w)
         t[i + S], t[i + T], t[i + RADIUS], t[i + DETERMINANT] = s1, w1, radius, d
         t[i + ROUND] += 1.0
-        largest = max(abs(s1), abs(w1))
-        near = radius + gap_of(t[i + U0], t[i + V0], h_u, h_v)
-        known = ONE if largest < 1.0 - near else NONE if largest > 1.0 + near else EDGE
+        # Near a joint the solution may be that of the neighbour, with a normal that differs a bit.
+        near = radius + gap + slack
+        edge = HARD if at_joint else EDGE
+        known = ONE if largest < 1.0 - near else NONE if largest > 1.0 + near else edge
         again = MORE if t[i + ROUND] < ROUNDS and largest < OUTSIDE else HARD
         state = known if good and radius <= CLOSE * base else again
         t[i + STATE] = NONE if inside and beyond else state

@@ -37,6 +37,7 @@ from .cells import (
     write_patch,
 )
 from .clusters import cluster
+from .degree import DECIDED, PARTS, degree_on
 from .folds import DOUBLE, NO_PLACE, at_fold
 from .pairs import (
     DETERMINANT,
@@ -61,8 +62,8 @@ from .pairs import (
 
 __all__ = ["Boxes", "decide_normals"]
 
-# The number of levels of bisection, and the levels after which folds are tested.
-DEEPEST, FOLDS = 24, (4, 8, 14, 19)
+# The number of levels of bisection, and the levels after which clusters are tested.
+DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
 # The boxes of a curve of solutions about double on each level. More boxes than MANY are a curve if
 # their number grows by GROWTH for TIMES levels; at most MOST cells, or MOST/4 boxes, are processed.
 MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
@@ -81,6 +82,7 @@ class Boxes(NamedTuple):
     pairs: NDArray[np.float64]
     numbers: NDArray[np.int64]
     levels: NDArray[np.int64]
+    ends: NDArray[np.float64]
     tile: Cells
 
     @classmethod
@@ -90,7 +92,7 @@ class Boxes(NamedTuple):
         return cls(
             np.empty((most, 3)), np.empty((most, 3)), np.empty((most, 4)), np.empty(most, np.int64),
             np.empty(most, np.int64), np.zeros(ROWS * LANES), np.zeros(LANES, np.int64),
-            np.array(FOLDS), Cells.new(LANES),
+            np.array(FOLDS), np.empty((2, PARTS + 1)), Cells.new(LANES),
         )  # fmt: skip
 
 
@@ -193,14 +195,27 @@ def store_places(t, lanes, work, boxes, number, answers):
 
 
 @loop
-def use_folds(tape, work, index, boxes, count, size, domain, number, n, last, answers):
-    """Drop clusters of boxes that folds decide; after the `last` level, list and drop others.
+def decide_clusters(tape, work, index, boxes, count, size, domain, number, n, last, answers):
+    """Drop clusters of boxes that a degree or a fold decides; after the `last` level, list others.
 
     Returns the number of boxes that are left, −1 if there was no room.
     """
     cells, tile = index.cells, boxes.tile
     hulls = cluster(boxes.following, count, cells, size, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
+        at = answers.counts[0]
+        if at == answers.numbers.shape[0]:
+            return -1
+        row = answers.places[at]
+        if (
+            degree_on(tape, work, tile, index.joints, domain, boxes.hulls[i], n, boxes.ends, row)
+            == DECIDED
+        ):
+            boxes.fates[i] = NO_PLACE
+            if row[4] != 0.0:
+                answers.numbers[at] = number
+                answers.counts[0] = at + 1
+            continue
         u0, u1, v0, v1 = boxes.hulls[i, 0], boxes.hulls[i, 1], boxes.hulls[i, 2], boxes.hulls[i, 3]
         tile.place[0, 0], tile.place[0, 1] = 0.5 * (u0 + u1), 0.5 * (v0 + v1)
         tile.place[0, 2], tile.place[0, 3] = 0.5 * (u1 - u0), 0.5 * (v1 - v0)
@@ -261,7 +276,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
         last = level == DEEPEST or (level >= FINE and following > 2 * count)
         if following > 0 and (last or (fold < boxes.levels.size and level == boxes.levels[fold])):
             fold += 1
-            following = use_folds(
+            following = decide_clusters(
                 tape, work, index, boxes, following, size, domain, number, n, last, answers
             )
             if following < 0:
@@ -286,9 +301,9 @@ def orient(tape, work, index, boxes, first, domain, number, n, answers):
     kept = first
     for at in range(first, answers.counts[0]):
         row = answers.places[at]
-        j = int(row[BORDER])
+        j = int(row[BORDER])  # negative if the side is known
         side = 1
-        if cells.cone[j, 3] >= WIDE:
+        if j >= 0 and cells.cone[j, 3] >= WIDE:
             r_u, r_v = row[2] + 4.0 * EPS * abs(row[0]), row[3] + 4.0 * EPS * abs(row[1])
             side = side_at(tape, work, boxes.tile, cells, j, row[0], row[1], r_u, r_v, n)
         if side == 0 and not add_place(answers, number, row, SINGULAR, domain):

@@ -27,18 +27,26 @@ from .pairs import (
     load_pair,
 )
 
-__all__ = ["PLACE", "Found", "Index", "Tiles", "evaluate_pairs"]
+__all__ = ["PLACE", "Found", "Index", "Joints", "Tiles", "evaluate_pairs"]
 
 # The columns of places: u, v, how far each may be from the exact one, D, and whether the border of
 # the domain is so near.
 PLACE = 6
 
 
+class Joints(NamedTuple):
+    """The lines u = const (k,) and v = const (l,) across which the tangent plane is continuous."""
+
+    u: NDArray[np.float64]
+    v: NDArray[np.float64]
+
+
 class Index(NamedTuple):
-    """Cells; from number `discs` on, they are discs around poles."""
+    """Cells; from number `discs` on, they are discs around poles. Joints are sides of cells."""
 
     cells: Cells
     discs: int
+    joints: Joints
 
 
 class Tiles(NamedTuple):

@@ -404,8 +404,6 @@ UNDECIDED: dict[str, tuple[Callable[[], Places], float]] = {
         lambda: Places.on("waves", *fold_points(surface_of("waves"), 20)), 1e-5
     ),
     "multiple, flat": (lambda: Places.on("monkey_saddle", [0.0], [0.0]), 1e-6),
-    "multiple, knots": (partial(on_knots, 2, 1), 1e-6),
-    "multiple, double knots": (partial(on_knots, 3, 2), 1e-6),
 }  # fmt: skip
 
 

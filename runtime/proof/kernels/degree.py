@@ -1,0 +1,377 @@
+"""The degree of the Gauss map on a box that may cross joints: no point with a normal, or just one.
+
+A joint is a line u = const or v = const where second derivatives of the surface may jump, and first
+ones, too, as long as the tangent plane does not. Joints cut the box into parts. Where the surface
+is a graph over the tangent plane, minus the gradient of the height is
+
+    G = (Y1 F2 − F1 Y2, F1 X2 − X1 F2) / (X1 Y2 − X2 Y1),    F = (n·x_u, n·x_v),
+
+with the coordinates (X1, Y1) of x_u and (X2, Y2) of x_v in the plane. It depends on no parameters,
+so that it is continuous at joints. If the Hessian of n·x has a determinant of one sign d in all
+parts, the index of each zero of G has this sign, and the winding number of G along the border is
+their sum: d if there is one, 0 if there is none.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ....generated.proved import model_at, remainders
+from ....generated.vectors import Vector
+from ...directions.kernels.vectors import dot, length
+from ...machine_code.jit import inline, loop
+from ...search.kernels.pieces import REST_S, REST_T
+from ...tape.kernels.points import POINT, evaluate_points
+from .answers import BORDER
+from .cells import (
+    EPS,
+    FIRST_S,
+    FIRST_T,
+    REACH,
+    SECOND,
+    SMOOTH,
+    TOLERANCE_S,
+    TOLERANCE_T,
+    gap_of,
+    inverse_of,
+    linear_forms_of,
+    patch_of,
+    side_of,
+    thirds_of,
+    write_cells,
+)
+from .pairs import distance, forms_at, is_beyond, most_of, newton
+
+__all__ = ["DECIDED", "PARTS", "degree_on"]
+
+# Whether a box has at most one point: that is not known, or it is.
+UNDECIDED, DECIDED = range(2)
+# Boxes grow on each side by this part of their width, since the normal may not be on the border.
+# A joint that is nearer to a side than this part of the width becomes the side.
+GROWN, NEAR_SIDE = 0.4, 0.05
+# The largest number of parts along u and along v.
+PARTS = 4
+# Segments of a side of a part are at least this long; a side has the length 2.
+LONGEST, SHORTEST = 1.0, 2.0**-6
+# The computed gradient has at most this relative error at ends of segments, so that two of them
+# and the jump at a joint do not add up to half a turn.
+ERROR = 0.3
+# A normal is at least this multiple of the tolerance away from that of the border.
+AWAY = 4.0
+STEPS = 8
+
+
+@loop
+def ends_of_parts(lines, period, low, high, ends):
+    """Write the ends of the parts into which lines, modulo a period, cut an interval.
+
+    Returns the number of parts, 0 if there are too many.
+    """
+    slack = NEAR_SIDE * (high - low)
+    ends[0], count = low, 1
+    first, last = 0, 0
+    if period > 0.0:
+        first, last = -2, 2
+    previous = low
+    while True:
+        least = math.inf
+        for k in range(lines.size):
+            for turn in range(first, last + 1):
+                x = lines[k] + turn * period
+                if x > previous and x < least:
+                    least = x
+        if least >= high + slack:
+            break
+        previous = least
+        if count == 1 and least < low + slack:
+            ends[0] = least
+            continue
+        if least > high - slack:
+            high = least
+            break
+        if count == PARTS:
+            return 0
+        ends[count] = least
+        count += 1
+    ends[count] = high
+    return count
+
+
+@loop
+def write_parts(tape, work, tile, joints, domain, hull, ends):
+    """Write bounds over the parts of a grown box to a tile; return their numbers along u and v."""
+    grown_u, grown_v = GROWN * (hull[1] - hull[0]), GROWN * (hull[3] - hull[2])
+    along = ends_of_parts(joints.u, domain[4], hull[0] - grown_u, hull[1] + grown_u, ends[0])
+    across = ends_of_parts(joints.v, domain[5], hull[2] - grown_v, hull[3] + grown_v, ends[1])
+    for i in range(along):
+        for j in range(across):
+            k = i * across + j
+            place = tile.place[k]
+            place[0], place[2] = middle_and_half(ends[0, i], ends[0, i + 1])
+            place[1], place[3] = middle_and_half(ends[1, j], ends[1, j + 1])
+            tile.noise[k, REACH] = 0.0
+    if along * across > 0:
+        write_cells(tape, work, 1.0, tile, along * across)
+    return along, across
+
+
+@inline
+def middle_and_half(low, high):
+    """Return the middle of an interval and half its width."""
+    return 0.5 * (low + high), 0.5 * (high - low)
+
+
+@loop
+def sign_on(tile, count, n):
+    """Return the sign of the determinant of the Hessian of n·x in all parts of a tile.
+
+    It is 0 if it is not known, or if n may be no normal of one side of the surface there; 2 if −n
+    is in the cone of all normals.
+    """
+    sign = side = 0
+    for k in range(count):
+        if tile.noise[k, REACH] == 0.0:
+            return 0
+        patch = patch_of(tile.hot, k)
+        own_side = side_of(patch, tile.hot[k, REST_S], tile.hot[k, REST_T], n)
+        if own_side == 0 or (k > 0 and own_side != side):
+            return 0
+        side = own_side
+        if side < 0:
+            continue
+        a, b, c, _, _ = linear_forms_of(patch, n)
+        t0, t1, t2, t3, r0, r1, r2, r3 = thirds_of(tile.thirds, k, n)
+        _, _, _, change, noise = inverse_of(
+            a, b, c, t0, t1, t2, t3, r0, r1, r2, r3, tile.noise[k, SECOND]
+        )
+        own_sign = 1 if a * c - b * b > 0.0 else -1
+        if not change + noise < 1.0 or (k > 0 and own_sign != sign):
+            return 0
+        sign = own_sign
+    return 2 if side < 0 else sign
+
+
+@inline
+def along_side(side, x):
+    """Return s and t at a distance x from the start of a side of a part, counter-clockwise."""
+    if side == 0:
+        return x - 1.0, -1.0
+    if side == 1:
+        return 1.0, x - 1.0
+    if side == 2:
+        return 1.0 - x, 1.0
+    return -1.0, 1.0 - x
+
+
+@loop
+def gradient_at(tile, k, n, e1, e2, s, t):
+    """Return the gradient at s, t in part k, times the area x_s × x_t, and bounds of its terms.
+
+    These are the forms A, B, C; the derivatives F1, F2; |x_s|, |x_t|, and a bound of the error.
+    """
+    patch = patch_of(tile.hot, k)
+    a, b, c, p, q = linear_forms_of(patch, n)
+    t0, t1, t2, t3, r0, r1, r2, r3 = thirds_of(tile.thirds, k, n)
+    a, b, c, f1, f2 = model_at(a, b, c, p, q, t0, t1, t2, t3, s, t)
+    rest_s, rest_t = remainders(r0, r1, r2, r3)
+    second = 2.0 * tile.noise[k, SECOND]
+    rest_s += tile.noise[k, FIRST_S] + second
+    rest_t += tile.noise[k, FIRST_T] + second
+    x_s = Vector(
+        patch.d.x + patch.a.x * s + patch.b.x * t,
+        patch.d.y + patch.a.y * s + patch.b.y * t,
+        patch.d.z + patch.a.z * s + patch.b.z * t,
+    )
+    x_t = Vector(
+        patch.e.x + patch.b.x * s + patch.c.x * t,
+        patch.e.y + patch.b.y * s + patch.c.y * t,
+        patch.e.z + patch.b.z * s + patch.c.z * t,
+    )
+    g1 = dot(x_s, e2) * f2 - f1 * dot(x_t, e2)
+    g2 = f1 * dot(x_t, e1) - dot(x_s, e1) * f2
+    size_s = length(x_s) + tile.hot[k, REST_S]
+    size_t = length(x_t) + tile.hot[k, REST_T]
+    error = rest_s * size_t + rest_t * size_s
+    error += abs(f1) * tile.hot[k, REST_T] + abs(f2) * tile.hot[k, REST_S]
+    error = error * (1.0 + 64.0 * EPS) + 64.0 * EPS * (abs(f1) * size_t + abs(f2) * size_s)
+    return g1, g2, a, b, c, f1, f2, size_s, size_t, error
+
+
+@loop
+def turns_less_than_half(tile, k, n, e1, e2, side, x, step):
+    """Return whether the gradient stays in a half plane on a segment [x, x + step] of a side."""
+    half = 0.5 * step
+    s, t = along_side(side, x + half)
+    g1, g2, a, b, c, f1, f2, size_s, size_t, error = gradient_at(tile, k, n, e1, e2, s, t)
+    patch = patch_of(tile.hot, k)
+    t0, t1, t2, t3, _, _, _, _ = thirds_of(tile.thirds, k, n)
+    if side % 2 == 0:
+        change1 = half * abs(a) + 0.5 * half * half * abs(t0)
+        change2 = half * abs(b) + 0.5 * half * half * abs(t1)
+        change_s, change_t = half * length(patch.a), half * length(patch.b)
+    else:
+        change1 = half * abs(b) + 0.5 * half * half * abs(t2)
+        change2 = half * abs(c) + 0.5 * half * half * abs(t3)
+        change_s, change_t = half * length(patch.b), half * length(patch.c)
+    change = change1 * (size_t + change_t) + change2 * (size_s + change_s)
+    change += abs(f1) * change_t + abs(f2) * change_s
+    # Errors of x_s and x_t go with the larger derivatives, too.
+    rest = error + change1 * tile.hot[k, REST_T] + change2 * tile.hot[k, REST_S]
+    size = math.hypot(g1, g2)
+    area = size_s * size_t
+    return size > (change + rest) * (1.0 + 64.0 * EPS) and size > AWAY * SMOOTH * area
+
+
+@loop
+def winding(tile, along, across, n):
+    """Return the winding number of the gradient along the border of a box, in quarters.
+
+    It is a multiple of 4; 2 if the gradient may vanish on the border.
+    """
+    e1, e2 = plane_of(n)
+    total = 0.0
+    last1 = last2 = first1 = first2 = 0.0
+    for side in range(4):
+        parts = along if side % 2 == 0 else across
+        for part in range(parts):
+            number = part if side < 2 else parts - 1 - part
+            i = number if side % 2 == 0 else (along - 1 if side == 1 else 0)
+            j = number if side % 2 == 1 else (0 if side == 0 else across - 1)
+            k = i * across + j
+            x, step = 0.0, LONGEST
+            while True:
+                s, t = along_side(side, x)
+                g1, g2, _, _, _, _, _, _, _, error = gradient_at(tile, k, n, e1, e2, s, t)
+                if not error < ERROR * math.hypot(g1, g2):
+                    return 2
+                if side == 0 and part == 0 and x == 0.0:
+                    first1, first2 = g1, g2
+                else:
+                    total += angle_between(last1, last2, g1, g2)
+                last1, last2 = g1, g2
+                if x >= 2.0:
+                    break
+                step = min(2.0 * step, 2.0 - x)
+                while not turns_less_than_half(tile, k, n, e1, e2, side, x, step):
+                    step *= 0.5
+                    if step < SHORTEST:
+                        return 2
+                x += step
+    total += angle_between(last1, last2, first1, first2)
+    return 4 * int(np.rint(total / (2.0 * math.pi)))
+
+
+@inline
+def angle_between(x1, y1, x2, y2):
+    """Return the angle from one vector to another one."""
+    return math.atan2(x1 * y2 - y1 * x2, x1 * x2 + y1 * y2)
+
+
+@loop
+def plane_of(n):
+    """Return two unit vectors that are perpendicular to n, and to each other."""
+    e1 = Vector(0.0, -n.z, n.y) if abs(n.x) < 0.6 else Vector(n.z, 0.0, -n.x)
+    size = length(e1)
+    e1 = Vector(e1.x / size, e1.y / size, e1.z / size)
+    e2 = Vector(n.y * e1.z - n.z * e1.y, n.z * e1.x - n.x * e1.z, n.x * e1.y - n.y * e1.x)
+    return e1, e2
+
+
+@loop
+def write_nearest(tape, work, tile, count, n, row):
+    """Write to a row the point in parts of a tile that is nearest to the normal; say whether.
+
+    Its radius reaches as far as all points whose normals are within the tolerance.
+    """
+    outputs, place = tape.outputs, tile.place
+    x, y, z = (
+        np.uint64(POINT * outputs[0]), np.uint64(POINT * outputs[1]), np.uint64(POINT * outputs[2])
+    )  # fmt: skip
+    for k in range(count):
+        work.u[k], work.v[k] = place[k, 0], place[k, 1]
+    best, least, others = -1, math.inf, 0
+    for step in range(STEPS):
+        evaluate_points(tape, work.u, work.v, count, work.registers)
+        for k in range(count):
+            i, h_u, h_v = np.uint64(k), place[k, 2], place[k, 3]
+            a, b, c, p, q = forms_at(work.registers, x + i, y + i, z + i, n, h_u, h_v)
+            s, t = (work.u[k] - place[k, 0]) / h_u, (work.v[k] - place[k, 1]) / h_v
+            if step < STEPS - 1:
+                s1, t1, _ = newton(a, b, c, p, q, s, t)
+                most = most_of(1.0, gap_of(place[k, 0], place[k, 1], h_u, h_v))
+                s1, t1 = min(max(s1, -most), most), min(max(t1, -most), most)
+                work.u[k], work.v[k] = place[k, 0] + h_u * s1, place[k, 1] + h_v * t1
+                continue
+            reach, slack, none = reach_at(tile, k, n, s, t, p, q)
+            # Room for what the next part has found, and for the tolerance there.
+            tile.hot[k, 0], tile.hot[k, 1] = reach * h_u, reach * h_v
+            tile.hot[k, 2], tile.hot[k, 3] = slack * h_u, slack * h_v
+            tile.hot[k, 4] = 0.0 if none else 1.0
+            if none:
+                continue
+            others += 1
+            if reach < least:
+                best, least = k, reach
+                row[4] = a * c - b * b
+    if best < 0:
+        return False
+    row[0], row[1], row[2], row[3] = work.u[best], work.v[best], 0.0, 0.0
+    for k in range(count):
+        if tile.hot[k, 4] > 0.0:
+            more = 1.0 if others > 1 else 0.0
+            row[2] = max(row[2], abs(work.u[k] - row[0]) + tile.hot[k, 0] + more * tile.hot[k, 2])
+            row[3] = max(row[3], abs(work.v[k] - row[1]) + tile.hot[k, 1] + more * tile.hot[k, 3])
+    row[2] += 4.0 * EPS * abs(row[0])
+    row[3] += 4.0 * EPS * abs(row[1])
+    return True
+
+
+@loop
+def reach_at(tile, k, n, s, t, p, q):
+    """Return how far a solution in part k may be from s, t, where F is p, q; and by a tolerance.
+
+    The third value says whether there is none, within the tolerance.
+    """
+    patch = patch_of(tile.hot, k)
+    a, b, c, _, _ = linear_forms_of(patch, n)
+    t0, t1, t2, t3, r0, r1, r2, r3 = thirds_of(tile.thirds, k, n)
+    y11, y12, y22, change, noise = inverse_of(
+        a, b, c, t0, t1, t2, t3, r0, r1, r2, r3, tile.noise[k, SECOND]
+    )
+    whole = change + noise
+    i11, i12, i22 = abs(y11), abs(y12), abs(y22)
+    first_s, first_t = tile.noise[k, FIRST_S], tile.noise[k, FIRST_T]
+    tol_s, tol_t = tile.noise[k, TOLERANCE_S], tile.noise[k, TOLERANCE_T]
+    base = max(i11 * first_s + i12 * first_t, i12 * first_s + i22 * first_t) / (1.0 - whole)
+    base += gap_of(tile.place[k, 0], tile.place[k, 1], tile.place[k, 2], tile.place[k, 3])
+    slack = max(i11 * tol_s + i12 * tol_t, i12 * tol_s + i22 * tol_t) / (1.0 - whole)
+    none = is_beyond(s, t, y11 * p + y12 * q, y12 * p + y22 * q, base + slack, whole)
+    return distance(p, q, y11, y12, y22, whole, base), slack, none
+
+
+@loop
+def degree_on(tape, work, tile, joints, domain, hull, n, ends, row):
+    """Decide whether a box has no point with the normal n, or one, which is written to a row.
+
+    Returns DECIDED, or UNDECIDED if it may have several; row[4] is 0 if it has none.
+    """
+    along, across = write_parts(tape, work, tile, joints, domain, hull, ends)
+    if along * across == 0:
+        return UNDECIDED
+    row[4] = 0.0
+    sign = sign_on(tile, along * across, n)
+    if sign == 2:
+        return DECIDED
+    if sign == 0:
+        return UNDECIDED
+    turns = winding(tile, along, across, n)
+    if turns == 0:
+        return DECIDED
+    if turns != 4 * sign:
+        return UNDECIDED
+    row[5], row[6], row[7], row[8] = ends[0, 0], ends[0, along], ends[1, 0], ends[1, across]
+    row[BORDER] = -1.0
+    found = write_nearest(tape, work, tile, along * across, n, row)
+    return DECIDED if found else UNDECIDED
