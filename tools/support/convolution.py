@@ -16,6 +16,7 @@ from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.base.threads import over_ranges
 from ...runtime.directions.unit import as_normals
 from ...runtime.fitting.fit import spline_of
+from ...runtime.map import GaussMap
 from ...runtime.samples.fields import new_field
 from ...runtime.samples.report import SamplingReport, count_infinite, sampling_report, warn_of
 from ...runtime.samples.samples import Samples
@@ -25,6 +26,7 @@ from ...runtime.surface.surfaces import named
 from .branches import Branches, curvatures
 from .function import SupportFunction
 from .operations import pairs
+from .sources import Source, SplineSource, SurfaceSource
 
 __all__ = ["Convolution", "convolve"]
 
@@ -104,6 +106,10 @@ def convolve(
     Support functions add, h = h₁ + h₂ (7), and so do points and Hessians. A normal with i points on
     the first surface and j on the second has i j sums; on folded surfaces these are very many.
 
+    Points of a `Surface` are those of `GaussMap.points`, exact up to rounding; where they are
+    proved to be all, the report says so. Points of splines, of grids, and of surfaces with creases
+    lie on the spline, and the report has the sum of its distances from both surfaces.
+
     Parameters
     ----------
     first, second : Surface, Spline, SupportFunction or str
@@ -111,12 +117,15 @@ def convolve(
     normals : (S, 3) array_like
         Directions of any length but 0, such as ``icosphere(32)``.
     cells : (int, int), optional
-        The cells of the splines, if a surface is a `Surface`; see `fit`.
+        Take splines with these numbers of cells in place of each `Surface`, see `fit`.
 
     Returns
     -------
     Convolution
-        The sums as samples, and the points of both surfaces.
+        The sums as samples, and the points of both surfaces. The report has `on`, with "surface"
+        `proved`, `undecided` (boxes of the first surface, then of the second) and `unrefined`, with
+        "spline" `fit_distance`, `fit_rms` and `fit_angle`: the sums of the distances, and the
+        larger angle.
 
     Raises
     ------
@@ -140,6 +149,9 @@ def convolve(
     A and −B, that is B reflected in the origin. The outward normals of −B are −n, so it is
     ``SupportFunction.of_spline(B).scaled(-1).reversed()``.
 
+    On splines a point differs from that of the surface with the same normal by up to about
+    `fit_distance`, plus `fit_angle` in radians times the largest radius of curvature.
+
     K and H come from the sum of the Hessians: an infinite radius (a parabolic point) makes them
     NaN, a sum of radii that is 0 infinite or NaN.
 
@@ -156,18 +168,19 @@ def convolve(
     first, second = named(first), named(second)
     if cells is not None and not any(isinstance(x, Surface) for x in (first, second)):
         raise InputError("cells=... is for surfaces, and neither of these is a Surface.")
-    one, first_name = _branches(first, directions, cells)
-    two, second_name = _branches(second, directions, cells)
+    sources = [_source(x, cells) for x in (first, second)]
+    one = _branches(sources[0], directions)  # one by one: warnings name the caller's line
+    two = _branches(sources[1], directions)
     i, j = pairs(one.normal_index, two.normal_index, len(directions))
-    name = f"{short_label(first_name)} + {short_label(second_name)}"
+    name = " + ".join(short_label(_name(x)) for x in sources)
     if len(one) and len(two) and not len(i):
         message = f"surface {name!r}: no normal has points on both of the two."
         warnings.warn(message, GaussmapWarning, stacklevel=2)
-    arrays = _sums(one, two, i, j)
-    infinite = count_infinite(arrays)
+    arrays = _sums(one, two, i, j) | _flags(sources, i, j)
     report = SamplingReport(
-        name, len(directions), len(i), None, None, None, infinite_curvatures=infinite
-    )
+        name, len(directions), len(i), None, None, None,
+        infinite_curvatures=count_infinite(arrays), **_accuracy(sources, len(directions), arrays),
+    )  # fmt: skip
     samples = Samples(**arrays, report=report)
     return Convolution(samples, one, two, np.stack([i, j], axis=1))
 
@@ -194,22 +207,73 @@ def _sums(
     return arrays | {"normal_index": one.normal_index[i]}
 
 
-def _branches(
-    surface: Surface | Spline | SupportFunction,
-    normals: NDArray[np.float64],
-    cells: Sequence[int] | None,
-) -> tuple[Branches, str]:
-    """Return the branches of a surface at normals, and its name; warn of developable regions."""
+def _source(surface: Surface | Spline | SupportFunction, cells: Sequence[int] | None) -> Source:
+    """Return the points of a surface itself, if it is smooth and not given by points."""
     if isinstance(surface, SupportFunction):
-        return surface.branches(normals), repr(surface)
+        return surface._source
     if not isinstance(surface, Surface | Spline):
         raise InputError(
             "convolve takes two of Surface, Spline and SupportFunction, not "
             f"{type(surface).__name__}."
         )
-    spline = spline_of(surface, cells if isinstance(surface, Surface) else None)
-    branches = SupportFunction.of_spline(spline).branches(normals)
-    density = len(normals) / (4 * math.pi)
-    report = sampling_report(spline, len(normals), len(branches), density, None)
-    warn_of(report, None, stacklevel=4)
-    return branches, spline.name
+    if cells is None and isinstance(surface, Surface) and surface.grid is None:
+        known = GaussMap(surface)
+        if known.spline is not None:
+            return SurfaceSource(known, surface)
+    return SplineSource(spline_of(surface, cells if isinstance(surface, Surface) else None))
+
+
+def _name(source: Source) -> str:
+    if isinstance(source, SplineSource):
+        return source.spline.name
+    return str(source) if isinstance(source, SurfaceSource) else f"SupportFunction({source})"
+
+
+def _branches(source: Source, normals: NDArray[np.float64]) -> Branches:
+    """Return the branches of a surface at normals; warn of developable regions."""
+    branches = source.sheets(normals).branches(normals)
+    if isinstance(source, SurfaceSource):
+        warn_of(source.report, None, stacklevel=4)
+    elif isinstance(source, SplineSource):
+        density = len(normals) / (4 * math.pi)
+        report = sampling_report(source.spline, len(normals), len(branches), density, None)
+        warn_of(report, None, stacklevel=4)
+    return branches
+
+
+def _flags(sources: Sequence[Source], i: NDArray[np.int64], j: NDArray[np.int64]) -> dict[str, Any]:
+    """Return which sums are of two points that are on their surfaces, unless one is of a spline."""
+    if any(x.splines() for x in sources):
+        return {}
+    found = np.ones(len(i), dtype=np.bool_)
+    for source, rows in zip(sources, (i, j), strict=True):
+        if isinstance(source, SurfaceSource):
+            found &= source.on_surface[rows]
+    return {"on_surface": found}
+
+
+def _accuracy(
+    sources: Sequence[Source], count: int, arrays: dict[str, NDArray[Any]]
+) -> dict[str, Any]:
+    """Return the entries of the report that say how exact the sums are."""
+    splines = [x for source in sources for x in source.splines()]
+    if splines:
+        misfits = [(factor, x.misfit) for factor, x in splines]
+        known = [(factor, x) for factor, x in misfits if x is not None]
+        if len(known) < len(misfits):
+            return {"on": "spline"}
+        angles = [x.angle for _, x in known if x.angle is not None]
+        return {
+            "on": "spline",
+            "fit_distance": sum(factor * x.distance for factor, x in known),
+            "fit_rms": sum(factor * x.rms for factor, x in known),
+            "fit_angle": max(angles) if len(angles) == len(known) else None,
+        }
+    entries: dict[str, Any] = {"on": "surface"}
+    entries["unrefined"] = int(np.count_nonzero(~arrays["on_surface"]))
+    reports = [x.report for x in sources if isinstance(x, SurfaceSource)]
+    if all(x.proved is not None for x in reports):
+        undecided = [x for report in reports for x in report.undecided or ()]
+        proved = count - len({x.normal for x in undecided})
+        entries |= {"proved": proved, "undecided": tuple(undecided)}
+    return entries

@@ -91,6 +91,10 @@ class ExpressionSource:
         """Return the condition as given."""
         return self.condition
 
+    def splines(self) -> list[Any]:
+        """Return none: the expression is exact."""
+        return []
+
     def __str__(self) -> str:
         return f"h = {_short(self.h)}"
 

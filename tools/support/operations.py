@@ -16,6 +16,7 @@ from ...runtime.base.bridge import normal_components
 from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.tolerances import RADIUS_ERROR
 from ...runtime.directions.unit import as_normals
+from ...runtime.spline.spline import Spline
 from .branches import Sheets, curvatures
 from .offset import size_of_terms
 from .sources import Source
@@ -62,6 +63,10 @@ class Sum:
 
         first, second = self.first.domain(), self.second.domain()
         return None if first is None or second is None else sp.And(first, second)
+
+    def splines(self) -> list[tuple[float, Spline]]:
+        """Return the splines of both."""
+        return self.first.splines() + self.second.splines()
 
     def __str__(self) -> str:
         return f"({self.first}) + ({self.second})"
@@ -117,6 +122,10 @@ class Moved:
             rows = rows @ self.rotation.T
         back = [sum(_exact(c) * s for c, s in zip(row, n, strict=True)) for row in rows.tolist()]
         return given.subs(dict(zip(n, back, strict=True)), simultaneous=True)
+
+    def splines(self) -> list[tuple[float, Spline]]:
+        """Return the splines with their factors."""
+        return [(abs(self.factor) * factor, spline) for factor, spline in self.of.splines()]
 
     def __str__(self) -> str:
         return f"({self.of}) {self.text}"

@@ -1,4 +1,4 @@
-"""Sources of support functions: a spline, one patch, an expression."""
+"""Sources of support functions: a surface, a spline, one patch, an expression."""
 
 from __future__ import annotations
 
@@ -13,10 +13,13 @@ from ...generated import patch as formulas
 from ...runtime.base.bridge import bezier_triangle
 from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import python_function, vector
+from ...runtime.map import GaussMap
+from ...runtime.samples.report import SamplingReport
 from ...runtime.search.fill import fill
 from ...runtime.search.search import find
 from ...runtime.spline.nets import NetSpline
 from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
 from ..gauss_map.kernels import support as kernels
 from ..gauss_map.membership import PatchNormals
 from ..gauss_map.patches import checked_control_points
@@ -25,7 +28,7 @@ from .branches import Sheets
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["PatchSource", "Source", "SplineSource"]
+__all__ = ["PatchSource", "Source", "SplineSource", "SurfaceSource"]
 
 # Quadratic and cubic forms in three variables that vanish at these points vanish everywhere.
 FOR_QUADRATICS = [(2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
@@ -46,6 +49,53 @@ class Source(Protocol):
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
         """Return the condition on n_x, n_y, n_z for a branch; None without a single one."""
         ...
+
+    def splines(self) -> list[tuple[float, Spline]]:
+        """Return the splines on which branches lie, and the factors by which these are scaled."""
+        ...
+
+
+# Where x_u × x_v is smaller than this, relative to the larger of both, the surface has a pole; and
+# the turns of three rays there, relative to the domain.
+COLLAPSED, RAYS = 1e-7, (0.0, 1 / 3, 2 / 3)
+
+
+class SurfaceSource:
+    """The points of one surface itself, for one set of normals, see `GaussMap.points`.
+
+    `report` is that of its last answer, and `on_surface` says which points are on the surface.
+    """
+
+    def __init__(self, known: GaussMap, surface: Surface) -> None:
+        self.map, self.surface = known, surface
+        self.report: SamplingReport
+        self.on_surface: NDArray[np.bool_]
+
+    def sheets(self, normals: NDArray[np.float64]) -> Sheets:
+        """Return all points with these normals, by normal."""
+        found = self.map.points(normals)
+        assert found.on_surface is not None
+        self.report, self.on_surface = found.report, found.on_surface
+        order = np.argsort(found.normal_index, kind="stable")
+        found, self.on_surface = found[order], found.on_surface[order]
+        hessian = _hessians_on_surface(self.surface, normals[found.normal_index], found.uv)
+        return Sheets(
+            found.normal_index, found.points, hessian, found.gaussian_curvature,
+            found.mean_curvature, found.patch_index, found.uv,
+        )  # fmt: skip
+
+    def expression(self) -> None:
+        """Return None: the branches have no common expression."""
+
+    def domain(self) -> None:
+        """Return None: the branches have no common domain."""
+
+    def splines(self) -> list[tuple[float, Spline]]:
+        """Return none."""
+        return []
+
+    def __str__(self) -> str:
+        return self.surface.name
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +133,10 @@ class SplineSource:
 
     def domain(self) -> None:
         """Return None: a spline has one domain for each patch."""
+
+    def splines(self) -> list[tuple[float, Spline]]:
+        """Return the spline."""
+        return [(1.0, self.spline)]
 
     def __str__(self) -> str:
         return f"{self.spline.name}, {self.spline.patches:,} patches"
@@ -139,6 +193,10 @@ class PatchSource:
         inside = [sp.And(*(at_least(s * x, 0) for x in (U, V, W))) for s in (1, -1)]
         return sp.And(sp.Or(*inside), unequal(D, 0), sp.Gt(self._symbolic.orientation, 0))
 
+    def splines(self) -> list[tuple[float, Spline]]:
+        """Return none: the patch is the surface."""
+        return []
+
     def __str__(self) -> str:
         return "quadratic patch"
 
@@ -160,6 +218,56 @@ def _hessians_in_nets(
     D, *_ = python_function(formulas.forms)(patch, n)
     A, B, C, _, _ = python_function(formulas.linear_forms)(patch, n)
     p_u, p_v, _ = python_function(formulas.tangents)(patch, *uv.T)
+    return _matrices(A, B, C, D, p_u, p_v) / spline.scale
+
+
+def _hessians_on_surface(
+    surface: Surface, normals: NDArray[np.float64], uv: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the Hessians (k, 3, 3) at points of a surface with unit normals (k, 3)."""
+    low, high = np.array(surface.domain).T
+    size = high - low
+    _, x_u, x_v, *second = np.moveaxis(surface.jets(*uv.T), 1, 0)
+    x_u, x_v = size[0] * x_u, size[1] * x_v
+    lengths = [np.linalg.norm(x, axis=1) for x in (x_u, x_v)]
+    scales = (size[0] ** 2, size[0] * size[1], size[1] ** 2)
+    forms = [f * np.einsum("ij,ij->i", normals, x) for f, x in zip(scales, second, strict=True)]
+    with np.errstate(all="ignore"):  # at parabolic points radii are infinite
+        A, B, C = forms
+        found = _matrices(A, B, C, A * C - B * B, vector(x_u), vector(x_v))
+        large = np.linalg.norm(np.cross(x_u, x_v), axis=1)
+    for k in np.flatnonzero(~(large > COLLAPSED * np.maximum(*lengths) ** 2)):
+        axis = int(lengths[1][k] > lengths[0][k])  # that of the rays
+        found[k] = _hessian_at_pole(surface, normals[k], uv[k], axis)
+    return found
+
+
+def _hessian_at_pole(
+    surface: Surface, normal: NDArray[np.float64], uv: NDArray[np.float64], axis: int
+) -> NDArray[np.float64]:
+    """Return the Hessian (3, 3) at a collapsed side of the domain, where rays along `axis` begin.
+
+    The second fundamental form is quadratic on the tangent plane: three rays determine it.
+    """
+    (low, high), places = surface.domain[1 - axis], np.tile(uv, (len(RAYS), 1))
+    turned = (uv[1 - axis] - low) / (high - low) + np.array(RAYS)
+    places[:, 1 - axis] = low + (high - low) * np.mod(turned, 1.0)
+    jets = surface.jets(*np.ascontiguousarray(places.T))
+    tangents, bends = jets[:, 1 + axis], jets[:, 3 + 2 * axis] @ normal
+    frame = np.linalg.svd(normal[None])[2][1:]
+    x, y = frame @ tangents.T
+    with np.errstate(all="ignore"):
+        try:
+            A, B, C = np.linalg.solve(np.stack([x * x, 2 * x * y, y * y], axis=1), bends)
+        except np.linalg.LinAlgError:
+            return np.full((3, 3), np.nan)
+        one, two = (vector(row[None]) for row in frame)
+        D = np.array([A * C - B * B])
+        return _matrices(A, B, C, D, one, two)[0]
+
+
+def _matrices(A: Any, B: Any, C: Any, D: Any, p_u: Any, p_v: Any) -> NDArray[np.float64]:  # noqa: ANN401
+    """Return the Hessians (k, 3, 3) from second fundamental forms and tangents."""
     H = python_function(formulas.hessian)(A, B, C, D, p_u, p_v)
     rows = [[H.H_xx, H.H_xy, H.H_xz], [H.H_xy, H.H_yy, H.H_yz], [H.H_xz, H.H_yz, H.H_zz]]
-    return np.moveaxis(np.array(rows), 2, 0) / spline.scale
+    return np.moveaxis(np.array(rows), 2, 0)

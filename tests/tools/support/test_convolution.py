@@ -77,6 +77,72 @@ def test_spheres_that_are_splines() -> None:
     assert (np.diff(np.log2(errors)) < -2.5).all()
 
 
+AXES = np.concatenate([np.eye(3), -np.eye(3)])
+BODY = gm.surfaces.ellipsoid(a=1.0, b=0.75, c=0.5)
+PLACE = np.eye(4)[[1, 2, 0, 3]]
+PLACE[:3, 3] = 1.0, 2.0, 3.0
+SMALL = gm.surfaces.ellipsoid(a=0.2, b=0.3, c=0.4).transformed(PLACE)
+EXACT = given("sqrt(n_x**2 + 9*n_y**2/16 + n_z**2/4)")
+EXACT_SMALL = given("sqrt(9*n_x**2 + 16*n_y**2 + 4*n_z**2)/10 + n_x + 2*n_y + 3*n_z")
+
+
+@pytest.mark.compiled
+def test_points_of_surfaces_are_exact() -> None:
+    """At poles, too, where a side of the domain collapses."""
+    normals = np.concatenate([gm.icosphere(6), AXES])
+    sums = gm.convolve(BODY, SMALL, normals)
+    exact = (EXACT + EXACT_SMALL).branches(normals)
+    samples = sums.samples
+    assert (samples.normal_index == np.arange(len(normals))).all()
+    np.testing.assert_allclose(samples.points, exact.points, rtol=0, atol=64 * EPS * 4)
+    np.testing.assert_allclose(sums.first.hessian, EXACT.branches(normals).hessian, atol=1e-12)
+    np.testing.assert_allclose(samples.gaussian_curvature, exact.gaussian_curvature, rtol=1e-11)
+    np.testing.assert_allclose(samples.mean_curvature, exact.mean_curvature, rtol=1e-11)
+    report = samples.report
+    assert (report.on, report.unrefined, report.fit_distance) == ("surface", 0, None)
+    assert (report.proved, report.undecided) == (len(normals), ())
+    assert samples.on_surface is not None
+    assert samples.on_surface.all()
+
+
+@pytest.mark.compiled
+def test_what_is_not_proved_is_listed() -> None:
+    """The normals ±z of a torus are those of circles."""
+    report = gm.convolve("torus", BODY, np.concatenate([NORMALS, AXES])).samples.report
+    assert report.undecided is not None
+    assert {x.normal for x in report.undecided} == {402, 405}
+    assert report.proved == 404
+
+
+@pytest.mark.compiled
+def test_how_far_sums_of_splines_are_off_is_said() -> None:
+    """Also for a spline in an operation, and a sum of a spline and a surface."""
+    one, two = gm.fit(BODY, (32, 32)), gm.fit(SMALL, (24, 24))
+    twice = of_spline(two).scaled(-2).reversed()
+    exact = EXACT.branches(NORMALS).points
+    small = EXACT_SMALL.branches(NORMALS).points
+    reflected = EXACT_SMALL.scaled(-2).reversed().branches(NORMALS).points
+    asked: list[tuple[tuple[Any, Any], Array, list[tuple[int, Any]]]] = [
+        ((one, two), exact + small, [(1, one.misfit), (1, two.misfit)]),
+        ((BODY, two), exact + small, [(1, two.misfit)]),
+        ((one, twice), exact + reflected, [(1, one.misfit), (2, two.misfit)]),
+    ]
+    for pair, points, misfits in asked:
+        samples = gm.convolve(*pair, NORMALS).samples
+        report: Any = samples.report
+        assert report.on == "spline"
+        assert report.proved is None
+        assert report.fit_distance == pytest.approx(sum(k * x.distance for k, x in misfits))
+        assert report.fit_angle == max(x.angle for _, x in misfits)
+        assert "they lie on a spline within" in samples.summary()
+        normal = np.abs(np.einsum("ij,ij->i", samples.points - points, NORMALS)).max()
+        off = np.linalg.norm(samples.points - points, axis=1).max()
+        # the largest radii are 2 and 0.8 (twice that of the last)
+        assert normal <= 1.01 * report.fit_distance
+        assert off <= report.fit_distance + np.radians(report.fit_angle) * (2 + 2 * 0.8)
+        assert off > 1e-6
+
+
 # --- the boundary of the Minkowski sum of convex bodies -------------------------------------------
 
 
@@ -211,10 +277,11 @@ def test_a_convolution_is_written_and_picked(tmp_path: Any) -> None:
 
 
 @pytest.mark.compiled
-def test_what_normals_cannot_see_is_said() -> None:
+@pytest.mark.parametrize("cells", [None, (8, 8)])
+def test_what_normals_cannot_see_is_said(cells: Any) -> None:
     for name in ("plane", "cylinder"):
         with pytest.warns(gm.GaussmapWarning, match=f"'{name}': 100 % of its area is flat") as said:
-            sums = gm.convolve(ELLIPSOID, gm.surfaces.surface(name), gm.icosphere(4), cells=(8, 8))
+            sums = gm.convolve(ELLIPSOID, gm.surfaces.surface(name), gm.icosphere(4), cells=cells)
         assert said[0].filename == __file__
         assert len(sums) == 0
         assert sums.first_uv.shape == (0, 2)
