@@ -249,7 +249,7 @@ class GaussMap(Methods):
             wanted = checked_fields(fields, True, True, part=True)
             return surface._samples_at(normals, wanted, number, threads, progress)
         on_surface = self._pieces[0].on == "surface"
-        proved = len(self._pieces) == 1 and self._pieces[0].index is not None
+        proved = all(x.index is not None for x in self._pieces)
         wanted = checked_fields(fields, on_surface, proved)
         memory = {} if out is None else out.arrays()
         pieces = [x.used(number, threads, memory).within(reach) for x in self._pieces]

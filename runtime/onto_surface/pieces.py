@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -129,21 +130,32 @@ def samples_of_pieces(
     """Return all points of a surface of several pieces that have one of the unit normals (S, 3).
 
     `name` is that of the report, and `surface` that of the samples, None for those on splines.
-    Pieces whose Gaussian image has no area beyond rounding have none.
+    Pieces without an index whose Gaussian image has no area beyond rounding have none.
     """
     on_surface, kept = geometries[0].on == "surface", with_area(geometries)
+    reports: list[SamplingReport] = []
     wanted = list(dict.fromkeys([*fields, *(FLAG_NAMES if on_surface else ())]))
     parts, developable = [{x: new_field(x, 0, dtype_of(x, dtype)) for x in wanted}], None
     for first, geometry in kept:
-        if float(np.abs(geometry.measure[1]).sum()) > LEAST_IMAGE:
+        is_proved = geometry.index is not None
+        if is_proved or float(np.abs(geometry.measure[1]).sum()) > LEAST_IMAGE:
             found = geometry.samples_at(normals, wanted, dtype, progress)
             developable = (developable or 0) + (found.report.developable_patches or 0)
             parts.append(found.arrays())
+            reports.append(found.report)
             if "patch_index" in wanted:
                 parts[-1]["patch_index"] = parts[-1]["patch_index"] + first
     arrays: dict[str, Any] = {x: np.concatenate([part[x] for part in parts]) for x in wanted}
     report = report_of(name, [x for _, x in kept], len(normals), None, developable, arrays)
+    if all(geometry.index is not None for _, geometry in kept):
+        report = replace(report, **_proof(len(normals), reports))
     return Samples(**{x: arrays[x] for x in fields}, report=report, surface=surface)
+
+
+def _proof(normals: int, reports: Sequence[SamplingReport]) -> dict[str, Any]:
+    """Return for how many normals all points of all pieces are known, and the open boxes."""
+    places = sorted((y for x in reports for y in x.undecided or ()), key=attrgetter("normal"))
+    return {"proved": normals - len({x.normal for x in places}), "undecided": tuple(places)}
 
 
 def report_of(

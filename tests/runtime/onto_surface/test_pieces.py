@@ -81,6 +81,22 @@ def test_every_point_with_a_normal_once(on, tolerance):
     assert np.allclose(samples.points - centres, samples.normals, atol=tolerance)
 
 
+def test_points_of_all_pieces_are_proved():
+    """Special normals belong to points of knots; those of the edge itself are listed or proved."""
+    normals = np.concatenate([gm.icosphere(8), np.eye(3), -np.eye(3)])
+    samples = gm.sample(barrel(), normals=normals)
+    directions = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    latitude = np.abs(np.arcsin(directions[:, 2]))
+    inside = (latitude > LOW) & (latitude < HIGH)
+    counts = np.bincount(samples.normal_index, minlength=len(normals))
+    assert np.array_equal(counts, inside)
+    assert (report_of(samples).proved, report_of(samples).undecided) == (len(normals), ())
+    assert (samples.uv_radius < 1e-8).all()
+    known = gm.GaussMap(barrel())
+    assert np.array_equal(known.count(normals), counts)
+    assert known.points(normals[:50]).report.proved == 50
+
+
 def test_patches_are_numbered_through_all_pieces():
     samples = gm.sample(barrel(), 200, cells=CELLS)
     assert samples.report.patches == 2 * 4 * 24 * 12
