@@ -35,8 +35,8 @@ __all__ = ["PoleDisc", "pole_disc"]
 
 
 SECTORS = 512
-# Bounds of quotients of splines need narrower sectors: there is a power of u in them for each knot
-# span. Their values at the pole are exact, so that smaller rings are not needed.
+# Bounds may need narrower sectors, and those of quotients of splines do: there is a power of u in
+# them for each knot span. Their values at the pole are exact, so that smaller rings are not needed.
 NARROW, RINGS, RINGS_OF_QUOTIENTS = 4, 8, 2
 # Bounds hold up to this distance, relative to the radius of the disc.
 WHOLE = 2.0
@@ -149,9 +149,8 @@ class Pole:
         )
         return np.stack(values[4:], axis=1)
 
-    def bounds(self, reach: float) -> Bounds:
-        """Return bounds for r up to `reach`, in all sectors."""
-        count = SECTORS * (NARROW if self.tapes.slope is None else 1)
+    def bounds(self, reach: float, count: int) -> Bounds:
+        """Return bounds for r up to `reach`, in a number of sectors."""
         lines = lines_of(self.tapes.tape, 0, np.array(self.around), count)
         middles, half = 0.5 * (lines[1:] + lines[:-1]), 0.5 * np.diff(lines)
         centres = np.column_stack([middles, np.full_like(middles, 0.5 * reach)])
@@ -237,18 +236,21 @@ def pole_disc(tape: Tape, domain: Domain, angle: int, end: float, radius: float)
     pole = Pole.of(tapes, domain[angle], inward if angle == 0 else -inward, size)
     if pole is None:
         return None
+    widths = (NARROW,) if tapes.slope is None else (1, NARROW)
     while size >= SMALLEST * radius:
-        disc = _disc(pole, size, np.array([end, inward, float(angle)]))
-        if disc is not None:
-            return disc
+        for narrow in widths:
+            place = np.array([end, inward, float(angle)])
+            disc = _disc(pole, size, SECTORS * narrow, place)
+            if disc is not None:
+                return disc
         size *= 0.5
     return None
 
 
-def _disc(pole: Pole, size: float, place: Array) -> PoleDisc | None:
+def _disc(pole: Pole, size: float, sectors: int, place: Array) -> PoleDisc | None:
     """Return a disc; None if bounds are too wide."""
     count = RINGS_OF_QUOTIENTS if pole.tapes.slope is None else RINGS
-    whole, last = (pole.bounds(WHOLE * size * 0.5**k) for k in (0, count - 1))
+    whole, last = (pole.bounds(WHOLE * size * 0.5**k, sectors) for k in (0, count - 1))
     unit = size * whole.q[1]
     beyond = WHOLE * whole.q[0] / whole.q[1]
     if not beyond >= BEYOND:
@@ -256,7 +258,8 @@ def _disc(pole: Pole, size: float, place: Array) -> PoleDisc | None:
     middle = np.array([0.5 * (x.middle.min() + x.middle.max()) for x in last.hessian])
     if not _is_steady(whole, middle):
         return None
-    rings = [whole, *(pole.bounds(WHOLE * size * 0.5**k) for k in range(1, count - 1)), last]
+    sizes = [WHOLE * size * 0.5**k for k in range(1, count - 1)]
+    rings = [whole, *(pole.bounds(x, sectors) for x in sizes), last]
     changes = [x.changes(middle) for x in rings]
     normal = pole.basis[:, 2]
     hot = np.concatenate(

@@ -27,8 +27,9 @@ from ..search.kernels.search import CELLS as KIND
 from ..search.kernels.search import Found as Pairs
 from ..search.kernels.search import Memory, search
 from ..tape.kernels.points import LANES, Tape
+from .caps import Cap, cap_of
 from .discs import PoleDisc, pole_disc
-from .kernels.answers import BORDER, BOX, KINDS, Answers, merge_places
+from .kernels.answers import BORDER, BOX, KINDS, SINGULAR, Answers, merge_places
 from .kernels.cells import OPEN, REACH, WIDE, Cells, Work, cut_cells
 from .kernels.discs import decide_discs
 from .kernels.places import Boxes, decide_normals
@@ -135,6 +136,7 @@ class ProvedIndex:
     pieces: Pieces
     lists: Lists
     discs: tuple[PoleDisc, ...]
+    caps: tuple[Cap, ...]
     unbounded: NDArray[np.float64]
     _rooms: deque[Rooms] = field(default_factory=deque, repr=False)
 
@@ -174,7 +176,7 @@ class ProvedIndex:
             for (low, high), ends in zip(domain, boundary, strict=True)
         )
         box = np.array([*domain[0], *domain[1], *periods])
-        discs, inside, poles = _discs(tape, domain, boundary, cells)
+        discs, caps, inside, poles = _poles(tape, domain, boundary, cells)
         lines = [lines_of(tape, k, inside[k], cells[k]) for k in (0, 1)]
         if _has_no_normals(tape, lines):
             return None
@@ -190,7 +192,7 @@ class ProvedIndex:
         joints = Joints(*(joints_of(tape, k, domain, boundary) for k in (0, 1)))
         index = Index(both, len(cut.place), joints)
         pieces = _pieces_of(index)
-        return cls(tape, box, index, pieces, listed(pieces.cones), discs, unbounded)
+        return cls(tape, box, index, pieces, listed(pieces.cones), discs, caps, unbounded)
 
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
         """Return all points with unit normals (S, 3).
@@ -205,6 +207,7 @@ class ProvedIndex:
             slow, unknown = self._merged(answers, parts, len(normals))
             parts.append(slow)
             answers.extend(unknown)
+        answers += [_in_cap(cap, normals) for cap in self.caps]
         return ProvedPlaces(*_sorted(parts, len(normals)), _undecided(answers))
 
     def _search(
@@ -362,29 +365,38 @@ class ProvedIndex:
         self._rooms.append(rooms)
 
 
-def _discs(
+def _poles(
     tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]
-) -> tuple[tuple[PoleDisc, ...], Array, Array]:
-    """Return discs around poles, the rest of the domain (2, 2), and poles without a disc.
+) -> tuple[tuple[PoleDisc, ...], tuple[Cap, ...], Array, Array]:
+    """Return discs around poles, caps of others, the rest of the domain (2, 2), and other poles.
 
-    These are boxes (k, 4). Open ends that are a smooth pole have discs, too.
+    The latter are boxes (k, 4). Open ends that are a smooth pole have discs, too.
     """
-    discs, inside, unknown = [], np.array(domain, dtype=np.float64), []
+    discs, caps, unknown = list[PoleDisc](), list[Cap](), list[list[float]]()
+    inside = np.array(domain, dtype=np.float64)
     for axis, ends in enumerate(boundary):
         low, high = domain[axis]
         row = (high - low) / cells[axis]
         for k, end in enumerate(ends):
             if end not in ("pole", "open") or boundary[1 - axis][0] != "periodic":
                 continue
-            disc = pole_disc(tape, domain, 1 - axis, domain[axis][k], row)
+            at, size = domain[axis][k], 0.0
+            disc = pole_disc(tape, domain, 1 - axis, at, row)
+            cap = (
+                cap_of(tape, domain, 1 - axis, at, row) if disc is None and end == "pole" else None
+            )
             if disc is not None:
                 discs.append(disc)
-                inside[axis, k] += disc.radius if k == 0 else -disc.radius
+                size = disc.radius
+            elif cap is not None:
+                caps.append(cap)
+                size = cap.size
             elif end == "pole":
                 sides = [list(x) for x in domain]
-                sides[axis] = [domain[axis][k]] * 2
+                sides[axis] = [at] * 2
                 unknown.append([*sides[0], *sides[1]])
-    return tuple(discs), inside, np.array(unknown).reshape(-1, 4)
+            inside[axis, k] += size if k == 0 else -size
+    return tuple(discs), tuple(caps), inside, np.array(unknown).reshape(-1, 4)
 
 
 def _has_no_normals(tape: Tape, lines: list[NDArray[np.float64]]) -> bool:
@@ -429,6 +441,14 @@ def _pieces_of(index: Index) -> Pieces:
     cones[cells.cone[:, CHORD] >= WIDE, WIDTH] = EVERYTHING
     cones[index.discs :, WIDTH] = EVERYTHING
     return Pieces(cones, cells.hot)
+
+
+def _in_cap(cap: Cap, normals: NDArray[np.float64]) -> Answers:
+    """Return a cap as an undecided box for the normals that it may have."""
+    numbers, found = cap.holds(normals), Answers.new(0)
+    boxes = np.tile(np.append(cap.box, 0.0), (len(numbers), 1))
+    kinds = np.full(len(numbers), SINGULAR, np.int64)
+    return found._replace(open_boxes=boxes, kinds=kinds, open_numbers=numbers)
 
 
 def _taken(room: Answers) -> Answers:

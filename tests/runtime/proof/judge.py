@@ -50,6 +50,18 @@ FORMULAS: dict[str, tuple[Any, Any, Any]] = {
     ),
     # The apex of a horn: a side of the domain that is one point, and not smooth.
     "horn": (("v*cos(u)", "v*sin(u)", "v + v**2/4"), (TURN, (0, 1)), (AROUND, OPEN)),
+    # A pole where K is 0, and one where bounds of the Hessian need narrow sectors.
+    "bowl": (
+        ("v*cos(u)", "v*sin(u)", "v**4*(2 + cos(2*u))"), (TURN, (0, 1)), (AROUND, ("pole", OPEN))
+    ),
+    "sheared": (
+        (
+            "cos(u)*sin(v)*(1 + 3*cos(v)**3/10)",
+            "12*sin(u)*sin(v)*(1 + cos(4*v)/5)/5 + 27*cos(v)/100",
+            "cos(u)*sin(v)/10 + 63*cos(v)/100",
+        ),
+        (TURN, (0, "pi")), (AROUND, "pole"),
+    ),
     "root": (("u", "v", "sqrt(u)/3 + v**2"), ((0, 1), (0, 1)), (OPEN, OPEN)),
     # Its height has the slopes u² − 1 and v, and a fold at u = 0.
     "folded": (("u", "v", "u**3/3 - u + v**2/2"), SQUARE, (OPEN, OPEN)),

@@ -49,7 +49,7 @@ def test_another_search_finds_the_same_points(name: str, seed: int, count: int) 
     check(name, random_normals(count, seed))
 
 
-EULER = {"torus": 0, "knobby": 0, "dupin_cyclide": 0, "sphere": 2, "ellipsoid": 2}
+EULER = {"sheared": 2, "torus": 0, "knobby": 0, "dupin_cyclide": 0, "sphere": 2, "ellipsoid": 2}
 
 
 @pytest.mark.parametrize("count", [5000, pytest.param(100_000, marks=pytest.mark.slow)])
@@ -331,6 +331,24 @@ def test_poles_of_lofted_caps() -> None:
     away[:, 0] = np.minimum(away[:, 0], 1.0 - away[:, 0])
     far = v[found.numbers] > 1e-4
     assert (away < within)[far].all()
+
+
+def test_poles_without_a_disc_are_open_for_their_own_normals() -> None:
+    """Where K is 0 at a pole, normals near that of the pole may have further points in a strip."""
+    surface, index = surface_of("bowl"), index_of("bowl")
+    (cap,) = index.caps
+    rng = np.random.default_rng(21)
+    u, v = rng.uniform(0.0, TAU, 400), rng.uniform(0.0, 1.0, 400) ** 2
+    normals = normals_at(surface, u, v)
+    found = index.query(np.concatenate([normals, -normals, [[0.0, 0.0, -1.0]]]))
+    is_open = np.isin(np.arange(801), found.undecided.numbers)
+    np.testing.assert_array_equal(kinds(found), {"singular"})
+    assert (is_open[:400] | (near(surface, found, u, v, 1e-9)[:400] == 1)).all()
+    assert is_open[:400][v < cap.size].all()
+    assert not is_open[400:800].any()
+    assert is_open[800]
+    assert is_open[:400].mean() < 0.35
+    assert (found.undecided.boxes[:, 3] <= cap.size).all()
 
 
 # --- folds ----------------------------------------------------------------------------------------
