@@ -29,7 +29,7 @@ from ..samples.report import SamplingReport, sampling_report
 from ..samples.samples import Samples
 from ..search.fill import fill
 from ..search.kernels.tile import fill_known
-from ..search.search import Hits, find
+from ..search.search import Hits, find, find_in_turn
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside, with_uv
 from ..spline.kernels.forms import forms_of_jets, jets_on_spline, patches_at
@@ -164,6 +164,29 @@ class OnSpline:
             len(normals), density, hits.developable, found.fields, unrefined=found.unrefined
         )
         return self.samples(found.fields, report)
+
+    def samples_in_turn(
+        self,
+        normals: Array,
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        size: int,
+        progress: bool,
+        density: float,
+    ) -> Iterator[Samples]:
+        """Yield at most `size` of the samples at normals at a time; see `samples_at`."""
+        report = self.report(len(normals), density, None, {})
+        parts = find_in_turn(self.spline, normals, self.threads, progress)
+        for found in self.at_hits_in_turn(normals, parts, fields, dtype, size):
+            known = replace(report, samples=found.number, unrefined=found.unrefined)
+            yield self.samples(found.fields, known)
+
+    def number_inside(self, normals: Array, hits: Hits) -> int:
+        """Return the number of hits inside the trim of the spline."""
+        if self.spline.trim is None:
+            return len(hits)
+        uv = fill(self.spline, normals, hits, self.threads, ("uv",))
+        return count_of(samples_inside(self.spline.trim, uv, ("uv",)))
 
     def at_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike

@@ -16,7 +16,7 @@ from ..fitting.fit import spline_of
 from ..samples.fields import FLAG_NAMES
 from ..samples.report import PLACES
 from ..samples.samples import Samples
-from ..search.search import Hits, developable_patches
+from ..search.search import Hits
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside
 from ..spline.spline import Spline
@@ -154,16 +154,26 @@ class OnSurface(OnSpline):
         """Return all points that have one of the unit normals (S, 3): proved with an `index`."""
         if self.index is None:
             return super().samples_at(normals, fields, dtype, progress, density)
-        assert self.surface is not None
-        found, proof = proved_samples(
-            self.surface, self.spline, self.index, normals, fields, dtype, self.threads
-        )
-        developable = developable_patches(self.spline, self.threads)
-        report = self.report(
-            len(normals), density, developable, found.fields, unrefined=found.unrefined,
-            **proof._asdict(),
-        )  # fmt: skip
-        return self.samples(found.fields, report)
+        return proved_samples(self, self.index, normals, fields, dtype, density)
+
+    def samples_in_turn(
+        self,
+        normals: Array,
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        size: int,
+        progress: bool,
+        density: float,
+    ) -> Iterator[Samples]:
+        """Yield at most `size` of the samples at a time; the proof is with the first ones."""
+        if self.index is None:
+            yield from super().samples_in_turn(normals, fields, dtype, size, progress, density)
+            return
+        found = self.samples_at(normals, fields, dtype, progress, density)
+        yield found[:size]
+        report = replace(found.report, proved=0, undecided=())
+        for first in range(size, len(found), size):
+            yield self.samples(found[first : first + size].arrays(), report)
 
     def at_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike

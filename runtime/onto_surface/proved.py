@@ -15,11 +15,12 @@ from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
 from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places, order_by_patch
 from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, row_shape
 from ..samples.report import UndecidedNormal
+from ..samples.samples import Samples
+from ..search.search import developable_patches
 from ..spline.inside import samples_inside, with_uv
-from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .newton import near_poles
-from .on_spline import Fields, FieldsOfSamples
+from .on_spline import Fields, OnSpline
 from .pole_charts import pole_charts
 
 __all__ = ["Proof", "index_of", "proof_of", "proved_samples"]
@@ -45,38 +46,40 @@ def index_of(
 
 
 def proved_samples(
-    surface: Surface,
-    spline: Spline,
+    geometry: OnSpline,
     index: ProvedIndex,
     normals: NDArray[np.float64],
     fields: Sequence[str],
     dtype: DTypeLike,
-    threads: int | None,
-) -> tuple[FieldsOfSamples, Proof]:
-    """Return fields of all points that have unit normals (S, 3), and the proof.
+    density: float | None,
+) -> Samples:
+    """Return all points that have unit normals (S, 3), and the proof.
 
     They come in the order of normals, then of the patches of the spline, then of u and v.
     """
+    spline, threads = geometry.spline, geometry.threads
     found = index.query(normals, threads)
     order_by_patch(found.numbers, found.places, spline.frame, spline.cells)
     check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
-    wanted = with_uv(spline.trim, fields)
-    arrays = _arrays(surface, spline, index, normals, found, wanted, threads)
+    arrays = _arrays(geometry, index, normals, found, with_uv(spline.trim, fields))
     arrays = samples_inside(spline.trim, arrays, fields)
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
-    return FieldsOfSamples(kept, 0), proof_of(normals, found.undecided, spline.trim)
+    developable = developable_patches(spline, threads)
+    proof = proof_of(normals, found.undecided, spline.trim)._asdict()
+    report = geometry.report(len(normals), density, developable, kept, unrefined=0, **proof)
+    return geometry.samples(kept, report)
 
 
 def _arrays(
-    surface: Surface,
-    spline: Spline,
+    geometry: OnSpline,
     index: ProvedIndex,
     normals: NDArray[np.float64],
     found: ProvedPlaces,
     fields: Sequence[str],
-    threads: int | None,
 ) -> Fields:
     """Return the fields that are wanted."""
+    surface, spline = geometry.surface, geometry.spline
+    assert surface is not None
     numbers, places = found.numbers, found.places
     count = len(numbers)
     rooms = SampleFields(
@@ -102,7 +105,7 @@ def _arrays(
             if len(H) > 0:
                 H[first + rows] = mean
 
-    list(over_ranges(work, count, PLACES_AT_A_TIME, threads))
+    list(over_ranges(work, count, PLACES_AT_A_TIME, geometry.threads))
     arrays = {name: x for name, x in rooms._asdict().items() if name in fields}
     flags = {name: np.ones(count, dtype=np.bool_) for name in FLAG_NAMES}
     return arrays | flags | {"normal_index": numbers}

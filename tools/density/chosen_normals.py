@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -12,9 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 from ...runtime.base.limits import MOST
 from ...runtime.onto_surface.on_spline import OnSpline
 from ...runtime.samples.samples import Samples
-from ...runtime.search.fill import fill
 from ...runtime.search.search import Hits, find
-from ...runtime.spline.inside import count_of, samples_inside
 from .fibonacci_lattice import Lattice
 
 __all__ = ["Chosen", "choose"]
@@ -61,11 +59,14 @@ class Chosen:
 
         They are searched on the spline, unless they are already found.
         """
-        threads = geometry.threads
-        normals, hits = self.found or (self.part(0, len(self), threads), None)
-        if hits is None:
-            hits = find(geometry.spline, normals, threads, progress)
-        return geometry.samples_at_hits(normals, hits, fields, dtype, self.density), normals
+        if self.found is not None:
+            normals, hits = self.found
+            found = geometry.samples_at_hits(normals, hits, fields, dtype, self.density)
+        else:
+            normals = self.part(0, len(self), geometry.threads)
+            searched = replace(geometry, index=None)  # nobody has asked for a proof
+            found = searched.samples_at(normals, fields, dtype, progress, self.density)
+        return found, normals
 
 
 def choose(geometry: OnSpline, count: int, progress: bool) -> Chosen:
@@ -98,7 +99,7 @@ def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, in
         density = min(density, densest)
         normals = lattice.normals(density, threads=threads)
         hits = find(spline, normals, threads, progress)
-        number = _number_inside(geometry, normals, hits)
+        number = geometry.number_inside(normals, hits)
         if best is None or abs(number - count) < abs(samples - count):
             best, samples = Chosen(lattice, density, (normals, hits)), number
         if abs(number - count) <= NEAR_ENOUGH * count or resolved == 0.0:
@@ -110,12 +111,3 @@ def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, in
             density = count / resolved * (1.0 + (-1) ** step * (step // 2) * DITHER)
     assert best is not None
     return best, samples
-
-
-def _number_inside(geometry: OnSpline, normals: NDArray[np.float64], hits: Hits) -> int:
-    """Return the number of hits inside the trim of a spline."""
-    spline = geometry.spline
-    if spline.trim is None:
-        return len(hits)
-    uv = fill(spline, normals, hits, geometry.threads, ("uv",))
-    return count_of(samples_inside(spline.trim, uv, ("uv",)))

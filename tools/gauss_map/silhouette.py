@@ -24,7 +24,6 @@ from ...runtime.samples.report import warn_of
 from ...runtime.samples.samples import Samples
 from ...runtime.search.fill import fill
 from ...runtime.search.search import Hits, find
-from ...runtime.spline.inside import count_of, samples_inside
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
@@ -158,7 +157,7 @@ def silhouette(
     thread_count(threads)
     geometry = geometry_of(surface, cells, on).used(number, threads)
     spline = geometry.spline
-    normals, hits = _by_count(spline, axis, asked, threads, progress)
+    normals, hits = _by_count(geometry, axis, asked, progress)
     found = geometry.at_hits(normals, hits, list(dict.fromkeys([*names, *KEYS, *flags])), number)
     arrays = found.fields
     places = _places_on_spline(spline, normals, hits, arrays)
@@ -237,24 +236,17 @@ def great_circle(axis: NDArray[np.float64], count: int) -> NDArray[np.float64]:
 
 
 def _by_count(
-    spline: Spline,
-    axis: NDArray[np.float64],
-    count: int,
-    threads: int | None,
-    progress: bool,
+    geometry: OnSpline, axis: NDArray[np.float64], count: int, progress: bool
 ) -> tuple[NDArray[np.float64], Hits]:
     """Return normals with about `count` samples, and their hits."""
     size, best, nearest = count, None, math.inf
     for _ in range(TRIES):
         normals = great_circle(axis, size)
-        hits = find(spline, normals, threads, progress)
-        number = len(hits)
-        if spline.trim is not None and number:
-            uv = fill(spline, normals, hits, threads, ("uv",))
-            number = count_of(samples_inside(spline.trim, uv, ("uv",)))
+        hits = find(geometry.spline, normals, geometry.threads, progress)
+        number = geometry.number_inside(normals, hits)
         if best is None or abs(number - count) < nearest:
             best, nearest = (normals, hits), abs(number - count)
-        if nearest <= NEAR_ENOUGH * count or hits.developable == spline.patches:
+        if nearest <= NEAR_ENOUGH * count or hits.developable == geometry.spline.patches:
             break
         next_size = round(size * count / number) if number else 2 * size
         size = min(max(next_size, 1), NORMALS_PER_SAMPLE * count)

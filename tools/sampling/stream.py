@@ -14,13 +14,13 @@ from ...runtime.base.checks import whole_number, yes_or_no
 from ...runtime.base.errors import InputError
 from ...runtime.base.threads import shown
 from ...runtime.map import kept_map
-from ...runtime.onto_surface.on_spline import FieldsOfSamples, OnSpline
+from ...runtime.onto_surface.on_spline import OnSpline
 from ...runtime.onto_surface.on_surface import place_of_samples
 from ...runtime.onto_surface.pieces import geometries_of, pieces_to_sample
 from ...runtime.samples.fields import checked_dtype, checked_fields
-from ...runtime.samples.report import SamplingReport, count_infinite, warn_of
+from ...runtime.samples.report import count_infinite, warn_of
 from ...runtime.samples.samples import Samples
-from ...runtime.search.search import developable_patches, find_in_turn
+from ...runtime.search.search import developable_patches
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
@@ -134,77 +134,41 @@ class _Stream:
 
     def chunks(self) -> Generator[Samples, None, None]:
         """Yield the chunks of all blocks of normals, at least one, and warn at the end."""
-        if self.geometry.index is not None:
-            yield from self._proved_chunks()
-            return
-        geometry, threads = self.geometry, self.geometry.threads
-        chosen = self._chosen
+        geometry, chosen = self.geometry, self._chosen
         chosen, total = replace(chosen, found=None), len(chosen)  # frees the hits
-        report = geometry.report(total, chosen.density, None, {})
         starts = range(0, total, NORMALS_AT_A_TIME)
         alone = len(starts) == 1
-        came, unrefined, nothing = 0, 0, None
+        came, unrefined, last, chunk = 0, 0, None, None
         for first in shown(iter(starts), len(starts), self.progress and not alone):
-            last = min(first + NORMALS_AT_A_TIME, total)
-            normals = chosen.part(first, last, threads)
-            hits = find_in_turn(geometry.spline, normals, threads, self.progress and alone)
-            for part in geometry.at_hits_in_turn(normals, hits, self.fields, self.dtype, self.size):
-                samples = self._samples(part, first, report)
-                came, unrefined = came + part.number, unrefined + (part.unrefined or 0)
-                if part.number:
-                    yield samples
-                else:
-                    nothing = samples
-            del normals, hits  # before the next block is made
-        if came == 0 and nothing is not None:
-            yield nothing
-        developable = developable_patches(geometry.spline, threads)
-        report = replace(report, samples=came, developable_patches=developable)
-        warn_of(replace(report, unrefined=unrefined), self.request.count, stacklevel=3)
-
-    def _proved_chunks(self) -> Generator[Samples, None, None]:
-        """Yield the chunks of a proved search."""
-        chosen = self._chosen
-        total, came, report = len(chosen), 0, None
-        starts = range(0, total, NORMALS_AT_A_TIME)
-        for first in shown(iter(starts), len(starts), self.progress and len(starts) > 1):
-            normals = chosen.part(first, first + NORMALS_AT_A_TIME, self.geometry.threads)
-            found = self.geometry.samples_at(
-                normals, self.fields, self.dtype, self.progress, chosen.density
-            )
-            for start in range(0, max(len(found), 1), self.size):
-                if start or len(found) or (first == starts[-1] and not came):
-                    part = found[start : start + self.size]
-                    yield _chunk(part, first, total, is_first=start == 0)
-            came, report = came + len(found), found.report
-        assert report is not None
-        warn_of(replace(report, samples=came), self.request.count, stacklevel=4)
-
-    def _samples(self, found: FieldsOfSamples, start: int, report: SamplingReport) -> Samples:
-        """Return a chunk; its normals are numbered from `start` on."""
-        arrays = found.fields
-        if start and "normal_index" in arrays:
-            arrays["normal_index"] = arrays["normal_index"] + start
-        report = replace(
-            report, samples=found.number, infinite_curvatures=count_infinite(arrays),
-            unrefined=found.unrefined,
-        )  # fmt: skip
-        return self.geometry.samples(arrays, report)
+            end = min(first + NORMALS_AT_A_TIME, total)
+            normals = chosen.part(first, end, geometry.threads)
+            for part in geometry.samples_in_turn(
+                normals, self.fields, self.dtype, self.size, self.progress and alone, chosen.density
+            ):
+                last, chunk = part.report, _chunk(part, first, total)
+                came, unrefined = came + len(part), unrefined + (last.unrefined or 0)
+                if len(part):
+                    yield chunk
+            del normals  # before the next block is made
+        assert last is not None
+        assert chunk is not None
+        if came == 0:
+            yield chunk
+        developable = developable_patches(geometry.spline, geometry.threads)
+        report = replace(last, samples=came, developable_patches=developable, unrefined=unrefined)
+        warn_of(report, self.request.count, stacklevel=3)
 
 
-def _chunk(found: Samples, start: int, total: int, is_first: bool) -> Samples:
-    """Return a chunk of a block of normals from `start` on; the first chunk has the proof."""
+def _chunk(found: Samples, start: int, total: int) -> Samples:
+    """Return samples at a block of the `total` normals, which are numbered from `start` on."""
     arrays: dict[str, Any] = found.arrays()
-    report = found.report
     if start and "normal_index" in arrays:
         arrays["normal_index"] = arrays["normal_index"] + start
-    undecided = [x._replace(normal=x.normal + start) for x in report.undecided or ()]
+    report, undecided = found.report, found.report.undecided
+    if undecided is not None:
+        undecided = tuple(x._replace(normal=x.normal + start) for x in undecided)
     report = replace(
-        report,
-        normals=total,
-        samples=len(found),
-        infinite_curvatures=count_infinite(arrays),
-        proved=report.proved if is_first else 0,
-        undecided=tuple(undecided) if is_first else (),
-    )
+        report, normals=total, samples=len(found),
+        infinite_curvatures=count_infinite(arrays), undecided=undecided,
+    )  # fmt: skip
     return Samples(**arrays, report=report, spline=found.spline, surface=found.surface)
