@@ -10,7 +10,7 @@ from typing import Any
 from numba.core.caching import NullCache
 
 from ..base.errors import GaussmapWarning
-from . import kept, shipped
+from . import disk, shipped
 from .entries import entry_of, kernel_of, key_of
 
 __all__ = ["KernelCache", "say_why"]
@@ -22,7 +22,7 @@ class KernelCache(NullCache):
     def __init__(self, function: Callable[..., Any]) -> None:
         """Touch no file before the first call."""
         self._function = function
-        self._lock: kept.FileLock | None = None
+        self._lock: disk.FileLock | None = None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return a kernel, waiting for a process that compiles it; None if this process has to."""
@@ -38,15 +38,15 @@ class KernelCache(NullCache):
         return found
 
     def _kept(self, key: str, context: Any) -> Any:
-        folder = kept.kept_folder()
+        folder = disk.kept_folder()
         if folder is None:
             return None
         place = (folder, key, _processor(context))
-        lock = kept.lock_of(*place)
-        found = _restored(kept.load(*place), context)
+        lock = disk.lock_of(*place)
+        found = _restored(disk.load(*place), context)
         if found is None:
             lock.acquire()
-            found = _restored(kept.load(*place), context)
+            found = _restored(disk.load(*place), context)
         if found is None:
             self._lock = lock  # until it is compiled
         else:
@@ -55,10 +55,10 @@ class KernelCache(NullCache):
 
     def save_overload(self, sig: Any, cres: Any) -> None:
         """Keep what was compiled here, and let waiting processes load it."""
-        folder = kept.kept_folder()
+        folder = disk.kept_folder()
         if folder is not None:
             key, processor = key_of(self._function, sig), _processor(cres.target_context)
-            kept.save(folder, key, processor, entry_of(cres))
+            disk.save(folder, key, processor, entry_of(cres))
         if self._lock is not None:
             self._lock.release()
 

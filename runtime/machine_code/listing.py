@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from . import signatures
+from .disk import entries_in, kept_folder
 from .entries import signature_in
-from .kept import entries_in, kept_folder
 
 __all__ = ["compiled_in", "main", "missing"]
 

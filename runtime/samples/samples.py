@@ -8,7 +8,7 @@ from ..base.errors import InputError
 from ..base.wording import plural
 from ..spline.spline import Spline, short_label
 from .arrays import SampleArrays
-from .methods import Methods
+from .samples_methods import Methods
 from .summary import kinds_of_points, summary_of
 from .whole import Whole
 

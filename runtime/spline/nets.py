@@ -20,8 +20,8 @@ from ..base.tolerances import SINGULAR_POINT
 from .developable import CellMeasure
 from .inside import subcentroids
 from .joints import Joints, Topology, merged_points
-from .methods import NetMethods
 from .spline import Spline, short_label
+from .spline_methods import NetMethods
 
 __all__ = ["NetSpline", "from_nets", "vectors_of_nets"]
 

@@ -21,7 +21,7 @@ from ..domain.domain import Boundary, Domain, brought_inside, checked_boundary, 
 from .developable import CellMeasure
 from .inside import Inside
 from .kernels import spline as kernels
-from .methods import Methods
+from .spline_methods import Methods
 
 if TYPE_CHECKING:
     from ..domain.trim import Trim

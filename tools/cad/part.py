@@ -16,8 +16,8 @@ from ...runtime.base.wording import plural
 from ...runtime.samples.whole import Whole
 from ..files.paths import PathLike
 from .dimensions import dimensions_of
-from .methods import Methods
 from .part_arrays import geometry_of, packed
+from .part_methods import Methods
 from .records import Geometry, PartRecord
 from .saving import read_arrays, write_arrays
 

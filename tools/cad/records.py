@@ -1,6 +1,6 @@
 """A part, a face and an edge as numbers and arrays, before they are packed.
 
-The process that reads CAD files imports this module and `layout`: nothing here needs Numba.
+The process that reads CAD files imports this module: nothing here needs Numba.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from ...runtime.base.errors import FileError, InputError
 from ...runtime.base.wording import plural
 from ...runtime.machine_code import signatures
 from ...runtime.machine_code.building import kernel_named
-from ...runtime.machine_code.kept import kept_folder
+from ...runtime.machine_code.disk import kept_folder
 from .console import say
 
 __all__ = ["run"]

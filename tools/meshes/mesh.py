@@ -16,7 +16,7 @@ from ...runtime.domain.domain import Boundary, Domain, checked_domain, checked_s
 from ...runtime.spline.spline import short_label
 from .kernels.flips import smallest_cosines, smallest_tangents
 from .links import edge_numbers
-from .methods import Methods
+from .mesh_methods import Methods
 from .texture import corner_places
 
 __all__ = ["Mesh", "centred", "cosines_of", "scaled", "tangents_of"]

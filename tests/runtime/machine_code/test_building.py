@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gaussmap.runtime.machine_code import building, entries, jit, kept, listing, shipped, signatures
+from gaussmap.runtime.machine_code import building, disk, entries, jit, listing, shipped, signatures
 from numba import typeof, types
 
 from ...refusals import refused
@@ -156,7 +156,7 @@ def test_what_the_list_lacks(
     """A kernel that is compiled here is found; after the list is written, it is on the list."""
     name = "gaussmap.runtime.directions.kernels.unit.are_unit"
     (kinds,) = signatures.read()[name]
-    monkeypatch.setattr(kept, "kept_folder", lambda: tmp_path)
+    monkeypatch.setattr(disk, "kept_folder", lambda: tmp_path)
     monkeypatch.setattr(shipped, "open_pack", lambda: None)
     monkeypatch.setattr(signatures, "SIGNATURES", tmp_path / "signatures.json")
     signatures.write({})

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numba
 import pytest
-from gaussmap.runtime.machine_code import entries, jit, kept, sources
+from gaussmap.runtime.machine_code import disk, entries, jit, sources
 from numba.core import config, event
 
 PACKAGE = Path(__file__).parents[3]
@@ -78,7 +78,7 @@ def triple(x: float) -> float:
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The folder in which machine code is kept during a test."""
-    monkeypatch.setattr(kept, "kept_folder", lambda: tmp_path)
+    monkeypatch.setattr(disk, "kept_folder", lambda: tmp_path)
     return tmp_path
 
 
@@ -148,8 +148,8 @@ def test_two_processes_compile_a_kernel_once(tmp_path: Path) -> None:
 def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(kept, "LONGEST_WAIT", 0.05)
-    first, second = (kept.FileLock(tmp_path / "lock") for _ in range(2))
+    monkeypatch.setattr(disk, "LONGEST_WAIT", 0.05)
+    first, second = (disk.FileLock(tmp_path / "lock") for _ in range(2))
     first.acquire()
     start = time.monotonic()
     second.acquire()
@@ -161,7 +161,7 @@ def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
 
 @pytest.mark.compiled
 def test_a_failed_compilation_keeps_no_lock(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept, "POLL", None)  # waiting raises TypeError
+    monkeypatch.setattr(disk, "POLL", None)  # waiting raises TypeError
     kernel = jit.jit(triple)
     for _ in range(2):
         with pytest.raises(numba.TypingError):
@@ -212,10 +212,10 @@ def test_folders_that_were_not_used_for_long_are_removed(tmp_path: Path) -> None
         (folder / "code").write_text("")
         used = now - days * 24 * 3600
         os.utime(folder, (used, used))
-    kept.remove_unused(ours)
+    disk.remove_unused(ours)
     assert {*tmp_path.iterdir()} == {ours, recent, others}
     assert ours.stat().st_mtime > now - 60
-    kept.remove_unused(tmp_path / "missing" / "folder")
+    disk.remove_unused(tmp_path / "missing" / "folder")
 
 
 def test_the_digest_covers_all_that_kernels_are_made_of() -> None:
@@ -248,11 +248,11 @@ def test_without_compilation_kernels_are_functions() -> None:
 def test_a_cache_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
     """Kernels are compiled all the same, and not kept."""
     nowhere = Path(os.devnull) / "cache"
-    monkeypatch.setattr(kept, "PACKAGE", nowhere)
+    monkeypatch.setattr(disk, "PACKAGE", nowhere)
     monkeypatch.setattr(config, "CACHE_DIR", "")
     monkeypatch.setenv("XDG_CACHE_HOME", str(nowhere))
-    monkeypatch.setattr(kept, "kept_folder", kept.kept_folder.__wrapped__)
-    monkeypatch.setattr(kept, "digest", lambda: "0")
+    monkeypatch.setattr(disk, "kept_folder", disk.kept_folder.__wrapped__)
+    monkeypatch.setattr(disk, "digest", lambda: "0")
 
-    assert kept.kept_folder() is None
+    assert disk.kept_folder() is None
     assert jit.jit(triple)(2.0) == 6.0

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gaussmap.runtime.machine_code import building, jit, kept, linking, signatures
+from gaussmap.runtime.machine_code import building, disk, jit, linking, signatures
 from numba.core import event
 from numba.core.caching import NullCache
 
@@ -38,7 +38,7 @@ def first_and_total(array):
 @pytest.fixture
 def kernel(monkeypatch: pytest.MonkeyPatch) -> Any:
     """A kernel that is not compiled yet, with two parts."""
-    monkeypatch.setattr(kept, "kept_folder", lambda: None)
+    monkeypatch.setattr(disk, "kept_folder", lambda: None)
     return jit.jit(first_and_total)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import gaussmap as gm
 import pytest
-from gaussmap.runtime.machine_code import cache, entries, jit, kept, processors, shipped, sources
+from gaussmap.runtime.machine_code import cache, disk, entries, jit, processors, shipped, sources
 from numba.core import event
 
 pytestmark = pytest.mark.compiled
@@ -22,7 +22,7 @@ def triple(x: float) -> float:
 def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """The path of a file that has one kernel, in the folder of a package that knows no other."""
     monkeypatch.delenv(shipped.SWITCH, raising=False)
-    monkeypatch.setattr(kept, "kept_folder", lambda: None)
+    monkeypatch.setattr(disk, "kept_folder", lambda: None)
     path = shipped.pack_path(tmp_path)
     assert path is not None
     monkeypatch.setattr(shipped, "pack_path", lambda: path)

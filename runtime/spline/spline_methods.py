@@ -1,4 +1,4 @@
-"""Methods of `Spline` and `NetSpline` that modules above define; `methods.pyi` has signatures."""
+"""Methods of splines that modules above define; `spline_methods.pyi` has their signatures."""
 
 from __future__ import annotations
 

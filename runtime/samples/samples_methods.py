@@ -1,4 +1,4 @@
-"""The methods of `Samples` that folders above define; `methods.pyi` has their signatures.
+"""The methods of `Samples` that folders above define; `samples_methods.pyi` has their signatures.
 
 Each is imported at first use, as are the names of the package (see `__init__.pyi`), so that this
 module does not import modules that use samples.
@@ -10,7 +10,7 @@ from ..base.later import Later
 
 __all__ = ["Methods"]
 
-DENSITY, TOOLS = "gaussmap.tools.density.methods", "gaussmap.tools.methods"
+DENSITY, TOOLS = "gaussmap.tools.density.methods", "gaussmap.tools.derived"
 OTHERS = "gaussmap.tools.files.of_samples"
 
 

@@ -1,18 +1,18 @@
-"""The methods of `Samples` that folders above define; `methods.py` loads them."""
+"""The methods of `Samples` that folders above define; `samples_methods.py` loads them."""
 
 class Methods:
     from ...tools.density.methods import coverage as coverage
     from ...tools.density.methods import normal_deviation as normal_deviation
     from ...tools.density.methods import progressive as progressive
+    from ...tools.derived import levels as levels
+    from ...tools.derived import mesh as mesh
+    from ...tools.derived import offset as offset
+    from ...tools.derived import plot as plot
+    from ...tools.derived import unobstructed as unobstructed
+    from ...tools.derived import view as view
+    from ...tools.derived import weights as weights
+    from ...tools.derived import write as write
     from ...tools.files.of_samples import to_dataframe as to_dataframe
     from ...tools.files.of_samples import to_open3d as to_open3d
     from ...tools.files.of_samples import to_pyvista as to_pyvista
     from ...tools.files.of_samples import to_trimesh as to_trimesh
-    from ...tools.methods import levels as levels
-    from ...tools.methods import mesh as mesh
-    from ...tools.methods import offset as offset
-    from ...tools.methods import plot as plot
-    from ...tools.methods import unobstructed as unobstructed
-    from ...tools.methods import view as view
-    from ...tools.methods import weights as weights
-    from ...tools.methods import write as write

@@ -1,4 +1,4 @@
-"""The methods of `Part` defined in modules above it; `methods.pyi` declares them.
+"""The methods of `Part` defined in modules above it; `part_methods.pyi` declares them.
 
 Each is loaded on first access. Nothing here imports modules that build on parts.
 """

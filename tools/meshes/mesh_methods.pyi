@@ -1,4 +1,4 @@
-"""The methods of `Mesh` that files define; `methods.py` loads them."""
+"""The methods of `Mesh` that files define; `mesh_methods.py` loads them."""
 
 class Methods:
     from ..files.of_meshes import to_open3d as to_open3d

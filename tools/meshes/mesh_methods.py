@@ -1,4 +1,4 @@
-"""The methods of `Mesh` defined in other modules; `methods.pyi` declares them."""
+"""The methods of `Mesh` defined in other modules; `mesh_methods.pyi` declares them."""
 
 from __future__ import annotations
 
