@@ -6,6 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 
+def net_of(a, b, c, d, e) -> NDArray:
+    """Return the control points of ½ a u² + b uv + ½ c v² + d u + e v."""
+    a, b, c, d, e = (np.array(x, dtype=float) for x in (a, b, c, d, e))
+    return np.array([d + a / 2, e + c / 2, 0 * a, (b + d + e) / 2, d / 2, e / 2])
+
+
 def vectors_of(net: ArrayLike) -> NDArray:
     """Return a, b, c, d, e (5, 3) of the patch ½ a u² + b uv + ½ c v² + d u + e v + p."""
     b200, b020, b002, b110, b101, b011 = np.asarray(net)

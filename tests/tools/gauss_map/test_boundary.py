@@ -63,7 +63,9 @@ def of_polygon(points: Array, pole: Array) -> float:
 
 @pytest.mark.parametrize("name", CASES)
 def test_an_edge_is_cut_at_its_singular_points(name: str) -> None:
+    """Parts are sampled along the edge, between these; rounding is divided by |N| > 1e-3."""
     points, edge, zeros, kind, sides = CASES[name]
+    net = np.array(points, dtype=float)
     image = gm.gauss_map.GaussianImage.of_patch(points)
     assert image.kind == kind
     assert len(image.boundary) == sides
@@ -71,16 +73,8 @@ def test_an_edge_is_cut_at_its_singular_points(name: str) -> None:
         len(zeros) if k == edge else 0 for k in range(3)
     ]
     np.testing.assert_allclose(image.arcs[edge].singular_points, zeros, rtol=0, atol=1e-13)
-    assert len(image.arcs[edge].parts) == len(zeros) + 1
-
-
-@pytest.mark.parametrize("name", CASES)
-def test_parts_are_the_normals_of_the_edge(name: str) -> None:
-    """Sampled along the edge, between the singular points; rounding is divided by |N| > 1e-3."""
-    points, edge, zeros, _, _ = CASES[name]
-    net = np.array(points, dtype=float)
-    arc = gm.gauss_map.GaussianImage.of_patch(net).arcs[edge]
-    for part, start, end in zip(arc.parts, [0.0, *zeros], [*zeros, 1.0], strict=True):
+    parts = image.arcs[edge].parts
+    for part, start, end in zip(parts, [0.0, *zeros], [*zeros, 1.0], strict=True):
         along = part.points(11)
         inner = np.linspace(start, end, 11)[1:-1]
         expected = field(net, *ON_EDGES[edge](inner))
@@ -93,7 +87,7 @@ def test_parts_are_the_normals_of_the_edge(name: str) -> None:
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.quick_for("two", "third order", "line inside", "umbrella", "generic")
-def test_the_boundary_is_closed_and_has_the_solid_angle(name: str) -> None:
+def test_the_boundary_is_closed_and_has_the_solid_angle_and_area(name: str) -> None:
     """A polygon of chords of length 1/n misses areas of order 1/n².
 
     In the third order a triple parabolic line ends in the singular point: a triple root, which is
@@ -108,13 +102,6 @@ def test_the_boundary_is_closed_and_has_the_solid_angle(name: str) -> None:
     assert np.remainder(error + 1.0, 4 * np.pi) - 1.0 == pytest.approx(
         0.0, abs=2e-5 if name == "third order" else 1e-5
     )
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("name", CASES)
-@pytest.mark.quick_for("two", "third order", "line inside", "umbrella", "generic")
-def test_membership_and_area_of_an_image_with_a_singular_point_inside_an_edge(name: str) -> None:
-    image = gm.gauss_map.GaussianImage.of_patch(CASES[name][0])
     share = image.contains(gm.fibonacci(100_000)).mean()
     assert image.area == pytest.approx(4 * np.pi * share, abs=0.01)
 

@@ -13,16 +13,10 @@ from gaussmap.tools.gauss_map.patches import Patches
 from numpy.typing import NDArray
 
 from ...refusals import refused
-from .nets import normals_at, vectors_of
+from .nets import net_of, normals_at, vectors_of
 
 Array = NDArray[np.float64]
 PatchClass = gm.gauss_map.PatchClass
-
-
-def net_of(a, b, c, d, e) -> Array:
-    """Return the control points of ½ a u² + b uv + ½ c v² + d u + e v."""
-    a, b, c, d, e = (np.array(x, dtype=float) for x in (a, b, c, d, e))
-    return np.array([d + a / 2, e + c / 2, 0 * a, (b + d + e) / 2, d / 2, e / 2])
 
 
 def graph(f, domain=((-1.0, 1.0), (-1.0, 1.0))) -> gm.Surface:
