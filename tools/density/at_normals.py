@@ -30,7 +30,7 @@ __all__ = ["Given", "at_count", "at_lattices", "at_normals"]
 FEWER = 0.98
 
 
-class Found(NamedTuple):
+class PieceSamples(NamedTuple):
     """The samples of a piece at normals (S, 3)."""
 
     piece: int
@@ -49,7 +49,7 @@ class Given:
     space: Space
     normals: Array = field(default_factory=lambda: np.empty((0, 3)))
     density: float = 0.0
-    found: tuple[Found, ...] = ()
+    found: tuple[PieceSamples, ...] = ()
     same_normals: bool = True
     estimated: tuple[int, ...] = ()
 
@@ -104,13 +104,13 @@ def at_normals(space: Space, normals: Array, curved: Iterable[int], progress: bo
 
     Pieces that prove it have all; of the others, the `curved` ones are searched.
     """
-    density, found, estimated = len(normals) / (4 * math.pi), list[Found](), list[int]()
+    density, found, estimated = len(normals) / (4 * math.pi), list[PieceSamples](), list[int]()
     for k, piece in enumerate(space.pieces):
         proved = piece.proved_at(normals, space.threads)
         if proved is None:
             estimated.append(k)
         else:
-            found += [Found(k, x, normals) for x in proved]
+            found += [PieceSamples(k, x, normals) for x in proved]
 
     def search(geometry: OnSpline) -> tuple[Samples, Array]:
         fields = ARRAY_NAMES_ON_SURFACE
@@ -140,7 +140,7 @@ def at_lattices(
 
 def at_count(space: Space, counts: Indices, progress: bool) -> Given:
     """Return about as many samples of each piece as `counts` (P,) say, at normals of lattices."""
-    parts, densities = list[Found](), [0.0]
+    parts, densities = list[PieceSamples](), [0.0]
     for piece in np.flatnonzero(counts).tolist():
 
         def search(geometry: OnSpline, count: int = int(counts[piece])) -> tuple[Samples, Array]:
@@ -152,21 +152,21 @@ def at_count(space: Space, counts: Indices, progress: bool) -> Given:
     return _given(space, max(densities), tuple(parts))
 
 
-def _given(space: Space, density: float, found: tuple[Found, ...]) -> Given:
+def _given(space: Space, density: float, found: tuple[PieceSamples, ...]) -> Given:
     normals = np.concatenate([np.empty((0, 3)), *(x.normals for x in found)])
     return Given(space, normals, density if found else 0.0, found, same_normals=False)
 
 
 def _searched(
     space: Space, pieces: Iterable[int], search: Callable[[OnSpline], tuple[Samples, Array] | None]
-) -> Iterable[Found]:
+) -> Iterable[PieceSamples]:
     """Yield what a search finds on pieces; there is a warning for those that have no spline."""
     for k in pieces:
         try:
             for geometry in space.pieces[k].geometries(space.threads):
                 found = search(geometry)
                 if found is not None:
-                    yield Found(k, *found)
+                    yield PieceSamples(k, *found)
         except GaussmapError as error:
             if len(space.pieces) == 1:
                 raise
