@@ -14,14 +14,14 @@ from .base.threads import thread_count
 from .directions.regions import Cap
 from .directions.unit import as_normals
 from .map_methods import Methods
-from .onto_surface.on_spline import OnSpline
+from .onto_surface.on_spline import OnPatches, on_grids
 from .onto_surface.on_surface import checked_place
 from .onto_surface.pieces import geometries_of, samples_of_pieces
 from .onto_surface.reach import in_reach
 from .samples.fields import checked_dtype, checked_fields
 from .samples.samples import Samples
 from .samples.whole import Whole
-from .spline.spline import Spline
+from .spline.nets import AnySpline
 from .surface.surface import Surface
 from .surface.surfaces import named
 
@@ -76,25 +76,25 @@ class GaussMap(Methods):
 
     def __init__(
         self,
-        surface: Surface | Spline | Whole | str,
+        surface: Surface | AnySpline | Whole | str,
         *,
         cells: Sequence[int] | None = None,
         on: str | None = None,
     ) -> None:
         self._surface = named(surface)
-        self._pieces: tuple[OnSpline, ...] = ()
+        self._pieces: tuple[OnPatches, ...] = ()
         if isinstance(self._surface, Whole):
             check_part(cells, on)
         else:
             self._pieces = geometries_of(self._surface, cells, on, indexed=True)
 
     @property
-    def surface(self) -> Surface | Spline | Whole:
+    def surface(self) -> Surface | AnySpline | Whole:
         """The surface, spline or part."""
         return self._surface
 
     @property
-    def spline(self) -> Spline | None:
+    def spline(self) -> AnySpline | None:
         """The spline of the surface, None for parts and several pieces.
 
         It is an argument for `silhouette`, `SupportFunction.of_spline` and
@@ -257,7 +257,9 @@ class GaussMap(Methods):
             return pieces[0].samples_at(normals, wanted, number, progress)
         assert isinstance(surface, Surface)
         known = in_reach(surface, reach) if on_surface else None
-        return samples_of_pieces(surface.name, known, pieces, normals, wanted, number, progress)
+        return samples_of_pieces(
+            surface.name, known, on_grids(pieces), normals, wanted, number, progress
+        )
 
 
 def check_part(cells: Sequence[int] | None, on: str | None) -> None:
@@ -269,14 +271,14 @@ def check_part(cells: Sequence[int] | None, on: str | None) -> None:
 
 
 def kept_map(
-    surface: Surface | Spline, cells: Sequence[int] | None = None, on: str | None = None
+    surface: Surface | AnySpline, cells: Sequence[int] | None = None, on: str | None = None
 ) -> GaussMap:
     """Return the map of a surface, cached for the last few surfaces."""
-    if not isinstance(surface, Surface | Spline):
+    if not isinstance(surface, Surface | AnySpline):
         return GaussMap(surface, cells=cells, on=on)  # raises
     return _kept(surface, None if cells is None else pair_of_cells(cells), on)
 
 
 @lru_cache(KEPT)
-def _kept(surface: Surface | Spline, cells: tuple[int, int] | None, on: str | None) -> GaussMap:
+def _kept(surface: Surface | AnySpline, cells: tuple[int, int] | None, on: str | None) -> GaussMap:
     return GaussMap(surface, cells=cells, on=on)

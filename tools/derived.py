@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..runtime.samples.samples import Samples
-    from ..runtime.spline.spline import Spline
+    from ..runtime.spline.nets import AnySpline
     from ..runtime.surface.surface import Surface
     from .cad.part import Part
     from .meshes.mesh import Mesh
@@ -125,7 +125,7 @@ def _only(samples: Samples, fields: Sequence[str]) -> Samples:
 
 def mesh(
     self: Samples,
-    spline: Spline | None = None,
+    spline: AnySpline | None = None,
     *,
     angle: float | None = None,
     prefer: Literal["shape", "normals"] = "shape",
@@ -229,7 +229,7 @@ def mesh(
 def levels(
     self: Samples,
     counts: Sequence[int],
-    spline: Spline | None = None,
+    spline: AnySpline | None = None,
     *,
     prefer: Prefer = "shape",
     progress: bool = False,
@@ -447,7 +447,7 @@ def unobstructed(
 
 def plot(
     self: Samples,
-    surface: Surface | Spline | None = None,
+    surface: Surface | AnySpline | None = None,
     *,
     color: str | ArrayLike = "gaussian_curvature",
     view: Sequence[float] = (28.0, -55.0),
@@ -487,7 +487,7 @@ def plot(
 
 
 def view(
-    self: Samples, path: str | os.PathLike[str], surface: Surface | Spline | Part | None = None
+    self: Samples, path: str | os.PathLike[str], surface: Surface | AnySpline | Part | None = None
 ) -> None:
     """Write one page for browsers: the surface and the unit sphere, which light up together.
 

@@ -17,6 +17,7 @@ from ..domain.domain import Domain, cells_between, closes
 from ..spline.inner_coefficients import values_at
 from ..spline.misfit import Misfit
 from ..spline.missing import known_of_values
+from ..spline.nets import AnySpline, on_grid
 from ..spline.quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
 from ..spline.spline import Spline, short_label
 from ..surface.collapsed import found_sides
@@ -38,17 +39,24 @@ FEWEST_CELLS = (8, 8)
 BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
 
 
-def spline_of(surface: Surface | Spline | str, cells: Sequence[int] | None) -> Spline:
+def patches_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) -> AnySpline:
     """Return a spline unchanged, or fit one to a surface or to a catalogue surface by its name.
 
     Raises InputError for `cells` with a spline.
     """
-    if isinstance(surface, Spline) and cells is not None:
+    if not isinstance(surface, AnySpline):
+        return fit(surface, cells)
+    if cells is not None:
         raise InputError("cells=... is for surfaces; this spline already has its cells.")
-    return surface if isinstance(surface, Spline) else fit(surface, cells)
+    return surface
 
 
-def check_range(spline: Spline, dtype: DTypeLike) -> None:
+def spline_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) -> Spline:
+    """Return the same; InputError for a spline of nets, which has no grid of cells."""
+    return on_grid(patches_of(surface, cells))
+
+
+def check_range(spline: AnySpline, dtype: DTypeLike) -> None:
     """Raise SurfaceError if points of a spline are beyond the range of `dtype`."""
     largest, limits = spline._largest, np.finfo(np.zeros(0, dtype).dtype)
     if not float(limits.tiny) <= largest <= float(limits.max) and largest > 0.0:

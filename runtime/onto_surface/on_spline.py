@@ -33,11 +33,12 @@ from ..search.search import Hits, find, find_in_turn
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside, with_uv
 from ..spline.kernels.forms import forms_of_jets, jets_on_spline, patches_at
+from ..spline.nets import AnySpline, on_grid
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .reach import InReach, reached
 
-__all__ = ["Fields", "FieldsOfSamples", "OnSpline", "grouped"]
+__all__ = ["Fields", "FieldsOfSamples", "OnPatches", "OnSpline", "grouped", "on_grids"]
 
 Fields = dict[str, NDArray[Any]]
 
@@ -59,22 +60,27 @@ class FieldsOfSamples(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class OnSpline:
-    """A spline as what is sampled; `surface` is for `OnSurface`.
+class OnPatches:
+    """A spline as what is sampled, on a grid or of nets, at normals.
 
     Samples at normals are written to the fields in `memory` that are large enough. With an `index`
-    of the surface, all points with prescribed normals are found there. With a `reach`, the trim
-    leaves normals in it only.
+    of the surface, all points with prescribed normals are found there.
     """
 
     on: ClassVar[str] = "spline"
 
-    spline: Spline
+    spline: AnySpline
     threads: int | None = None
     surface: Surface | None = None
     memory: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     index: ProvedIndex | None = None
     reach: Cap | None = None
+
+    def within(self, reach: Cap | None) -> Self:
+        """Return the part whose normals are in a cap, or all of it; only all of it for nets."""
+        if reach is not None:
+            on_grid(self.spline)
+        return self
 
     def used(
         self,
@@ -91,25 +97,6 @@ class OnSpline:
             return self
         return replace(self, threads=threads, memory=memory)
 
-    def within(self, reach: Cap | None) -> Self:
-        """Return the part whose normals are in a cap, or all of it."""
-        if reach is None:
-            return self
-        x = self.spline
-        trim = reached(x.trim, x.domain, x.boundary, InReach(self.normals, reach))
-        surface = None if self.surface is None else replace(self.surface, trim=trim)
-        return replace(self, spline=replace(x, trim=trim), surface=surface, reach=reach)
-
-    def normals(self, places: Array) -> Array:
-        """Return the unit normals (k, 3) at parameters (k, 2); 0 or NaN where there is none."""
-        places = places.copy()
-        for axis, ends in enumerate(self.spline.boundary):
-            low, high = self.spline.domain[axis]
-            off = BESIDE_POLE * (high - low)
-            low, high = low + off * (ends[0] == "pole"), high - off * (ends[1] == "pole")
-            places[:, axis] = np.clip(places[:, axis], low, high)
-        return self.spline.normals(*places.T)
-
     @property
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`."""
@@ -124,14 +111,6 @@ class OnSpline:
     def distance(self) -> float:
         """How far the points of what is sampled are from those of the spline, at most."""
         return 0.0
-
-    @cached_property
-    def size(self) -> float:
-        """The root of the area inside the trim, in L; 0 if it is rounding error."""
-        spline = self.spline
-        extents = np.ptp(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * spline.scale, axis=0)
-        diagonal, area = float(np.linalg.norm(extents)), float(spline.measure[0].sum())
-        return diagonal * math.sqrt(area) / spline.scale if area * diagonal > spline.noise else 0.0
 
     # --- samples at normals -----------------------------------------------------------------------
 
@@ -230,6 +209,43 @@ class OnSpline:
             **fields, report=report, spline=self.spline, surface=self.surface, offset_of=None
         )
 
+
+@dataclass(frozen=True, eq=False)
+class OnSpline(OnPatches):
+    """A spline on a grid of cells as what is sampled; `surface` is for `OnSurface`.
+
+    With a `reach`, the trim leaves normals in it only.
+    """
+
+    spline: Spline
+
+    def within(self, reach: Cap | None) -> Self:
+        """Return the part whose normals are in a cap, or all of it."""
+        if reach is None:
+            return self
+        x = self.spline
+        trim = reached(x.trim, x.domain, x.boundary, InReach(self.normals, reach))
+        surface = None if self.surface is None else replace(self.surface, trim=trim)
+        return replace(self, spline=replace(x, trim=trim), surface=surface, reach=reach)
+
+    def normals(self, places: Array) -> Array:
+        """Return the unit normals (k, 3) at parameters (k, 2); 0 or NaN where there is none."""
+        places = places.copy()
+        for axis, ends in enumerate(self.spline.boundary):
+            low, high = self.spline.domain[axis]
+            off = BESIDE_POLE * (high - low)
+            low, high = low + off * (ends[0] == "pole"), high - off * (ends[1] == "pole")
+            places[:, axis] = np.clip(places[:, axis], low, high)
+        return self.spline.normals(*places.T)
+
+    @cached_property
+    def size(self) -> float:
+        """The root of the area inside the trim, in L; 0 if it is rounding error."""
+        spline = self.spline
+        extents = np.ptp(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * spline.scale, axis=0)
+        diagonal, area = float(np.linalg.norm(extents)), float(spline.measure[0].sum())
+        return diagonal * math.sqrt(area) / spline.scale if area * diagonal > spline.noise else 0.0
+
     # --- samples that fill gaps -------------------------------------------------------------------
 
     @property
@@ -289,6 +305,13 @@ class OnSpline:
         """Return parameters in cells from the corner of the domain (k, 2)."""
         frame = self.spline.frame
         return (np.stack([u, v], axis=1) - frame[:2]) / frame[2:]
+
+
+def on_grids(geometries: Sequence[OnPatches]) -> list[OnSpline]:
+    """Return geometries with grids of cells unchanged; InputError for one of nets."""
+    for geometry in geometries:
+        on_grid(geometry.spline)
+    return [x for x in geometries if isinstance(x, OnSpline)]
 
 
 def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:

@@ -12,20 +12,21 @@ from numpy.typing import DTypeLike, NDArray
 from ..base.checks import known_name
 from ..base.errors import InputError
 from ..base.kept import kept
-from ..fitting.fit import spline_of
+from ..fitting.fit import patches_of
 from ..samples.fields import FLAG_NAMES
 from ..samples.report import PLACES
 from ..samples.samples import Samples
 from ..search.search import Hits
 from ..spline.developable import CellMeasure
 from ..spline.inside import count_of, samples_inside
+from ..spline.nets import AnySpline
 from ..spline.spline import Spline
 from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
 from .kernels import nodes as kernels
 from .moved_samples import as_fields, moved_samples, part_of
 from .newton import evaluate_on_surface
-from .on_spline import Array, Fields, FieldsOfSamples, OnSpline
+from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline
 from .pole_charts import PoleChart, pole_charts
 from .proved import index_of, proved_samples
 from .repeats import kept_once
@@ -50,7 +51,7 @@ def place_of_samples(surface: object, on: str | None) -> str:
                 f'on="surface" needs a surface that can be evaluated everywhere, and '
                 f"{surface.name!r} was given by points; its spline is all there is: leave out on=…."
             )
-        if isinstance(surface, Spline):
+        if isinstance(surface, AnySpline):
             raise InputError(
                 f'on="surface" needs the surface, not its spline: sample the Surface of which '
                 f"{surface.name!r} is a spline."
@@ -64,14 +65,16 @@ def checked_place(on: str | None) -> str | None:
 
 
 def geometry_of(
-    surface: Surface | Spline, cells: Sequence[int] | None, on: str | None, indexed: bool = False
-) -> OnSpline:
+    surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None, indexed: bool = False
+) -> OnPatches:
     """Return what is sampled, with an index of the surface if it is `indexed` and can be.
 
     Raises what `place_of_samples` and `spline_of` raise.
     """
     place = place_of_samples(surface, on)
-    spline = spline_of(surface, cells)
+    spline = patches_of(surface, cells)
+    if not isinstance(spline, Spline):
+        return OnPatches(spline)
     if place == "surface" and isinstance(surface, Surface):
         if surface.boundary != spline.boundary:  # poles that the fit has found
             surface = replace(surface, boundary=spline.boundary)

@@ -17,9 +17,9 @@ from ..base.errors import InputError, SurfaceError
 from ..samples.fields import FLAG_NAMES, dtype_of, new_field
 from ..samples.report import SamplingReport, count_unrefined
 from ..samples.samples import Samples
-from ..spline.spline import Spline
+from ..spline.nets import AnySpline
 from ..surface.surface import Surface
-from .on_spline import OnSpline
+from .on_spline import OnPatches, OnSpline
 from .on_surface import geometry_of, place_of_samples
 
 __all__ = [
@@ -61,11 +61,11 @@ def pieces_to_sample(surface: object) -> tuple[Surface, ...]:
 
 
 def geometries_of(
-    surface: Surface | Spline,
+    surface: Surface | AnySpline,
     cells: Sequence[int] | None,
     on: str | None,
     indexed: bool = False,
-) -> tuple[OnSpline, ...]:
+) -> tuple[OnPatches, ...]:
     """Return a geometry for each piece of a surface; see `geometry_of`."""
     place_of_samples(surface, on)
     if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):

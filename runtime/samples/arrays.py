@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from ..base.checks import checked_array, checked_rows, listed
 from ..base.errors import InputError
 from ..base.tolerances import DERIVATIVE_ERROR, PATCH_ERROR
-from ..spline.spline import Spline
+from ..spline.nets import AnySpline
 from ..surface.surface import Surface
 from .fields import (
     ARRAY_NAMES,
@@ -38,7 +38,7 @@ _NOT_ASKED: Any = None
 # The types of the attributes that are not arrays.
 _KINDS = {
     "report": (SamplingReport, "a SamplingReport"),
-    "spline": (Spline | None, "a Spline or None"),
+    "spline": (AnySpline | None, "a Spline or None"),
     "surface": (Surface | Whole | None, "a Surface or None"),
     "offset_of": (OffsetOf | None, "an OffsetOf or None"),
 }
@@ -66,7 +66,7 @@ class SampleArrays:
     other_uv: NDArray[np.float64] | None = None
     other_face_index: NDArray[np.int64] | None = None
     report: SamplingReport = field(kw_only=True)
-    spline: Spline | None = field(default=None, kw_only=True)
+    spline: AnySpline | None = field(default=None, kw_only=True)
     surface: Surface | Whole | None = field(default=None, kw_only=True)
     offset_of: OffsetOf | None = field(default=None, kw_only=True)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..spline.spline import Spline
+from ..spline.nets import AnySpline
 from ..surface.surface import Surface
 from .whole import Whole
 
@@ -34,5 +34,5 @@ class OffsetOf:
     """
 
     distance: float
-    spline: Spline | None = None
+    spline: AnySpline | None = None
     surface: Surface | Whole | None = None

@@ -17,7 +17,7 @@ from ..base.errors import GaussmapWarning, InputError, shown
 from ..base.georeference import checked_origin
 from ..directions.regions import Cap, checked_reach
 from ..spline.developable import CellMeasure
-from ..spline.spline import Spline
+from ..spline.nets import AnySpline
 
 __all__ = [
     "PLACES",
@@ -299,7 +299,7 @@ class SamplingReport:
 
 
 def sampling_report(
-    spline: Spline,
+    spline: AnySpline,
     normals: int,
     samples: int,
     density: float,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..base.errors import InputError
 from ..base.wording import plural
+from ..spline.nets import AnySpline, on_grid
 from ..spline.spline import Spline, short_label
 from .arrays import SampleArrays
 from .samples_methods import Methods
@@ -69,7 +70,7 @@ class Samples(SampleArrays, Methods):
         grid. None if no sample is on a grid, or if they were not requested.
     report : SamplingReport
         A report on the sampling.
-    spline : Spline or None
+    spline : Spline, NetSpline or None
         The spline that was sampled; None if it is unknown, as for samples from a file, and for
         samples of several pieces (see `Surface.pieces`), each of which has one.
     face_index, solid_index : (N,) int64 array or None
@@ -164,7 +165,7 @@ class Samples(SampleArrays, Methods):
         return f"Samples({points} on {label}{kinds_of_points(self)})"
 
 
-def spline_or(samples: Samples, spline: Spline | None) -> Spline:
+def spline_or(samples: Samples, spline: AnySpline | None) -> Spline:
     """Return the given spline, or that of the samples; InputError without one."""
     spline = samples.spline if spline is None else spline
     if spline is None and isinstance(samples.surface, Whole):
@@ -178,6 +179,6 @@ def spline_or(samples: Samples, spline: Spline | None) -> Spline:
             "offset and of several pieces do not); give it, as in "
             "samples.mesh(gm.fit(surface)), or sample each of surface.pieces()."
         )
-    if not isinstance(spline, Spline):
+    if not isinstance(spline, AnySpline):
         raise InputError(f"spline must be a Spline, not {type(spline).__name__}.")
-    return spline
+    return on_grid(spline)

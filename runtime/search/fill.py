@@ -12,7 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 from ..base.aliases import Array
 from ..base.threads import over_ranges
 from ..samples.fields import ARRAY_NAMES, FLOAT_NAMES, INDEX_NAMES, new_field
-from ..spline.nets import NetSpline
+from ..spline.nets import AnySpline, NetSpline
 from ..spline.spline import Spline
 from .hits import Hits
 from .in_nets import fields_in_nets
@@ -25,7 +25,7 @@ SAMPLES_AT_A_TIME = 1 << 16
 
 
 def fill(
-    spline: Spline,
+    spline: AnySpline,
     normals: Array,
     hits: Hits,
     threads: int | None = None,

@@ -13,7 +13,7 @@ from ..base.aliases import Array, Indices
 from ..base.kept import kept
 from ..base.threads import over_ranges
 from ..directions.unit import perpendicular
-from ..spline.nets import NetSpline
+from ..spline.nets import AnySpline, NetSpline
 from ..spline.spline import Spline
 from ..spline.tips import tips_of
 from .in_nets import errors_of
@@ -58,7 +58,7 @@ class Index:
         return self.pieces.patches[:, BOUND]
 
 
-def index_of(spline: Spline, threads: int | None, first: int = 0) -> Index:
+def index_of(spline: AnySpline, threads: int | None, first: int = 0) -> Index:
     """Return the index of the patches first, …, first + MOST_PATCHES − 1 of a spline.
 
     It is kept with the spline if these are all patches.
@@ -66,8 +66,10 @@ def index_of(spline: Spline, threads: int | None, first: int = 0) -> Index:
 
     def make() -> Index:
         last = min(first + MOST_PATCHES, spline.patches)
-        pieces = _of_nets(spline, first, last) if isinstance(spline, NetSpline) else None
-        pieces = pieces or _of_grid(spline, first, last, threads)
+        if isinstance(spline, NetSpline):
+            pieces = _of_nets(spline, first, last)
+        else:
+            pieces = _of_grid(spline, first, last, threads)
         lists = _listed(spline, pieces.cones, first)
         return Index(pieces, lists, first, int(np.diff(lists.starts).max()))
 
@@ -108,7 +110,7 @@ def _of_nets(spline: NetSpline, first: int, last: int) -> Pieces:
     return pieces
 
 
-def _listed(spline: Spline, cones: Array, first: int) -> Lists:
+def _listed(spline: AnySpline, cones: Array, first: int) -> Lists:
     """Return the lists of patches from `first` on, without those at tips."""
     tips = tips_of(spline)
     if tips is None:

@@ -18,7 +18,7 @@ from ..base.kept import kept
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..spline.kernels.developable import count_developable
-from ..spline.nets import NetSpline
+from ..spline.nets import AnySpline, NetSpline
 from ..spline.spline import Spline
 from ..spline.tips import tips_of
 from .exact import decide
@@ -41,7 +41,7 @@ PATCHES_AT_A_TIME = 1 << 14
 
 
 def find(
-    spline: Spline, normals: Array, threads: int | None = None, progress: bool = False
+    spline: AnySpline, normals: Array, threads: int | None = None, progress: bool = False
 ) -> Hits:
     """Return all hits: which patch of a spline has which of the unit normals (S, 3)."""
     check_memory("search", len(normals))
@@ -49,7 +49,7 @@ def find(
 
 
 def find_in_turn(
-    spline: Spline, normals: Array, threads: int | None = None, progress: bool = False
+    spline: AnySpline, normals: Array, threads: int | None = None, progress: bool = False
 ) -> Iterator[Hits]:
     """Yield the hits of consecutive ranges of normals, at least one; their memory is bounded."""
     developable = developable_patches(spline, threads)
@@ -70,7 +70,7 @@ def find_in_turn(
 
 
 def _keys(
-    spline: Spline, normals: Array, threads: int | None, progress: bool
+    spline: AnySpline, normals: Array, threads: int | None, progress: bool
 ) -> tuple[list[Indices], Indices, Array] | None:
     """Return keys of hits, certain and undecided ones, and the errors of the forms of the latter.
 
@@ -113,8 +113,8 @@ def _ranges(
 
 
 def _decided(
-    spline: Spline, normals: Array, certain: list[Indices], undecided: Indices, bounds: Array,
-    first: int, developable: int, threads: int | None,
+    spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
+    bounds: Array, first: int, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
     """Return the hits, those among the undecided ones included; normals count from `first` on."""
     exact, local = np.empty(0, np.int64), np.empty((0, 5))
@@ -142,7 +142,7 @@ def _decided(
     return found
 
 
-def _without_tips(spline: Spline, normals: Array, hits: Hits) -> Hits:
+def _without_tips(spline: AnySpline, normals: Array, hits: Hits) -> Hits:
     """Return the hits but those at a tip, where the surface has no normal."""
     tips = tips_of(spline)
     if tips is None:
@@ -155,7 +155,7 @@ def _without_tips(spline: Spline, normals: Array, hits: Hits) -> Hits:
     return hits if kept.all() else hits.rows(np.flatnonzero(kept))
 
 
-def developable_patches(spline: Spline, threads: int | None) -> int:
+def developable_patches(spline: AnySpline, threads: int | None) -> int:
     """Return how many patches are developable, up to the rounding of their coordinates."""
     if isinstance(spline, NetSpline):
         return int(np.count_nonzero(flat_nets(spline)))

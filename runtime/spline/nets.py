@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
-from typing import NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,29 +15,26 @@ from ..base.aliases import Array
 from ..base.checks import finite_array, finite_number, text
 from ..base.errors import InputError, SurfaceError
 from ..base.formula_calls import python_function, vector
-from ..base.scales import scale_to_one
 from ..base.tolerances import SINGULAR_POINT
 from .developable import CellMeasure
 from .inside import subcentroids
 from .joints import Joints, Topology, merged_points
+from .patch_spline import PatchSpline
 from .spline import Spline, short_label
 from .spline_methods import NetMethods
 
-__all__ = ["NetSpline", "from_nets", "vectors_of_nets"]
+__all__ = ["AnySpline", "NetSpline", "from_nets", "on_grid", "vectors_of_nets"]
 
 # Areas and solid angles are sums over the centroids of PARTS² triangles of a patch.
 PARTS = 4
-GRID = (
-    "{name!r} is made of nets and has no grid of cells nor parameters u, v of a whole surface, "
-    "which this needs; fit a Surface instead."
-)
 
 
-class NetSpline(Spline, NetMethods):
+@dataclass(frozen=True, eq=False, repr=False)
+class NetSpline(PatchSpline, NetMethods):
     """A spline of T quadratic Bézier triangles on any triangulation; made by `Spline.from_nets`.
 
     The parameters `uv` of its samples are those in the triangle of their patch, u, v ≥ 0 and
-    u + v ≤ 1. Attributes and functions that need a grid of cells raise InputError.
+    u + v ≤ 1. Functions that need a grid of cells raise InputError.
 
     Attributes
     ----------
@@ -59,18 +56,13 @@ class NetSpline(Spline, NetMethods):
 
     """
 
-    control_nets: NDArray[np.float64]  # type: ignore[assignment]
+    control_nets: NDArray[np.float64]
     triangles: NDArray[np.int64]
+    name: str
     smooth: float
 
-    def __init__(
-        self, nets: NDArray[np.float64], triangles: NDArray[np.int64], name: str, smooth: float
-    ) -> None:
-        known = {
-            "control_nets": nets, "triangles": triangles, "name": text(name, "name"),
-            "smooth": smooth, "misfit": None, "trim": None, "apexes": 0, "georeference": None,
-        }  # fmt: skip
-        vars(self).update(known)
+    def __post_init__(self) -> None:
+        text(self.name, "name")
 
     @classmethod
     def checked(
@@ -105,48 +97,17 @@ class NetSpline(Spline, NetMethods):
         kind = "patch" if self.patches == 1 else "patches"
         return f"NetSpline({self.patches:,} {kind} of {short_label(self.name)})"
 
-    def __getstate__(self) -> dict[str, object]:
-        """Return the pickled state."""
-        names = "control_nets", "triangles", "name", "smooth"
-        rest = {"misfit": None, "trim": None, "apexes": 0, "georeference": None}
-        return {x: getattr(self, x) for x in names} | rest
-
-    def __setstate__(self, state: dict[str, object]) -> None:
-        """Restore the pickled state."""
-        vars(self).update(state)
-
-    def _refuse(self) -> NoReturn:
-        raise InputError(GRID.format(name=self.name))
-
-    @property
-    def coefficients(self) -> NDArray[np.float64]:  # type: ignore[override]
-        """Raise InputError: there is no grid."""
-        self._refuse()
-
-    @property
-    def domain(self) -> NoReturn:  # type: ignore[override]
-        """Raise InputError: there is no rectangle of parameters."""
-        self._refuse()
-
-    @property
-    def boundary(self) -> NoReturn:  # type: ignore[override]
-        """Raise InputError: there is no rectangle of parameters."""
-        self._refuse()
-
     @property
     def patches(self) -> int:
         """The number of patches."""
         return len(self.control_nets)
 
-    @cached_property
-    def scale(self) -> float:
-        """A power of two that brings the differences of control points to about 1."""
-        nets = self.control_nets
-        return scale_to_one(float(np.abs(nets - nets[:, 2:3]).max()))
+    @property
+    def _points(self) -> NDArray[np.float64]:
+        return self.control_nets
 
-    @cached_property
-    def _largest(self) -> float:
-        return float(np.abs(self.control_nets).max())
+    def _largest_step(self) -> float:
+        return float(np.abs(self.control_nets - self.control_nets[:, 2:3]).max())
 
     @cached_property
     def vectors(self) -> Array:
@@ -244,6 +205,19 @@ class NetSpline(Spline, NetMethods):
         with np.errstate(divide="ignore", invalid="ignore"):
             curvatures = np.where(areas > 0.0, np.abs(angles) / areas, 0.0)
         return CellMeasure(areas, np.abs(angles), curvatures)
+
+
+AnySpline = Spline | NetSpline
+
+
+def on_grid(spline: AnySpline) -> Spline:
+    """Return a spline with a grid of cells unchanged; InputError for one of nets."""
+    if isinstance(spline, NetSpline):
+        raise InputError(
+            f"{spline.name!r} is made of nets and has no grid of cells nor parameters u, v of a "
+            "whole surface, which this needs; fit a Surface instead."
+        )
+    return spline
 
 
 def vectors_of_nets(nets: Array) -> Array:

@@ -13,14 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 from ..base.checks import checked_array, parameter_arrays, text
 from ..base.errors import InputError
 from ..base.georeference import Georeference
-from ..base.kept import Immutable
-from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
-from ..base.tolerances import DATA_ERROR, SAME_PARAMETER
+from ..base.tolerances import SAME_PARAMETER
 from ..domain.domain import Boundary, Domain, brought_inside, checked_boundary, checked_domain
 from .developable import CellMeasure
 from .inside import Inside
 from .kernels import spline as kernels
+from .patch_spline import PatchSpline
 from .spline_methods import Methods
 
 if TYPE_CHECKING:
@@ -40,7 +39,7 @@ def short_label(name: str) -> str:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Spline(Immutable, Methods):
+class Spline(PatchSpline, Methods):
     """A C¹ quadratic triangular spline on the criss-cross grid (paper, Sect. 3.1); made by `fit`.
 
     Patches are numbered cell by cell (cell = i n + j, i along u), in each cell south, east, north,
@@ -139,21 +138,13 @@ class Spline(Immutable, Methods):
         (u0, u1), (v0, v1) = self.domain
         return np.array([u0, v0, (u1 - u0) / self.cells[0], (v1 - v0) / self.cells[1]])
 
-    @cached_property
-    def scale(self) -> float:
-        """A power of two that brings the differences of neighbouring coefficients to about 1."""
-        steps = [np.abs(np.diff(self.coefficients, axis=axis)).max() for axis in (0, 1)]
-        return scale_to_one(float(max(steps)))
-
-    @cached_property
-    def _largest(self) -> float:
-        """The largest modulus of the coordinates of coefficients."""
-        return float(np.abs(self.coefficients).max())
-
     @property
-    def noise(self) -> float:
-        """A bound of the rounding of the coordinates, times `scale`."""
-        return DATA_ERROR * (self._largest * self.scale)
+    def _points(self) -> NDArray[np.float64]:
+        return self.coefficients
+
+    def _largest_step(self) -> float:
+        steps = [np.abs(np.diff(self.coefficients, axis=axis)).max() for axis in (0, 1)]
+        return float(max(steps))
 
     @property
     def extent(self) -> tuple[float, int]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..base.aliases import Array, Flags
 from ..base.kept import kept
 from .joints import EDGES, merged_points
-from .nets import NetSpline
+from .nets import AnySpline, NetSpline
 from .spline import Spline
 
 __all__ = ["Tips", "collapsed_sides", "is_point", "tips_of"]
@@ -55,7 +55,7 @@ def collapsed_sides(spline: Spline) -> list[tuple[int, int]]:
     ]
 
 
-def tips_of(spline: Spline) -> Tips | None:
+def tips_of(spline: AnySpline) -> Tips | None:
     """Return the tips of a spline, which are kept with it; None if there are none."""
 
     def make() -> Tips | None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.limits import MOST
-from ...runtime.onto_surface.on_spline import OnSpline
+from ...runtime.onto_surface.on_spline import OnPatches
 from ...runtime.samples.samples import Samples
 from ...runtime.search.search import Hits, find
 from .fibonacci_lattice import Lattice
@@ -53,7 +53,7 @@ class Chosen:
         return self.source[first:last]
 
     def samples(
-        self, geometry: OnSpline, fields: Sequence[str], dtype: DTypeLike, progress: bool
+        self, geometry: OnPatches, fields: Sequence[str], dtype: DTypeLike, progress: bool
     ) -> tuple[Samples, NDArray[np.float64]]:
         """Return the samples at the normals of a lattice, and these.
 
@@ -69,7 +69,7 @@ class Chosen:
         return found, normals
 
 
-def choose(geometry: OnSpline, count: int, progress: bool) -> Chosen:
+def choose(geometry: OnPatches, count: int, progress: bool) -> Chosen:
     """Return a lattice with about `count` samples.
 
     For more samples than `PILOT`, the density is extrapolated from that of `PILOT` samples.
@@ -82,7 +82,7 @@ def choose(geometry: OnSpline, count: int, progress: bool) -> Chosen:
     return Chosen(chosen.source, min(chosen.density * count / (samples or pilot), most))
 
 
-def _adapted(geometry: OnSpline, count: int, progress: bool) -> tuple[Chosen, int]:
+def _adapted(geometry: OnPatches, count: int, progress: bool) -> tuple[Chosen, int]:
     """Adapt the density of a lattice to `count` samples; return it and the number of samples."""
     spline, threads = geometry.spline, geometry.threads
     lattice = Lattice.around(spline, geometry.reach)

@@ -12,8 +12,7 @@ from ...runtime.directions.regions import Cap
 from ...runtime.directions.sets import part_of_fibonacci, spiral_angle
 from ...runtime.directions.unit import in_pieces, perpendicular
 from ...runtime.search.kernels.cone import least_cosine
-from ...runtime.spline.nets import NetSpline
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline, NetSpline
 
 __all__ = ["Lattice"]
 
@@ -29,7 +28,7 @@ class Lattice:
     cosine: float
 
     @classmethod
-    def around(cls, spline: Spline, reach: Cap | None = None) -> Lattice:
+    def around(cls, spline: AnySpline, reach: Cap | None = None) -> Lattice:
         """Return the lattice on the smallest cap round the mean normal that holds every normal.
 
         The lattice is on the `reach` if that cap is smaller.
@@ -41,7 +40,7 @@ class Lattice:
         return found
 
     @classmethod
-    def _around_all(cls, spline: Spline) -> Lattice:
+    def _around_all(cls, spline: AnySpline) -> Lattice:
         if isinstance(spline, NetSpline):
             axis, cosine = spline.cap
             return cls(axis, cosine - 1e-12) if cosine > 0.0 else cls.everywhere()

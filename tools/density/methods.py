@@ -11,6 +11,7 @@ from ...runtime.onto_surface.on_spline import OnSpline
 from ...runtime.onto_surface.on_surface import OnSurface
 from ...runtime.samples.samples import Samples, spline_or
 from ...runtime.samples.whole import NormalDeviation, Whole
+from ...runtime.spline.nets import AnySpline
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from .coverage import coverage as bound
@@ -59,7 +60,7 @@ def progressive(self: Samples, *, progress: bool = False) -> Samples:
 
 def coverage(
     self: Samples,
-    spline: Spline | None = None,
+    spline: AnySpline | None = None,
     *,
     threads: int | None = None,
     progress: bool = False,
@@ -106,7 +107,7 @@ def coverage(
 
 def normal_deviation(
     self: Samples,
-    spline: Spline | None = None,
+    spline: AnySpline | None = None,
     *,
     threads: int | None = None,
     progress: bool = False,
@@ -153,7 +154,7 @@ def normal_deviation(
         return deviation(space, space.scaled_points(points), normals)
 
 
-def _space_of(samples: Samples, spline: Spline | None, threads: int | None) -> Space:
+def _space_of(samples: Samples, spline: AnySpline | None, threads: int | None) -> Space:
     """Return the sampled space; without a spline, all pieces of the surface with an area."""
     surface = samples.surface
     if isinstance(surface, Whole):

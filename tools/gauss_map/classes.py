@@ -7,7 +7,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline
 from .parabolic_lines import cubic_bernstein, pieces_of
 from .patches import Patches, checked_nets
 
@@ -60,7 +60,7 @@ class PatchClass(IntEnum):
     SINGULAR = 5
 
 
-def classify_patches(patches: Spline | ArrayLike) -> NDArray[np.int8]:
+def classify_patches(patches: AnySpline | ArrayLike) -> NDArray[np.int8]:
     """Return the classes of quadratic patches by the sign of their Gaussian curvature.
 
     Parameters
@@ -95,7 +95,7 @@ def classify_patches(patches: Spline | ArrayLike) -> NDArray[np.int8]:
     True
 
     """
-    if isinstance(patches, Spline):
+    if isinstance(patches, AnySpline):
         return classes_of(Patches.of_spline(patches))
     return classes_of(Patches.of_control_points(checked_nets(patches)))
 

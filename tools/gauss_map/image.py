@@ -14,10 +14,10 @@ from ...generated import gaussian_image as formulas
 from ...runtime.base.checks import real_array
 from ...runtime.base.errors import InputError, shown
 from ...runtime.directions.unit import as_normals
-from ...runtime.fitting.fit import spline_of
+from ...runtime.fitting.fit import patches_of
 from ...runtime.search.fill import fill
 from ...runtime.search.search import find
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface
 from .area import measures_of
 from .boundary import BoundaryArc, boundary_arcs, edge_arcs
@@ -246,10 +246,10 @@ class GaussianImages:
 
     """
 
-    spline: Spline
+    spline: AnySpline
 
     def __post_init__(self) -> None:
-        if not isinstance(self.spline, Spline):
+        if not isinstance(self.spline, AnySpline):
             raise InputError(
                 f"GaussianImages takes a Spline, not {type(self.spline).__name__}; for a surface "
                 "there is GaussianImages.of_spline, and for one patch GaussianImage.of_patch."
@@ -260,7 +260,7 @@ class GaussianImages:
 
     @classmethod
     def of_spline(
-        cls, spline: Spline | Surface | str, cells: Sequence[int] | None = None
+        cls, spline: AnySpline | Surface | str, cells: Sequence[int] | None = None
     ) -> GaussianImages:
         """Return the Gaussian images of a spline.
 
@@ -290,7 +290,7 @@ class GaussianImages:
         GaussianImages(1,024 patches)
 
         """
-        return cls(spline_of(spline, cells))
+        return cls(patches_of(spline, cells))
 
     def __len__(self) -> int:
         """Return the number of patches."""

@@ -18,7 +18,7 @@ from ...runtime.directions.unit import as_normals
 from ...runtime.domain.domain import closes
 from ...runtime.domain.loops import Loops
 from ...runtime.map import GaussMap
-from ...runtime.onto_surface.on_spline import OnSpline
+from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from .curvature import Curvature
 from .image_curve import Curves, ImageCurve, Traced, jets_of_spline
 from .parabolic import checked_tolerance, traced_curves
@@ -146,7 +146,7 @@ def _geometries(gauss_map: GaussMap) -> Sequence[OnSpline]:
         raise InputError(
             "folds, borders and margins are for surfaces, not for parts; take a face.surface."
         )
-    return gauss_map._pieces
+    return on_grids(gauss_map._pieces)
 
 
 def _folds(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:

@@ -10,6 +10,7 @@ from ...runtime.base.checks import as_float, pair_of_cells
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.wording import plural
 from ...runtime.fitting.fit import fit, spline_of
+from ...runtime.spline.nets import AnySpline
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
@@ -162,7 +163,7 @@ def parabolic_points(
     limit, surface = checked_tolerance(tolerance), named(surface)
     if isinstance(surface, Surface) and surface.grid is not None:
         surface, cells = fit(surface, cells), None
-    if isinstance(surface, Spline):
+    if isinstance(surface, AnySpline):
         surface = spline_of(surface, cells)
     elif not isinstance(surface, Surface):
         raise InputError(

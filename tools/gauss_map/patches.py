@@ -18,8 +18,7 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import patch, python_function, vector
 from ...runtime.base.scales import LARGEST_EXPONENT, scales_to_one
 from ...runtime.base.tolerances import CUBIC_ERROR, DATA_ERROR
-from ...runtime.spline.nets import NetSpline
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline, NetSpline
 
 __all__ = ["Patches", "checked_control_points", "checked_nets"]
 
@@ -51,7 +50,7 @@ class Patches:
         return cls(_stacked(vectors[:5], len(nets)), noise)
 
     @classmethod
-    def of_spline(cls, spline: Spline) -> Patches:
+    def of_spline(cls, spline: AnySpline) -> Patches:
         """Return all patches of a spline, from differences of its coefficients."""
         if isinstance(spline, NetSpline):
             return cls.of_control_points(spline.control_nets)

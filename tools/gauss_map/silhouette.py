@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from ...runtime.base.threads import thread_count
 from ...runtime.base.tolerances import NORMAL_ERROR
 from ...runtime.directions.circle import circle
 from ...runtime.directions.unit import as_normals, perpendicular, unit_vector
-from ...runtime.onto_surface.on_spline import OnSpline
+from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import geometry_of, place_of_samples
 from ...runtime.samples.fields import FLAG_NAMES, checked_dtype, checked_fields
 from ...runtime.samples.report import warn_of
@@ -59,26 +60,15 @@ class Silhouette(Samples):
     polylines: tuple[NDArray[np.int64], ...] = field(default=(), kw_only=True)
 
     def __getitem__(self, key: ArrayLike | slice) -> Samples:
-        return self._plain()[key]
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (self._plain(), self.polylines)
-
-    def _plain(self) -> Samples:
         arrays: dict[str, Any] = self.arrays()
         return Samples(
             **arrays, report=self.report,
             spline=self.spline, surface=self.surface, offset_of=self.offset_of,
-        )  # fmt: skip
+        )[key]  # fmt: skip
 
-
-def _rebuilt(samples: Samples, polylines: tuple[NDArray[np.int64], ...]) -> Silhouette:
-    """Return a silhouette that was copied or pickled."""
-    arrays: dict[str, Any] = samples.arrays()
-    return Silhouette(
-        **arrays, report=samples.report,
-        spline=samples.spline, surface=samples.surface, polylines=polylines,
-    )  # fmt: skip
+    def __reduce__(self) -> tuple[Any, ...]:
+        make, nothing = Samples.__reduce__(self)
+        return partial(make, polylines=self.polylines), nothing
 
 
 def silhouette(
@@ -155,7 +145,7 @@ def silhouette(
     names, flags = checked_fields(fields, surface=on_surface), FLAG_NAMES if on_surface else ()
     axis, asked = unit_vector(direction, "direction"), whole_number(count, "count")
     thread_count(threads)
-    geometry = geometry_of(surface, cells, on).used(number, threads)
+    (geometry,) = on_grids([geometry_of(surface, cells, on).used(number, threads)])
     spline = geometry.spline
     normals, hits = _by_count(geometry, axis, asked, progress)
     found = geometry.at_hits(normals, hits, list(dict.fromkeys([*names, *KEYS, *flags])), number)

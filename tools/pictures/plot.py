@@ -17,7 +17,7 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra
 from ...runtime.directions.unit import as_normals
 from ...runtime.samples.samples import Samples
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from ..cad.part import Part
@@ -65,7 +65,7 @@ UNDATED = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 
 
 def plot(
-    surface: Surface | Spline | Part | str,
+    surface: Surface | AnySpline | Part | str,
     samples: Samples | None = None,
     *,
     color: str | ArrayLike = CURVATURE,
@@ -132,7 +132,7 @@ def plot(
 
     """
     check_extra("matplotlib", "plot", "a picture")
-    if not isinstance(surface, Spline | Part):
+    if not isinstance(surface, AnySpline | Part):
         surface = named(surface)
     if samples is None:
         count = COUNT if normals is None else None
@@ -183,7 +183,7 @@ def plot_part(
 
 def plot_samples(
     samples: Samples,
-    surface: Surface | Spline | Part | None = None,
+    surface: Surface | AnySpline | Part | None = None,
     *,
     color: str | ArrayLike = CURVATURE,
     view: Sequence[float] = VIEW,

@@ -17,6 +17,7 @@ from ...runtime.base.errors import InputError, SurfaceError
 from ...runtime.domain.trim import Trim
 from ...runtime.fitting.fit import spline_of
 from ...runtime.samples.samples import Samples
+from ...runtime.spline.nets import AnySpline
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ..cad.face_pieces import FacePiece, pieces_of
@@ -157,7 +158,7 @@ def scene_of(surface: object, seen_from: Array | None = None, distance: float = 
     """
     if isinstance(surface, Part):
         drawn, lines, faces = _of_part(surface)
-    elif isinstance(surface, Surface | Spline):
+    elif isinstance(surface, Surface | AnySpline):
         # For several pieces one spline is drawn, which rounds the edges between them.
         (drawn, lines), faces = _of_spline(spline_of(surface, None), distance), None
     else:

@@ -15,7 +15,7 @@ from ...runtime.base.georeference import warn_of_rounding
 from ...runtime.base.memory import check_memory
 from ...runtime.base.progress import busy
 from ...runtime.map import check_part, kept_map
-from ...runtime.onto_surface.on_spline import OnSpline
+from ...runtime.onto_surface.on_spline import OnPatches, OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import place_of_samples
 from ...runtime.onto_surface.pieces import geometries_of, report_of
 from ...runtime.onto_surface.reach import in_reach
@@ -29,8 +29,7 @@ from ...runtime.samples.fields import (
 from ...runtime.samples.report import warn_of
 from ...runtime.samples.samples import Samples
 from ...runtime.samples.whole import Whole
-from ...runtime.spline.nets import NetSpline
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline, NetSpline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from ..density.chosen_normals import choose
@@ -43,7 +42,7 @@ __all__ = ["sample", "sample_and_normals"]
 
 
 def sample(
-    surface: Surface | Spline | Whole | str,
+    surface: Surface | AnySpline | Whole | str,
     count: int | None = None,
     *,
     normals: ArrayLike | None = None,
@@ -227,7 +226,7 @@ def sample(
 
 
 def sample_and_normals(
-    surface: Surface | Spline | Whole | str,
+    surface: Surface | AnySpline | Whole | str,
     request: Request,
     *,
     cells: Sequence[int] | None,
@@ -267,7 +266,7 @@ class Arguments(NamedTuple):
 
 @in_memory
 def _sampled(
-    surface: Surface | Spline | Whole, given: Arguments
+    surface: Surface | AnySpline | Whole, given: Arguments
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return samples and the normals that were searched: here it is decided by which way."""
     density, normals = given.request.density, given.request.normals
@@ -287,7 +286,7 @@ def _sampled(
     if density == "gauss" and count is not None and len(pieces) == 1:
         chosen = choose(pieces[0], count, given.progress)
         return chosen.samples(pieces[0], fields, given.dtype, given.progress)
-    return _filled(surface, pieces, fields, given)
+    return _filled(surface, on_grids(pieces), fields, given)
 
 
 def _of_part(part: Whole, given: Arguments) -> tuple[Samples, NDArray[np.float64]]:
@@ -300,7 +299,7 @@ def _of_part(part: Whole, given: Arguments) -> tuple[Samples, NDArray[np.float64
 
 
 def _at_normals(
-    surface: Surface | Spline, normals: NDArray[np.float64], given: Arguments
+    surface: Surface | AnySpline, normals: NDArray[np.float64], given: Arguments
 ) -> Samples:
     """Return all points with prescribed normals."""
     checked_fields(
@@ -312,7 +311,9 @@ def _at_normals(
     )
 
 
-def _pieces(surface: Surface | Spline, given: Arguments) -> tuple[list[OnSpline], tuple[str, ...]]:
+def _pieces(
+    surface: Surface | AnySpline, given: Arguments
+) -> tuple[list[OnPatches], tuple[str, ...]]:
     """Return the pieces of a surface to sample by a density, and the fields."""
     request, on_surface = given.request, place_of_samples(surface, given.on) == "surface"
     fields = checked_fields(given.fields, on_surface, grid=request.density == "aligned")
@@ -326,7 +327,7 @@ def _pieces(surface: Surface | Spline, given: Arguments) -> tuple[list[OnSpline]
 
 
 def _filled(
-    surface: Surface | Spline,
+    surface: Surface | AnySpline,
     geometries: Sequence[OnSpline],
     fields: tuple[str, ...],
     given: Arguments,

@@ -14,14 +14,14 @@ from ...runtime.base.checks import whole_number, yes_or_no
 from ...runtime.base.errors import InputError
 from ...runtime.base.threads import shown
 from ...runtime.map import kept_map
-from ...runtime.onto_surface.on_spline import OnSpline
+from ...runtime.onto_surface.on_spline import OnPatches
 from ...runtime.onto_surface.on_surface import place_of_samples
 from ...runtime.onto_surface.pieces import geometries_of, pieces_to_sample
 from ...runtime.samples.fields import checked_dtype, checked_fields
 from ...runtime.samples.report import count_infinite, warn_of
 from ...runtime.samples.samples import Samples
 from ...runtime.search.search import developable_patches
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from ..density.chosen_normals import Chosen, choose
@@ -34,7 +34,7 @@ NORMALS_AT_A_TIME = 1 << 20
 
 
 def sample_stream(
-    surface: Surface | Spline | str,
+    surface: Surface | AnySpline | str,
     count: int | None = None,
     *,
     normals: ArrayLike | None = None,
@@ -117,7 +117,7 @@ def sample_stream(
 
 @dataclass(frozen=True, eq=False)
 class _Stream:
-    geometry: OnSpline
+    geometry: OnPatches
     request: Request
     size: int
     fields: tuple[str, ...]

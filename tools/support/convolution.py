@@ -15,12 +15,13 @@ from ...runtime.base.checks import checked_rows
 from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.base.threads import over_ranges
 from ...runtime.directions.unit import as_normals
-from ...runtime.fitting.fit import spline_of
+from ...runtime.fitting.fit import patches_of
 from ...runtime.map import GaussMap
 from ...runtime.samples.fields import new_field
 from ...runtime.samples.report import SamplingReport, count_infinite, sampling_report, warn_of
 from ...runtime.samples.samples import Samples
-from ...runtime.spline.spline import Spline, short_label
+from ...runtime.spline.nets import AnySpline
+from ...runtime.spline.spline import short_label
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from .branches import Branches, curvatures
@@ -95,8 +96,8 @@ class Convolution:
 
 
 def convolve(
-    first: Surface | Spline | SupportFunction | str,
-    second: Surface | Spline | SupportFunction | str,
+    first: Surface | AnySpline | SupportFunction | str,
+    second: Surface | AnySpline | SupportFunction | str,
     normals: ArrayLike,
     *,
     cells: Sequence[int] | None = None,
@@ -207,11 +208,11 @@ def _sums(
     return arrays | {"normal_index": one.normal_index[i]}
 
 
-def _source(surface: Surface | Spline | SupportFunction, cells: Sequence[int] | None) -> Source:
+def _source(surface: Surface | AnySpline | SupportFunction, cells: Sequence[int] | None) -> Source:
     """Return the points of a surface itself, if it is smooth and not given by points."""
     if isinstance(surface, SupportFunction):
         return surface._source
-    if not isinstance(surface, Surface | Spline):
+    if not isinstance(surface, Surface | AnySpline):
         raise InputError(
             "convolve takes two of Surface, Spline and SupportFunction, not "
             f"{type(surface).__name__}."
@@ -220,7 +221,7 @@ def _source(surface: Surface | Spline | SupportFunction, cells: Sequence[int] | 
         known = GaussMap(surface)
         if known.spline is not None:
             return SurfaceSource(known, surface)
-    return SplineSource(spline_of(surface, cells if isinstance(surface, Surface) else None))
+    return SplineSource(patches_of(surface, cells if isinstance(surface, Surface) else None))
 
 
 def _name(source: Source) -> str:

@@ -14,8 +14,8 @@ from ...runtime.base.checks import finite_array, finite_number
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.tolerances import ROTATION_ERROR
 from ...runtime.directions.unit import as_normals
-from ...runtime.fitting.fit import spline_of
-from ...runtime.spline.spline import Spline
+from ...runtime.fitting.fit import patches_of
+from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from .branches import Branches
@@ -63,7 +63,7 @@ class SupportFunction:
 
     @classmethod
     def of_spline(
-        cls, surface: Spline | Surface | str, cells: Sequence[int] | None = None
+        cls, surface: AnySpline | Surface | str, cells: Sequence[int] | None = None
     ) -> SupportFunction:
         """Return the support function of a spline, with the branches of all its patches.
 
@@ -98,9 +98,9 @@ class SupportFunction:
 
         """
         surface = named(surface)
-        if not isinstance(surface, Spline | Surface):
+        if not isinstance(surface, AnySpline | Surface):
             raise InputError(f"of_spline takes a Spline or Surface, not {type(surface).__name__}.")
-        return cls(SplineSource(spline_of(surface, cells)))
+        return cls(SplineSource(patches_of(surface, cells)))
 
     @classmethod
     def of_patch(cls, control_points: ArrayLike) -> SupportFunction:

@@ -16,7 +16,7 @@ from ...runtime.base.bridge import normal_components
 from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.tolerances import RADIUS_ERROR
 from ...runtime.directions.unit import as_normals
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline
 from .branches import Sheets, curvatures
 from .offset import size_of_terms
 from .sources import Source
@@ -64,7 +64,7 @@ class Sum:
         first, second = self.first.domain(), self.second.domain()
         return None if first is None or second is None else sp.And(first, second)
 
-    def splines(self) -> list[tuple[float, Spline]]:
+    def splines(self) -> list[tuple[float, AnySpline]]:
         """Return the splines of both."""
         return self.first.splines() + self.second.splines()
 
@@ -123,7 +123,7 @@ class Moved:
         back = [sum(_exact(c) * s for c, s in zip(row, n, strict=True)) for row in rows.tolist()]
         return given.subs(dict(zip(n, back, strict=True)), simultaneous=True)
 
-    def splines(self) -> list[tuple[float, Spline]]:
+    def splines(self) -> list[tuple[float, AnySpline]]:
         """Return the splines with their factors."""
         return [(abs(self.factor) * factor, spline) for factor, spline in self.of.splines()]
 

@@ -17,8 +17,7 @@ from ...runtime.map import GaussMap
 from ...runtime.samples.report import SamplingReport
 from ...runtime.search.fill import fill
 from ...runtime.search.search import find
-from ...runtime.spline.nets import NetSpline
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline, NetSpline
 from ...runtime.surface.surface import Surface
 from ..gauss_map.kernels import support as kernels
 from ..gauss_map.membership import PatchNormals
@@ -50,7 +49,7 @@ class Source(Protocol):
         """Return the condition on n_x, n_y, n_z for a branch; None without a single one."""
         ...
 
-    def splines(self) -> list[tuple[float, Spline]]:
+    def splines(self) -> list[tuple[float, AnySpline]]:
         """Return the splines on which branches lie, and the factors by which these are scaled."""
         ...
 
@@ -90,7 +89,7 @@ class SurfaceSource:
     def domain(self) -> None:
         """Return None: the branches have no common domain."""
 
-    def splines(self) -> list[tuple[float, Spline]]:
+    def splines(self) -> list[tuple[float, AnySpline]]:
         """Return none."""
         return []
 
@@ -102,7 +101,7 @@ class SurfaceSource:
 class SplineSource:
     """The support functions of all patches of a spline, with each point exactly once."""
 
-    spline: Spline
+    spline: AnySpline
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
         """Return all branches, by normal and then by patch."""
@@ -134,7 +133,7 @@ class SplineSource:
     def domain(self) -> None:
         """Return None: a spline has one domain for each patch."""
 
-    def splines(self) -> list[tuple[float, Spline]]:
+    def splines(self) -> list[tuple[float, AnySpline]]:
         """Return the spline."""
         return [(1.0, self.spline)]
 
@@ -193,7 +192,7 @@ class PatchSource:
         inside = [sp.And(*(at_least(s * x, 0) for x in (U, V, W))) for s in (1, -1)]
         return sp.And(sp.Or(*inside), unequal(D, 0), sp.Gt(self._symbolic.orientation, 0))
 
-    def splines(self) -> list[tuple[float, Spline]]:
+    def splines(self) -> list[tuple[float, AnySpline]]:
         """Return none: the patch is the surface."""
         return []
 

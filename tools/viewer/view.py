@@ -24,7 +24,7 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra, from_extra
 from ...runtime.base.trees import tree_of
 from ...runtime.samples.samples import Samples
-from ...runtime.spline.spline import Spline
+from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface
 from ..cad.part import Face, Part
 from ..files import paths
@@ -63,7 +63,7 @@ RADIUS = 10.0  # of the initial region around a point, in per cent of the diamet
 def view(
     samples: Samples,
     path: str | os.PathLike[str],
-    surface: Surface | Spline | Part | None = None,
+    surface: Surface | AnySpline | Part | None = None,
 ) -> None:
     """Write the page of samples; see `Samples.view`."""
     check_target(path)
@@ -87,7 +87,7 @@ def check_target(path: str | os.PathLike[str]) -> None:
     check_extra("plotly", "view", "a page with a picture to turn")
 
 
-def page(samples: Samples, surface: Surface | Spline | Part | None = None) -> str:
+def page(samples: Samples, surface: Surface | AnySpline | Part | None = None) -> str:
     """Return the page as text."""
     if not len(samples):
         raise InputError("there are no samples to view.")
@@ -112,7 +112,7 @@ def page(samples: Samples, surface: Surface | Spline | Part | None = None) -> st
 
 
 def _data(
-    samples: Samples, scene: Scene, surface: Surface | Spline | Part | None
+    samples: Samples, scene: Scene, surface: Surface | AnySpline | Part | None
 ) -> dict[str, Any]:
     """Return the data for the script: coordinates relative to the centre, with diameter 1."""
     corners = scene.quadrangles.reshape(-1, 3)

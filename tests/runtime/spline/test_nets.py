@@ -238,4 +238,10 @@ def test_what_takes_a_spline_takes_it() -> None:
     assert len(gm.sample(again, normals=normals)) == 400
     for density in ("balanced", "uniform", "aligned", 0.5):
         refused(r'spline of nets.*use density="gauss"', gm.sample, nets, 10, density=density)
-    refused("no grid of cells", nets.evaluate, 0.0, 0.0)
+    assert not isinstance(nets, gm.Spline)
+    samples, known = gm.sample(nets, normals=normals), gm.GaussMap(nets)
+    for call in (samples.mesh, samples.weights, samples.coverage, known.folds, known.border_image):
+        refused("no grid of cells", call)
+    refused("no grid of cells", gm.silhouette, nets, (1, 2, 3))
+    refused("no grid of cells", gm.gauss_map.parabolic_points, nets)
+    refused("no grid of cells", gm.sample, nets, normals=normals, reach=((0, 0, 1), 30))

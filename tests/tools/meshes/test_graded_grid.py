@@ -215,7 +215,7 @@ class TestAligned:
     @covering(prefer=PREFER, name=["torus", "ellipsoid", "graph"])
     def test_samples_of_that_density(self, name, prefer):
         samples = gm.sample(surfaces[name][0](), count=700, density="aligned", cells=(16, 16))
-        assert samples.spline is not None
+        assert isinstance(samples.spline, gm.Spline)
         check(name, samples.mesh(prefer=prefer))
 
     @pytest.mark.parametrize(
@@ -255,7 +255,7 @@ class TestAligned:
         if name == "part of a grid":
             assert samples.column is not None
             samples = samples[samples.column % 5 != 3]
-        assert samples.spline is not None
+        assert isinstance(samples.spline, gm.Spline)
         check_nodes(samples)
 
     def test_too_small_for_a_grid(self):

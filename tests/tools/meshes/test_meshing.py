@@ -273,7 +273,7 @@ class TestFlips:
     def test_no_flip_is_left_that_helps(self, name):
         """Each pair of triangles is compared with the other one, in NumPy."""
         samples = gm.sample(surfaces[name][0](), count=300)
-        assert samples.spline is not None
+        assert isinstance(samples.spline, gm.Spline)
         state = triangulated(samples, samples.spline)
         assert flip_edges(state, "normals") > 0
         assert flip_edges(state, "normals") == 0
@@ -287,7 +287,7 @@ class TestFlips:
     @pytest.mark.quick_for("torus", "graph")
     def test_neighbours_stay_those_of_the_triangles(self, name):
         samples = gm.sample(surfaces[name][0](), count=300)
-        assert samples.spline is not None
+        assert isinstance(samples.spline, gm.Spline)
         state = triangulated(samples, samples.spline)
         flip_edges(state, "normals")
         anywhere = np.ones(len(state.points), dtype=bool)
@@ -311,7 +311,7 @@ class TestFlips:
 
     def test_they_make_the_worst_angle_smaller_and_never_larger(self):
         samples = gm.sample(gm.surfaces.torus(), count=2000)
-        assert samples.spline is not None
+        assert isinstance(samples.spline, gm.Spline)
         state = triangulated(samples, samples.spline)
         before = state.mesh(len(samples)).angles
         flip_edges(state, "normals")
@@ -388,7 +388,7 @@ class TestShape:
     def test_samples_that_nearly_coincide(self, prefer, gap):
         first = samples_at("torus", 200)
         spline = first.spline
-        assert spline is not None
+        assert isinstance(spline, gm.Spline)
         u, v = np.concatenate([first.uv, first.uv[:50] + gap * np.array([0.6, 0.8])]).T
         samples = gm.Samples(
             points=spline.evaluate(u, v), normals=spline.normals(u, v), uv=np.stack([u, v], axis=1),

@@ -42,7 +42,7 @@ def drawn(figure: Figure) -> np.ndarray:
 
 @pytest.mark.slow
 def test_it_is_the_picture_of_the_command_line(samples: gm.Samples, tmp_path: Path) -> None:
-    assert samples.spline is not None
+    assert isinstance(samples.spline, gm.Spline)
     write_figure(samples.plot(), tmp_path / "a.png")
     samples.plot().savefig(tmp_path / "b.png")
     gm.plot(samples.spline, samples).savefig(tmp_path / "c.png")
