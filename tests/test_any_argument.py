@@ -69,6 +69,7 @@ class ArrayLike:
         return self.value
 
 
+LARGE = (10**10,), (10**10, 2), (10**10, 3), (3, 10**10), (10**10, 3, 3), (2, 2, 10**10)
 HOSTILE: tuple[Any, ...] = (
     None, True, False, 0, -1, 1, 3.0, float("nan"), float("inf"), -float("inf"), 1e300, 1e-320,
     10**12, 10**5000, -(10**5000), 1j, "a", "", " ", "\0", "\udc80", "x" * 5000, b"x",
@@ -90,6 +91,9 @@ HOSTILE: tuple[Any, ...] = (
     odd(TypeError, "__hash__"),
     ArrayLike("text"),
     ArrayLike(np.array([None, "a"], object)),
+    # What Python holds in a few bytes, and arrays of it in none of the memory that is free.
+    np.zeros((3, 3)).data, np.eye(2).data, Fraction(10**400), [Fraction(10**400)] * 3,
+    range(10**18), range(10**9), *(np.broadcast_to(1.0, x) for x in LARGE),
 )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from contextlib import suppress
 from fractions import Fraction
+from itertools import islice
 from numbers import Rational
 from typing import Any, SupportsFloat
 
@@ -15,6 +16,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .errors import InputError, UnknownNameError, shown
 from .limits import MOST
+from .memory import check_memory
 
 __all__ = [
     "as_float",
@@ -39,6 +41,10 @@ __all__ = [
 
 # Made once: a report checks many numbers.
 WHOLE, OF_NUMPY = (int, np.integer), (np.ndarray, np.generic)
+SIMILAR = 0.7  # of a name that was meant, see difflib
+# The most entries of sequences that are no arrays, where each is looked at and where they become an
+# array; and how deep sequences in sequences are counted.
+MOST_LISTED, MOST_CONVERTED, DEEPEST = 10**7, 10**8, 4
 
 
 def known_name(name: str, known: Sequence[str], kind: str, command: str = "") -> str:
@@ -49,13 +55,21 @@ def known_name(name: str, known: Sequence[str], kind: str, command: str = "") ->
     text = name if isinstance(name, str) else ""
     if text and text in known:
         return text
-    near = difflib.get_close_matches(text.lower(), known, n=3, cutoff=0.7)
+    near = _near(text.lower(), known)
     hint = f"; did you mean {' or '.join(near)}?" if near else "."
     if command:
         hint += f" See `{command}` for all names."
     elif not near:
         hint = f"; there is {', '.join(known)}." if known else "; there is none."
     raise UnknownNameError(f"there is no {kind} {shown(name)}{hint}")
+
+
+def _near(text: str, known: Sequence[str]) -> list[str]:
+    """Return up to three names that are similar to a text, or have a word that is."""
+    near = difflib.get_close_matches(text, known, n=3, cutoff=SIMILAR)
+    words = {word for name in known for word in name.split("_")} if not near else ()
+    best = difflib.get_close_matches(text, words, n=1, cutoff=SIMILAR)
+    return near or [name for name in known if best and best[0] in name.split("_")][:3]
 
 
 def whole_number(value: object, name: str, least: int = 1, most: int = MOST) -> int:
@@ -76,7 +90,7 @@ def pair_of_cells(cells: Sequence[int]) -> tuple[int, int]:
     """Return the numbers of cells (m, n); InputError unless both are positive whole numbers."""
     try:
         m, n = cells
-    except (TypeError, ValueError):
+    except Exception:  # objects raise anything
         raise InputError(
             f"cells must be a pair of whole numbers (m, n), not {shown(cells)}."
         ) from None
@@ -105,13 +119,32 @@ def as_float(value: SupportsFloat | str) -> float:
 
 
 def listed(values: object) -> list[Any] | None:
-    """Return the elements as a list; None for texts and objects without elements."""
-    if isinstance(values, str | bytes | dict):
+    """Return the elements as a list; None for texts, objects without elements, and far too many."""
+    if isinstance(values, str | bytes | dict) or _size(values) > MOST_LISTED:
         return None
     try:
-        return list(values)  # pyright: ignore[reportArgumentType]
-    except TypeError:  # also raised by zero-dimensional arrays
+        found = list(islice(values, MOST_LISTED + 1))  # pyright: ignore[reportArgumentType]
+    except Exception:  # TypeError also by arrays without dimension; objects raise anything
         return None
+    return found if len(found) <= MOST_LISTED else None
+
+
+def _size(values: object) -> int:
+    """Return the number of entries, of sequences in sequences too; 1 for anything without any.
+
+    Of an array without its own memory, and of a `range`, the entries may be many more than fit.
+    """
+    size, depth = 1, 0
+    while isinstance(values, list | tuple | range | np.ndarray) and depth < DEEPEST:
+        if isinstance(values, np.ndarray):
+            return size * values.size
+        if not values:
+            return 0
+        # `len` fails for a range that is longer than an index can say.
+        step = values.step if isinstance(values, range) else 0
+        length = (values[-1] - values[0]) // step + 1 if step else len(values)
+        size, values, depth = size * length, values[0], depth + 1
+    return size
 
 
 def text(value: object, name: str) -> str:
@@ -159,9 +192,10 @@ def finite_array(
 
     In the shape a letter stands for any number.
     """
-    array = real_array(values, name)
-    if shape is not None and not _fits(array, shape):
-        raise InputError(f"{name} must have the shape {_shown(shape)}, not {array.shape}.")
+    found = real_values(values, name)
+    if shape is not None and not _fits(found, shape):
+        raise InputError(f"{name} must have the shape {_shown(shape)}, not {found.shape}.")
+    array = _copy(found)
     if not np.isfinite(array).all():
         where = np.argwhere(~np.isfinite(array))[0].tolist()
         value = float(array[tuple(where)])
@@ -174,7 +208,12 @@ def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
     Text, complex numbers, objects and masked entries are not real numbers.
     """
-    array = real_values(values, name)
+    return _copy(real_values(values, name))
+
+
+def _copy(array: NDArray[Any]) -> NDArray[np.float64]:
+    """Return a C-contiguous copy; InputError if there is no memory for it."""
+    check_memory("numbers", array.size)
     with np.errstate(over="ignore"):
         return array.astype(np.float64, order="C")
 
@@ -192,12 +231,19 @@ def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
     """Return real numbers as an array, without a copy where possible; see `real_array`."""
     if np.ma.is_masked(values):
         raise InputError(f"{name} has masked entries; fill them or leave them out.")
+    if not isinstance(values, np.ndarray) and (size := _size(values)) > MOST_CONVERTED:
+        raise InputError(
+            f"{name} has {size:,} entries, too many for a sequence of Python; give a NumPy array."
+        )
     try:
         array = np.asarray(values)
     except Exception:  # objects raise anything: tensors that require gradients RuntimeError
         raise InputError(f"{name} must be an array of real numbers, with equal rows.") from None
     if _are_fractions(array):
-        return array.astype(np.float64)
+        try:
+            return array.astype(np.float64)
+        except OverflowError:
+            raise InputError(f"{name} holds a number too large for float64.") from None
     if array.dtype.kind not in "fiub":
         raise InputError(f"{name} must be an array of real numbers, not of type {array.dtype}.")
     return array
@@ -238,6 +284,8 @@ def checked_array(
             f"{name} must be a {np.dtype(dtype)} array of shape {_shown(shape)}, "
             f"not a {array.dtype} array of shape {array.shape}."
         )
+    if not array.flags.c_contiguous:
+        check_memory("numbers", array.size)
     return np.ascontiguousarray(array)
 
 

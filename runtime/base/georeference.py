@@ -6,6 +6,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,12 +34,12 @@ class Georeference:
 
 def checked_origin(origin: Sequence[float] | None) -> Origin:
     """Return an origin of two or three numbers as three; InputError for others."""
-    try:
-        values = [as_float(x) for x in (() if origin is None else origin)]
-    except (TypeError, ValueError, OverflowError):
-        values = []
     if origin is None:
         return 0.0, 0.0, 0.0
+    try:
+        values = [as_float(x) for x in islice(origin, 4)]
+    except Exception:  # objects raise anything
+        values = []
     if len(values) not in (2, 3) or not all(math.isfinite(x) for x in values):
         raise InputError(f"origin must be two or three finite numbers, not {shown(origin)}.")
     x, y, z = [*values, 0.0][:3]

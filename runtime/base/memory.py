@@ -52,6 +52,7 @@ COSTS: dict[str, Cost] = {
     "circle": Cost("normals", 137.0, 0.0, "use fewer"),
     "cap": Cost("normals", 96.0, 0.0, "use fewer"),
     "polygon": Cost("normals", 24.0, 1.0, "use fewer"),
+    "numbers": Cost("numbers", 9.0, 0.0, "use fewer"),
     # Normals in bins, and one sample for each normal.
     "search": Cost("normals", 52.0, 0.0, FEWER),
     "stored": Cost("samples", 0.0, 1.0, 'use fewer normals, fewer fields or dtype="float32"'),

@@ -39,7 +39,7 @@ def checked_reach(reach: Any) -> Cap | None:  # noqa: ANN401
         return None
     try:
         axis, angle = reach
-    except (TypeError, ValueError):
+    except Exception:  # objects raise anything
         raise InputError(
             f"reach must be an axis and an angle in degrees, such as ((0, 0, 1), 60.0), not "
             f"{shown(reach)}."

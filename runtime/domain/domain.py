@@ -58,7 +58,7 @@ def _checked(domain: Sequence[Sequence[float]], names: str, form: str) -> list[I
     try:
         ends = [(as_float(low), as_float(high)) for low, high in domain]
         named = list(zip(names, ends, strict=True))
-    except (TypeError, ValueError):
+    except Exception:  # objects raise anything
         given = domain if len(names) > 1 else domain[0]
         raise InputError(f"domain must be {form}, not {shown(given)}.") from None
     for name, (low, high) in named:
@@ -92,7 +92,7 @@ def _entries(periodic: Periodic) -> tuple[Periodicity, Periodicity]:
         return bool(periodic), bool(periodic)
     try:
         along_u, along_v = periodic
-    except (TypeError, ValueError):
+    except Exception:  # objects raise anything
         raise InputError(
             "periodic must be a pair, one entry for u and one for v, or True or False for both, "
             f"not {shown(periodic)}."

@@ -70,7 +70,7 @@ def _reach(values: Any) -> tuple[float, float, float, float]:  # noqa: ANN401
     """Return the unit vector of an axis and an angle, as plain floats."""
     try:
         x, y, z, angle = (float(value) for value in values)
-    except (TypeError, ValueError):
+    except Exception:  # objects raise anything
         raise InputError(
             f"reach must be an axis and an angle, four numbers, not {shown(values)}."
         ) from None

@@ -62,7 +62,7 @@ def checked_spacing(spacing: Sequence[float] | None, count: int) -> tuple[float,
     """Return the spacing of elevations, at most `count` along x and y; InputError if invalid."""
     try:
         dx, dy = (as_float(x) for x in (() if spacing is None else spacing))
-    except (TypeError, ValueError, OverflowError):
+    except Exception:  # objects raise anything
         raise InputError(
             f"elevations (m, n) need spacing=(dx, dy), two numbers, not {shown(spacing)}."
         ) from None

@@ -65,10 +65,7 @@ def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
 def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
     """Return the coordinates, one more than there are parameters."""
     names = "(x, y, z)" if parameters == 2 else "(x, y)"
-    try:
-        coordinates = () if isinstance(position, str) else tuple(position)
-    except TypeError:
-        coordinates = ()
+    coordinates = tuple(listed(position) or ())
     if len(coordinates) != parameters + 1:
         number = "three" if parameters == 2 else "two"
         raise InputError(
@@ -81,7 +78,7 @@ def two_symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
     """Return real symbols for the parameters of a surface, symbols or names; InputError if not."""
     try:
         u, v = (_symbol(x) for x in parameters)
-    except (TypeError, ValueError):
+    except Exception:  # objects raise anything
         u = v = None
     if u is None or v is None or u.name == v.name:
         raise InputError(f"parameters must be two SymPy symbols (u, v), not {shown(parameters)}.")

@@ -55,7 +55,7 @@ def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nur
 def _pair(values: Any, name: str) -> tuple[Any, Any]:  # noqa: ANN401 - what a user gives
     try:
         u, v = values
-    except (TypeError, ValueError):
+    except Exception:  # objects raise anything
         raise InputError(f"{name} must be a pair, one for u and one for v.") from None
     return u, v
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ...runtime.base.checks import whole_number, yes_or_no
+from ...runtime.base.checks import listed, whole_number, yes_or_no
 from ...runtime.base.errors import GaussmapWarning, InputError, UnknownNameError, shown
 from ...runtime.base.extras import check_extra
 from ...runtime.base.wording import plural
@@ -429,15 +429,15 @@ def _samples(arrays: dict[str, NDArray[Any]], row: ManifestRow) -> Samples:
 def _checked_seed(seed: int | Sequence[int] | None) -> tuple[int, ...] | None:
     if seed is None:
         return None
-    if isinstance(seed, Sequence) and not isinstance(seed, str) and seed:
-        return tuple(whole_number(x, "shuffle", least=0) for x in seed)
+    if isinstance(seed, Sequence) and (numbers := listed(seed)):
+        return tuple(whole_number(x, "shuffle", least=0) for x in numbers)
     return (whole_number(seed, "shuffle", least=0),)
 
 
 def _checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
     try:
         index, count = shard
-    except (TypeError, ValueError):
+    except Exception:  # objects raise anything
         raise InputError(f"shard must be a pair (i, n), not {shown(shard)}.") from None
     index, count = whole_number(index, "shard[0]", least=0), whole_number(count, "shard[1]")
     if index >= count:

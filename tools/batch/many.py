@@ -273,7 +273,7 @@ def _iterates(surfaces: Iterable[Source]) -> bool:
     """Return whether `surfaces` can be iterated over, which arrays without dimension cannot."""
     try:
         iter(surfaces)
-    except TypeError:
+    except Exception:  # objects raise anything
         return False
     return True
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 from keyword import iskeyword
 from typing import TYPE_CHECKING, Any
 
@@ -109,8 +110,8 @@ def _function(source: str) -> Callable[..., Any]:
 def _names(normal: Sequence[Any]) -> list[str]:
     """Return the names of the components of the normal; InputError unless they are three."""
     try:
-        names = [x if isinstance(x, str) else x.name for x in normal]
-    except (TypeError, AttributeError):
+        names = [x if isinstance(x, str) else x.name for x in islice(normal, 4)]
+    except Exception:  # objects raise anything
         names = []
     usable = all(isinstance(x, str) and x.isidentifier() and not iskeyword(x) for x in names)
     if len(names) != 3 or len(set(names)) != 3 or not usable:
