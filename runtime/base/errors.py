@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import wraps
 from typing import ParamSpec, TypeVar
+from unicodedata import category
 
 __all__ = [
     "FileError",
@@ -37,7 +38,7 @@ class GaussmapError(Exception):
     """
 
     def __init__(self, message: str = "") -> None:
-        super().__init__(_cut(message))
+        super().__init__(_cut(printable(message)))
 
 
 class InputError(GaussmapError, ValueError):
@@ -156,8 +157,13 @@ class GaussmapWarning(UserWarning):
 
     """
 
+    def __init__(self, message: str = "") -> None:
+        super().__init__(printable(message))
+
 
 LONGEST_SHOWN = 60
+# Control characters, those that change the direction of a line, surrogates, and ends of lines.
+CONTROLS = ("Cc", "Cf", "Cs", "Zl", "Zp")
 LONGEST_MESSAGE = 300
 
 
@@ -167,6 +173,15 @@ def _cut(message: str) -> str:
         return message
     half = LONGEST_MESSAGE // 2
     return f"{message[: half - 1]}…{message[-half:]}"
+
+
+def printable(text: str) -> str:
+    """Return a text on one line, with escapes for control characters and lone surrogates."""
+    if text.isprintable():
+        return text
+    return "".join(
+        x.encode("unicode_escape").decode() if category(x) in CONTROLS else x for x in text
+    )
 
 
 def shown(value: object) -> str:
@@ -180,7 +195,7 @@ def shown(value: object) -> str:
 
 def clipped(text: str) -> str:
     """Return a text for a message, cut at its end if it is long."""
-    text = text.encode("utf-8", "backslashreplace").decode()
+    text = printable(text)
     return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 1]}…"
 
 

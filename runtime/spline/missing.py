@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -34,6 +35,9 @@ __all__ = [
 # The usual values of missing elevations.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))
 USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)
+# A `nodata` that differs from the lowest or the highest value by this part means it: it was printed
+# with six digits.
+NEAR = 1e-5
 # The rows of points next to a pole that all patches around it depend on.
 ROWS_AT_POLE = 3
 
@@ -78,33 +82,40 @@ def checked_nodata(nodata: Any) -> float:  # noqa: ANN401
 
 
 def without_nodata(points: Array, nodata: object, name: str) -> Array:
-    """Return points or elevations with NaN in place of `nodata`; warn of likely missing data."""
+    """Return points or elevations with NaN in place of `nodata`; warn of likely missing data.
+
+    That is done as well where no value is `nodata`: it may have been rounded.
+    """
     if nodata is None:
         _warn_of_nodata(points, name)
         return points
     value = checked_nodata(nodata)
     with np.errstate(over="ignore"):
         bad = (points == value) | (points == float(np.float32(value)))
+    if not bad.any() and not math.isnan(value):
+        _warn_of_nodata(points, name, value)
     if points.ndim == 3:
         bad = bad.any(axis=2, keepdims=True)
     return np.where(bad, np.nan, points)
 
 
-def _warn_of_nodata(points: Array, name: str) -> None:
+def _warn_of_nodata(points: Array, name: str, given: float | None = None) -> None:
+    instead = "" if given is None else f" instead of {given:.9g}, which is none of its values"
     lowest = float(np.fmin.reduce(points, axis=None, initial=np.inf))
     highest = float(np.fmax.reduce(points, axis=None, initial=-np.inf))
     for value, usual in ((lowest, USUAL_NODATA), (highest, USUAL_LARGE_NODATA)):
-        if value in usual and lowest < highest:
+        near = given is not None and abs(value - given) <= NEAR * abs(given)
+        if (value in usual or near) and lowest < highest:
             _warn(
                 f"{name} holds {value:.9g} {int((points == value).sum()):,} times, which often "
-                f"means that there is no data; if so, say nodata={value:.9g}."
+                f"means that there is no data; if so, say nodata={value:.9g}{instead}."
             )
             return
     block = suspicious_block(points) if points.ndim == 2 else None
     if block is not None:
         _warn(
             f"{name} holds a block of {block[1]:,} heights of {block[0]:.9g}, where the others end "
-            f"abruptly: there may be no data; if so, say nodata={block[0]:.9g}."
+            f"abruptly: there may be no data; if so, say nodata={block[0]:.9g}{instead}."
         )
 
 

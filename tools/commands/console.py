@@ -13,6 +13,9 @@ from contextlib import contextmanager, suppress
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, TextIO
 
+from ...runtime.base.errors import printable
+from .wording import for_commands
+
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
     from ..meshes.mesh import Mesh
@@ -23,6 +26,7 @@ __all__ = [
     "flush",
     "give_up_output",
     "interruptible",
+    "pour",
     "say",
     "show_warning",
     "summarize",
@@ -39,12 +43,12 @@ def say(text: str) -> None:
 def summarize(result: Samples | Mesh, options: SimpleNamespace) -> None:
     """Print the summary of what was written, unless --quiet is set."""
     if not options.quiet:
-        say(f"{options.output}: {result.summary()}")
+        say(printable(f"{options.output}: {result.summary()}"))
 
 
 def table(rows: Iterable[tuple[str, str]]) -> None:
     """Print a line for each row; on a terminal, the text is wrapped in its own column."""
-    pairs = list(rows)
+    pairs = [(printable(name), printable(sentence)) for name, sentence in rows]
     width = max(len(name) for name, _ in pairs) + 2
     for name, sentence in pairs:
         line = f"{name:{width}}{sentence}"
@@ -57,7 +61,7 @@ def table(rows: Iterable[tuple[str, str]]) -> None:
 def complain(text: str) -> None:
     """Print one line to standard error; ignore errors if it is closed."""
     with suppress(OSError, ValueError):
-        write(f"gaussmap: {' '.join(text.split())}", sys.stderr)
+        write(f"gaussmap: {' '.join(for_commands(text).split())}", sys.stderr)
 
 
 def fail(message: str) -> None:
@@ -75,6 +79,15 @@ def write(text: str, stream: TextIO | None) -> None:
     if stream is not None:
         encoding = stream.encoding or "utf-8"
         print(text.encode(encoding, "replace").decode(encoding), file=stream)
+
+
+def pour(path: str) -> None:
+    """Write a file to standard output, byte by byte."""
+    if sys.stdout is not None:
+        sys.stdout.flush()
+        with open(path, "rb") as file:
+            shutil.copyfileobj(file, sys.stdout.buffer)
+        sys.stdout.buffer.flush()
 
 
 def flush() -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ...runtime.base.errors import printable
 from ...runtime.base.wording import plural
 from ..cad.part import Face, Part
 from ..sources.named import Named
@@ -38,7 +39,7 @@ def _line(face: Face, digits: int, kinds: int) -> str:
     name = f"  {face.name}" if face.name else ""
     failed = f"  failed: {face.reason}" if face.reason else ""
     known = f"{face.source_index:{digits}}  {face.kind:{kinds}}  {face.area:12.6g}  {loops:8}"
-    return f"{known}{name}{failed}".rstrip()
+    return printable(f"{known}{name}{failed}".rstrip())
 
 
 def _as_json(part: Part) -> dict[str, Any]:

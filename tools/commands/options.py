@@ -23,10 +23,15 @@ __all__ = [
 ]  # fmt: skip
 
 
+# The entry of a context by which --help-all asks for the whole help.
+ALL = "gaussmap.all"
+
+
 class Option(click.Option):
     """An option written as in its help, such as "--spacing DX DY"; without values it is a flag.
 
-    The help lists it in its group. At most one of several `exclusive` options may be given.
+    The help lists it in its group, and the brief help explains it if it is a `main` one. At most
+    one of several `exclusive` options may be given.
     """
 
     def __init__(
@@ -37,6 +42,7 @@ class Option(click.Option):
         *,
         group: str = "options",
         exclusive: bool = False,
+        main: bool = False,
         **settings: Any,  # noqa: ANN401
     ) -> None:
         words = usage.split()
@@ -44,15 +50,25 @@ class Option(click.Option):
         values = words[len(names) :]
         valued = {"type": kind, "metavar": " ".join(values), "nargs": len(values)}
         super().__init__(names, help=text, **(valued if values else {"is_flag": True}), **settings)
-        self.group, self.exclusive = group, exclusive
+        self.group, self.exclusive, self.main = group, exclusive, main
 
 
 class Command(click.Command):
     """A command that calls `run` of the module of its name, which is imported when it is called.
 
     So help, errors of usage and completion need neither NumPy nor Numba. `ctx.obj` is called after
-    the imports.
+    the imports. A command with a `brief` epilog has a help that fits on a screen: other options
+    than the main ones are explained by --help-all.
     """
+
+    def __init__(self, *arguments: Any, brief: str = "", **settings: Any) -> None:  # noqa: ANN401
+        super().__init__(*arguments, **settings)
+        self.brief = brief
+        if brief:
+            text = "Explain all options, and exit."
+            shown = Option("--help-all", text, main=True, is_eager=True, callback=_show_all,
+                expose_value=False)  # fmt: skip
+            self.params.append(shown)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse, and refuse two exclusive options."""
@@ -79,15 +95,47 @@ class Command(click.Command):
         module.run(SimpleNamespace(**ctx.params))
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the options under the headings of their groups."""
+        """Write the options under the headings of their groups; in the brief help, the main ones.
+
+        Of the others it has the names.
+        """
         groups: dict[str, list[tuple[str, str]]] = {}
+        named: dict[str, list[str]] = {}
         for option in self.get_params(ctx):
             record = option.get_help_record(ctx)
-            if record is not None and isinstance(option, click.Option):
-                groups.setdefault(getattr(option, "group", "options"), []).append(record)
+            if record is None or not isinstance(option, click.Option):
+                continue
+            group = getattr(option, "group", "options")
+            if not self._is_brief(ctx):
+                groups.setdefault(group, []).append(record)
+            elif getattr(option, "main", True):
+                groups.setdefault("options", []).append(record)
+            else:
+                named.setdefault(group.partition(" (")[0], []).append(option.opts[-1])
         for group, records in groups.items():
             with formatter.section(group):
                 formatter.write_dl(records)
+        if named:
+            with formatter.section("more options, explained by --help-all"):
+                formatter.write_dl([(group, " ".join(names)) for group, names in named.items()])
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the examples; few of them in the brief help."""
+        whole = self.epilog
+        self.epilog = self.brief if self._is_brief(ctx) else whole
+        super().format_epilog(ctx, formatter)
+        self.epilog = whole
+
+    def _is_brief(self, ctx: click.Context) -> bool:
+        return bool(self.brief) and not ctx.meta.get(ALL)
+
+
+def _show_all(ctx: click.Context, _: click.Parameter, asked: bool) -> None:
+    """Print the help on all options."""
+    if asked and not ctx.resilient_parsing:
+        ctx.meta[ALL] = True
+        click.echo(ctx.get_help())
+        ctx.exit()
 
 
 class Program(click.Group):

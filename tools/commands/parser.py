@@ -57,7 +57,7 @@ A GeoTIFF, .tif or .tiff, holds elevations with their coordinates, read with pip
 In place of SURFACE, --formula gives x, y and z in terms of u and v.
 
 A STEP, IGES or BREP file is a CAD part, of which all faces are sampled, read with pip install
-'gaussmap[cad]'; or an .npz file of part.save.
+'gaussmap[cad]'; or an .npz file of a part that gaussmap saved.
 
 \b
 examples:
@@ -73,8 +73,24 @@ examples:
   gaussmap sample --formula "u" "v" "u**2-v**2" --domain -1 1 -1 1 -o saddle.ply
 """
 
+SURFACE = """\
+SURFACE is a name (see `gaussmap surfaces`), a grid of points or elevations in a .npy or .npz file,
+a GeoTIFF, a STEP, IGES or BREP file, or a part that gaussmap saved.
+"""
+
+SAMPLE_BRIEF = f"""\
+{SURFACE}
+\b
+examples:
+  gaussmap sample torus --count 10000 -o torus.ply
+  gaussmap sample heights.npy --spacing 30 30 -o terrain.ply
+  gaussmap sample part.step --count 50000 --edges -o part.ply
+  gaussmap sample --formula "u" "v" "u**2-v**2" --domain -1 1 -1 1 -o saddle.ply
+  gaussmap sample torus --quiet -o - --format csv | head
+"""
+
 MESH_EXAMPLES = """\
-`gaussmap sample --help` explains SURFACE.
+`gaussmap sample --help-all` explains SURFACE.
 
 \b
 examples:
@@ -85,7 +101,7 @@ examples:
 """
 
 PLOT_EXAMPLES = """\
-`gaussmap sample --help` explains SURFACE.
+`gaussmap sample --help-all` explains SURFACE.
 
 \b
 examples:
@@ -103,7 +119,7 @@ to have it in every shell:
 """
 
 VIEW_EXAMPLES = """\
-`gaussmap sample --help` explains SURFACE.
+`gaussmap sample --help-all` explains SURFACE.
 
 \b
 examples:
@@ -147,11 +163,13 @@ def parser() -> click.Group:
     return program
 
 
-def _command(name: str, text: str, *parameters: click.Parameter, epilog: str = "") -> Command:
+def _command(
+    name: str, text: str, *parameters: click.Parameter, epilog: str = "", brief: str = ""
+) -> Command:
     """Return a command; the list of commands shows its text up to the first colon or full stop."""
     short = f"{re.split('[.:]', text)[0]}."
     return Command(
-        name, params=[*parameters], short_help=short, help=text, epilog=epilog,
+        name, params=[*parameters], short_help=short, help=text, epilog=epilog, brief=brief,
         context_settings=SETTINGS,
     )  # fmt: skip
 
@@ -160,6 +178,7 @@ def _sample() -> Command:
     group = "contents of the file"
     default = f"all, with --edges {', '.join(EDGE_NAMES)}, too"
     prefixes = "Order the samples such that every prefix of them is well distributed."
+    format_ = "The format with -o -; npy is an array (N, 6) of points and normals."
     edges = "Add samples on the sharp edges of a CAD part, with the normals of both faces."
     return _command(
         "sample",
@@ -167,11 +186,16 @@ def _sample() -> Command:
         "curvatures. The samples are all points with prescribed normals, and others that fill the "
         "gaps between these, as where the surface is flat or developable.",
         *_sampling(default_count=10_000),
-        _output(".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .las or .laz"),
+        _output(
+            ".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .las or .laz; with --format "
+            "-, which is standard output"
+        ),
+        Option("--format FORMAT", format_, click.Choice(("csv", "xyz", "ply", "npy")), main=True),
         Option("--edges", edges, group="the surface"),
         *_contents(group, default),
         Option("--progressive", prefixes, group=group),
         epilog=SAMPLE_EXAMPLES,
+        brief=SAMPLE_BRIEF,
     )
 
 
@@ -191,9 +215,12 @@ def _mesh() -> Command:
         "points on open boundaries and at poles; the mesh of a CAD part has as many new vertices.",
         *_sampling(default_count=10_000),
         _output(".ply, .obj, .stl, .3mf, .vtk, .vtu, .vtp or .glb"),
-        Option("--deviation DEGREES", deviation, number),
-        Option("--prefer KIND", prefer, click.Choice(("shape", "normals")), default="shape"),
+        Option("--deviation DEGREES", deviation, number, main=True),
+        Option(
+            "--prefer KIND", prefer, click.Choice(("shape", "normals")), default="shape", main=True
+        ),
         epilog=MESH_EXAMPLES,
+        brief=SURFACE + MESH_EXAMPLES.partition("\n")[2],
     )
 
 
@@ -205,6 +232,7 @@ def _plot() -> Command:
         *_sampling(default_count=2_000),
         _output(".png, .pdf or .svg"),
         epilog=PLOT_EXAMPLES,
+        brief=SURFACE + PLOT_EXAMPLES.partition("\n")[2],
     )
 
 
@@ -219,6 +247,7 @@ def _view() -> Command:
         *_sampling(default_count=5_000),
         _output(".html or .htm"),
         epilog=VIEW_EXAMPLES,
+        brief=SURFACE + VIEW_EXAMPLES.partition("\n")[2],
     )
 
 
@@ -248,8 +277,10 @@ def _batch() -> Command:
         *_amount(2048),
         *_distribution(),
         *made_options(several=True),
-        Option("-o --output FOLDER", "The folder of the data set.", FOLDER, required=True),
-        Option("--list FILE", parts, FILE),
+        Option(
+            "-o --output FOLDER", "The folder of the data set.", FOLDER, required=True, main=True
+        ),
+        Option("--list FILE", parts, FILE, main=True),
         *_contents(data, "those of real numbers"),
         Option("--compression CODEC", codecs, group=data, default="zstd"),
         Option("--files SUFFIX", files, group=data),
@@ -263,6 +294,7 @@ def _batch() -> Command:
         Option("--json", "Print the summary as a JSON object.", group=run),
         _quiet(),
         epilog=BATCH_EXAMPLES,
+        brief=BATCH_EXAMPLES,
     )
 
 
@@ -279,7 +311,7 @@ def _faces() -> Command:
         "faces",
         "List the faces of a CAD part: a line for each, with its index, kind, area, number of "
         "loops, name, and why it failed if it cannot be used. PART is a STEP, IGES or BREP file, "
-        "or an .npz file of part.save.",
+        "or an .npz file of a part that gaussmap saved.",
         click.Argument(["part"], type=FILE),
         Option("--kind KIND", "Only faces of a kind; may be repeated.", multiple=True),
         Option("--name NAME", 'Only faces of a name, or of a pattern such as "slot*".'),
@@ -325,7 +357,9 @@ def _completion() -> Command:
 
 
 def _output(suffixes: str) -> Option:
-    return Option("-o --output OUT", f"The file to write: {suffixes}.", FILE, required=True)
+    return Option(
+        "-o --output OUT", f"The file to write: {suffixes}.", FILE, required=True, main=True
+    )
 
 
 def _contents(group: str, default: str) -> list[Option]:
@@ -380,8 +414,8 @@ def _amount(default_count: int) -> list[Option]:
         ("--seed N", "The seed of --random (default: 0).", whole(MOST, least=0)),
         ("--normals FILE.npy", "Normals: an array (S, 3), of any lengths.", FILE),
     ]
-    beside = ("--coverage LENGTH", "--seed N")
-    return [Option(*x, group=group, exclusive=x[0] not in beside) for x in kinds]
+    beside, main = ("--coverage LENGTH", "--seed N"), ("--count N", "--normals FILE.npy")
+    return [Option(*x, group=group, exclusive=x[0] not in beside, main=x[0] in main) for x in kinds]
 
 
 def _distribution() -> list[Option]:
@@ -395,6 +429,7 @@ def _distribution() -> list[Option]:
             "everywhere. A number A: proportional to |K|^A.",
             density,
             group="how dense",
+            main=True,
             shell_complete=densities,
         ),
         Option(

@@ -16,6 +16,10 @@ from .lengths import whole_of
 __all__ = ["columns_of_faces", "texts_of"]
 
 
+# Texts that begin so are formulas for a spreadsheet, unless an apostrophe comes first.
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
 def columns_of_faces(samples: Samples) -> list[FaceColumn]:
     """Return the columns, with units; none unless the samples have a part and faces."""
     part = whole_of(samples)
@@ -32,6 +36,9 @@ def texts_of(column: FaceColumn, samples: Samples) -> NDArray[Any]:
 def _text(value: float | str | None) -> str:
     if isinstance(value, float):
         return repr(float(value))
+    if isinstance(value, str) and value.startswith(FORMULA):
+        value = f"'{value}"
     line = io.StringIO()
-    csv.writer(line, lineterminator="").writerow(["" if value is None else value, ""])
-    return line.getvalue()[:-1]
+    # With this end of the line, names with line breaks are quoted.
+    csv.writer(line, lineterminator="\r\n").writerow(["" if value is None else value, ""])
+    return line.getvalue()[:-3]

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...runtime.base.checks import finite_array, listed, real_values
-from ...runtime.base.errors import InputError
+from ...runtime.base.errors import InputError, printable
 from ...runtime.base.extras import check_extra
 from ...runtime.directions.unit import as_normals
 from ...runtime.samples.samples import Samples
@@ -323,7 +323,9 @@ def _write_titles(figure: Figure, samples: Samples) -> None:
 
 def _write(figure: Figure, x: float, y: float, text: str, **looks: Any) -> None:  # noqa: ANN401
     """Write a text at a position in inches; dollar signs in it are not mathematics."""
-    figure.text(x / WIDTH, y / HEIGHT, text, ha="center", **{"parse_math": False, **looks})
+    figure.text(
+        x / WIDTH, y / HEIGHT, printable(text), ha="center", **{"parse_math": False, **looks}
+    )
 
 
 def _box(x: float, y: float, width: float, height: float) -> tuple[float, float, float, float]:

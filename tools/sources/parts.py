@@ -25,7 +25,7 @@ def read_part_file(named: Named) -> Part:
     if not is_part_file(source):
         raise InputError(
             f"'{source}' is no STEP, IGES or BREP file ({', '.join(CAD_SUFFIXES)}), and no .npz "
-            "file of part.save."
+            "file of a part that gaussmap saved."
         )
     from ..cad.reader import read_cad
 

@@ -63,7 +63,7 @@ def _refuse_file(source: str) -> None:
     if Path(source).is_file():
         raise InputError(
             f"'{source}' is neither a .npy, .npz nor .tif file, nor a CAD part; write points (m, "
-            "n, 3) or elevations (m, n) by numpy.save."
+            "n, 3) or elevations (m, n) to a .npy file."
         )
     if Path(source).suffix:
         raise FileError(f"'{source}' does not exist; look at its name and folder.")
@@ -93,8 +93,7 @@ def _grid(named: Named, source: str) -> Surface:
     if points.ndim == 2 and named.spacing is None and named.x is None:
         raise InputError(
             f"'{source}' holds elevations {points.shape}, which need their distances: "
-            "add --spacing DX DY, or --x and --y, the names of arrays of coordinates (in Python: "
-            "Surface.from_grid(…, spacing=…))."
+            "add --spacing DX DY, or --x and --y, the names of arrays of coordinates."
         )
     if has_place(named):
         return terrain_of_array(points, named, source)

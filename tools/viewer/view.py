@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.aliases import Array
-from ...runtime.base.errors import InputError
+from ...runtime.base.errors import InputError, printable
 from ...runtime.base.extras import check_extra, from_extra
 from ...runtime.base.trees import tree_of
 from ...runtime.samples.samples import Samples
@@ -96,8 +96,8 @@ def page(samples: Samples, surface: Surface | AnySpline | Part | None = None) ->
     here = files(__name__.rpartition(".")[0])
     offline = from_extra("plotly.offline", "view", "a page with a picture to turn")
     return Template((here / "page.html").read_text(encoding="utf-8")).substitute(
-        title=html.escape(" ".join(samples.report.surface.split())[:200]),
-        summary=html.escape(samples.summary()),
+        title=html.escape(printable(" ".join(samples.report.surface.split())[:200])),
+        summary=html.escape(printable(samples.summary())),
         style=(here / "style.css").read_text(encoding="utf-8"),
         script="\n".join((here / f"{x}.js").read_text(encoding="utf-8") for x in SCRIPTS),
         plotly=offline.get_plotlyjs().replace("</script", "<\\/script"),

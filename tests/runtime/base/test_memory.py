@@ -178,6 +178,7 @@ def test_commands(
     assert main(arguments) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert re.search(REFUSED.removeprefix("^"), line)
+    assert not re.search(r"gm\.|=", line)  # names of Python
     assert [*tmp_path.iterdir()] == []
 
 

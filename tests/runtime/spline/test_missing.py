@@ -1,5 +1,6 @@
 """Grids with missing points: what depends on these is left out, and the rest is as it was."""
 
+import re
 from typing import Any
 
 import gaussmap as gm
@@ -92,6 +93,22 @@ def test_three_ways_to_say_it():
 def test_numbers_that_look_like_missing_data(value):
     with pytest.warns(gm.GaussmapWarning, match=r"grid.* holds .* 7 times, .* say nodata="):
         terrain(np.where(np.isnan(island()), value, island()))
+
+
+@pytest.mark.parametrize(
+    ("value", "given"),
+    [(-3.4028234663852886e38, -3.40282e38), (-9999.0, -32768), (-777.03125, -777.031)],
+)
+def test_a_rounded_or_a_wrong_number_for_missing_data_is_said(value, given):
+    heights = np.where(np.isnan(island()), value, island())
+    message = rf"say nodata={value:.9g} instead of {given:.9g}, which is none of its values"
+    with pytest.warns(gm.GaussmapWarning, match=re.escape(message)):
+        terrain(heights, nodata=given)
+    # what is said works
+    (said,) = re.findall(r"nodata=(\S+) instead", message)
+    np.testing.assert_array_equal(
+        known(terrain(heights, nodata=float(said))).patches, known(terrain(island())).patches
+    )
 
 
 def test_other_cells_depend_on_more():

@@ -2,10 +2,13 @@
 
 # pyright: reportOptionalMemberAccess=false
 
+import csv
+from dataclasses import replace
+
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import box
+from gaussmap.tools.cad.examples import box, box_faces
 
 from .made import FAILED, cylinder_faces, part
 
@@ -49,11 +52,11 @@ def test_sample(saved, capsys, main):
     [
         (["sample", "part.npz", "--cells", "4", "4", "-o", "o.ply"], "--cells is for surfaces"),
         (["sample", "part.npz", "--set", "a=1", "-o", "o.ply"], "--set is for surfaces"),
-        (["sample", "part.npz", "--on", "spline", "-o", "o.ply"], 'on="spline" is for surfaces'),
+        (["sample", "part.npz", "--on", "spline", "-o", "o.ply"], "--on spline is for surfaces"),
         (["sample", "part.npz", "-o", "part.npz"], "'part.npz' is read"),
         (["mesh", "part.npz", "-o", "o.ply"], "does not say how its edges go around its faces"),
         (["mesh", "box.npz", "--count", "7", "-o", "o.stl"], "needs at least 8 vertices"),
-        (["sample", "torus", "--edges", "-o", "o.ply"], "edges=True is for CAD parts"),
+        (["sample", "torus", "--edges", "-o", "o.ply"], "--edges is for CAD parts"),
         (["faces", "part.npz", "--name", "slot*"], "no face"),
         (["faces", "part.npz", "--kind", "hole"], "'hole'"),
         (["faces", "none.npz"], "'none.npz' cannot be read"),
@@ -84,3 +87,24 @@ def test_without_open_cascade(tmp_path, capsys, monkeypatch, main, name, content
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     assert main(["sample", name, "--count", "10", "-o", "out.ply"]) == 2
     assert 'pip install "gaussmap[cad]"' in capsys.readouterr().err
+
+
+FORMULAS = '=HYPERLINK("x")', "+1", "-1", "@SUM(1)", "\t=1"
+
+
+def test_names_are_no_formulas_of_spreadsheets(tmp_path, capsys, main, monkeypatch):
+    """Names of faces come from files of others; escapes on a terminal, too."""
+    monkeypatch.chdir(tmp_path)
+    names = dict(zip(range(6), ["\x1b[2Jslot\n", *FORMULAS], strict=True))
+    records = [replace(x, name=names[k]) for k, x in enumerate(box_faces())]
+    whole = part(records)
+    gm.sample(whole, 60).write("names.csv")
+    with open("names.csv", newline="") as file:
+        found = {row["face_name"] for row in csv.DictReader(file)}
+    assert found == {names[0], *(f"'{x}" for x in FORMULAS)}
+    whole.save("names.npz")
+    assert main(["faces", "names.npz"]) == 0
+    out = capsys.readouterr().out
+    assert len(out.splitlines()) == 6
+    assert r"\x1b[2Jslot" in out
+    assert "\x1b" not in out

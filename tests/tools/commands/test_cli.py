@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import io
 import os
 import re
 import shutil
@@ -358,10 +359,9 @@ def test_the_tape_that_is_shown_computes_the_surface(
     [
         (["--version"], [f"gaussmap {gm.__version__}"]),
         (["--help"], ["to try:", "gaussmap sample torus --count 1000 -o torus.csv"]),
-        (
-            ["sample", "--help"],
-            ["how many samples", "default: 10000", "--spacing DX DY"],
-        ),
+        (["sample", "--help"], ["--count N", "default: 10000", "the surface  ", "--spacing"]),
+        (["sample", "--help-all"], ["how many samples", "default: 10000", "--spacing DX DY"]),
+        (["batch", "--help-all"], ["the data set", "--compression CODEC"]),
         (["view", "--help"], ["default: 5000", "gaussmap[view]", ".html or .htm"]),
         (["plot", "--help"], ["default: 2000", "gaussmap[plot]", ".png, .pdf or .svg"]),
         (["surfaces", "--help"], ["NAME"]),
@@ -379,6 +379,23 @@ def test_help(
     assert out.isascii()
 
 
+@pytest.mark.parametrize("command", ["sample", "mesh", "plot", "view", "batch"])
+def test_help_fits_on_a_screen(
+    command: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It names all options, and says how they are explained."""
+    monkeypatch.setenv("COLUMNS", "100")
+    assert main([command, "--help"]) == 0
+    brief = capsys.readouterr().out
+    assert len(brief.splitlines()) <= 50
+    assert main([command, "--help-all"]) == 0
+    whole = capsys.readouterr().out
+    explained = re.findall(r"^  (?:-\w, )?(--[a-z][a-z-]*)", whole, re.MULTILINE)
+    assert {*explained} <= {*re.findall(r"--[a-z][a-z-]*", brief)}
+    assert len(explained) > 30
+    assert "explained by --help-all" in brief
+
+
 def test_a_terminal_gets_wrapped_lines(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -390,8 +407,26 @@ def test_a_terminal_gets_wrapped_lines(
     assert max(map(len, lines)) <= 70
 
 
+@pytest.mark.parametrize("kind", ["csv", "xyz", "ply", "npy"])
+def test_samples_go_to_a_pipe(kind: str, capfdbinary: pytest.CaptureFixture[bytes]) -> None:
+    """Nothing else goes there; what a file would hold does."""
+    assert main(["sample", "torus", *FEW, "-o", "-", "--format", kind]) == 0
+    out, err = capfdbinary.readouterr()
+    assert err == b""
+    assert not [*Path().iterdir()]
+    samples = gm.sample("torus", 60, cells=(8, 8))
+    if kind == "npy":
+        rows = np.concatenate([samples.points, samples.normals], axis=1)
+        np.testing.assert_array_equal(np.load(io.BytesIO(out)), rows)
+    else:
+        samples.write(f"a.{kind}")
+        assert out == Path(f"a.{kind}").read_bytes()
+
+
 # ── What can go wrong ────────────────────────────────────────────────────────────────────────────
 
+# Arguments with values, functions and methods of Python.
+PYTHON = r"\w=(\.\.\.|…|True|\")|\b(gm|numpy|np)\.[a-z]|\b[a-z]\w*\.[a-z]\w*\("
 TO = ["-o", "a.npz"]
 HEIGHTS = ["--spacing", "1", "1", *TO]
 SADDLE = ["--formula", "u", "v", "u**2-v**2"]
@@ -431,9 +466,9 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", "--angle", "x", *TO], "--angle: it must be a number, not 'x'"),
         (["sample", "torus", "--coverage", "-1", *TO], "coverage must be a positive number, not"),
         (["sample", "torus", "--density", "flat", *TO], "there is no density"),
-        (["sample", "torus", "--density", "isotropic", *TO], 'write density="balanced"'),
+        (["sample", "torus", "--density", "isotropic", *TO], "write --density balanced"),
         (["sample", "torus", "--density", "-2", *TO], "a positive number of at most 8, not"),
-        (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "does not go with coverage="),
+        (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "density gauss does not go with --"),
         (["sample", "torus", "--progressive", "--fields", "uv", *TO], "needs points and normals"),
         (["sample", "torus", "--cells", "8", "0", *TO], "--cells: it must be a whole number"),
         (["sample", "torus", "--cells", "8", *TO], "--cells: it must be .*, not '-o'"),
@@ -520,6 +555,10 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", "-o", "a.xlsx"], "'a.xlsx' has the suffix '.xlsx'; use one of .npz,"),
         (["sample", "torus", "-o", "a"], "'a' has no suffix"),
         (["sample", "torus", "-o", ""], "the name of the file is empty"),
+        (["sample", "torus", "-o", "-"], "-o - writes to standard output, with --format csv, xyz,"),
+        (["sample", "torus", "--format", "csv", *TO], "-o - writes to standard output, with"),
+        (["sample", "torus", "--format", "npz", "-o", "-"], "--format: 'npz' is not one of 'csv'"),
+        (["sample", "torus", "--fields", "uv", "--format", "npy", "-o", "-"], "needs 'points'"),
         (["sample", "torus", "-o", "missing/a.npz"], "'.*missing' does not exist"),
         (["sample", "torus", "-o", "heights.txt/a.npz"], "not a folder"),
         (["sample", "two.npz:points", "-o", "two.npz"], "'two.npz' is read; write to another"),
@@ -533,6 +572,8 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["surfaces", "tours"], "no surface 'tours'; did you mean torus"),
         (["surfaces", "torus", "sphere"], r"unexpected extra argument \(sphere\)"),
         (["formulas", "support_functoin"], r"no formula 'support_functoin'; did you mean"),
+        (["formulas", "suport"], "did you mean support_function or arc_support_function"),
+        (["sample", "patch", *TO], "did you mean ellipsoid_patch"),
         (["formulas", "--tape"], "needs the name of a surface, or --formula X Y Z"),
         (["formulas", "--tape", "tours"], "no surface 'tours'; did you mean torus"),
         (["formulas", "--tape", "--latex", "torus"], "--tape is not allowed with --latex"),
@@ -550,6 +591,7 @@ def test_an_error_is_one_line(
     assert out == ""
     assert re.fullmatch(r"gaussmap: error: [^\n]+\n", err)
     assert re.search(message, err)
+    assert not re.search(PYTHON, err)
     assert {path: path.is_file() and path.read_bytes() for path in Path().iterdir()} == before
 
 

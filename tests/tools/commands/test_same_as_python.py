@@ -1,15 +1,15 @@
 """Commands and Python functions have the same options, with the same defaults and results."""
 
 import inspect
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad import reader
-from gaussmap.tools.cad.examples import box
 from gaussmap.tools.commands.cli import main
 from gaussmap.tools.commands.parser import parser
 
@@ -100,7 +100,7 @@ OTHERS: list[tuple[str, str, Made]] = [
     ("points.npy", "--periodic u", grid(periodic=(True, False))),
     ("--domain -1 1 -2 2", f"--formula {' '.join(SADDLE)}", saddle(((-1, 1), (-2, 2)))),
     (f"--formula {' '.join(SADDLE)}", "--domain -1 1 -1 1/2", saddle(((-1, 1), (-1, "1/2")))),
-    ("box.npz", "--edges", lambda: gm.sample(box(), 60, edges=True)),
+    ("box.npz", "--edges", lambda: gm.sample(gm.read_part("box.npz"), 60, edges=True)),
     ("part.step", "", part()),
     ("part.step", "--unit cm", part(unit="cm")),
     ("part.step", "--time-limit 7", part(time_limit=7.0)),
@@ -111,11 +111,11 @@ CASES = [
     *((source, f"{options} --count 60", made) for source, options, made in OTHERS),
 ]
 # Options that change nothing of the samples: the file, and what is printed.
-OUTSIDE = {"--output", "--quiet"}
+OUTSIDE = {"--output", "--format", "--quiet", "--help-all"}
 
 
 @pytest.fixture(autouse=True)
-def _inputs(monkeypatch: pytest.MonkeyPatch) -> None:
+def _inputs(monkeypatch: pytest.MonkeyPatch, parts: ModuleType) -> None:
     """Write the files of the cases; reading a CAD file gives a box of the size of its arguments."""
     np.save("heights.npy", HEIGHTS)
     np.save("points.npy", POINTS)
@@ -129,17 +129,17 @@ def _inputs(monkeypatch: pytest.MonkeyPatch) -> None:
         longitude=easting,
         latitude=northing,
     )
-    box().save("box.npz")
+    parts.box().save("box.npz")
     Path("part.step").write_text("ISO-10303-21;")
-    signature = inspect.signature(reader.read_cad)
+    signature = inspect.signature(gm.read_cad)
 
     def read(path: Any, *arguments: Any, **options: Any) -> gm.Part:
         bound = signature.bind(path, *arguments, **options)
         bound.apply_defaults()
         unit, seconds, memory = (bound.arguments[x] for x in ("unit", "time_limit", "memory_limit"))
-        return box(len(unit or "") + 1.0, seconds, memory)
+        return parts.box(len(unit or "") + 1.0, seconds, memory)
 
-    monkeypatch.setattr(reader, "read_cad", read)
+    monkeypatch.setattr(sys.modules[gm.read_cad.__module__], "read_cad", read)
     monkeypatch.setattr(gm, "read_cad", read)
 
 
@@ -217,7 +217,7 @@ def test_meshes(how: dict[str, Any]) -> None:
     ("options", "figure"),
     [
         ("torus", lambda: gm.plot("torus")),
-        ("box.npz", lambda: gm.plot(box())),
+        ("box.npz", lambda: gm.plot(gm.read_part("box.npz"))),
         ("ellipsoid_patch --frequency 4", lambda: gm.plot(
             "ellipsoid_patch", normals=gm.icosphere(4))),
     ],

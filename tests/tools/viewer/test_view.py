@@ -5,6 +5,7 @@ import json
 import re
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -159,3 +160,9 @@ def test_what_is_refused(
     with pytest.raises(gm.errors.MissingExtraError, match=r"gaussmap\[view\]"):
         samples.view(tmp_path / "torus.html")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_name_that_cannot_be_encoded(samples: gm.Samples, tmp_path: Path) -> None:
+    named = replace(samples, report=replace(samples.report, surface="a\udc80\x1b"))
+    named.view(tmp_path / "a.html")
+    assert r"<title>a\udc80\x1b</title>" in (tmp_path / "a.html").read_text(encoding="utf-8")
