@@ -23,7 +23,12 @@ MARGIN = 0.02
 # For normals far from all others, the radii of the greedy choice fall from this multiple on.
 FIRST = 2.0
 
-__all__ = ["choose_apart", "cover_normals"]
+__all__ = ["MARGIN", "choose_apart", "chord_of", "cover_normals"]
+
+
+def chord_of(angle: float) -> float:
+    """Return the distance of unit vectors that are an angle in degrees apart."""
+    return 2.0 * math.sin(math.radians(angle) / 2.0)
 
 
 def cover_normals(cover: Cover, angle: float) -> float:
@@ -34,7 +39,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
     any normal, in degrees; `angle` if there are singular points, next to which normals are known
     only at the places of cells.
     """
-    limit = 2.0 * math.sin(math.radians(angle) / 2.0)
+    limit = chord_of(angle)
     cover.evaluate_exactly()
     near, largest, cells = (1.0 - MARGIN) * limit, 0.0, cover.whole(2.0 * MARGIN * limit)
     first, threads = cover.count, cover.space.threads

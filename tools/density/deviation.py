@@ -11,6 +11,7 @@ from ...runtime.base.aliases import Array
 from ...runtime.base.threads import thread_count
 from ...runtime.base.trees import tree_of, tree_of_directions
 from ...runtime.samples.whole import NormalDeviation
+from .angles import chord_of
 from .cells import Cells
 from .space import Space
 
@@ -34,36 +35,43 @@ def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDevia
         return NormalDeviation(180.0, 180.0)
     tree, workers = tree_of(points), thread_count(space.threads)
 
-    def nearest_point(rows: Array) -> Array:
-        samples = tree.query(rows[:, :3], workers=workers)[1]
-        return np.linalg.norm(rows[:, 3:6] - normals[samples], axis=1)
+    def nearest_point(cells: Cells) -> Array:
+        samples = tree.query(cells.rows[:, :3], workers=workers)[1]
+        return np.linalg.norm(cells.rows[:, 3:6] - normals[samples], axis=1)
 
     return NormalDeviation(
         widest_angle(space, normals), _largest(space, len(points), nearest_point)
     )
 
 
-def widest_angle(space: Space, normals: Array, least: float = 0.0) -> float:
+def widest_angle(
+    space: Space, normals: Array, least: float = 0.0, wider: list[Cells] | None = None
+) -> float:
     """Return the largest angle found, in degrees, from a normal to the nearest of normals (N, 3).
 
-    Return `least` if it is larger, which saves the search for smaller angles.
+    Return `least` if it is larger, which saves the search for smaller angles. Cells at whose places
+    larger ones are found are appended to `wider`.
     """
     if len(normals) == 0:
         return 180.0
     tree, workers = tree_of_directions(normals), thread_count(space.threads)
+    limit = chord_of(least)
 
-    def nearest_normal(rows: Array) -> Array:
-        return tree.query(rows[:, 3:6], workers=workers)[0]
+    def nearest_normal(cells: Cells) -> Array:
+        chords = tree.query(cells.rows[:, 3:6], workers=workers)[0]
+        if wider is not None:
+            wider.append(cells[cells.rows[:, 3:6].any(axis=1) & (chords > limit)])
+        return chords
 
     return _largest(space, len(normals), nearest_normal, least)
 
 
 def _largest(
-    space: Space, samples: int, chord_of: Callable[[Array], Array], least: float = 0.0
+    space: Space, samples: int, chords_of: Callable[[Cells], Array], least: float = 0.0
 ) -> float:
     """Return the largest angle found, in degrees, from chords at test points; at least `least`."""
     even = space.uniform.exact
-    begin = found = 2.0 * math.sin(math.radians(least) / 2.0)
+    begin = found = chord_of(least)
     wanted = max(PLACES * samples, FEWEST)
     first = min(wanted, MOST)
     cells, cuts = even.cut(math.sqrt(even.area / first)), CUTS
@@ -72,7 +80,7 @@ def _largest(
 
     def search(cells: Cells, cuts: int) -> None:
         nonlocal found
-        chords = np.where(cells.rows[:, 3:6].any(axis=1), chord_of(cells.rows), 0.0)
+        chords = np.where(cells.rows[:, 3:6].any(axis=1), chords_of(cells), 0.0)
         found = max(found, float(chords.max(initial=0.0)))
         # Within a cell the normal turns by no more than this.
         bounds = chords + cells.chords

@@ -17,7 +17,7 @@ from ...runtime.base.tolerances import FLAT_SURFACE, LENGTH_ERROR
 from ...runtime.directions.sets import frequency_within
 from ...runtime.onto_surface.pieces import LEAST_IMAGE
 from ...runtime.samples.fields import dtype_of
-from .angles import choose_apart, cover_normals
+from .angles import MARGIN, choose_apart, chord_of, cover_normals
 from .at_normals import Given, at_count, at_lattices, at_normals
 from .cells import Cells, by_piece, joined
 from .cover import Cover
@@ -48,6 +48,8 @@ SETTLED = 0.9
 # An angle is refused if it would take more samples than this, minutes of work, and more than on
 # this number of spheres: then the reason is narrow faces, and not a small angle.
 MOST_FOR_ANGLE, SPHERES = 2e6, 300.0
+# Of parts with narrow tips, the angle is searched for places that are farther at most this often.
+MOST_SEARCHES = 8
 # |K|^α vanishes with K; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
 # The number of added samples that a sample at a normal is assumed to save. It saves up to 0.7; a
@@ -94,13 +96,27 @@ def fill(
         filling = Filling(space, request, progress, show_count, each_once)
         cover = filling.cover()
         if request.angle is not None:
-            cover.angle = cover_normals(cover, request.angle)
-            if any(x.trim is not None for x in space.pieces):
-                # Tips may be too narrow for cells, so that the angle is not yet reached there.
-                cover.angle = widest_angle(space, cover.points[:, 3:], cover.angle)
+            trimmed = any(x.trim is not None for x in space.pieces)
+            cover.angle = (_covered_tips if trimmed else cover_normals)(cover, request.angle)
         if request.coverage is not None:
             cover.coverage = filling.reached(cover) / space.unit
     return cover
+
+
+def _covered_tips(cover: Cover, angle: float) -> float:
+    """Add samples as `cover_normals`, in tips too narrow for its cells, too.
+
+    A search for the widest angle finds places in these. Return the widest that is left.
+    """
+    reached, near = cover_normals(cover, angle), (1.0 - MARGIN) * chord_of(angle)
+    for _ in range(MOST_SEARCHES):
+        found = [cover.space.nothing()]
+        widest = widest_angle(cover.space, cover.points[:, 3:], reached, found)
+        wider = joined(found)
+        if not len(wider):
+            return widest
+        cover.add(wider[choose_apart(wider.rows[:, 3:6], near, cover.space.threads)])
+    return widest_angle(cover.space, cover.points[:, 3:], reached)
 
 
 def fields_of(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:

@@ -199,6 +199,23 @@ def test_narrow_faces_are_blamed_where_they_are(spheres, said):
     refused(said, gm.sample, needle(0.5 / spheres), angle=0.02)
 
 
+def test_angles_hold_in_tips_of_sharp_bends():
+    """Two flanks meet in a round of 1e-6 that is 2e-5 wide in u, and the trim ends on it."""
+    x = [(1.0, -0.12), (0.2, -0.05), (1e-6, -1e-6), (0.0, -1e-6)]
+    x += [(a, -b) for a, b in x[::-1]]
+    knots = np.array([0, 0, 0, 0.3, 0.5 - 1e-5, 0.5, 0.5 + 1e-5, 0.7, 1, 1, 1])
+    points = np.array([[(a, y, b) for y in (0.0, 2.0)] for a, b in x])
+    wing = Geometry("nurbs", net=Net((2, 1), (knots, np.array([0.0, 0, 1, 1])), points))
+    tip = np.array([(0, 0), (1, 0), (1, 0.9), (0.5, 1), (0, 0.9)])
+    whole = part([FaceRecord(wing, (UNIT, UNIT), loops=[tip], area=3.8)], "wing", False)
+    samples = gm.sample(whole, angle=10.0)
+    assert samples.report.angle <= 10.0
+    u = np.concatenate([np.linspace(0, 1, 101), 0.5 + np.linspace(-1e-5, 1e-5, 101)])
+    v = np.concatenate([np.linspace(0.0, 0.89, 5), 0.999 + 0.0 * u[:1]])
+    jets = whole.faces[0].surface.jets(np.repeat(u, len(v)), np.tile(v, len(u)))
+    assert widest_angle(samples, made.normals_of(jets)) <= 10.0
+
+
 def test_prescribed_normals(plates):
     normals = np.array([[1.0, 2, 2], [-2, 1, 2], [2, -2, 1]]) / 3
     with pytest.warns(gm.GaussmapWarning, match="23 % of its area is flat"):

@@ -16,8 +16,9 @@ from OCP.TopoDS import TopoDS
 
 from ..records import FaceRecord, Geometry
 from .curves import UnusableError
-from .loops import EdgeCurves, loops_of, wires_of
+from .loops import EdgeCurves, gap_of, loops_of, wires_of
 from .shapes import Key
+from .solids import CLOSE
 from .surfaces import basis_of, geometry_of, periods_of
 
 __all__ = ["FaceReader", "area_of"]
@@ -33,9 +34,13 @@ PRECISION = 1e-10
 
 
 class FaceReader:
-    """Converts faces to records; trim and area of copies of a face are computed once."""
+    """Converts faces to records; trim and area of copies of a face are computed once.
+
+    `gaps` are the distances between consecutive edges of faces that are larger than `CLOSE`, in mm.
+    """
 
     def __init__(self) -> None:
+        self.gaps: list[float] = []
         self._known: dict[Key, tuple[list[Array], float]] = {}
         self._wires: dict[Key, EdgeCurves] = {}
 
@@ -87,6 +92,8 @@ class FaceReader:
             if known[1] < LEAST_AREA:
                 raise UnusableError("its area is zero")
             self._known[key] = known
+            gap = gap_of(BRep_Tool.Surface_s(face), self.wires(_forward(face)))
+            self.gaps += [gap] if gap > CLOSE else []
         return known
 
 

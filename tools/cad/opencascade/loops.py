@@ -17,7 +17,7 @@ from .curves import UnusableError
 from .p_curves import PCurve, curve_of
 from .shapes import parts_of
 
-__all__ = ["EdgeCurves", "loops_of", "wires_of"]
+__all__ = ["EdgeCurves", "gap_of", "loops_of", "wires_of"]
 
 Array = NDArray[np.float64]
 # The edges of each wire of a face and their p-curves, one after another.
@@ -73,6 +73,17 @@ def _polygons(wires: list[list[PCurve]], size: Array, tolerance: float) -> list[
         if len(polygon) >= 3:
             polygons.append(polygon)
     return polygons
+
+
+def gap_of(surface: Any, wires: EdgeCurves) -> float:  # noqa: ANN401
+    """Return the largest distance between consecutive curves of wires on a surface."""
+    gap = 0.0
+    for wire in wires:
+        ends = [(x.chord[::-1] if x.reversed else x.chord).tolist() for _, x in wire]
+        for (_, last), (first, _) in zip(ends[-1:] + ends[:-1], ends, strict=True):
+            if last != first:
+                gap = max(gap, surface.Value(*last).Distance(surface.Value(*first)))
+    return gap
 
 
 def _mean_width(loops: list[Array], size: Array) -> float:

@@ -53,6 +53,12 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         )
     in_unit = unit or document.unit
     factor = METRES["mm"] / METRES[in_unit]
+    if reader.gaps:
+        document.warnings.append(
+            f"consecutive edges of {plural(len(reader.gaps), 'face')} are up to "
+            f"{max(reader.gaps) * factor:.2g} {in_unit} apart; samples there may be as far outside "
+            "of the face."
+        )
     topology = topology_of(found.faces, faces, factor, reader)
     faces = [replace(x, wires=wires) for x, wires in zip(faces, topology.wires, strict=True)]
     return PartRecord(

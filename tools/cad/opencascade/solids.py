@@ -22,7 +22,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Compound
 from .documents import Color, Document, Style
 from .shapes import Key, parts_of
 
-__all__ = ["Gathered", "PlacedFace", "gathered"]
+__all__ = ["CLOSE", "Gathered", "PlacedFace", "gathered"]
 
 # Loose faces are sewn where their boundaries are closer than this, in mm; if holes remain, with a
 # distance relative to the size of all faces.

@@ -15,10 +15,10 @@ pytest.importorskip("OCP")
 from gaussmap.tools.cad.inspection import BadFileError
 from gaussmap.tools.cad.opencascade.shapes import sequence
 from gaussmap.tools.cad.part import part_of
-from OCP.BRep import BRep_Tool
+from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_GTransform
 from OCP.BRepTools import BRepTools
-from OCP.gp import gp_Dir, gp_GTrsf, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
+from OCP.gp import gp_Dir, gp_GTrsf, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec, gp_Vec2d
 from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_StepModelType
@@ -341,6 +341,17 @@ def test_planes_without_boundary_and_faces_of_no_area_fail(ends, reason, write, 
     part = read(write(compound(box(*SIZES), face), "part.brep"))
     assert [x.reason for x in part.faces if x.reason] == [reason]
     assert [x.geometry.kind for x in part.faces] == 6 * ["plane"] + ["unknown"]
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e-4, 5e-3])
+def test_edges_that_do_not_meet_are_told(shift, write, read):
+    face = shapes.face(PLANE, 0.0, 1.0, 0.0, 2.0)
+    edge = shapes.edges_of(face)[0]
+    curve = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0).Translated(gp_Vec2d(shift, shift))
+    BRep_Builder().UpdateEdge(edge, curve, face, 2.0 * shift + 1e-7)
+    part = read(write(face, "part.brep"), unit="in")
+    told = f"edges of 1 face are up to {np.sqrt(2.0) * shift / 25.4:.2g} in apart"
+    assert [told in x for x in part.warnings] == [True] * (shift > 1e-3)
 
 
 # --- edges ----------------------------------------------------------------------------------------
