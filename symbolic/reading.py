@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 import warnings
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from decimal import Decimal
 from itertools import islice
@@ -27,9 +28,14 @@ __all__ = [
     "MOST_EXACT",
     "MOST_STEPS",
     "ReadingError",
+    "free_symbols",
     "is_differentiable",
+    "is_long",
+    "parts",
     "read",
     "refuse_unusable",
+    "replaced",
+    "with_shared_parts",
 ]
 
 LONGEST_TEXT = 20_000  # characters
@@ -151,7 +157,7 @@ def refuse_unusable(expression: sp.Basic) -> None:
     """Raise ReadingError for parts that kernels cannot compute, and for huge numbers."""
     if _depth(expression) > DEEPEST_TREE:
         raise ReadingError("it is nested too deeply")
-    for part in _parts(expression):
+    for part in parts(expression):
         if part in (sp.nan, sp.zoo, sp.oo, -sp.oo):
             raise ReadingError("it is not finite")
         if not isinstance(part, USABLE):
@@ -159,6 +165,15 @@ def refuse_unusable(expression: sp.Basic) -> None:
         exponent = part.exp if isinstance(part, sp.Pow) else sp.S.Zero
         if _bits(part) > MOST_BITS or (exponent.is_Rational and abs(exponent) > MOST_BITS):
             _refuse_size()
+
+
+def is_long(expressions: Iterable[sp.Basic]) -> bool:
+    """Return whether expressions written out have more parts than a text may have.
+
+    Shared parts count each time: SymPy's functions visit them as often.
+    """
+    known: dict[sp.Basic, tuple[int, int, int]] = {}
+    return sum(_sizes(x, known)[0] for x in expressions) > MOST_STEPS
 
 
 def is_differentiable(expressions: Iterable[sp.Basic]) -> bool:
@@ -195,8 +210,11 @@ def _depth(expression: sp.Basic) -> int:
     return levels
 
 
-def _parts(expression: sp.Basic) -> Iterator[sp.Basic]:
-    """Yield every distinct subexpression once, at any depth."""
+def parts(expression: sp.Basic) -> Iterator[sp.Basic]:
+    """Yield every distinct subexpression once, at any depth.
+
+    SymPy's own traversals visit parts that are shared once for each path to them.
+    """
     seen, waiting = {expression}, [expression]
     while waiting:
         part = waiting.pop()
@@ -204,6 +222,54 @@ def _parts(expression: sp.Basic) -> Iterator[sp.Basic]:
         new = {x for x in part.args if isinstance(x, sp.Basic)} - seen
         seen |= new
         waiting.extend(new)
+
+
+def free_symbols(expression: sp.Basic) -> set[sp.Basic]:
+    """Return the symbols that an expression depends on."""
+    found = list(parts(expression))
+    if any(isinstance(x, sp.Sum | sp.Product) for x in found):  # these bind symbols
+        return set(expression.free_symbols)
+    return {x for x in found if isinstance(x, sp.Symbol)}
+
+
+def replaced(expression: Any, rules: Mapping[Any, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Return an expression with parts replaced, as `xreplace`; shared parts are visited once."""
+    known: dict[Any, Any] = dict(rules)
+    plain = {"evaluate": False} if rules and is_long([expression]) else {}
+
+    def of(x: Any) -> Any:  # noqa: ANN401
+        if x not in known:
+            args = [of(y) if isinstance(y, sp.Basic) else y for y in x.args]
+            same = all(y is z for y, z in zip(args, x.args, strict=True))
+            options = plain if isinstance(x, sp.Add | sp.Mul | sp.Pow) else {}
+            known[x] = x if same else x.func(*args, **options)
+        return known[x]
+
+    return of(expression) if rules else expression
+
+
+def with_shared_parts(
+    expressions: Iterable[Any],
+) -> tuple[list[tuple[sp.Symbol, Any]], list[Any]]:
+    """Return definitions of the parts that are used several times, and expressions in these."""
+    expressions = list(expressions)
+    uses = Counter(y for x in {y for e in expressions for y in parts(e)} for y in x.args)
+    uses.update(expressions)
+    known: dict[Any, Any] = {}
+    shared: list[tuple[sp.Symbol, Any]] = []
+
+    def of(x: Any) -> Any:  # noqa: ANN401 - SymPy has no types
+        if x not in known:
+            args = [of(y) if isinstance(y, sp.Basic) else y for y in x.args]
+            value = x.func(*args) if args else x
+            if args and uses[x] > 1 and isinstance(x, sp.Expr):
+                shared.append((sp.Dummy(real=True), value))
+                value = shared[-1][0]
+            known[x] = value
+        return known[x]
+
+    outputs = [of(e) for e in expressions]
+    return shared, outputs
 
 
 def _refuse_function(name: str) -> NoReturn:

@@ -12,6 +12,7 @@ from typing import Any, cast
 import sympy as sp
 
 from .elementary import FUNCTIONS
+from .reading import is_long, parts, replaced, with_shared_parts
 
 __all__ = ["NoTapeError", "Step", "tape_steps"]
 
@@ -49,17 +50,28 @@ def tape_steps(
 
     Raises NoTapeError if an expression has no tape.
     """
-    exact = [x.xreplace({y: sp.Rational(y) for y in x.atoms(sp.Float)}) for x in position]
-    symbols = sp.numbered_symbols("t", cls=sp.Dummy, real=True)
-    shared, outputs = cast(
-        tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]],
-        sp.cse(exact, symbols=symbols, order="canonical"),
-    )
+    if is_long(position):
+        definitions, values = with_shared_parts(position)
+        shared, outputs = [(x, _exact(y)) for x, y in definitions], [_exact(x) for x in values]
+    else:
+        shared, outputs = _common([_exact(x) for x in position])
     steps = _Steps({u: ("u",), v: ("v",)} | {x: ("parameter", x.name) for x in parameters})
     for symbol, value in shared:
         steps.define(symbol, value)
     found = [steps.step_of(x) for x in outputs]
     return steps.steps, found
+
+
+def _exact(expression: Any) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Return an expression with fractions for floats."""
+    floats = {x: sp.Rational(x) for x in parts(expression) if isinstance(x, sp.Float)}
+    return replaced(expression, floats)
+
+
+def _common(expressions: list[Any]) -> tuple[list[tuple[sp.Symbol, Any]], list[Any]]:
+    symbols = sp.numbered_symbols("t", cls=sp.Dummy, real=True)
+    shared, outputs = sp.cse(expressions, symbols=symbols, order="canonical")
+    return shared, cast(list[Any], outputs)
 
 
 class _Steps:

@@ -35,15 +35,17 @@ def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tup
     """
     by_name = {symbol.name: symbol for symbol in symbols}
     expressions = [as_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
-    expressions = [
-        e.xreplace({s: by_name[s.name] for s in e.free_symbols if s.name in by_name})
-        for e in expressions
-    ]
-    unknown = set().union(*(e.free_symbols for e in expressions)) - set(symbols)
+    reading, found = bridge.reading(), []
+    unknown: set[Any] = set()
+    for e in expressions:
+        free: set[Any] = reading.free_symbols(e)
+        own = {s: by_name[s.name] for s in free if s.name in by_name}
+        found.append(reading.replaced(e, {s: x for s, x in own.items() if s != x}))
+        unknown |= free - set(own)
     if unknown:
         names = clipped(", ".join(sorted(map(str, unknown))))
         raise InputError(f"position holds symbols that are neither parameter nor number: {names}.")
-    return tuple(expressions)
+    return tuple(found)
 
 
 def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -152,11 +152,22 @@ def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> 
     import sympy as sp
 
     modules: list[Any] = ["numpy"]
-    if any(e.has(sp.erf, sp.erfc) for e in expressions):  # which NumPy does not have
+    reading, found = bridge.reading(), list(expressions)
+    if any(isinstance(x, sp.erf | sp.erfc) for e in found for x in reading.parts(e)):
+        # NumPy does not have them.
         from scipy.special import erf, erfc
 
         modules.insert(0, {"erf": erf, "erfc": erfc})
+    common: Any = True
     try:
-        return sp.lambdify(symbols, list(expressions), modules=modules, cse=True, dummify=True)
+        if reading.is_long(found):
+            definitions, found = reading.with_shared_parts(found)
+            common = partial(_defined, definitions)
+        return sp.lambdify(symbols, found, modules=modules, cse=common, dummify=True)
     except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
         raise InputError("position is nested too deeply to be compiled.") from None
+
+
+def _defined(definitions: Any, expressions: Any) -> tuple[Any, Any]:  # noqa: ANN401
+    """Return what the option `cse` of SymPy's lambdify needs."""
+    return definitions, expressions
