@@ -19,7 +19,7 @@ from ...runtime.base.memory import check_memory
 from ...runtime.base.scales import scale_to_one
 from ...runtime.directions.regions import Cap
 from ...runtime.domain.domain import Domain
-from ...runtime.onto_surface.on_spline import OnSpline
+from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import geometry_of
 from ...runtime.onto_surface.proved import proof_of
 from ...runtime.onto_surface.reach import in_reach
@@ -191,7 +191,7 @@ class FacePiece(Piece):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, a starting value only
             pieces = self.surface.pieces()
-            return [geometry_of(x, self._cells(x.domain), "surface") for x in pieces]
+            return on_grids([geometry_of(x, self._cells(x.domain), "surface") for x in pieces])
 
     def _cells(self, domain: Domain) -> tuple[int, int]:
         """Return the numbers of cells of a spline over a domain, by the parts between lines.
