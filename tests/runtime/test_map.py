@@ -121,6 +121,11 @@ def test_a_surface_is_fitted_once_and_a_map_when_it_is_made():
     assert len(calls) == fitted
 
 
+def test_a_name_is_the_same_surface_each_time():
+    """So that its map is cached, too."""
+    assert gm.GaussMap("torus").surface is gm.sample("torus", normals=AXES).surface
+
+
 def test_numbers_of_a_map_may_be_rounded():
     known = gm.GaussMap("torus")
     single = known.points(NORMALS, dtype=np.float32, fields=("points", "normal_index"))
