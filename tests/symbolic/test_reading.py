@@ -12,8 +12,10 @@ from gaussmap.symbolic.reading import (
     MOST_EXACT,
     MOST_STEPS,
     ReadingError,
+    free_symbols,
     is_differentiable,
     read,
+    replaced,
 )
 from hypothesis import given
 from hypothesis import strategies as st
@@ -247,3 +249,11 @@ def test_any_text_is_read_or_refused(text: str) -> None:
     assert size(value) <= 2 * MOST_STEPS
     assert not value.has(sp.nan, sp.zoo, sp.oo, sp.I)
     assert all(abs(x.p) < 2**MOST_BITS > x.q for x in cast(Any, value.atoms(sp.Rational)))
+
+
+def test_an_index_of_a_sum_is_no_symbol_of_the_expression() -> None:
+    k, u = sp.Symbol("k"), sp.Symbol("u")
+    assert free_symbols(sp.Sum(u**k, (k, 0, 3))) == {u}
+    assert replaced(sp.Sum(u**k, (k, 0, 3)), {u: k**2 * u}).free_symbols <= {u, k}
+    expression = sp.sin(u) + u**2
+    assert replaced(expression, {u: k}) == expression.xreplace({u: k})

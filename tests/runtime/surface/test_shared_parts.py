@@ -4,7 +4,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 import sympy as sp
-from gaussmap.runtime.base import bridge
 
 LEVELS = 60  # 2^60 parts, if shared ones are counted each time
 
@@ -36,11 +35,3 @@ def test_symbols_of_the_same_name_are_replaced() -> None:
     assert surface.evaluate(0.5, 0.5).shape == (3,)
     with pytest.raises(gm.errors.InputError, match="neither parameter nor number: w"):
         gm.Surface.from_sympy((u, v, nested(LEVELS, sp.Symbol("w"), 0.5)), (u, v), ((0, 1), (0, 1)))
-
-
-def test_an_index_of_a_sum_is_no_symbol_of_the_expression() -> None:
-    reading, k, u = bridge.reading(), sp.Symbol("k"), sp.Symbol("u")
-    assert reading.free_symbols(sp.Sum(u**k, (k, 0, 3))) == {u}
-    assert reading.replaced(sp.Sum(u**k, (k, 0, 3)), {u: k**2 * u}).free_symbols <= {u, k}
-    expression = sp.sin(u) + u**2
-    assert reading.replaced(expression, {u: k}) == expression.xreplace({u: k})

@@ -11,7 +11,6 @@ import time
 import gaussmap as gm
 import pytest
 from gaussmap.tools.cad import reader
-from gaussmap.tools.files.reading import LFS
 
 from ...refusals import refused
 
@@ -34,7 +33,10 @@ def path(tmp_path):
     [
         (b"", "is empty."),
         (b"hello\n" * 9, "is not a STEP, IGES or BREP file."),
-        (LFS + b"v1\n", "is a Git LFS pointer, not the file itself; get that with 'git lfs pull'."),
+        (
+            b"version https://git-lfs.github.com/spec/v1\n",
+            "is a Git LFS pointer, not the file itself; get that with 'git lfs pull'.",
+        ),
     ],
 )
 def test_bad_files_are_refused_in_a_sentence(content, reason, path, installed):

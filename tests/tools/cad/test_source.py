@@ -4,7 +4,6 @@ import os
 
 import pytest
 from gaussmap.tools.cad.source import prepared
-from gaussmap.tools.files.reading import LFS
 
 ENDS = "ISO-10303-21;\nDATA;\n{}\nENDSEC;\nEND-ISO-10303-21;\n"
 SHELL = "#10=ADVANCED_FACE('',(#12),#12,.T.);\n#11=OPEN_SHELL('',(#10));\n#12=X();"
@@ -45,7 +44,7 @@ def test_part_files_of_all_levels_are_copied_and_renamed(read, tmp_path):
     [
         (None, "does not exist"),
         (b"", "is empty"),
-        (LFS + b"v1", "is a Git LFS pointer"),
+        (b"version https://git-lfs.github.com/spec/v1", "is a Git LFS pointer"),
         (b"hello\n" * 9, "is not a STEP, IGES or BREP file"),
         (step()[:-30], "is truncated"),
         (step("top.stp"), None),
