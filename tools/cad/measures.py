@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import itertools
+import warnings
 
 import numpy as np
 
-from ...runtime.base.aliases import Array
-from ...runtime.base.errors import SurfaceError
+from ...runtime.base.aliases import Array, Flags
+from ...runtime.base.errors import GaussmapWarning, SurfaceError
+from ...runtime.base.wording import plural
 from ..density.cells import RADIUS, by_piece
 from .edges import edges_of, sides_at
 from .face_pieces import FacePiece
 from .part import Part
+from .records import NO_AREA
 from .results import space_of
 
 __all__ = ["bounds_of", "gap_of", "integrals_of", "signs_of", "volume_of"]
@@ -31,15 +34,37 @@ BESIDE = 1e-6
 
 
 def volume_of(part: Part) -> float:
-    """Return the volume, in L³; SurfaceError if the faces are not known to enclose solids."""
-    if not part.oriented or part.failed or part.about.get("source_indices"):
-        lack = "some of its faces cannot be used" if part.failed else "its faces enclose no solids"
+    """Return the volume of the closed solids, in L³; SurfaceError if there are none."""
+    closed = _closed_faces(part)
+    failed = [x.index for x in part.failed if x.reason != NO_AREA]
+    if not closed.any() or closed[failed].any() or part.about.get("source_indices"):
+        lack = "some of its faces cannot be used" if failed else "its faces enclose no solids"
         raise SurfaceError(f"the volume of part {part.name!r} is not known: {lack}.")
+    if not closed.all():
+        warnings.warn(
+            f"the volume of part {part.name!r} is that of its closed solids: "
+            f"{plural(int((~closed).sum()), 'face')} of {len(part):,} belong to none.",
+            GaussmapWarning,
+            stacklevel=4,
+        )
     space = space_of(part, None)
-    if space.failed:
-        raise SurfaceError(next(iter(space.failed.values())))
-    centre = space.centre
-    return sum(x.face.area * _mean_height(x, centre) for x in space.pieces) / 3.0
+    for k, why in space.failed.items():
+        if closed[k] and k not in {x.index for x in part.failed}:
+            raise SurfaceError(why)
+    centre, pieces = space.centre, [x for x in space.pieces if closed[x.face.index]]
+    return sum(x.face.area * _mean_height(x, centre) for x in pieces) / 3.0
+
+
+def _closed_faces(part: Part) -> Flags:
+    """Return which faces belong to closed solids: all, if the part is oriented."""
+    solids = part.arrays["solid_index"]
+    if part.oriented:
+        return np.ones(len(part), np.bool_)
+    faces, starts = part.arrays["side_faces"], part.arrays["edge_side_starts"]
+    owner = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    open_ = (np.diff(starts) != 2) & ~part.arrays["edge_degenerate"]
+    lacking = np.union1d(solids[faces[open_[owner]]], solids[[x.index for x in part.failed]])
+    return (solids >= 0) & ~np.isin(solids, lacking)
 
 
 def _mean_height(piece: FacePiece, centre: Array) -> float:

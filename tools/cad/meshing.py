@@ -41,6 +41,7 @@ from .mesh_smoothing import smoothed
 from .mesh_spacing import ByNormals, Spacing
 from .part import Part
 from .part_mesh import PartMesh
+from .records import NO_AREA
 from .results import PartSpace, space_of
 
 __all__ = ["mesh_of_part", "mesh_of_samples"]
@@ -53,6 +54,8 @@ ROUNDS, REFILLS = 15, 8
 # If a mesh has faults, larger counts are tried, each MORE times the one before, up to MANY times
 # the least count of the edges. The error names the first count whose mesh has no faults.
 MORE, MANY = 1.2, 16
+# The largest number of solids that an error names.
+MOST_NAMED = 3
 # The densities of samples that meshes follow.
 DENSITIES = ("balanced", "uniform")
 SPACINGS = {"shape": Spacing, "normals": ByNormals}
@@ -95,11 +98,12 @@ def mesh_of_part(
             f"part {part.name!r} does not say how its edges go around its faces, as those in files "
             "of older versions of gaussmap; read the CAD file again."
         )
+    _check_apart(part)
     whole = space_of(part, None, target_of(request_of(count, density)))
     if whole.target.curvature_weight > 0.0 and spaced.exponent != whole.target.exponent:
         whole = whole.to_power(spaced.exponent)
     known = MeshEdges.of(Spacing(whole, count))
-    failed = dict(whole.failed) | {
+    failed = {k: why for k, why in whole.failed.items() if part.faces[k].reason != NO_AREA} | {
         x.face.index: f"{x.label} has edges whose parameters on it are not known."
         for x in whole.pieces
         if not known.is_known(x.face)
@@ -124,6 +128,25 @@ def mesh_of_part(
     for text in faults:
         warnings.warn(f"the mesh of part {part.name!r} {text}", GaussmapWarning, stacklevel=5)
     return mesh
+
+
+def _check_apart(part: Part) -> None:
+    """Raise InputError if solids share edges, which then have more than two sides."""
+    faces, starts = part.arrays["side_faces"], part.arrays["edge_side_starts"]
+    pairs = (
+        np.repeat(np.arange(len(starts) - 1), np.diff(starts)),
+        part.arrays["solid_index"][faces],
+    )
+    edges, solids = np.unique(np.stack(pairs), axis=1)
+    shared = solids[np.isin(edges, edges[1:][np.diff(edges) == 0]) & (solids >= 0)]
+    named = [f"{k} {part.solids[k].name!r}" for k in np.unique(shared).tolist()]
+    if len(named) > 1:
+        more = ", …" if len(named) > MOST_NAMED else ""
+        raise InputError(
+            f"{len(named)} solids of part {part.name!r} share faces or edges "
+            f"({', '.join(named[:MOST_NAMED])}{more}): mesh each by itself, as "
+            f"part.select(index=part.solids[{shared.min()}].faces)."
+        )
 
 
 def _inward(mesh: PartMesh, whole: PartSpace, rows: Indices) -> str:

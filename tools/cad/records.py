@@ -15,11 +15,14 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from ...runtime.surface.surface import Surface
 
-__all__ = ["KINDS", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord", "Wire"]
+__all__ = ["KINDS", "NO_AREA", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord", "Wire"]
 
 Array = NDArray[np.float64]
 # The edges along a loop, in order: (edge, index among its sides, whether traversed backwards).
 Wire = list[tuple[int, int, bool]]
+
+# Why faces without an area fail: volumes and meshes need none of them.
+NO_AREA = "its area is zero"
 
 # The kinds of faces, with the lengths of their numbers (see `saving`). Append only: files hold
 # indices of this list. "unknown" is for failed faces whose kind is not known, "surface" for faces

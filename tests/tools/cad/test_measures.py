@@ -3,8 +3,9 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import all_kinds, box, box_faces
+from gaussmap.tools.cad.examples import all_kinds, box, box_edges, box_faces
 from gaussmap.tools.cad.part import Part
+from gaussmap.tools.cad.records import NO_AREA, FaceRecord, Geometry
 
 from ...refusals import refused
 from .made import AXES, FAILED, TURN, circle, face, part, placement
@@ -69,6 +70,17 @@ def test_volumes_of_closed_faces(kind, sizes, volume):
 )
 def test_volumes_that_are_not_known(given, reason):
     refused(reason, lambda: given.volume, error=gm.errors.SurfaceError)
+
+
+def test_faces_of_no_area_and_open_sheets_do_not_count_in_volumes():
+    nothing = FaceRecord(Geometry("unknown"), reason=NO_AREA)
+    assert part([*box_faces(), nothing]).volume == pytest.approx(6.0)
+    sheet = face("plane", place=placement((9.0, 0.0, 0.0)))
+    mixed = part([*box_faces(), sheet, FAILED], oriented=False, edges=box_edges())
+    with pytest.warns(gm.GaussmapWarning, match="2 faces of 8 belong to none"):
+        assert mixed.volume == pytest.approx(6.0)
+    alone, error = part([sheet], oriented=False), gm.errors.SurfaceError
+    refused("enclose no solids", lambda: alone.volume, error=error)
 
 
 def test_bounds_of_a_tilted_torus():

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import comb
 from typing import Any
 
@@ -15,7 +15,7 @@ from OCP.GeomConvert import GeomConvert
 from ..records import Net
 from .shapes import direct_class
 
-__all__ = ["UnusableError", "curve_net", "knots_of"]
+__all__ = ["UnusableError", "curve_net", "knots_of", "opened"]
 
 Array = NDArray[np.float64]
 
@@ -27,6 +27,8 @@ DEGREE, MOST_SPANS = 13, 1024
 ROUNDING = 4e-15
 # The length of the extension of a line beyond its domain, relative to the domain.
 BEYOND = 0.1
+# Parameters are equal up to this distance, relative to the period.
+SAME = 1e-9
 
 
 class UnusableError(Exception):
@@ -42,12 +44,17 @@ def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
     kind = direct_class(curve)
     if kind == "Geom_BSplineCurve":
         crosses_seam = curve.IsPeriodic() and not period
-        return _of_spline(GeomConvert.CurveToBSplineCurve_s(trimmed) if crosses_seam else curve)
+        if crosses_seam:
+            return _of_spline(GeomConvert.CurveToBSplineCurve_s(trimmed), domain)
+        return _of_spline(curve, domain)
     if kind == "Geom_BezierCurve":
         degree = curve.Degree()
         knots = np.repeat([0.0, 1.0], degree + 1)
         return Net((degree,), (knots,), *_poles(curve))
-    first, last = (0.0, period) if period else (float(domain[0]), float(domain[1]))
+    first, last = float(domain[0]), float(domain[1])
+    if period:
+        shift = start_of_period(domain, 0.0, period)
+        first, last = shift, shift + period
     if kind == "Geom_Line":
         margin = BEYOND * (last - first)
         ends = np.array([first - margin, last + margin])
@@ -55,18 +62,44 @@ def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
     return _interpolated(curve, first, last)
 
 
+def start_of_period(domain: Sequence[float], first: float, period: float) -> float:
+    """Return where the period starts that has a domain: at `first`, if that is possible."""
+    slack = SAME * period
+    inside = first - slack <= domain[0] and domain[1] <= first + period + slack
+    return first if inside else float(domain[0])
+
+
 def knots_of(knots: Sequence[float], multiplicities: Sequence[int]) -> Array:
     """Return knots, repeated by their multiplicities."""
     return np.repeat(np.array(knots, dtype=np.float64), np.array(multiplicities, dtype=np.int64))
 
 
-def _of_spline(curve: Any) -> Net:  # noqa: ANN401
+def _of_spline(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
+    shift = 0.0
     if curve.IsPeriodic():
         curve = curve.Copy()
-        curve.SetNotPeriodic()
+        names = ("Knot", "NbKnots", "InsertKnot", "SetOrigin", "SetNotPeriodic")
+        shift = opened([getattr(curve, x) for x in names], domain, float(curve.Period()))
     places = range(1, curve.NbKnots() + 1)
     knots = knots_of([curve.Knot(k) for k in places], [curve.Multiplicity(k) for k in places])
-    return Net((curve.Degree(),), (knots,), *_poles(curve))
+    return Net((curve.Degree(),), (knots + shift,), *_poles(curve))
+
+
+def opened(calls: Sequence[Callable[..., Any]], domain: Sequence[float], period: float) -> float:
+    """Make a periodic spline open, over a period that has a domain; return the shift of its knots.
+
+    The domain of a face that is turned about its axis starts anywhere. `calls` return knots and
+    their number, insert a knot, set the first one, and end the period.
+    """
+    knot, count, insert, begin, end = calls
+    first = float(knot(1))
+    start = start_of_period(domain, first, period)
+    inside = first + (start - first) % period
+    if inside != first:
+        insert(inside, 1, SAME * period)
+        begin(min(range(1, count()), key=lambda k: abs(knot(k) - inside)))
+    end()
+    return start - inside
 
 
 def _poles(curve: Any) -> tuple[Array, Array | None]:  # noqa: ANN401

@@ -14,7 +14,7 @@ from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_Orientation
 from OCP.TopoDS import TopoDS
 
-from ..records import FaceRecord, Geometry
+from ..records import NO_AREA, FaceRecord, Geometry
 from .curves import UnusableError
 from .loops import EdgeCurves, gap_of, loops_of, wires_of
 from .shapes import Key
@@ -90,7 +90,7 @@ class FaceReader:
             if not np.isfinite(known[1]):
                 raise UnusableError("its area is not finite")
             if known[1] < LEAST_AREA:
-                raise UnusableError("its area is zero")
+                raise UnusableError(NO_AREA)
             self._known[key] = known
             gap = gap_of(BRep_Tool.Surface_s(face), self.wires(_forward(face)))
             self.gaps += [gap] if gap > CLOSE else []

@@ -13,6 +13,7 @@ from OCP.BRepTools import BRepTools, BRepTools_WireExplorer
 from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
 from OCP.TopoDS import TopoDS
 
+from ..records import NO_AREA
 from .curves import UnusableError
 from .p_curves import PCurve, curve_of
 from .shapes import parts_of
@@ -47,7 +48,7 @@ def loops_of(face: Any, wires_of: Callable[[Any], EdgeCurves]) -> list[Array]:  
         raise UnusableError("it has no boundary, and its surface has no end")
     size = bounds[1] - bounds[0]
     if not (size > 0.0).all():
-        raise UnusableError("its area is zero")
+        raise UnusableError(NO_AREA)
     wires = [[curve for _, curve in wire] for wire in wires_of(face)]
     if not wires:
         return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
@@ -56,7 +57,7 @@ def loops_of(face: Any, wires_of: Callable[[Any], EdgeCurves]) -> list[Array]:  
     if width * OF_WIDTH < OF_BOX:
         loops = _polygons(wires, size, max(width * OF_WIDTH, LEAST))
     if not loops:
-        raise UnusableError("its area is zero")
+        raise UnusableError(NO_AREA)
     return loops
 
 

@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
+from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.TopAbs import TopAbs_ShapeEnum as Kinds
 from OCP.TopoDS import TopoDS
 
@@ -24,6 +26,9 @@ from .shapes import Key, parts_of
 from .solids import PlacedFace, gathered
 
 __all__ = ["part_record"]
+
+# The largest number of invalid faces that a warning names.
+MOST_NAMED = 5
 
 
 def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
@@ -59,6 +64,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
             f"{max(reader.gaps) * factor:.2g} {in_unit} apart; samples there may be as far outside "
             "of the face."
         )
+    document.warnings.extend(_invalid(document, found.faces))
     topology = topology_of(found.faces, faces, factor, reader)
     faces = [replace(x, wires=wires) for x, wires in zip(faces, topology.wires, strict=True)]
     return PartRecord(
@@ -71,6 +77,19 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         topology.edges,
         topology.vertices,
         document.warnings,
+    )
+
+
+def _invalid(document: Document, faces: list[PlacedFace]) -> Iterator[str]:
+    """Yield a sentence if Open CASCADE calls shapes invalid, with the indices of faces."""
+    if all(BRepCheck_Analyzer(x.shape).IsValid() for x in document.pieces):
+        return
+    bad = [k for k, x in enumerate(faces) if not BRepCheck_Analyzer(x.shape).IsValid()]
+    named = ", ".join(map(str, bad[:MOST_NAMED])) + (", …" if len(bad) > MOST_NAMED else "")
+    which = f"{plural(len(bad), 'face')} of it ({named})" if bad else "how its faces join"
+    yield (
+        f"Open CASCADE calls {which} invalid: results there may be wrong; repair it in a CAD "
+        "program."
     )
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from OCP.BinTools import BinTools_SurfaceSet
 
 from ..records import Geometry, Net
-from .curves import UnusableError, curve_net, knots_of
+from .curves import UnusableError, curve_net, knots_of, opened
 from .shapes import direct_class
 
 __all__ = ["basis_of", "geometry_of", "periods_of"]
@@ -74,17 +74,22 @@ def _placement(axes: Any) -> list[float]:  # noqa: ANN401
 
 
 def _nurbs(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
-    if surface.IsUPeriodic() or surface.IsVPeriodic():
+    shifts, names = (
+        [0.0, 0.0],
+        ("{}Knot", "Nb{}Knots", "Insert{}Knot", "Set{}Origin", "Set{}NotPeriodic"),
+    )
+    periods = periods_of(surface)
+    if any(periods):
         surface = surface.Copy()
-        if surface.IsUPeriodic():
-            surface.SetUNotPeriodic()
-        if surface.IsVPeriodic():
-            surface.SetVNotPeriodic()
+    for k, (axis, period) in enumerate(zip("UV", periods, strict=True)):
+        if period:
+            shifts[k] = opened([getattr(surface, x.format(axis)) for x in names], domain[k], period)
     along_u, along_v = range(1, surface.NbUKnots() + 1), range(1, surface.NbVKnots() + 1)
     knots = (
         knots_of([surface.UKnot(k) for k in along_u], [surface.UMultiplicity(k) for k in along_u]),
         knots_of([surface.VKnot(k) for k in along_v], [surface.VMultiplicity(k) for k in along_v]),
     )
+    knots = knots[0] + shifts[0], knots[1] + shifts[1]
     return Geometry("nurbs", net=Net(_degrees(surface), knots, *_net(surface)))
 
 

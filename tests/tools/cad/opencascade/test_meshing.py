@@ -11,7 +11,21 @@ import pytest
 
 pytest.importorskip("OCP")
 
-from .shapes import SOLIDS, box, compound, loose_faces, volume_of
+from OCP.BOPAlgo import BOPAlgo_Builder
+from OCP.BRep import BRep_Tool
+
+from ....refusals import refused
+from .shapes import (
+    SOLIDS,
+    as_nurbs,
+    box,
+    compound,
+    face,
+    faces_of,
+    loose_faces,
+    torus,
+    volume_of,
+)  # fmt: skip
 
 # The smallest angles in degrees where they are small: at the tip of a cone nothing is flipped.
 THIN = {"cone": 0.2}
@@ -68,3 +82,28 @@ def test_shells_that_share_edges_are_open(part_with):
     assert (mesh.closed, mesh.euler_characteristic, len(mesh.vertices)) == (False, 1, 300)
     assert whole.closed
     assert whole.volume == pytest.approx(6.0, rel=1e-12)
+
+
+def test_solids_that_share_faces_are_meshed_one_by_one(part_with):
+    glue = BOPAlgo_Builder()
+    for x in (0.0, 3.0):
+        glue.AddArgument(box(3.0, 2.0, 1.0, at=(x, 0.0, 0.0)))
+    glue.Perform()
+    part = part_with(glue.Shape())
+    said = refused("2 solids of part .* share faces", gm.sample(part, 300).mesh)
+    assert "part.select(index=part.solids[0].faces)" in said
+    for solid in part.solids:
+        mesh = gm.sample(part.select(index=solid.faces), 300).mesh()
+        assert mesh.closed
+        assert mesh.volume == pytest.approx(6.0)
+
+
+def test_a_periodic_face_that_starts_elsewhere_is_whole(part_with):
+    """Of a torus of NURBS whose seams are elsewhere, three quarters were lost."""
+    (ring,) = faces_of(as_nurbs(torus(3.0, 1.0)))
+    surface, turn = BRep_Tool.Surface_s(ring), 2.0 * np.pi
+    part = part_with(face(surface, 2.0, 2.0 + turn, 3.0, 3.0 + turn, 1e-7))
+    points = gm.sample(part, 500).points
+    assert len(np.unique(np.sign(points), axis=0)) == 8
+    mesh = gm.sample(part, 2000).mesh()
+    assert (mesh.closed, mesh.euler_characteristic) == (True, 0)

@@ -354,6 +354,13 @@ def test_edges_that_do_not_meet_are_told(shift, write, read):
     assert [told in x for x in part.warnings] == [True] * (shift > 1e-3)
 
 
+def test_shapes_that_open_cascade_calls_invalid_are_told(write, read):
+    corners = [gp_Pnt(*x, 0.0) for x in ((0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0))]
+    crossed = shapes.wire(*(shapes.edge(*x) for x in itertools.pairwise([*corners, corners[0]])))
+    part = read(write(compound(box(*SIZES), shapes.face(PLANE, crossed)), "part.brep"))
+    assert part.warnings[0].startswith("Open CASCADE calls 1 face of it (6) invalid")
+
+
 # --- edges ----------------------------------------------------------------------------------------
 
 

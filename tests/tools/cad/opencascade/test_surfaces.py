@@ -57,6 +57,8 @@ def extruded(curve):
 
 ELLIPSE = Geom.Geom_Ellipse(ACROSS, 2.0, 1.0)
 CIRCLE = GeomConvert.CurveToBSplineCurve_s(Geom.Geom_Circle(ACROSS, 2.0))
+CLOSED = GeomConvert.CurveToBSplineCurve_s(Geom.Geom_Circle(ACROSS, 2.0))
+CLOSED.SetPeriodic()
 TORUS = Geom.Geom_ToroidalSurface(AXES, 5.0, 2.0)
 SIDE = ((0.1, 6.0), (-1.0, 2.0))
 SURFACES = {
@@ -72,6 +74,12 @@ SURFACES = {
     "nurbs, periodic": (
         GeomConvert.SurfaceToBSplineSurface_s(TORUS), ((0.0, TURN), (0.0, TURN)), (TURN, TURN)
     ),
+    "nurbs, turned": (
+        GeomConvert.SurfaceToBSplineSurface_s(TORUS), ((-1.0, TURN - 1.0), (8.0, TURN + 8.0)),
+        (TURN, TURN),
+    ),
+    "revolution, turned spline": (revolved(CLOSED), ((0.0, 6.0), (5.0, TURN + 5.0)), (TURN, TURN)),
+    "extrusion, turned": (extruded(ELLIPSE), ((5.0, TURN + 5.0), (-1.0, 5.0)), (TURN, 0)),
     "revolution, circle": (
         revolved(Geom.Geom_Circle(ACROSS, 5.0)), ((0.0, 6.0), (0.0, 6.0)), (TURN, TURN)
     ),
