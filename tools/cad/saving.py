@@ -61,6 +61,7 @@ Faces of the kind "surface" are functions in memory, and in no file.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from io import BufferedReader
 from typing import Any
@@ -119,8 +120,25 @@ SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "face_wires": ("q", ("F+1",)),
 }
 MOST_DEGREE = 25
-# The reason of faces that are not usable, while the others of the part are.
+# What each entry of `about` holds: one value, a list, or a dictionary by the index of the face.
+ABOUT: dict[str, tuple[type, type | tuple[type, ...]]] = {
+    "name": (object, str),
+    "unit": (object, str),
+    "metres": (object, (int, float)),
+    "oriented": (object, bool),
+    "solid_names": (list, str),
+    "face_names": (dict, str),
+    "reasons": (dict, str),
+    "warnings": (list, str),
+    "source_indices": (list, int),
+}
+# The reasons of faces that are not usable, while the others of the part are.
 NOT_FINITE = "its numbers are not finite"
+WRONG_AREA, FAR_AWAY = "its area is out of range", "its boundary is outside of its domain"
+# Areas are squares of lengths whose squares are numbers, too.
+LEAST_AREA, MOST_AREA = 1e-150, 1e150
+# Loops may exceed the domain by this part of it.
+SLACK = 1e-6
 
 
 def write_record(record: PartRecord, path: PathLike) -> None:
@@ -197,11 +215,29 @@ def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
     _check_surfaces(found)
     _check_nets(found)
     faces = len(found["area"])
+    _check_about(about, faces)
     solids = max(len(about.get("solid_names", ())), 1) if faces else 0
     _require(_within(found["solid_index"], -1, max(faces, solids)), "solid_index")
     _check_edges(found)
-    _require(_are_indices(about.get("source_indices", []), faces), "about")
-    return found, {**about, "reasons": {**_not_finite(found), **_texts(about, "reasons")}}
+    reasons = _out_of_range(found) | _not_finite(found) | about.get("reasons", {})
+    wrong = [int(k) for k, why in reasons.items() if why == WRONG_AREA]
+    found["area"][wrong] = 0.0
+    return found, {**about, "reasons": reasons}
+
+
+def _check_about(about: dict[str, Any], faces: int) -> None:
+    """Check the entries of `about` that are there."""
+    for name in ABOUT.keys() & about.keys():
+        (whole, kind), value = ABOUT[name], about[name]
+        _require(isinstance(value, whole), "about")
+        values = value.values() if whole is dict else value if whole is list else [value]
+        same = (isinstance(x, kind) and (kind is bool or not isinstance(x, bool)) for x in values)
+        _require(all(same), "about")
+    _require(0.0 < about.get("metres", 1.0) < math.inf, "about")
+    indices = {str(k) for k in range(faces)}
+    _require(indices.issuperset(about.get("face_names", ())), "about")
+    _require(indices.issuperset(about.get("reasons", ())), "about")
+    _require(len(about.get("source_indices", ())) in (0, faces), "about")
 
 
 def _typed(name: str, array: NDArray[Any]) -> NDArray[Any]:
@@ -288,6 +324,23 @@ def _not_finite(arrays: Arrays) -> dict[str, str]:
     return dict.fromkeys(map(str, np.flatnonzero(of_face).tolist()), NOT_FINITE)
 
 
+def _out_of_range(arrays: Arrays) -> dict[str, str]:
+    """Return the faces that have areas or loops that cannot be, with the reason."""
+    area, domain = arrays["area"], arrays["domain"]
+    wrong = ~((area >= LEAST_AREA) & (area <= MOST_AREA))
+    counts = np.diff(arrays["loop_point_starts"])
+    of_loop = np.repeat(np.arange(len(area)), np.diff(arrays["face_loops"]))
+    owner = np.repeat(of_loop, counts)
+    low, high = domain[owner, :, 0], domain[owner, :, 1]
+    slack, points = SLACK * (high - low), arrays["loop_points"]
+    far = ~((points >= low - slack) & (points <= high + slack)).all(axis=1)
+    outside = np.zeros(len(area), dtype=np.bool_)
+    outside[owner[far]] = True
+    return dict.fromkeys(map(str, np.flatnonzero(outside).tolist()), FAR_AWAY) | dict.fromkeys(
+        map(str, np.flatnonzero(wrong).tolist()), WRONG_AREA
+    )
+
+
 def _holds_bad(rows: NDArray[Any], starts: NDArray[np.int64]) -> NDArray[np.bool_]:
     return _any_between(_bad_rows(rows), starts)
 
@@ -300,19 +353,6 @@ def _any_between(flags: NDArray[np.bool_], starts: NDArray[np.int64]) -> NDArray
     """Return for each run starts[i]:starts[i + 1] whether any of its flags is set."""
     counts = np.concatenate([[0], np.cumsum(flags)])
     return counts[starts[1:]] > counts[starts[:-1]]
-
-
-def _texts(about: dict[str, Any], name: str) -> dict[str, str]:
-    found = about.get(name, {})
-    _require(isinstance(found, dict), "about")
-    return {str(key): str(value) for key, value in found.items()}
-
-
-def _are_indices(values: object, count: int) -> bool:
-    """Return whether `values` is empty, or a list of `count` whole numbers."""
-    if not isinstance(values, list) or len(values) not in (0, count):
-        return False
-    return all(type(x) is int for x in values)
 
 
 def _within(array: NDArray[Any], low: int, high: int) -> bool:

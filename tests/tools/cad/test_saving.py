@@ -147,6 +147,40 @@ def test_numbers_that_are_not_finite_fail_one_face(everything, tmp_path):
     assert failed[0].reason == "its numbers are not finite"
 
 
+@pytest.mark.parametrize(
+    ("name", "change", "reason"),
+    [
+        ("area", lambda x: 1e308, "its area is out of range"),
+        ("area", lambda x: 1e-320, "its area is out of range"),
+        ("loop_points", lambda x: x + 1e9, "its boundary is outside of its domain"),
+    ],
+)
+def test_numbers_that_cannot_be_fail_one_face(name, change, reason, everything, tmp_path):
+    everything.arrays[name][0] = change(everything.arrays[name][0])
+    failed = again(everything, tmp_path).failed
+    assert [x.index for x in failed] == [0, 10]
+    assert failed[0].reason == reason
+    assert failed[0].part.area < 27.0
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [
+        {"reasons": ["a"]}, {"reasons": {"0": 3}}, {"reasons": {"11": "late"}},
+        {"reasons": {"-1": "early"}}, {"face_names": None}, {"face_names": {"0": None}},
+        {"face_names": {"x": "no index"}}, {"warnings": "one"}, {"warnings": [1]},
+        {"solid_names": {"0": "bolt"}}, {"name": 3}, {"unit": None}, {"metres": "long"},
+        {"metres": 0.0}, {"metres": True}, {"metres": float("nan")}, {"oriented": 1},
+        {"source_indices": [0]}, {"source_indices": [True] * 11}, {"source_indices": None},
+    ],
+)  # fmt: skip
+def test_entries_are_what_is_written(entry, everything, tmp_path):
+    text = json.dumps(everything.about | entry).encode()
+    damaged = everything.arrays | {"about": np.frombuffer(text, dtype=np.uint8)}
+    write_arrays(damaged, tmp_path / "part.npz")
+    is_refused("is damaged: its array 'about'", tmp_path / "part.npz")
+
+
 DAMAGE = [
     ("number_starts", lambda x: x[::-1].copy()),
     ("number_starts", lambda x: x + 1),
