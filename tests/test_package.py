@@ -1,6 +1,8 @@
 """What `import gaussmap` promises: every public name, and nothing heavy."""
 
 import ast
+import copy
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -100,6 +102,8 @@ def test_formulas_by_name() -> None:
     assert gm.formulas["envelope"].source.startswith("eq")
     assert set(gm.formulas) >= {"forms", "support_function", "curvature", "triangle"}
     assert gm.formulas is gm.formulas
+    for copied in (copy.copy, copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))):
+        assert copied(gm.formulas) is gm.formulas
 
 
 @pytest.mark.parametrize(

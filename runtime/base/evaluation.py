@@ -53,6 +53,11 @@ def returned(
     another shape or anything but real numbers.
     """
     values = called(function, arrays, label)
+    if shapes := _shapes_that_differ(values, shape):
+        raise SurfaceError(
+            f"{label} returned coordinates of the shapes {', '.join(map(str, shapes))} one by one; "
+            "join them by numpy.stack(numpy.broadcast_arrays(...), axis=-1)."
+        )
     try:
         result = real_array(values, f"what {label} returns")
     except InputError as error:
@@ -64,6 +69,14 @@ def returned(
             f"{arrays[0].shape}; it must return {expected}{_hint(values, result.shape, expected)}."
         )
     return result
+
+
+def _shapes_that_differ(values: object, shape: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """Return the shapes of coordinates in a list, as those with constants, if they differ."""
+    if not isinstance(values, tuple | list) or shape[1:] or [len(values)] != [*shape]:
+        return []
+    parts = [np.shape(x) for x in values if isinstance(x, np.ndarray | float | int | np.number)]
+    return parts if len(parts) == len(values) and len(set(parts)) > 1 else []
 
 
 def _hint(values: ArrayLike, found: tuple[int, ...], expected: tuple[int, ...]) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.advice import about_value
 from ..base.errors import GaussmapWarning, InputError, SurfaceError, in_memory
+from ..base.evaluation import returned
 from ..base.progress import busy
 from ..domain.domain import Domain, cells_between, closes
 from ..spline.inner_coefficients import values_at
@@ -21,6 +22,7 @@ from ..spline.nets import AnySpline, on_grid
 from ..spline.quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
 from ..spline.spline import Spline, short_label
 from ..surface.collapsed import found_sides
+from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
 from ..surface.surfaces import named
 from .comparison import Comparison, compare_with_data
@@ -37,6 +39,10 @@ DEFAULT_BOUNDS = Bounds(most=(1024, 1024), total=2**16, patience=2)
 # For a tolerance: the numbers of cells of the first attempt, and the largest ones.
 FEWEST_CELLS = (8, 8)
 BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
+# A callable is called twice at as many points; these are the same up to a part of their extent.
+AGAIN, SAME = 16, 1e-9
+# Points at the ends of a parameter are compared with those as many roundings of it away.
+ROUNDINGS = 2.0
 
 
 def patches_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) -> AnySpline:
@@ -154,6 +160,7 @@ def fit(
             f"a Surface or its name is needed, not {type(surface).__name__}; "
             f"{about_value(surface)}."
         )
+    _check_repeated(surface)
     boundary, apexes = found_sides(surface)
     trim = surface.trim and surface.trim.with_boundary(boundary)
     surface = replace(surface, boundary=boundary, trim=trim)
@@ -277,6 +284,52 @@ def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
     return fit_values(values, surface.domain, surface.boundary, surface.name)
 
 
+def _by_rounding(
+    surface: Surface, axis: int, last: NDArray[np.float64], first: NDArray[np.float64]
+) -> str:
+    """Return a clause if the ends of a parameter differ no more than its rounding makes points."""
+    low, high = surface.domain[axis]
+    other = np.linspace(*surface.domain[1 - axis], len(last))
+    far = float(np.abs(last - first).max())
+    moved = 0.0
+    step = ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
+    for end, row in ((low + step, first), (high - step, last), (high + step, last)):
+        near = np.full(len(last), end)
+        places = (near, other) if axis == 0 else (other, near)
+        points = returned(surface.function, places, (3,), f"surface {surface.name!r}")
+        moved = max(moved, float(np.nanmax(np.abs(points - row))))
+    along = "uv"[axis]
+    if not moved >= 0.5 * far:
+        return f"; they differ by {far:.3g}"
+    return (
+        f"; they differ by {far:.3g}, as much as its rounding changes the points there: let the "
+        f"callable reduce {along} first, as by numpy.where({along} == {high!r}, {low!r}, {along})"
+    )
+
+
+def _check_repeated(surface: Surface) -> None:
+    """Raise SurfaceError if a user's callable returns other points when it is called again."""
+    if surface.grid is not None or isinstance(surface.function, Differentiable):
+        return
+    steps = np.arange(1, AGAIN + 1)
+    u, v = (
+        low + (high - low) * (steps * np.sqrt(x) % 1.0)
+        for x, (low, high) in zip((0.5, 1 / 3), surface.domain, strict=True)
+    )
+    label = f"the callable of surface {surface.name!r}"
+    first, second = (returned(surface.function, (u, v), (3,), label) for _ in range(2))
+    known = first[np.isfinite(first).all(axis=1)]
+    size = float(np.ptp(known, axis=0).max()) if len(known) else 0.0
+    with np.errstate(invalid="ignore"):
+        same = (np.abs(first - second) <= SAME * size) | (np.isnan(first) & np.isnan(second))
+    if not (same | (first == second)).all():
+        k = int(np.argmin((same | (first == second)).all(axis=1)))
+        raise SurfaceError(
+            f"{label} must return the same points each time: at u = {u[k]}, v = {v[k]} they were "
+            f"{first[k]}, then {second[k]}."
+        )
+
+
 def _close(surface: Surface, vertices: NDArray[np.float64]) -> None:
     """Make vertices (m + 1, n + 1, 3) on a seam equal, so that the spline closes exactly.
 
@@ -289,7 +342,8 @@ def _close(surface: Surface, vertices: NDArray[np.float64]) -> None:
             if apart(rows[-1], first, vertices):
                 raise SurfaceError(
                     f"surface {surface.name!r} does not close along {along}: its two ends must be "
-                    f"the same{'' if ends[0] == 'periodic' else ', mirrored'}."
+                    f"the same{'' if ends[0] == 'periodic' else ', mirrored'}"
+                    f"{_by_rounding(surface, axis, rows[-1], first)}."
                 )
             rows[-1] = first
         for end, place, row in zip(ends, surface.domain[axis], (0, -1), strict=True):

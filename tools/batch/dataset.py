@@ -131,6 +131,9 @@ class Dataset:
         table = self.manifest(("part", "status")).to_pylist()
         return (self.samples(row["part"]) for row in table if row["status"] != FAILED)
 
+    def __hash__(self) -> int:
+        return hash(self.folder)
+
     def __repr__(self) -> str:
         return f"Dataset({str(self.folder)!r})"
 

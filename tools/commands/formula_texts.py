@@ -45,6 +45,10 @@ class Formulas(Mapping[str, "Formula"]):
         """Return the number of formulas."""
         return len(self._formulas)
 
+    def __reduce__(self) -> str:
+        """Return the name of the only object, which copies and pickles refer to."""
+        return "formulas"
+
     def __repr__(self) -> str:
         return f"Formulas({len(self)} formulas)"
 

@@ -218,3 +218,59 @@ def test_data_that_are_rougher_than_the_tolerance() -> None:
         spline = gm.fit(surface, tolerance=1e-9)
     assert np.array_equal(spline.coefficients, gm.fit(surface).coefficients)
     refused("data have no normals", gm.fit, surface, normal_tolerance=1.0)
+
+
+# --- callables ------------------------------------------------------------------------------------
+
+TURN = (0.0, 2.0 * np.pi)
+
+
+@pytest.mark.parametrize("change", [1e-6, 1.0])
+def test_a_callable_that_answers_differently_the_second_time(change: float) -> None:
+    calls = []
+
+    def drifting(u: Array, v: Array) -> Array:
+        calls.append(change)
+        return np.stack([u, v, u * v + len(calls) * change], axis=-1)
+
+    surface = gm.Surface.from_callable(drifting, ((0, 1), (0, 1)))
+    refused("must return the same points each time", gm.fit, surface, error=gm.errors.SurfaceError)
+
+
+def power(x: Array, exponent: float) -> Array:
+    return np.sign(x) * np.abs(x) ** exponent
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_ends_that_differ_by_amplified_rounding(axis: int) -> None:
+    """sin(2π) is −2e-16, and its root is not small."""
+
+    def rounded(u: Array, v: Array) -> Array:
+        angle, height = (u, v) if axis == 0 else (v, u)
+        return np.stack([power(np.cos(angle), 0.2), power(np.sin(angle), 0.2), height], axis=-1)
+
+    def reduced(u: Array, v: Array) -> Array:
+        return rounded(*(np.where(x == TURN[1], TURN[0], x) for x in (u, v)))
+
+    domain, periodic = (TURN, (7.0, 8.0)), (True, False)
+    if axis == 1:
+        domain, periodic = domain[::-1], periodic[::-1]
+    surface = gm.Surface.from_callable(rounded, domain, periodic)
+    text = "as much as its rounding changes the points there: let the callable reduce " + "uv"[axis]
+    refused(text, gm.fit, surface, (8, 8), error=gm.errors.SurfaceError)
+    gm.fit(gm.Surface.from_callable(reduced, domain, periodic), (8, 8))
+
+
+def test_ends_that_differ_otherwise() -> None:
+    def open_(u: Array, v: Array) -> Array:
+        return np.stack([np.cos(0.99 * u), np.sin(u), v], axis=-1)
+
+    surface = gm.Surface.from_callable(open_, (TURN, (0, 1)), (True, False))
+    with pytest.raises(gm.errors.SurfaceError, match=r"they differ by 0\.00197\.$"):
+        gm.fit(surface, (8, 8))
+
+
+@pytest.mark.parametrize("constant", [1, 0.5, np.float64(2.0), np.array(3.0)])
+def test_a_list_with_a_constant_says_how_to_join_it(constant: Any) -> None:
+    surface = gm.Surface.from_callable(lambda u, v: [u, v, constant], ((0, 1), (0, 1)))
+    refused("numpy.broadcast_arrays", gm.fit, surface, error=gm.errors.SurfaceError)

@@ -35,6 +35,7 @@ def test_what_it_says_of_itself(dataset):
     assert dataset.units == {"points": "L", "normals": "1", "gaussian_curvature": "1/L^2"}
     assert dataset.summary() == f"{PARTS} parts, 1 of which failed, with {SAMPLES} samples"
     assert repr(dataset) == f"Dataset('{dataset.folder}')"
+    assert {dataset: 1}[gm.open_dataset(dataset.folder)] == 1
 
 
 def test_manifest(dataset):
