@@ -360,6 +360,11 @@ def _unseen(report: SamplingReport) -> list[str]:
         ]
     if report.samples == 0 and report.developable_patches == report.patches:
         return ["it is flat or developable up to the rounding of its coordinates"]
+    if report.samples == 0 and report.undecided:
+        return [
+            "all points with these normals are in boxes of report.undecided, such as curves of "
+            "points with one normal"
+        ]
     return ["none of the normals lies in its Gaussian image"] if report.samples == 0 else []
 
 

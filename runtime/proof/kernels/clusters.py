@@ -38,16 +38,16 @@ def join(hull, u0, u1, v0, v1, period):
 
 
 @loop
-def cluster(boxes, count, cells, size, period, hulls, owner):
+def cluster(boxes, count, cells, period, hulls, owner):
     """Write the hulls (…, 4) of clusters, u₀, u₁, v₀, v₁, and the cluster of each box.
 
-    Boxes (count, 3) are parts of cells: u, v and the number of the cell; half their widths is
-    `size` times that of the cell. Returns the number of hulls.
+    Boxes (count, 5) are parts of cells: u, v, the number of the cell, and half their widths along u
+    and v relative to those of the cell. Returns the number of hulls.
     """
     hull_count = 0
     for k in range(count):
         j = int(boxes[k, 2])
-        h_u, h_v = size * cells.place[j, 2], size * cells.place[j, 3]
+        h_u, h_v = boxes[k, 3] * cells.place[j, 2], boxes[k, 4] * cells.place[j, 3]
         u0, u1, v0, v1 = boxes[k, 0] - h_u, boxes[k, 0] + h_u, boxes[k, 1] - h_v, boxes[k, 1] + h_v
         owner[k] = -1
         for i in range(hull_count):

@@ -50,7 +50,8 @@ __all__ = ["DECIDED", "PARTS", "degree_on"]
 UNDECIDED, DECIDED = range(2)
 # Boxes grow on each side by this part of their width, since the normal may not be on the border.
 # A joint that is nearer to a side than this part of the width becomes the side.
-GROWN, NEAR_SIDE = 0.4, 0.05
+# They grow by a part of the domain at least: near a joint normals are known up to a tolerance.
+GROWN, LEAST, NEAR_SIDE = 0.4, 2.0**-23, 0.05
 # The largest number of parts along u and along v.
 PARTS = 4
 # Segments of a side of a part are at least this long; a side has the length 2.
@@ -102,7 +103,8 @@ def ends_of_parts(lines, period, low, high, ends):
 @loop
 def write_parts(tape, work, tile, joints, domain, hull, ends):
     """Write bounds over the parts of a grown box to a tile; return their numbers along u and v."""
-    grown_u, grown_v = GROWN * (hull[1] - hull[0]), GROWN * (hull[3] - hull[2])
+    grown_u = max(GROWN * (hull[1] - hull[0]), LEAST * (domain[1] - domain[0]))
+    grown_v = max(GROWN * (hull[3] - hull[2]), LEAST * (domain[3] - domain[2]))
     along = ends_of_parts(joints.u, domain[4], hull[0] - grown_u, hull[1] + grown_u, ends[0])
     across = ends_of_parts(joints.v, domain[5], hull[2] - grown_v, hull[3] + grown_v, ends[1])
     for i in range(along):

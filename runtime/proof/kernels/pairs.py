@@ -46,6 +46,7 @@ __all__ = [
     "V0",
     "bound_pairs",
     "compact",
+    "contracted",
     "forms_at",
     "improve_pairs",
     "load_box",
@@ -92,22 +93,24 @@ def load_pair(t, k, cells, j, n):
 
 
 @loop
-def load_box(t, k, cells, j, n, u, v, size):
+def load_box(t, k, cells, j, n, u, v, size_u, size_v):
     """Write a part of cell j, around (u, v), and a normal to lane k, without the forms."""
     i = np.uint64(k)
     t[i + NX], t[i + NY], t[i + NZ] = n
     t[i + U0], t[i + V0] = u, v
-    t[i + HU], t[i + HV] = size * cells.place[j, 2], size * cells.place[j, 3]
+    t[i + HU], t[i + HV] = size_u * cells.place[j, 2], size_v * cells.place[j, 3]
     t0, t1, t2, t3, r0, r1, r2, r3 = thirds_of(cells.thirds, j, n)
-    cube = size * size * size
-    t[i + T0], t[i + T1], t[i + T2], t[i + T3] = cube * t0, cube * t1, cube * t2, cube * t3
-    t[i + R0], t[i + R1], t[i + R2], t[i + R3] = cube * r0, cube * r1, cube * r2, cube * r3
-    t[i + ROUND_S], t[i + ROUND_T] = size * cells.noise[j, FIRST_S], size * cells.noise[j, FIRST_T]
-    t[i + ROUND_2], t[i + REACHED] = size * size * cells.noise[j, SECOND], cells.noise[j, REACH]
-    t[i + TOL_S], t[i + TOL_T] = (
-        size * cells.noise[j, TOLERANCE_S],
-        size * cells.noise[j, TOLERANCE_T],
-    )
+    uu, uv, vv = size_u * size_u, size_u * size_v, size_v * size_v
+    t[i + T0], t[i + T1], t[i + T2], t[i + T3] = (
+        size_u * uu * t0, size_u * uv * t1, size_v * uv * t2, size_v * vv * t3
+    )  # fmt: skip
+    t[i + R0], t[i + R1], t[i + R2], t[i + R3] = (
+        size_u * uu * r0, size_u * uv * r1, size_v * uv * r2, size_v * vv * r3
+    )  # fmt: skip
+    noise = cells.noise
+    t[i + ROUND_S], t[i + ROUND_T] = size_u * noise[j, FIRST_S], size_v * noise[j, FIRST_T]
+    t[i + ROUND_2], t[i + REACHED] = max(uu, vv) * noise[j, SECOND], noise[j, REACH]
+    t[i + TOL_S], t[i + TOL_T] = size_u * noise[j, TOLERANCE_S], size_v * noise[j, TOLERANCE_T]
 
 
 @loop
@@ -125,11 +128,20 @@ def write_forms(t, count, registers, outputs):
 
 
 @inline
-def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap):
-    """Return whether a cell has no solution for a normal or its opposite."""
+def rests(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap):
+    """Return bounds of what the linear forms leave out of both derivatives in a cell."""
     rest_s, rest_t = remainders(abs(t0) + r0, abs(t1) + r1, abs(t2) + r2, abs(t3) + r3)
     rest_s = rest_s * (1.0 + 4.0 * gap) + round_s + 2.0 * round_2 + gap * (abs(a) + abs(b) + abs(p))
     rest_t = rest_t * (1.0 + 4.0 * gap) + round_t + 2.0 * round_2 + gap * (abs(b) + abs(c) + abs(q))
+    return rest_s, rest_t
+
+
+@inline
+def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap):
+    """Return whether a cell has no solution for a normal or its opposite."""
+    rest_s, rest_t = rests(
+        a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap
+    )
     e1, e2, e3, e4 = excesses(a, b, c, p, q, rest_s, rest_t)
     return max(max(e1, e2), max(e3, e4)) > 0.0
 
@@ -164,6 +176,46 @@ def is_beyond(s, t, g1, g2, error, change):
     step = max(abs(min(max(s - g1, -1.0), 1.0) - s), abs(min(max(t - g2, -1.0), 1.0) - t))
     away = (step + error) / (1.0 - change)
     return max(abs(g1), abs(g2)) - error > (1.0 + change) * away * (1.0 + 16.0 * EPS)
+
+
+@loop
+def solved(low, high, f, own, rest):
+    """Return an interval of numbers x, without those for which |f + own x| exceeds `rest`."""
+    if own != 0.0:
+        one, two = (-f - rest) / own, (rest - f) / own
+        low, high = max(low, min(one, two)), min(high, max(one, two))
+    return low, high
+
+
+@loop
+def contracted(t, k):
+    """Return the part of the box in lane k that may have solutions, s₀, s₁, t₀, t₁.
+
+    Both derivatives, and the two combinations from which a parameter is eliminated, are solved for
+    s and for t. The part is empty if s₀ > s₁ or t₀ > t₁.
+    """
+    i = np.uint64(k)
+    a, b, c, p, q = t[i + A], t[i + B], t[i + C], t[i + P], t[i + Q]
+    gap = gap_of(t[i + U0], t[i + V0], t[i + HU], t[i + HV])
+    rest_s, rest_t = rests(
+        a, b, c, p, q, t[i + T0], t[i + T1], t[i + T2], t[i + T3], t[i + R0], t[i + R1],
+        t[i + R2], t[i + R3], t[i + ROUND_S] + t[i + TOL_S], t[i + ROUND_T] + t[i + TOL_T],
+        t[i + ROUND_2], gap,
+    )  # fmt: skip
+    d = a * c - b * b
+    rounding = 16.0 * EPS * (abs(a * c) + b * b)
+    by_s = abs(c) * rest_s + abs(b) * rest_t + rounding + 16.0 * EPS * (abs(c * p) + abs(b * q))
+    by_t = abs(a) * rest_t + abs(b) * rest_s + rounding + 16.0 * EPS * (abs(a * q) + abs(b * p))
+    low_s, high_s = solved(-1.0, 1.0, c * p - b * q, d, by_s)
+    low_t, high_t = solved(-1.0, 1.0, a * q - b * p, d, by_t)
+    for _ in range(2):
+        most = max(abs(low_t), abs(high_t))
+        low_s, high_s = solved(low_s, high_s, p, a, rest_s + abs(b) * most)
+        low_s, high_s = solved(low_s, high_s, q, b, rest_t + abs(c) * most)
+        most = max(abs(low_s), abs(high_s))
+        low_t, high_t = solved(low_t, high_t, p, b, rest_s + abs(a) * most)
+        low_t, high_t = solved(low_t, high_t, q, c, rest_t + abs(b) * most)
+    return low_s - gap, high_s + gap, low_t - gap, high_t + gap
 
 
 @loop

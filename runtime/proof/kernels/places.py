@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...directions.kernels.vectors import row_vector
-from ...machine_code.jit import jit, loop
+from ...machine_code.jit import inline, jit, loop
 from ...tape.kernels.points import LANES, evaluate_points
 from .answers import (
     BORDER,
@@ -55,6 +55,7 @@ from .pairs import (
     V0,
     bound_pairs,
     compact,
+    contracted,
     improve_pairs,
     load_box,
     write_forms,
@@ -67,6 +68,11 @@ DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
 # The boxes of a curve of solutions about double on each level. More boxes than MANY are a curve if
 # their number grows by GROWTH for TIMES levels; at most MOST cells, or MOST/4 boxes, are processed.
 MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
+# The columns of boxes: u, v, the number of a cell, and half the widths relative to the cell's.
+BOX_COLUMNS = 5
+# A box is cut across its longer side only if this is longer by this factor, relative to the cell's;
+# sides are not contracted to less than a part of those before, so that clusters have a width.
+SLENDER, SHRUNK = 4.0, 2.0**-5
 # From this level on, rounding explains open boxes more than twice as many as on the level before.
 FINE = 10
 
@@ -90,9 +96,9 @@ class Boxes(NamedTuple):
         """Return work arrays for an index with this number of cells."""
         most = 16 * MOST + cells
         return cls(
-            np.empty((most, 3)), np.empty((most, 3)), np.empty((most, 4)), np.empty(most, np.int64),
-            np.empty(most, np.int64), np.zeros(ROWS * LANES), np.zeros(LANES, np.int64),
-            np.array(FOLDS), np.empty((2, PARTS + 1)), Cells.new(LANES),
+            np.empty((most, BOX_COLUMNS)), np.empty((most, BOX_COLUMNS)), np.empty((most, 4)),
+            np.empty(most, np.int64), np.empty(most, np.int64), np.zeros(ROWS * LANES),
+            np.zeros(LANES, np.int64), np.array(FOLDS), np.empty((2, PARTS + 1)), Cells.new(LANES),
         )  # fmt: skip
 
 
@@ -120,15 +126,16 @@ def rest_in(cells, j, size_u, size_v):
 
 
 @loop
-def cut_boxes(tape, work, index, boxes, count, size, number, n, answers):
+def cut_boxes(tape, work, index, boxes, count, number, n, answers):
     """Decide boxes of a level, write the next ones; return their number, −1 without room."""
     cells, t = index.cells, boxes.pairs
     following = 0
     for first in range(0, count, LANES):
         lanes = min(LANES, count - first)
         for k in range(lanes):
-            u, v, j = boxes.now[first + k, 0], boxes.now[first + k, 1], int(boxes.now[first + k, 2])
-            load_box(t, k, cells, j, n, u, v, size)
+            box = boxes.now[first + k]
+            u, v, j = box[0], box[1], int(box[2])
+            load_box(t, k, cells, j, n, u, v, box[3], box[4])
             boxes.numbers[k] = j
             work.u[k], work.v[k] = u, v
         evaluate_points(tape, work.u, work.v, lanes, work.registers)
@@ -138,36 +145,64 @@ def cut_boxes(tape, work, index, boxes, count, size, number, n, answers):
             j = boxes.numbers[k]
             if cells.cone[j, 3] < WIDE or t[np.uint64(k) + STATE] == NONE:
                 continue
-            place = boxes.tile.place
-            place[k, 2], place[k, 3] = size * cells.place[j, 2], size * cells.place[j, 3]
+            place, box = boxes.tile.place, boxes.now[first + k]
+            place[k, 2], place[k, 3] = box[3] * cells.place[j, 2], box[4] * cells.place[j, 3]
             write_patch(tape, work.registers, boxes.tile, k)
-            rest_s, rest_t = rest_in(cells, j, size, size)
+            rest_s, rest_t = rest_in(cells, j, box[3], box[4])
             if side_of(patch_of(boxes.tile.hot, k), rest_s, rest_t, n) < 0:
                 t[np.uint64(k) + STATE] = NONE
-        following = keep_boxes(t, lanes, boxes, size, following)
+        following = keep_boxes(t, lanes, boxes, cells, following)
         kept = compact(t, lanes, boxes.numbers, boxes.numbers, work.u, work.v)
         while kept > 0:
             evaluate_points(tape, work.u, work.v, kept, work.registers)
             improve_pairs(t, kept, work.registers, tape.outputs, work.u, work.v)
             if not store_places(t, kept, work, boxes, number, answers):
                 return -1
-            following = keep_boxes(t, kept, boxes, size, following)
+            following = keep_boxes(t, kept, boxes, cells, following)
             kept = compact(t, kept, boxes.numbers, boxes.numbers, work.u, work.v)
     return following
 
 
+@inline
+def inside(middle, half):
+    """Return the middle of an interval in −1 … 1 of some half width that is nearest to another."""
+    return min(max(middle, half - 1.0), 1.0 - half)
+
+
 @loop
-def keep_boxes(t, lanes, boxes, size, following):
-    """Write the four parts of boxes that are not decided; return the number of all parts."""
+def keep_boxes(t, lanes, boxes, cells, following):
+    """Write the parts of boxes that are not decided; return the number of all parts.
+
+    Boxes are contracted, and cut into four, or across their longer side only.
+    """
     for k in range(lanes):
         i = np.uint64(k)
         if t[i + STATE] != HARD:
             continue
+        low_s, high_s, low_t, high_t = contracted(t, k)
+        if low_s > high_s or low_t > high_t:
+            continue
+        j = boxes.numbers[k]
+        half_s, half_t = (
+            min(max(0.5 * (high_s - low_s), SHRUNK), 1.0),
+            min(max(0.5 * (high_t - low_t), SHRUNK), 1.0),
+        )
+        # Parts stay in the cell: beyond a joint its derivatives are others.
+        u = t[i + U0] + inside(0.5 * (low_s + high_s), half_s) * t[i + HU]
+        v = t[i + V0] + inside(0.5 * (low_t + high_t), half_t) * t[i + HV]
+        size_u = half_s * t[i + HU] / cells.place[j, 2]
+        size_v = half_t * t[i + HV] / cells.place[j, 3]
+        along, across = size_v <= SLENDER * size_u, size_u <= SLENDER * size_v
+        size_u, size_v = 0.5 * size_u if along else size_u, 0.5 * size_v if across else size_v
         for part in range(4):
+            if (part & 1 and not along) or (part & 2 and not across):
+                continue
             row = boxes.following[following]
-            row[0] = t[i + U0] + (0.5 if part & 1 else -0.5) * t[i + HU]
-            row[1] = t[i + V0] + (0.5 if part & 2 else -0.5) * t[i + HV]
-            row[2] = boxes.numbers[k]
+            row[0], row[1], row[2], row[3], row[4] = u, v, float(j), size_u, size_v
+            if along:
+                row[0] += (size_u if part & 1 else -size_u) * cells.place[j, 2]
+            if across:
+                row[1] += (size_v if part & 2 else -size_v) * cells.place[j, 3]
             following += 1
     return following
 
@@ -195,13 +230,13 @@ def store_places(t, lanes, work, boxes, number, answers):
 
 
 @loop
-def decide_clusters(tape, work, index, boxes, count, size, domain, number, n, last, answers):
+def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, answers):
     """Drop clusters of boxes that a degree or a fold decides; after the `last` level, list others.
 
     Returns the number of boxes that are left, −1 if there was no room.
     """
     cells, tile = index.cells, boxes.tile
-    hulls = cluster(boxes.following, count, cells, size, domain[4:], boxes.hulls, boxes.owner)
+    hulls = cluster(boxes.following, count, cells, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
         at = answers.counts[0]
         if at == answers.numbers.shape[0]:
@@ -237,17 +272,17 @@ def decide_clusters(tape, work, index, boxes, count, size, domain, number, n, la
     left = 0
     for k in range(count):
         if boxes.fates[boxes.owner[k]] != NO_PLACE and boxes.fates[boxes.owner[k]] != DOUBLE:
-            for x in range(3):
+            for x in range(BOX_COLUMNS):
                 boxes.following[left, x] = boxes.following[k, x]
             left += 1
     return left
 
 
 @loop
-def give_up(index, boxes, rows, count, size, domain, number, answers):
+def give_up(index, boxes, rows, count, domain, number, answers):
     """List all boxes of rows as a continuum, or as singular; return whether there was room."""
     cells = index.cells
-    hulls = cluster(rows, count, cells, size, domain[4:], boxes.hulls, boxes.owner)
+    hulls = cluster(rows, count, cells, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
         kind = CONTINUUM
         for k in range(count):
@@ -262,22 +297,20 @@ def give_up(index, boxes, rows, count, size, domain, number, answers):
 @loop
 def bisect(tape, work, index, boxes, count, domain, number, n, answers):
     """Find the solutions for a normal in whole cells; return whether there was room."""
-    size = 1.0
     fold = growing = 0
     if count > MOST:
-        return give_up(index, boxes, boxes.now, count, size, domain, number, answers)
+        return give_up(index, boxes, boxes.now, count, domain, number, answers)
     for level in range(DEEPEST + 1):
         if count > 4 * MOST or (count > MANY and growing >= TIMES):
-            return give_up(index, boxes, boxes.now, count, size, domain, number, answers)
-        following = cut_boxes(tape, work, index, boxes, count, size, number, n, answers)
-        size *= 0.5
+            return give_up(index, boxes, boxes.now, count, domain, number, answers)
+        following = cut_boxes(tape, work, index, boxes, count, number, n, answers)
         if following < 0:
             return False
         last = level == DEEPEST or (level >= FINE and following > 2 * count)
         if following > 0 and (last or (fold < boxes.levels.size and level == boxes.levels[fold])):
             fold += 1
             following = decide_clusters(
-                tape, work, index, boxes, following, size, domain, number, n, last, answers
+                tape, work, index, boxes, following, domain, number, n, last, answers
             )
             if following < 0:
                 return False
@@ -286,7 +319,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
         growing = growing + 1 if following > GROWTH * count else 0
         count = following
         for k in range(count):
-            for x in range(3):
+            for x in range(BOX_COLUMNS):
                 boxes.now[k, x] = boxes.following[k, x]
     return True
 
@@ -333,7 +366,8 @@ def decide_normals(tape, work, index, normals, hard, groups, first, last, domain
         for k in range(count):
             j = hard[groups[g] + k, 1]
             place = index.cells.place
-            boxes.now[k, 0], boxes.now[k, 1], boxes.now[k, 2] = place[j, 0], place[j, 1], j
+            box = boxes.now[k]
+            box[0], box[1], box[2], box[3], box[4] = place[j, 0], place[j, 1], float(j), 1.0, 1.0
         room = bisect(tape, work, index, boxes, count, domain, number, n, answers)
         room = room and orient(tape, work, index, boxes, start, domain, number, n, answers)
         if not room:

@@ -156,6 +156,18 @@ def beside_a_tip(bump: float, tip: float) -> Places:
     return Places(surface, new_index(surface, cells=(16, 16)), u, v, 1, 1.0, SINGULAR)
 
 
+def in_a_valley() -> Places:
+    """A point of a ruled NURBS with a very small K: solutions for nearby normals are a long way."""
+    along = np.concatenate([np.zeros(4), [1, 2, 2], np.full(4, 3.0)])
+    means = [along[k + 1 : k + 4].mean() for k in range(7)]
+    x, y = np.meshgrid([0.0, 1.0], means, indexing="ij")
+    off = np.random.default_rng(30).normal(size=(2, 7, 3)) * [0.15, 0.15, 0.5]
+    net = np.stack([x, y, 0.0 * x], axis=-1) + off
+    surface = gm.Surface.from_nurbs((1, 3), ([0, 0, 1, 1], along), net)
+    u, v = np.array([0.9635228978, 0.2, 0.7]), np.array([0.4934060946, 1.3, 2.6])
+    return Places(surface, new_index(surface), u, v)
+
+
 SINGULAR = frozenset({"singular"})
 PLACES: dict[str, Callable[[], Places]] = {
     **{f"corners of {x}": partial(corners, x) for x in ("torus", "knobby", "waves")},
@@ -171,6 +183,8 @@ PLACES: dict[str, Callable[[], Places]] = {
     # The second derivatives of the last two jump at knots.
     **{f"spline {x}": partial(in_spline, *x) for x in ((3, 1), (2, 1), (3, 2))},
     "knots of a smooth spline": partial(on_knots, 3, 1),
+    "valley": in_a_valley,
+    "cusp": lambda: Places.on("cusp", [0.6204688721150239, 0.5], [-0.32456658279734163, 0.5]),
     "root": lambda: Places.on("root", [0.5, 0.02], [0.3, 0.7], cells=(8, 8)),
     "horn": lambda: Places.on(
         "horn", [0.3, 2.0, 4.0], [0.5, 0.1, 0.9], 1, 1.0, SINGULAR, cells=(16, 8)
