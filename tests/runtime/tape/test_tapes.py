@@ -74,6 +74,7 @@ def test_surfaces_of_points_have_none():
 # --- expressions ----------------------------------------------------------------------------------
 
 
+@pytest.mark.compiled  # 1/0 is inf in kernels, and an exception of Python without compilation
 def test_expressions_have_tapes():
     position = (
         "u**1.5 + 2**u",
@@ -152,6 +153,7 @@ TRACED: list[Callable[..., Any]] = [
 ]
 
 
+@pytest.mark.compiled
 @pytest.mark.parametrize("function", TRACED)
 def test_callables_of_numpy_functions_have_tapes(function):
     assert_is_computed(gm.Surface.from_callable(function, SQUARE), 1e-5)  # numerical derivatives
