@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ..base.aliases import Array
+from ..base.aliases import Array, Flags, Indices
 from ..base.memory import check_memory
 from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of
+from ..samples.report import UndecidedNormal
 from ..search.fill import fill
 from ..search.search import Hits
 from ..spline.spline import Spline
@@ -18,7 +19,7 @@ from .kernels.refine import FOUND, Target
 from .newton import refine
 from .on_spline import Fields, FieldsOfSamples
 
-__all__ = ["as_fields", "moved_samples", "part_of"]
+__all__ = ["as_fields", "moved_samples", "part_of", "unmoved"]
 
 # The fields of samples that are moved; other fields follow from them.
 NEEDED = (
@@ -44,6 +45,28 @@ def moved_samples(
     )  # fmt: skip
     refine(surface, spline, target, threads)
     return arrays | {FLAG_NAMES[0]: states == FOUND}
+
+
+def unmoved(spline: Spline, numbers: Indices, uv: Array) -> tuple[UndecidedNormal, ...]:
+    """Return the boxes of points of a spline that could not be moved, one for each normal.
+
+    The points have normals with increasing numbers (k,) and parameters (k, 2). A box holds the
+    cells around them.
+    """
+    if len(numbers) == 0:
+        return ()
+    low, high = np.array(spline.domain).T
+    starts = np.flatnonzero(np.diff(numbers, prepend=-1))
+    least = np.maximum(np.minimum.reduceat(uv, starts) - spline.frame[2:], low)
+    most = np.minimum(np.maximum.reduceat(uv, starts) + spline.frame[2:], high)
+    open_ = np.array([[x == "open" for x in ends] for ends in spline.boundary])
+    at_ends = np.stack([least <= low, most >= high], axis=2) & open_
+    border: Flags = np.any(at_ends, axis=(1, 2))
+    if spline.trim is not None:
+        border[:] = True
+    boxes = np.stack([least, most], axis=2).reshape(-1, 4)
+    rows = zip(numbers[starts].tolist(), boxes.tolist(), border.tolist(), strict=True)
+    return tuple(UndecidedNormal(k, tuple(box), "unmoved", x) for k, box, x in rows)
 
 
 def part_of(arrays: Fields, kept: NDArray[np.bool_]) -> Fields:

@@ -25,7 +25,7 @@ from ..directions.regions import Cap
 from ..fitting.fit import check_range
 from ..proof.index import ProvedIndex
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
-from ..samples.report import SamplingReport, sampling_report
+from ..samples.report import SamplingReport, UndecidedNormal, sampling_report
 from ..samples.samples import Samples
 from ..search.fill import fill
 from ..search.kernels.tile import fill_known
@@ -48,10 +48,15 @@ BESIDE_POLE = 1e-6
 
 
 class FieldsOfSamples(NamedTuple):
-    """Fields of samples, and how many of these are not on the surface."""
+    """Fields of samples, and how many of these are not on the surface.
+
+    `undecided` lists normals with points of the spline that could not be moved to the surface; None
+    for samples of the spline.
+    """
 
     fields: Fields
     unrefined: int | None = None
+    undecided: tuple[UndecidedNormal, ...] | None = None
 
     @property
     def number(self) -> int:
@@ -140,8 +145,9 @@ class OnPatches:
         """Return the samples at hits, with their report; see `samples_at`."""
         found = self.at_hits(normals, hits, fields, dtype)
         report = self.report(
-            len(normals), density, hits.developable, found.fields, unrefined=found.unrefined
-        )
+            len(normals), density, hits.developable, found.fields,
+            unrefined=found.unrefined, undecided=found.undecided,
+        )  # fmt: skip
         return self.samples(found.fields, report)
 
     def samples_in_turn(
@@ -157,7 +163,9 @@ class OnPatches:
         report = self.report(len(normals), density, None, {})
         parts = find_in_turn(self.spline, normals, self.threads, progress)
         for found in self.at_hits_in_turn(normals, parts, fields, dtype, size):
-            known = replace(report, samples=found.number, unrefined=found.unrefined)
+            known = replace(
+                report, samples=found.number, unrefined=found.unrefined, undecided=found.undecided
+            )
             yield self.samples(found.fields, known)
 
     def number_inside(self, normals: Array, hits: Hits) -> int:
@@ -166,6 +174,16 @@ class OnPatches:
             return len(hits)
         uv = fill(self.spline, normals, hits, self.threads, ("uv",))
         return count_of(samples_inside(self.spline.trim, uv, ("uv",)))
+
+    def near_hits(
+        self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
+    ) -> FieldsOfSamples:
+        """Return the samples at hits, also those of the spline that could not be moved."""
+        return self.at_hits(normals, hits, fields, dtype)
+
+    def share_at(self, normals: Array, hits: Hits) -> float:
+        """Return the share of hits with a sample, estimated from some of them."""
+        return 1.0
 
     def at_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike

@@ -14,7 +14,7 @@ from ..base.errors import InputError
 from ..base.kept import kept
 from ..fitting.fit import patches_of
 from ..samples.fields import FLAG_NAMES
-from ..samples.report import PLACES
+from ..samples.report import PLACES, UndecidedNormal
 from ..samples.samples import Samples
 from ..search.search import Hits
 from ..spline.developable import CellMeasure
@@ -24,7 +24,7 @@ from ..spline.spline import Spline
 from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
 from .kernels import nodes as kernels
-from .moved_samples import as_fields, moved_samples, part_of
+from .moved_samples import as_fields, moved_samples, part_of, unmoved
 from .newton import evaluate_on_surface
 from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline
 from .pole_charts import PoleChart, pole_charts
@@ -35,6 +35,8 @@ __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
 
 # Samples in turn are looked at in groups of about this number, whether they repeat others.
 TOGETHER = 1 << 17
+# About as many hits are moved to estimate the share of those that can be.
+TRIED = 1 << 12
 
 
 def place_of_samples(surface: object, on: str | None) -> str:
@@ -183,9 +185,23 @@ class OnSurface(OnSpline):
     ) -> FieldsOfSamples:
         """Return the samples at hits, with the fields that are requested.
 
-        Those that meet are one.
+        Those that meet are one. Those that cannot be moved to the surface are none.
         """
+        arrays, left = self._found(normals, hits)
+        return as_fields(arrays, fields, dtype)._replace(undecided=left)
+
+    def near_hits(
+        self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
+    ) -> FieldsOfSamples:
+        """Return the samples at hits, also those of the spline that could not be moved."""
         return as_fields(self._moved_once(normals, hits), fields, dtype)
+
+    def share_at(self, normals: Array, hits: Hits) -> float:
+        """Return the share of hits with a sample, estimated from some of them."""
+        some = hits.normal_index % max(len(hits) // TRIED, 1) == 0
+        moved = self._moved(normals, hits.rows(np.flatnonzero(some)))
+        found = moved[FLAG_NAMES[0]] & self._kept_once(moved)
+        return float(found.mean()) if len(found) else 1.0
 
     def at_hits_in_turn(
         self,
@@ -199,19 +215,30 @@ class OnSurface(OnSpline):
 
         Samples that meet have the same normal, so that whole normals are looked at together.
         """
-        came, rest = False, list[Fields]()
+        came, rest, left = False, list[Fields](), tuple[UndecidedNormal, ...]()
         for hits in (x for part in parts for x in part.whole_normals(TOGETHER)):
-            rest.append(self._moved_once(normals, hits))
+            arrays, more = self._found(normals, hits)
+            rest.append(arrays)
+            left += more
             if sum(map(count_of, rest)) < size:
                 continue
             arrays = _joined(rest)
             end = count_of(arrays) // size * size
             for first in range(0, end, size):
-                yield as_fields(_rows(arrays, first, first + size), fields, dtype)
+                part = as_fields(_rows(arrays, first, first + size), fields, dtype)
+                yield part._replace(undecided=left)
+                left = ()
             came, rest = True, [_rows(arrays, end, None)]
         arrays = _joined(rest)
-        if count_of(arrays) or not came:
-            yield as_fields(arrays, fields, dtype)
+        if count_of(arrays) or left or not came:
+            yield as_fields(arrays, fields, dtype)._replace(undecided=left)
+
+    def _found(self, normals: Array, hits: Hits) -> tuple[Fields, tuple[UndecidedNormal, ...]]:
+        """Return the samples on the surface, and the normals of those that are not."""
+        arrays = self._moved_once(normals, hits)
+        left = np.flatnonzero(~arrays[FLAG_NAMES[0]])
+        numbers, uv = arrays["normal_index"][left], arrays["uv"][left]
+        return part_of(arrays, arrays[FLAG_NAMES[0]]), unmoved(self.spline, numbers, uv)
 
     def _moved_once(self, normals: Array, hits: Hits) -> Fields:
         """Return all fields but the support of the samples at hits, those that meet as one."""

@@ -149,6 +149,8 @@ def samples_of_pieces(
     report = report_of(name, [x for _, x in kept], len(normals), None, developable, arrays)
     if all(geometry.index is not None for _, geometry in kept):
         report = replace(report, **_proof(len(normals), reports))
+    elif on_surface:
+        report = replace(report, undecided=tuple(y for x in reports for y in x.undecided or ()))
     return Samples(**{x: arrays[x] for x in fields}, report=report, surface=surface)
 
 

@@ -88,10 +88,11 @@ class UndecidedNormal(NamedTuple):
         The row of the normal among the prescribed ones.
     box : (u0, u1, v0, v1) of float
         The rectangle of parameters. All points outside these boxes are known.
-    kind : {"double", "multiple", "continuum", "singular"}
+    kind : {"double", "multiple", "continuum", "singular", "unmoved"}
         "double": none or two points, next to a fold, up to rounding. "multiple": several points
         that may coincide. "continuum": a curve or a region with this normal, such as a ruling of a
-        cylinder. "singular": x_u × x_v may vanish.
+        cylinder. "singular": x_u × x_v may vanish. "unmoved": points of the spline could not be
+        moved to the surface.
     border : bool
         Whether the box reaches an open side of the domain, or may meet the boundary of the trim.
     face : int or None
@@ -172,14 +173,15 @@ class SamplingReport:
         Where the samples lie: on the surface, or on the spline that approximates it.
     unrefined : int or None
         With ``on="surface"``, the number of samples that are not on it (`Samples.on_surface` is
-        False): those at prescribed normals that could not be moved from the spline to the point of
-        the surface that has the normal, and others at singular points.
+        False): at singular points, and those of a silhouette that could not be moved there.
     proved : int or None
         The number of prescribed normals whose points are proved to be all; the others are
         `undecided`. None if nothing is proved: on splines, on surfaces whose derivatives have no
         bounds, and on parts with `estimated_faces`.
     undecided : tuple of UndecidedNormal, or None
-        The boxes that may contain further points: entries (normal, box, kind, border, face).
+        The boxes that may contain further points: entries (normal, box, kind, border, face). On
+        surfaces without a proof, those around points of the spline that could not be moved to the
+        surface, at most one for each normal; points of others may be missing, too.
     fit_distance, fit_rms : float or None
         The largest distance of the spline from the surface, or from the data, that it approximates,
         and the root mean square of the distance; see `Spline.misfit`.
@@ -382,15 +384,20 @@ def _missed(report: SamplingReport, count: int | None, coverage: float | None) -
 
 
 def _unrefined(report: SamplingReport) -> list[str]:
-    """Return reasons for a warning: samples that are not on the surface."""
-    unrefined = report.unrefined or 0
-    if unrefined <= WORTH_A_WARNING * report.samples:
-        return []
-    return [
-        f"{unrefined} of {report.samples} samples could not be moved to the surface, and lie on "
-        "its spline (see Samples.on_surface); more cells=... help unless the surface is parabolic "
-        "or singular there"
-    ]
+    """Return reasons for a warning: samples, or points of the spline, not on the surface."""
+    reasons, unrefined = [], report.unrefined or 0
+    if unrefined > WORTH_A_WARNING * report.samples:
+        reasons.append(
+            f"{unrefined} of {report.samples} samples could not be moved to the surface, and lie "
+            "on its spline (see Samples.on_surface)"
+        )
+    left = 0 if report.proved is not None else len(report.undecided or ())
+    if left > WORTH_A_WARNING * (report.normals or 0):
+        reasons.append(
+            f"points of its spline with {left} of {report.normals} normals could not be moved to "
+            "the surface, and are left out (see report.undecided)"
+        )
+    return reasons
 
 
 def common_report(
@@ -407,8 +414,9 @@ def common_report(
     common["samples"] = len(next(iter(arrays.values())))
     common["infinite_curvatures"] = count_infinite(arrays)
     common["unrefined"] = count_unrefined(arrays)
-    if all(x.proved is not None and x.undecided is not None for x in reports):
+    if all(x.proved is not None for x in reports):
         common["proved"] = sum(x.proved or 0 for x in reports)
+    if all(x.undecided is not None for x in reports):
         common["undecided"] = tuple(y for x in reports for y in x.undecided or ())
     return SamplingReport(**common)
 

@@ -55,12 +55,11 @@ class Samples(SampleArrays, Methods):
     patch_index : (N,) int64 array
         Patches of the spline in which the samples were found.
     on_surface : (N,) bool array or None
-        Whether the sample is on the surface, with the normal of the surface up to 1e-9. False for a
-        sample at a prescribed normal that could not be moved there from the spline: next to
-        parabolic and singular points, and next to open boundaries if the surface has that normal
-        only outside of its domain. Its normal, K and H are then those of the spline; those of the
-        surface at its `uv` may be entirely different, even the sign of K. None with
-        ``on="spline"``, or if it was not requested.
+        Whether the sample is on the surface, with the normal of the surface up to 1e-9. False at
+        singular points, and for a sample of a silhouette that could not be moved there from the
+        spline. Its normal, K and H are then those of the spline; those of the surface at its `uv`
+        may be entirely different, even the sign of K. None with ``on="spline"``, or if it was not
+        requested.
     uv_radius : (N, 2) float64 array or None
         For points that are proved to be all with prescribed normals: bounds of the errors of `uv`;
         NaN on faces of parts where points are estimated. None for others.

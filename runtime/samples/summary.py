@@ -50,6 +50,8 @@ def summary_of(samples: SampleArrays) -> str:
     if report.unrefined:
         line += f"; {plural(report.unrefined, 'sample')} could not be moved to the surface: there "
         line += "normals and curvatures are those of its spline"
+    if report.proved is None and report.undecided:
+        line += f"; {plural(len(report.undecided), 'normal')} may have further points"
     if report.apexes:
         tips = "a sharp tip" if report.apexes == 1 else f"{report.apexes} sharp tips"
         line += f"; the surface ends in {tips}"

@@ -182,9 +182,7 @@ def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Sam
         return None
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(round(density * image), 1000))
     chosen = Chosen(lattice, min(density, densest))
-    samples, normals = _at_chosen(geometry, chosen, progress)
-    # Nobody has asked for these normals: others take the place of those without a point.
-    return (samples if samples.on_surface is None else samples[samples.on_surface]), normals
+    return _at_chosen(geometry, chosen, progress)
 
 
 def _at_chosen(geometry: OnSpline, chosen: Chosen, progress: bool) -> tuple[Samples, Array]:

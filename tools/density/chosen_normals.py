@@ -25,6 +25,8 @@ ATTEMPTS = 20
 IN_PROPORTION, DITHER = 6, 0.008
 # The largest number of normals per requested sample (a thin Gaussian image has few samples).
 NORMALS_PER_SAMPLE = 100
+# If points of the spline cannot be moved to the surface, so often the number of hits is corrected.
+CORRECTIONS = 3
 # For larger counts, the density is extrapolated from this count.
 PILOT = 1_000_000
 
@@ -66,7 +68,8 @@ class Chosen:
             normals = self.part(0, len(self), geometry.threads)
             searched = replace(geometry, index=None)  # nobody has asked for a proof
             found = searched.samples_at(normals, fields, dtype, progress, self.density)
-        return found, normals
+        # Nobody has asked for these normals: others take the place of those without a point.
+        return replace(found, report=replace(found.report, undecided=None)), normals
 
 
 def choose(geometry: OnPatches, count: int, progress: bool) -> Chosen:
@@ -75,15 +78,27 @@ def choose(geometry: OnPatches, count: int, progress: bool) -> Chosen:
     For more samples than `PILOT`, the density is extrapolated from that of `PILOT` samples.
     """
     pilot = min(count, PILOT)
-    chosen, samples = _adapted(geometry, pilot, progress)
+    chosen, hits = _adapted(geometry, pilot, progress)
+    samples = _with_samples(geometry, chosen, hits)
+    for _ in range(CORRECTIONS):
+        if abs(samples - pilot) <= NEAR_ENOUGH * pilot or not samples:
+            break
+        chosen, hits = _adapted(geometry, round(hits * pilot / samples), progress)
+        samples = _with_samples(geometry, chosen, hits)
     if pilot == count or not isinstance(chosen.source, Lattice):
         return chosen
     most = chosen.source.density_of(min(NORMALS_PER_SAMPLE * count, MOST))
     return Chosen(chosen.source, min(chosen.density * count / (samples or pilot), most))
 
 
+def _with_samples(geometry: OnPatches, chosen: Chosen, hits: int) -> float:
+    """Return how many of the hits at chosen normals have a sample, about."""
+    assert chosen.found is not None
+    return hits * geometry.share_at(*chosen.found)
+
+
 def _adapted(geometry: OnPatches, count: int, progress: bool) -> tuple[Chosen, int]:
-    """Adapt the density of a lattice to `count` samples; return it and the number of samples."""
+    """Adapt the density of a lattice to `count` hits; return it and the number of hits."""
     spline, threads = geometry.spline, geometry.threads
     lattice = Lattice.around(spline, geometry.reach)
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))

@@ -148,7 +148,7 @@ def silhouette(
     (geometry,) = on_grids([geometry_of(surface, cells, on).used(number, threads)])
     spline = geometry.spline
     normals, hits = _by_count(geometry, axis, asked, progress)
-    found = geometry.at_hits(normals, hits, list(dict.fromkeys([*names, *KEYS, *flags])), number)
+    found = geometry.near_hits(normals, hits, list(dict.fromkeys([*names, *KEYS, *flags])), number)
     arrays = found.fields
     places = _places_on_spline(spline, normals, hits, arrays)
     unrefined = _move_others(geometry, axis, places, arrays)

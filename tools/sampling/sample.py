@@ -166,8 +166,8 @@ def sample(
     that the function of a surface must return the same points each time; a `GaussMap` keeps them as
     long as it exists. On other surfaces, and at normals that were not prescribed, Newton's method
     moves a sample from the spline to the point with its normal. If there is no such point nearby,
-    the sample stays on the spline and is marked, see `Samples.on_surface`. Samples that fill gaps
-    are evaluated at their parameters.
+    there is no sample; of prescribed normals, these are listed in `undecided`, too. Samples that
+    fill gaps are evaluated at their parameters.
 
     **Parts and pieces.** All faces of a part, and all smooth pieces of a surface, have one target
     density and one count; angle and coverage refer to the whole. A piece has samples at normals if

@@ -18,7 +18,7 @@ from ...runtime.onto_surface.on_spline import OnPatches
 from ...runtime.onto_surface.on_surface import place_of_samples
 from ...runtime.onto_surface.pieces import geometries_of, pieces_to_sample
 from ...runtime.samples.fields import checked_dtype, checked_fields
-from ...runtime.samples.report import count_infinite, warn_of
+from ...runtime.samples.report import UndecidedNormal, count_infinite, warn_of
 from ...runtime.samples.samples import Samples
 from ...runtime.search.search import developable_patches
 from ...runtime.spline.nets import AnySpline
@@ -139,32 +139,39 @@ class _Stream:
         starts = range(0, total, NORMALS_AT_A_TIME)
         alone = len(starts) == 1
         came, unrefined, last, chunk = 0, 0, None, None
+        left, listed = list[UndecidedNormal](), self.request.count is None
         for first in shown(iter(starts), len(starts), self.progress and not alone):
             end = min(first + NORMALS_AT_A_TIME, total)
             normals = chosen.part(first, end, geometry.threads)
             for part in geometry.samples_in_turn(
                 normals, self.fields, self.dtype, self.size, self.progress and alone, chosen.density
             ):
-                last, chunk = part.report, _chunk(part, first, total)
+                last, chunk = part.report, _chunk(part, first, total, listed)
                 came, unrefined = came + len(part), unrefined + (last.unrefined or 0)
-                if len(part):
+                more = chunk.report.undecided or ()
+                left += more
+                if len(part) or more:
                     yield chunk
             del normals  # before the next block is made
         assert last is not None
         assert chunk is not None
-        if came == 0:
+        if came == 0 and not left:
             yield chunk
         developable = developable_patches(geometry.spline, geometry.threads)
         report = replace(last, samples=came, developable_patches=developable, unrefined=unrefined)
+        report = replace(report, undecided=tuple(left) if listed else None)
         warn_of(report, self.request.count, stacklevel=3)
 
 
-def _chunk(found: Samples, start: int, total: int) -> Samples:
-    """Return samples at a block of the `total` normals, which are numbered from `start` on."""
+def _chunk(found: Samples, start: int, total: int, listed: bool) -> Samples:
+    """Return samples at a block of the `total` normals, which are numbered from `start` on.
+
+    Undecided normals are `listed` if they were prescribed.
+    """
     arrays: dict[str, Any] = found.arrays()
     if start and "normal_index" in arrays:
         arrays["normal_index"] = arrays["normal_index"] + start
-    report, undecided = found.report, found.report.undecided
+    report, undecided = found.report, found.report.undecided if listed else None
     if undecided is not None:
         undecided = tuple(x._replace(normal=x.normal + start) for x in undecided)
     report = replace(

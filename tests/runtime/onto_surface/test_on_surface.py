@@ -315,3 +315,65 @@ def test_chunks_make_the_whole(name: str, monkeypatch: pytest.MonkeyPatch) -> No
             for field in whole.fields:
                 assert (getattr(joined, field) == getattr(whole, field)).all()
             assert joined.report.unrefined == whole.report.unrefined
+
+
+# --- points of the spline that cannot be moved ----------------------------------------------------
+
+
+def power(x: np.ndarray, exponent: float) -> np.ndarray:
+    return np.sign(x) * np.abs(x) ** exponent
+
+
+def superellipsoid(exponent: float) -> gm.Surface:
+    """Each normal has one point; derivatives jump or are infinite on the planes of symmetry."""
+
+    def f(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        ring = power(np.cos(v), exponent)
+        x, y = ring * power(np.cos(u), exponent), 1.3 * ring * power(np.sin(u), exponent)
+        return np.stack([x, y, 0.8 * power(np.sin(v), exponent)], axis=-1)
+
+    domain = ((0.0, 2.0 * np.pi), (-np.pi / 2, np.pi / 2))
+    return gm.Surface.from_callable(f, domain, (True, False))
+
+
+@pytest.mark.filterwarnings("ignore:.*could not be moved")
+@pytest.mark.filterwarnings("ignore:.*accuracy of the default is not reached")
+@pytest.mark.parametrize("exponent", [0.5, 1.5])
+def test_normals_without_a_sample_are_listed(exponent):
+    normals = gm.fibonacci(300)
+    samples = gm.sample(superellipsoid(exponent), normals=normals)
+    assert samples.on_surface is not None
+    assert samples.on_surface.all()
+    assert samples.report.undecided is not None
+    found = np.bincount(samples.normal_index, minlength=300)
+    listed = [x.normal for x in samples.report.undecided]
+    assert len(listed) == len(set(listed)) < 6
+    found[listed] = 1
+    np.testing.assert_array_equal(found, 1)
+    # The points are where a superellipsoid has its normals: differences do not cross the planes of
+    # symmetry there, nor do they come near.
+    away = np.abs(normals[samples.normal_index]).min(axis=1) > 0.1
+    on_axis = np.abs(samples.points / [1.0, 1.3, 0.8]) ** (2.0 / exponent - 1.0) / [1.0, 1.3, 0.8]
+    on_axis *= np.sign(samples.points)
+    on_axis /= np.linalg.norm(on_axis, axis=1, keepdims=True)
+    off = np.abs(on_axis - normals[samples.normal_index]).max(axis=1)
+    assert off[away].max() < 1e-6
+    assert samples.report.proved is None
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("count", [500, 5000])
+def test_a_count_is_that_of_samples_on_the_surface(count):
+    """A torus that crosses itself: its spline rounds the tips, where the surface has no normals."""
+    position = ("(3/5 + cos(v))*cos(u)", "(3/5 + cos(v))*sin(u)", "sin(v)")
+    domain = ((0, "2*pi"), (0, "2*pi"))
+    spindle = gm.Surface.from_sympy(position, ("u", "v"), domain, (True, True))
+    samples = gm.sample(spindle, count, density="gauss")
+    assert samples.on_surface is not None
+    assert samples.on_surface.all()
+    assert abs(len(samples) - count) <= 0.02 * count + 5
+    assert samples.report.undecided is None
+    turned = np.cross(samples.normals, normals_at(spindle, samples.uv))
+    assert np.linalg.norm(turned, axis=1).max() < 1e-9
+    streamed = gm.Samples.concatenate(list(gm.sample_stream(spindle, count, chunk=100)))
+    np.testing.assert_array_equal(streamed.points, samples.points)

@@ -356,6 +356,16 @@ def repeated(samples: gm.Samples, periodic: tuple[bool, bool]) -> int:
     return count
 
 
+def not_listed(samples: gm.Samples, count: int) -> NDArray[np.bool_]:
+    """Return which normals have no points of the spline that could not be moved, in their boxes."""
+    found = np.ones(count, dtype=np.bool_)
+    for normal, box, kind, *_ in samples.report.undecided or ():
+        found[normal] = False
+        assert kind == "unmoved"
+        assert (np.diff(np.reshape(box, (2, 2))) > 0.0).all()
+    return found
+
+
 def knobby_torus(u: Array, v: Array) -> Array:
     minor = 0.35 + 0.06 * np.sin(4.0 * u + 3.0 * v)
     major = 1.0 + minor * np.cos(v)
@@ -388,9 +398,11 @@ def test_no_sample_of_a_normal_is_repeated(name: str, cells: tuple[int, int] | N
         np.bincount(x.normal_index, np.copysign(1.0, x.gaussian_curvature), len(normals))
         for x in (on_spline, on_surface)
     )
-    np.testing.assert_array_equal(before, after)
+    sure = not_listed(on_surface, len(normals))
+    np.testing.assert_array_equal(before[sure], after[sure])
     stream = gm.sample_stream(surface, normals=normals, cells=cells, chunk=500)
     joined = gm.Samples.concatenate(stream)
+    assert joined.report.undecided == on_surface.report.undecided
     for field in on_surface.fields:
         np.testing.assert_array_equal(getattr(joined, field), getattr(on_surface, field))
 
@@ -404,14 +416,16 @@ def test_folds_of_a_coarse_spline_are_no_folds_of_the_surface(cells: int) -> Non
     folded = gm.sample(band, normals=normals, cells=(cells, cells), on="spline")
     samples = gm.sample(band, normals=normals, cells=(cells, cells), on="surface")
     assert samples.on_surface is not None
-    assert (samples.gaussian_curvature[samples.on_surface] < 0.0).all()
+    assert samples.on_surface.all()
+    assert (samples.gaussian_curvature < 0.0).all()
     assert (folded.gaussian_curvature > 0.0).any()
-    there = samples.on_surface
-    assert np.bincount(samples.normal_index[there]).max() <= 2
+    assert np.bincount(samples.normal_index).max() <= 2
     before, after = (
         np.bincount(x.normal_index, np.sign(x.gaussian_curvature), 3000) for x in (folded, samples)
     )
-    np.testing.assert_array_equal(before, after)
+    sure = not_listed(samples, 3000)
+    assert sure.mean() > 0.9
+    np.testing.assert_array_equal(before[sure], after[sure])
 
 
 # --- poles ----------------------------------------------------------------------------------------
@@ -422,7 +436,7 @@ def check_once(surface: gm.Surface, cells: int, normals: Array, euler: int = 1) 
     assert samples.on_surface is not None
     signs = np.sign(samples.gaussian_curvature)
     totals = np.bincount(samples.normal_index, signs, minlength=len(normals))
-    assert (totals == euler).all()
+    assert (totals[not_listed(samples, len(normals))] == euler).all()
     return samples
 
 
