@@ -14,10 +14,11 @@ from .base.threads import thread_count
 from .directions.regions import Cap
 from .directions.unit import as_normals
 from .map_methods import Methods
-from .onto_surface.on_spline import OnPatches, on_grids
+from .onto_surface.on_spline import OnPatches, OnSpline, on_grids
 from .onto_surface.on_surface import checked_place
 from .onto_surface.pieces import geometries_of, samples_of_pieces
 from .onto_surface.reach import in_reach
+from .onto_surface.tip_degrees import tip_degrees
 from .samples.fields import checked_dtype, checked_fields
 from .samples.samples import Samples
 from .samples.whole import Whole
@@ -194,7 +195,9 @@ class GaussMap(Methods):
     def degree(self, normals: ArrayLike, *, threads: int | None = None) -> NDArray[np.int64]:
         """Return Σ sign K over the points with each of the normals.
 
-        On a closed surface it is χ/2 for every normal, χ being the Euler characteristic.
+        On a closed surface it is χ/2 for every normal, χ being the Euler characteristic. If the
+        surface ends in tips, normals in the cone of a tip are counted there: once at the tip of a
+        convex cone, as often as it is covered by the normals at the tip, with signs, at others.
 
         Parameters
         ----------
@@ -220,10 +223,14 @@ class GaussMap(Methods):
         array([0, 0])
 
         """
-        fields = ("normal_index", "gaussian_curvature")
-        found = self.points(normals, fields=fields, threads=threads)
+        fields, directions = ("normal_index", "gaussian_curvature"), as_normals(normals)
+        found = self.points(directions, fields=fields, threads=threads)
         signs, asked = np.copysign(1.0, found.gaussian_curvature), found.report.normals or 0
-        return np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
+        sums = np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
+        for piece in self._pieces:
+            if isinstance(piece, OnSpline):
+                sums += tip_degrees(piece, directions)
+        return sums
 
     @in_memory
     def _points(

@@ -1,0 +1,69 @@
+"""Points and tips add up to the degree, at the tips of cones of any shape."""
+
+import gaussmap as gm
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from ...products import covering
+
+Array = NDArray[np.float64]
+
+# The amplitude and the number of waves round the axis, and how much the ends lean: convex cones,
+# and others that have normals twice, or with the other sign.
+WAVES = {
+    "round": (0.0, 3, 0.0),
+    "wavy": (0.08, 3, 0.0),
+    "lean": (0.3, 3, 0.2),
+    "star": (0.3, 5, 0.1),
+}
+
+
+def lemon(name: str, along_u: bool) -> gm.Surface:
+    """Return a closed surface that ends in two tips, at the ends of v or of u."""
+    wave, number, lean = WAVES[name]
+    r = f"(2*cos(v) - 1)*(1 + {wave}*cos({number}*u))"
+    texts = f"{r}*cos(u)", f"{r}*sin(u)", f"2*sin(v) + {lean}*(2*cos(v) - 1)*cos(u)"
+    turn, ends = (0, "2*pi"), ("-pi/3", "pi/3")
+    if along_u:  # normals point inwards
+        return gm.Surface.from_sympy(texts, ("v", "u"), (ends, turn), (False, True))
+    return gm.Surface.from_sympy(texts, ("u", "v"), (turn, ends), (True, False))
+
+
+def directions() -> Array:
+    rng = np.random.default_rng(1)
+    n = np.concatenate([np.eye(3), -np.eye(3), gm.icosphere(6), rng.normal(size=(300, 3))])
+    return n / np.linalg.norm(n, axis=1, keepdims=True)
+
+
+@pytest.mark.compiled
+@covering(name=[*WAVES], on=["spline", "surface"], along_u=[False, True])
+def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, along_u: bool) -> None:
+    image = gm.GaussMap(lemon(name, along_u), cells=(64, 64), on=on)
+    n = directions()
+    np.testing.assert_array_equal(image.degree(n), 1)
+    assert (image.count(n) == 0).any()  # the tips have samples of none of these
+
+
+def test_data_have_tips_as_well() -> None:
+    u, v = np.meshgrid(np.arange(60) * 2 * np.pi / 60, np.linspace(-np.pi / 3, np.pi / 3, 41))
+    r = (2 * np.cos(v) - 1) * (1 + 0.3 * np.cos(5 * u))
+    points = np.stack([r * np.cos(u), r * np.sin(u), 2 * np.sin(v)], axis=-1)
+    surface = gm.Surface.from_grid(points, periodic=(False, True))
+    for turned in (surface, surface.flipped()):
+        np.testing.assert_array_equal(gm.GaussMap(turned).degree(directions()), 1)
+
+
+def test_open_cones_and_corners() -> None:
+    """A cone covers nothing else; the corner of a triangle is on the border and has no degree."""
+    cone = gm.Surface.from_sympy(
+        ("v*cos(u)", "v*sin(u)", "-v - v**2/9"), ("v", "u"), ((0, 1), (0, "2*pi")), (False, True)
+    )
+    within = gm.fibonacci(300)
+    steep = within[:, 2] > np.hypot(within[:, 0], within[:, 1])
+    np.testing.assert_array_equal(gm.GaussMap(cone, on="spline").degree(within)[steep], 1)
+    triangle = gm.Surface.from_sympy(("v", "u*v", "u*v**2"), ("u", "v"), ((0, 1), (0, 1)))
+    image = gm.GaussMap(triangle, on="spline")
+    assert image.spline is not None
+    counts = image.count(within)
+    np.testing.assert_array_equal(np.abs(image.degree(within)), counts)
