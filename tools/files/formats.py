@@ -14,7 +14,14 @@ from ...runtime.samples.samples import Samples
 from .arrow import write_arrow, write_parquet
 from .las import write_las
 from .npz import read_npz, write_npz
-from .paths import PathLike, atomic_path, check_target, checked_path, known_suffix
+from .paths import (
+    PathLike,
+    atomic_path,
+    check_target,
+    checked_path,
+    known_suffix,
+    written_by_library,
+)  # fmt: skip
 from .ply import read_ply, write_mesh_ply, write_ply
 from .reading import opened
 from .tables import write_csv, write_xyz
@@ -79,7 +86,7 @@ def write_samples(samples: Samples, path: PathLike) -> None:
     suffix = _suffix_of_samples(path)
     check_fields(path, samples.fields)
     _check_library(suffix, OF_SAMPLES)
-    with atomic_path(path) as temporary:
+    with atomic_path(path) as temporary, written_by_library(path):
         OF_SAMPLES[suffix].write(samples, temporary)
 
 
@@ -91,7 +98,7 @@ def write_mesh(mesh: Mesh, path: PathLike) -> None:
         raise InputError("this mesh has no triangles, and so there is nothing to write.")
     if suffix in SINGLE:
         warn_of_rounding(mesh.vertices, 4)
-    with atomic_path(path) as temporary:
+    with atomic_path(path) as temporary, written_by_library(path):
         OF_MESHES[suffix].write(mesh, temporary)
 
 

@@ -24,10 +24,13 @@ __all__ = [
     "checked_path",
     "known_suffix",
     "reason_of",
+    "written_by_library",
 ]
 
 PathLike = str | os.PathLike[str]
 
+# The largest number of characters of a library's own message.
+MOST_SAID = 100
 # The prefix of the names of temporary files.
 BEGUN = ".gaussmap-"
 
@@ -91,6 +94,23 @@ def atomic_path(path: PathLike) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             temporary.unlink()
+
+
+@contextmanager
+def written_by_library(path: PathLike) -> Iterator[None]:
+    """Turn any exception of a library that writes a file into a FileError.
+
+    Libraries for compressed files have their own types for a full disk.
+    """
+    try:
+        yield
+    except (GaussmapError, MemoryError, OSError):
+        raise
+    except Exception as error:
+        reason = " ".join(f"{type(error).__name__}: {error}".split())[:MOST_SAID].rstrip(".")
+        raise FileError(
+            f"'{path}' cannot be written ({reason}); make room, or choose another disk or format."
+        ) from error
 
 
 def checked_path(path: PathLike) -> Path:

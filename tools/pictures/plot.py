@@ -340,7 +340,7 @@ def write_figure(figure: Figure, path: paths.PathLike) -> None:
     """
     check_target(path)
     suffix = Path(path).suffix.lower()
-    with style(), paths.atomic_path(path) as temporary:
+    with style(), paths.atomic_path(path) as temporary, paths.written_by_library(path):
         # In .pdf and .svg files, quadrangles are rasterized, at a finer resolution than a screen's.
         dots = figure.dpi if suffix == ".png" else FINE
         figure.savefig(temporary, format=suffix[1:], metadata=UNDATED[suffix], dpi=dots)

@@ -114,14 +114,14 @@ def litter(folder: Path, *expected: str) -> list[str]:
 
 
 @contextmanager
-def tiny_disk() -> Iterator[None]:
-    """No file can grow beyond 500 bytes: the closest to a full disk that needs no real one.
+def tiny_disk(most: int = 500) -> Iterator[None]:
+    """No file can grow beyond some bytes: the closest to a full disk that needs no real one.
 
     Keep it round the one call that must fail: pytest's own log is a file too.
     """
     resource = pytest.importorskip("resource")
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (500, hard))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, hard))
     try:
         yield
     finally:
@@ -740,6 +740,33 @@ def fail(path: Path, error: BaseException) -> None:
         temporary.write_text("new")
         assert litter(path.parent, *before) == [temporary.name]
         raise error
+
+
+@pytest.mark.parametrize("suffix", [".laz", ".las", ".parquet"])
+def test_a_disk_that_is_full_while_a_library_writes(tmp_path, suffix):
+    samples, path = gm.sample("torus", 5_000), tmp_path / f"file{suffix}"
+    path.write_text("old")
+    message = rf"file\{suffix}' cannot be written.*; make room"
+    with pytest.raises(gm.errors.FileError, match=message), tiny_disk(1 << 14):
+        write_samples(samples, path)
+    assert path.read_text() == "old"
+    assert litter(tmp_path, path.name) == []
+
+
+@every_suffix
+def test_any_exception_of_a_library_is_one_sentence(tmp_path, suffix, monkeypatch):
+    def broken(*_: object) -> None:
+        raise RuntimeError("out\nof " + 300 * "luck ")
+
+    known = formats.OF_SAMPLES
+    monkeypatch.setitem(known, suffix, known[suffix]._replace(write=broken))
+    path = tmp_path / f"file{suffix}"
+    with pytest.raises(gm.errors.FileError, match="RuntimeError: out of luck") as caught:
+        write_samples(make(), path)
+    said = str(caught.value)
+    assert "\n" not in said
+    assert said.endswith("make room, or choose another disk or format.")
+    assert litter(tmp_path) == []
 
 
 @every_suffix
