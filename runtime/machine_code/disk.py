@@ -12,6 +12,7 @@ import os
 import shutil
 import tempfile
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import cache
@@ -20,9 +21,11 @@ from typing import IO, Any
 
 from numba.core import config as numba_config
 
+from ..base.errors import GaussmapWarning
 from .entries import replace_file
 from .processors import changed_options, identity
 from .sources import PACKAGE, digest
+from .trust import is_private, private_content
 
 __all__ = ["FileLock", "entries_in", "kept_folder", "load", "lock_of", "save"]
 
@@ -39,33 +42,50 @@ def kept_folder() -> Path | None:
     """Return the folder for machine code made of these sources; None if none can be written.
 
     It is in NUMBA_CACHE_DIR if that is set, else next to the sources, or else in the user's cache
-    folder.
+    folder. A folder that others can write to is not used: entries could run anything.
     """
-    asked = config.CACHE_DIR
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    for base in [Path(asked)] if asked else [PACKAGE / "__pycache__", home / "gaussmap"]:
+    asked, refused = config.CACHE_DIR, None
+    for base in [Path(asked)] if asked else [PACKAGE / "__pycache__", *_of_user()]:
         folder = base / f"kernels-{digest()}"
         try:
-            folder.mkdir(parents=True, exist_ok=True)
+            base.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(mode=0o700, exist_ok=True)
+            if not is_private(folder.lstat()):
+                refused = folder
+                continue
             tempfile.TemporaryFile(dir=folder).close()
         except OSError:
             continue
         remove_unused(folder)
         return folder
+    if refused is not None:
+        warnings.warn(
+            f"kernels are compiled in each process: others than you may write to '{refused}', "
+            "so that what is kept there is not used; remove it, or set NUMBA_CACHE_DIR.",
+            GaussmapWarning,
+            stacklevel=2,
+        )
     return None
+
+
+def _of_user() -> list[Path]:
+    """Return the user's cache folder, if there is one: a user may have no home."""
+    with suppress(RuntimeError):
+        return [Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gaussmap"]
+    return []
 
 
 def load(folder: Path, key: str, processor: object) -> bytes | None:
     """Return an entry compiled for a processor, possibly damaged; None if there is none."""
     with suppress(OSError):
-        return _path(folder, key, processor).read_bytes()
+        return private_content(_path(folder, key, processor))
     return None
 
 
 def save(folder: Path, key: str, processor: object, entry: bytes) -> None:
     """Write an entry atomically; ignore errors of the disk."""
     with suppress(OSError):
-        replace_file(_path(folder, key, processor), entry)
+        replace_file(_path(folder, key, processor), entry, 0o600)
 
 
 def lock_of(folder: Path, key: str, processor: object) -> FileLock:
@@ -76,7 +96,8 @@ def lock_of(folder: Path, key: str, processor: object) -> FileLock:
 def entries_in(folder: Path) -> Iterator[bytes]:
     """Read all entries of a folder, in the order of their names."""
     for path in sorted(folder.glob(f"*{SUFFIX}")):
-        yield path.read_bytes()
+        if (content := private_content(path)) is not None:
+            yield content
 
 
 def _path(folder: Path, key: str, processor: object) -> Path:

@@ -28,6 +28,7 @@ __all__ = [
 ]
 
 CHECKSUM = 32  # bytes of SHA-256
+BINARY = getattr(os, "O_BINARY", 0)  # of Windows
 
 
 def key_of(function: Callable[..., Any], signature: Any) -> str:
@@ -90,11 +91,12 @@ def opened(content: bytes) -> bytes | None:
     return data if hashlib.sha256(data).digest() == checksum else None
 
 
-def replace_file(path: Path, content: bytes) -> None:
-    """Write a file atomically, with the permissions of new files."""
+def replace_file(path: Path, content: bytes, mode: int = 0o644) -> None:
+    """Write a file atomically, with permissions of at most a mode."""
     part = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
     try:
-        part.write_bytes(content)
+        with open(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY | BINARY, mode), "wb") as file:
+            file.write(content)
         os.replace(part, path)
     finally:
         part.unlink(missing_ok=True)
