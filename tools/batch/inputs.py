@@ -20,6 +20,7 @@ from ...runtime.surface.surfaces import CATALOGUE, CatalogueFunction, named
 from ..cad.part import Part
 from ..files.numpy_files import array_file
 from ..files.paths import checked_path, reason_of
+from ..files.reading import UnusableError, regular_file
 from .manifest import as_text
 
 __all__ = ["Input", "Source", "content_of", "inputs_of", "parameters_of"]
@@ -138,8 +139,10 @@ def _add_array(digest: Any, array: Any) -> None:  # noqa: ANN401
 
 def _add_file(digest: Any, path: Path) -> None:  # noqa: ANN401
     try:
-        with open(path, "rb") as file:
+        with regular_file(path) as file:
             digest.update(hashlib.file_digest(file, "sha256").digest())
+    except UnusableError as error:
+        raise FileError(f"'{path}' {error}") from error
     except FileNotFoundError:
         raise FileError(f"'{path}' does not exist.") from None
     except OSError as error:

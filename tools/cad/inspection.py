@@ -154,9 +154,9 @@ def is_part_file(source: str | None) -> bool:
     if suffix in CAD_SUFFIXES:
         return True
     try:
+        if not array_file(source).is_file():  # a pipe would be waited for
+            return False
         if suffix != ".npz":
-            if not Path(source).is_file():
-                return False
             with open(source, "rb") as file:
                 return format_of(file.read(HEAD)) is not None
         with zipfile.ZipFile(array_file(source)) as archive:
