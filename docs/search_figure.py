@@ -6,8 +6,8 @@ import gaussmap as gm
 import numpy as np
 from gaussmap.docs.drawing import HALO, Floats, Globe, panels
 from gaussmap.docs.patch_figures import Patch, bezier, unit
-from gaussmap.runtime.search.index import Index, index_of
 from gaussmap.runtime.search.kernels.lists import FINEST, order_normals, write_caps
+from gaussmap.runtime.search.patch_index import Index, index_of
 from gaussmap.runtime.search.search import find
 from gaussmap.tools.pictures.palette import GRID, HYPERBOLIC, INK, PALE
 from gaussmap.tools.pictures.scene import quadrangles, view

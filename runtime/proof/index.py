@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from ..base.aliases import Array
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
-from ..search.index import listed, ordered
 from ..search.kernels.lists import NUMBER, Lists
 from ..search.kernels.pieces import CHORD, CONE, EVERYTHING, WIDTH, Pieces
 from ..search.kernels.search import CELLS as KIND
 from ..search.kernels.search import Found as Pairs
 from ..search.kernels.search import Memory, search
+from ..search.patch_index import listed, ordered
 from ..tape.kernels.points import LANES, Tape
 from .caps import Cap, cap_of
 from .discs import PoleDisc, pole_disc

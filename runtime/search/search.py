@@ -25,10 +25,10 @@ from .exact import decide
 from .fill import fill
 from .hits import Hits
 from .in_nets import decide_in_nets, flat_nets
-from .index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 from .kernels.lists import NUMBER
 from .kernels.search import PATCHES, Found, Memory, search
 from .kernels.sort import order_few
+from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
 __all__ = ["Hits", "developable_patches", "find", "find_in_turn", "on_border"]
 

@@ -7,7 +7,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.search import exact, fill, index, search
+from gaussmap.runtime.search import exact, fill, patch_index, search
 from gaussmap.runtime.search.search import find
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
@@ -55,7 +55,7 @@ def test_how_many_normals_share_a_bin_does_not_matter(size, monkeypatch):
     for normals in (gm.fibonacci(20_000), gm.directions.cap(gm.icosphere(60), (1, 0, 1), 20)):
         usual = gm.sample(SPLINE, normals=normals)
         with monkeypatch.context() as patch:
-            patch.setattr(index, "NORMALS_PER_BIN", size)
+            patch.setattr(patch_index, "NORMALS_PER_BIN", size)
             same(gm.sample(SPLINE, normals=normals), usual)
 
 

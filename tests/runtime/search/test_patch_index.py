@@ -6,8 +6,8 @@ import threading
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.search import exact, index, search
-from gaussmap.runtime.search.index import Index, index_of
+from gaussmap.runtime.search import exact, patch_index, search
+from gaussmap.runtime.search.patch_index import Index, index_of
 from gaussmap.runtime.search.search import Hits, find
 from hypothesis import given
 from hypothesis import strategies as st
@@ -151,7 +151,7 @@ def test_bins_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
         for sizes in ({"BINS_PER_PIECE": 2.0}, {"BINS_PER_PIECE": 30.0}, {"WIDEST_CAP": 0.0}):
             with monkeypatch.context() as patch:
                 for size, value in sizes.items():
-                    patch.setattr(index, size, value)
+                    patch.setattr(patch_index, size, value)
                 fresh = pickle.loads(pickle.dumps(spline))  # without its index
                 assert pairs(find(fresh, normals)) == expected
 
@@ -169,7 +169,7 @@ def test_parts_of_large_splines(name: str, monkeypatch: pytest.MonkeyPatch) -> N
     """They have an index for each range of patches, which is not kept."""
     spline = pickle.loads(pickle.dumps(SPLINES[name]))
     expected = find(SPLINES[name], asked(spline))
-    monkeypatch.setattr(index, "MOST_PATCHES", 100)
+    monkeypatch.setattr(patch_index, "MOST_PATCHES", 100)
     monkeypatch.setattr(search, "MOST_PATCHES", 100)
     found = find(spline, asked(spline))
     assert pairs(found) == pairs(expected)
@@ -196,7 +196,7 @@ def test_threads_do_not_change_hits(threads: int, monkeypatch: pytest.MonkeyPatc
     spline = SPLINES["torus"]
     one = find(spline, NORMALS, 1)
     monkeypatch.setattr(search, "RANGE", 7)
-    monkeypatch.setattr(index, "PIECES_AT_A_TIME", 50)
+    monkeypatch.setattr(patch_index, "PIECES_AT_A_TIME", 50)
     other = find(pickle.loads(pickle.dumps(spline)), NORMALS, threads)
     assert (one.keys == other.keys).all()
     assert (one.local == other.local).all()
@@ -204,8 +204,8 @@ def test_threads_do_not_change_hits(threads: int, monkeypatch: pytest.MonkeyPatc
 
 def test_an_index_is_made_once_and_not_pickled(monkeypatch: pytest.MonkeyPatch) -> None:
     made = []
-    listed = index.listed
-    monkeypatch.setattr(index, "listed", lambda cones: made.append(1) or listed(cones))
+    listed = patch_index.listed
+    monkeypatch.setattr(patch_index, "listed", lambda cones: made.append(1) or listed(cones))
     for spline in (gm.fit("torus", (24, 17)), gm.Spline.from_nets(SPLINES["torus"].control_nets)):
         size = len(pickle.dumps(spline))
         first = gm.sample(spline, normals=AXES)
