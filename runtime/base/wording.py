@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-__all__ = ["plural"]
+__all__ = ["at_normals", "plural"]
 
 
 def plural(count: int, what: str) -> str:
     """Return a number with its noun, such as "1 part" and "2,000 parts"."""
     return f"{count:,} {what}{'' if count == 1 else 's'}"
+
+
+def at_normals(used: int, requested: int) -> str:
+    """Return at how many of the prescribed normals there are samples."""
+    part = "" if used == requested else f"{used:,} of "
+    return f"at {part}{plural(requested, 'prescribed normal')}"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.georeference import crs_label
-from ..base.wording import plural
+from ..base.wording import at_normals, plural
 from .report import SamplingReport, count_infinite, have_large_squares
 
 if TYPE_CHECKING:
@@ -110,19 +110,15 @@ def _origin(samples: SampleArrays) -> str:
         return " filling gaps" if normals else ""
     if not normals:
         return ""
-    given = f"at {plural(normals, 'prescribed normal')}"
-    if not filling:
-        return f" {given}{_each(samples, normals)}"
-    return f": {len(samples) - filling:,} {given}, {filling:,} filling gaps"
-
-
-def _each(samples: SampleArrays, normals: int) -> str:
-    """Return a clause on the number of samples of each prescribed normal, if all have the same."""
-    each, rest = divmod(len(samples), normals)
-    if normals == 1 or each == 0 or rest or "normal_index" not in samples.fields:
-        return ""
-    same = (np.bincount(samples.normal_index, minlength=normals) == each).all()
-    return f", exactly {each:,} each" if same else ""
+    if "normal_index" not in samples.fields:
+        return f" {at_normals(normals, normals)}"
+    index = samples.normal_index
+    used, counts = np.unique(index[index >= 0], return_counts=True)
+    given = at_normals(len(used), normals)
+    if filling:
+        return f": {len(samples) - filling:,} {given}, {filling:,} filling gaps"
+    same = len(used) > 1 and (counts == counts[0]).all()
+    return f" {given}{f', exactly {counts[0]:,} each' if same else ''}"
 
 
 def _infinite(samples: SampleArrays) -> str:

@@ -25,6 +25,7 @@ from ...runtime.base.checks import checked_count, known_name
 from ...runtime.base.errors import GaussmapWarning, InputError, in_memory
 from ...runtime.base.formula_calls import plane_vector, python_function
 from ...runtime.base.memory import check_memory
+from ...runtime.base.wording import at_normals
 from ...runtime.directions.circle import arc_of_normals, circle
 from ...runtime.directions.unit import as_normals
 from ...runtime.samples.report import WORTH_A_WARNING
@@ -190,9 +191,9 @@ class CurveSamples:
         '8 samples at 8 prescribed normals; 0 inflections...'
 
         """
-        report = self.report
+        report, used = self.report, len(np.unique(self.normal_index))
         line = (
-            f"{report.samples:,} samples at {report.normals:,} prescribed normals; "
+            f"{report.samples:,} samples {at_normals(used, report.normals)}; "
             f"{report.inflections} inflections; {100.0 * report.straight_share:.2f} % of the "
             "curve is straight"
         )

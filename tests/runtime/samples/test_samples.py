@@ -27,7 +27,9 @@ from ...refusals import refused
 
 REPORT = SamplingReport("torus", 8, 12, 4, 0.125, 1)
 FLAT = "of the surface is flat or developable (K = 0), which no set of normals can sample"
-AT = "10,012 samples at 1,234,567 prescribed normals"
+OF_ALL = "of 1,234,567 prescribed normals"
+AT = f"10,012 samples at 10,012 {OF_ALL}, exactly 1 each"
+TEN = f"10 of 10,012 samples at 10 {OF_ALL}, exactly 1 each (10 with K < 0)"
 START = f"{AT} (5,012 with K > 0, 5,000 with K < 0)"
 MISFIT: dict[str, Any] = {"developable_share": 0.0, "fit_distance": 1.0696e-5, "fit_rms": 6.0347e-6}
 
@@ -360,7 +362,7 @@ class TestText:
         ("changes", "rows", "summary"),
         [
             ({}, slice(None), f"{START}; 3.12 % {FLAT}"),
-            ({}, slice(10), f"10 of {AT} (10 with K < 0); 3.12 % {FLAT}"),
+            ({}, slice(10), f"{TEN}; 3.12 % {FLAT}"),
             ({"developable_share": 0.0}, slice(None), START),
             ({"developable_share": 4.9e-5}, slice(None), START),
             ({"developable_share": 5.1e-5}, slice(None), f"{START}; 0.01 % {FLAT}"),
@@ -399,7 +401,9 @@ class TestText:
             ([0, 1, 1, 0], "4 samples at 2 prescribed normals, exactly 2 each ("),
             ([1, 0], "2 samples at 2 prescribed normals, exactly 1 each ("),
             ([1, 1, 1, 0], "4 samples at 2 prescribed normals ("),
-            ([1, 1], "2 samples at 2 prescribed normals ("),
+            ([1, 1], "2 samples at 1 of 2 prescribed normals ("),
+            ([1], "1 sample at 1 of 2 prescribed normals ("),
+            ([1, -1], "2 samples: 1 at 1 of 2 prescribed normals, 1 filling gaps ("),
             ([0, 1, 1], "3 samples at 2 prescribed normals ("),
             ([0, 1, -1], "3 samples: 2 at 2 prescribed normals, 1 filling gaps ("),
         ],
@@ -416,7 +420,7 @@ class TestText:
         indices = np.arange(10012) - 5012
         samples = replace(self.samples(), normal_index=np.maximum(indices, -1))
         assert samples.summary() == (
-            "10,012 samples: 5,000 at 1,234,567 prescribed normals, 5,012 filling gaps "
+            f"10,012 samples: 5,000 at 5,000 {OF_ALL}, 5,012 filling gaps "
             "(5,012 with K > 0, 5,000 with K < 0)"
         )
         assert samples[:5012].summary() == (
