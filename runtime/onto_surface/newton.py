@@ -16,6 +16,7 @@ from ..base.threads import over_ranges
 from ..base.tolerances import NORMAL_ERROR, NORMAL_NOISE
 from ..spline.kernels.jets import evaluate_jets
 from ..spline.spline import Spline
+from ..surface.derivatives import power_of_two
 from ..surface.surface import Surface
 from .kernels.refine import (
     CLAMPED,
@@ -204,6 +205,6 @@ def near_poles(
         if len(rows):
             s, t = chart.places(uv[rows]).T.copy()
             n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
-            scales = np.array([spline.scale, chart.cell, chart.cell])
+            scales = np.array([spline.scale, *[power_of_two(chart.cell)] * 2])
             evaluate_jets(chart.jets(s, t), scales, n, K, H)
             yield rows, n * chart.orientation, K, H * chart.orientation

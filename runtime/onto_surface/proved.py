@@ -18,6 +18,7 @@ from ..samples.report import UndecidedNormal
 from ..samples.samples import Samples
 from ..search.search import developable_patches
 from ..spline.inside import samples_inside, with_uv
+from ..surface.derivatives import power_of_two
 from ..surface.surface import Surface
 from .newton import near_poles
 from .on_spline import Fields, OnSpline
@@ -90,7 +91,8 @@ def _arrays(
     )
     K, H = rooms.gaussian_curvature, rooms.mean_curvature
     frame, cells = spline.frame, spline.cells
-    scales = np.array([spline.scale, frame[2], frame[3]])
+    # Powers of two: then curvatures do not depend on the number of cells by their rounding.
+    scales = np.array([spline.scale, power_of_two(frame[2]), power_of_two(frame[3])])
     charts = pole_charts(surface, spline)
 
     def work(first: int, last: int) -> None:
