@@ -243,7 +243,7 @@ class GaussMap(Methods):
         out: Samples | None = None,
         reach: Cap | None = None,
     ) -> Samples:
-        """Return the points with unit normals (S, 3), those that are in a `reach`."""
+        """Return the points with unit normals (S, 3); a `reach` leaves only the normals in it."""
         if not isinstance(out, Samples | None):
             raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
         number, surface = checked_dtype(dtype), self._surface

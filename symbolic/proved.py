@@ -146,7 +146,10 @@ def CONTRACTION() -> Parts:
 
 
 def _ordinate(polynomial: sp.Expr, places: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
-    """Return a Bernstein ordinate over −1 … 1 of a polynomial of degree 2 in each parameter."""
+    """Return one Bernstein ordinate, over −1 … 1, of a polynomial of degree 2 in each parameter.
+
+    `places` says which one, by the parameter: −1 is the first, 0 the middle, 1 the last.
+    """
     for z, place in places.items():
         low, middle, high = (polynomial.subs(z, k) for k in (-1, 0, 1))
         polynomial = {-1: low, 0: 2 * middle - (low + high) / 2, 1: high}[int(place)]

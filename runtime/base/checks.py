@@ -1,4 +1,4 @@
-"""Checks of arguments: whole numbers, real numbers, arrays, names."""
+"""Checks of arguments: whole numbers, real numbers, arrays, and names ("did you mean")."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ DEFAULT_BOUNDS = Bounds(most=(1024, 1024), total=2**16, patience=2)
 # For a tolerance: the numbers of cells of the first attempt, and the largest ones.
 FEWEST_CELLS = (8, 8)
 BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
-# A callable is called twice at as many points; these are the same up to a part of their extent.
+# A callable is called twice at AGAIN points: both answers agree up to SAME times their extent.
 AGAIN, SAME = 16, 1e-9
 # Points at the ends of a parameter are compared with those as many roundings of it away.
 ROUNDINGS = 2.0
@@ -287,7 +287,7 @@ def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
 def _by_rounding(
     surface: Surface, axis: int, last: NDArray[np.float64], first: NDArray[np.float64]
 ) -> str:
-    """Return a clause if the ends of a parameter differ no more than its rounding makes points."""
+    """Return a clause: how far both ends of a parameter differ, and if its rounding explains it."""
     low, high = surface.domain[axis]
     other = np.linspace(*surface.domain[1 - axis], len(last))
     far = float(np.abs(last - first).max())

@@ -66,7 +66,7 @@ class FieldsOfSamples(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class OnPatches:
-    """A spline as what is sampled, on a grid or of nets, at normals.
+    """A spline, on a grid of cells or of nets, whose own points at normals are the samples.
 
     Samples at normals are written to the fields in `memory` that are large enough. With an `index`
     of the surface, all points with prescribed normals are found there.
@@ -82,7 +82,7 @@ class OnPatches:
     reach: Cap | None = None
 
     def within(self, reach: Cap | None) -> Self:
-        """Return the part whose normals are in a cap, or all of it; only all of it for nets."""
+        """Return the same; InputError for nets with a `reach`, as they have no grid to cut."""
         if reach is not None:
             on_grid(self.spline)
         return self
@@ -129,7 +129,7 @@ class OnPatches:
     ) -> Samples:
         """Return all points that have one of the unit normals (S, 3).
 
-        They are among `density` normals per steradian, by default S on the sphere.
+        The report takes `density` for the normals per steradian, by default S / 4π.
         """
         hits = find(self.spline, normals, self.threads, progress)
         return self.samples_at_hits(normals, hits, fields, dtype, density)
@@ -230,9 +230,9 @@ class OnPatches:
 
 @dataclass(frozen=True, eq=False)
 class OnSpline(OnPatches):
-    """A spline on a grid of cells as what is sampled; `surface` is for `OnSurface`.
+    """A spline on a grid of cells, which is sampled; `OnSurface` samples its `surface` instead.
 
-    With a `reach`, the trim leaves normals in it only.
+    With a `reach`, the trim excludes all points whose normals are outside of it.
     """
 
     spline: Spline

@@ -129,8 +129,8 @@ def samples_of_pieces(
 ) -> Samples:
     """Return all points of a surface of several pieces that have one of the unit normals (S, 3).
 
-    `name` is that of the report, and `surface` that of the samples, None for those on splines.
-    Pieces without an index whose Gaussian image has no area beyond rounding have none.
+    The report gets the `name`, and the samples the `surface`, None if they lie on splines. A piece
+    without an index has no samples if its Gaussian image has no area beyond rounding.
     """
     on_surface, kept = geometries[0].on == "surface", with_area(geometries)
     reports: list[SamplingReport] = []

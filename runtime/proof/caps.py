@@ -35,7 +35,7 @@ class Cap(NamedTuple):
     angle: float
 
     def holds(self, normals: Array) -> Indices:
-        """Return which unit normals (S, 3) may be those of points of the cap."""
+        """Return the indices of those unit normals (S, 3) that points of the cap may have."""
         away = np.linalg.norm(normals - self.axis, axis=1)
         return np.flatnonzero(away <= 2.0 * np.sin(0.5 * self.angle) + ROUNDING)
 

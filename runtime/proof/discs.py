@@ -66,11 +66,13 @@ class PoleDisc:
 
 
 class Bounds(NamedTuple):
-    """Bounds up to some r: of the Hessian (3, k) by q1 and q2, and the largest of other things.
+    """Bounds over the sectors of a disc, for r up to some radius.
 
-    `q` are the least and the largest length of (q1, q2) / r. `slope` is that of the derivatives of
-    h; `by_q` are those of r u and of r by q1 and q2; `along` those of the derivatives of q1 and q2
-    by u, over r, and by r.
+    hessian: the three entries of the Hessian of h by q1 and q2, each with a row for each sector.
+    q: the least and the largest length of (q1, q2) / r.
+    slope: the largest length of the gradient of h by q1 and q2.
+    by_q: the largest lengths of two gradients by q1 and q2: of u, times r, and of r.
+    along: the largest lengths of the derivatives of (q1, q2) by u, divided by r, and by r.
     """
 
     hessian: list[Ball]

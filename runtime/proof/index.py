@@ -47,7 +47,7 @@ CELLS = (64, 64)
 PROBES = 4
 # Base cells, normals and hard normals that are worked on at a time.
 CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
-# Room for cells, for pairs of normals and cells, and for what is found at a time, in the beginning.
+# The first lengths of arrays: of cells, of pairs of a normal and a cell, and of answers.
 CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
 # Cells without a cone of normals are in all bins: they are this part of the domain at most.
 MOST_OPEN = 0.25
@@ -368,9 +368,10 @@ class ProvedIndex:
 def _poles(
     tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]
 ) -> tuple[tuple[PoleDisc, ...], tuple[Cap, ...], Array, Array]:
-    """Return discs around poles, caps of others, the rest of the domain (2, 2), and other poles.
+    """Return discs and caps around poles, the domain without them (2, 2), and the poles left open.
 
-    The latter are boxes (k, 4). Open ends that are a smooth pole have discs, too.
+    A pole without a disc has a cap, if its normals are bounded. The poles with neither are boxes
+    (k, 4). Open ends of the domain that are a smooth pole have discs, too.
     """
     discs, caps, unknown = list[PoleDisc](), list[Cap](), list[list[float]]()
     inside = np.array(domain, dtype=np.float64)
@@ -400,9 +401,9 @@ def _poles(
 
 
 def _has_no_normals(tape: Tape, lines: list[NDArray[np.float64]]) -> bool:
-    """Return whether cells have no cones of normals, as those of a line: seen at a few small ones.
+    """Return whether a few small cells have no cones of normals, as on a surface that is a curve.
 
-    Otherwise all cells of a line are cut as often as can be, which takes seconds.
+    All cells of such a surface would be cut as often as can be, which takes seconds.
     """
     few = [np.unique(np.linspace(0, len(x) - 2, PROBES).round()).astype(int) for x in lines]
     ends = [

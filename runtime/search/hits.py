@@ -47,7 +47,7 @@ class Hits:
         )
 
     def __len__(self) -> int:
-        """Return the number of samples."""
+        """Return the number of hits."""
         return len(self.keys)
 
     @cached_property

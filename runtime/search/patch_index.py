@@ -201,7 +201,10 @@ def ordered(normals: Array, lists: Lists, threads: int | None) -> Indices:
 
 
 def sorted_keys(parts: Sequence[Indices], shift: int, count: int) -> Indices:
-    """Return keys in the order of their leading bits, below `count`; equal ones as they come."""
+    """Return the keys of all parts, sorted by their leading bits: key >> shift, below `count`.
+
+    Keys with the same leading bits keep their order.
+    """
     starts = np.zeros(count + 1, np.int32)
     for keys in parts:
         count_keys(keys, shift, starts)

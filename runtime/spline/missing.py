@@ -35,8 +35,8 @@ __all__ = [
 # The usual values of missing elevations.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))
 USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)
-# A `nodata` that differs from the lowest or the highest value by this part means it: it was printed
-# with six digits.
+# If the given `nodata` differs from the lowest or the highest value by at most this part of itself,
+# it may be that value, printed with six digits.
 NEAR = 1e-5
 # The rows of points next to a pole that all patches around it depend on.
 ROWS_AT_POLE = 3
@@ -84,7 +84,7 @@ def checked_nodata(nodata: Any) -> float:  # noqa: ANN401
 def without_nodata(points: Array, nodata: object, name: str) -> Array:
     """Return points or elevations with NaN in place of `nodata`; warn of likely missing data.
 
-    That is done as well where no value is `nodata`: it may have been rounded.
+    The warning also comes with a `nodata` that no value is equal to: it may have been rounded.
     """
     if nodata is None:
         _warn_of_nodata(points, name)

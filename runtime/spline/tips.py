@@ -24,9 +24,10 @@ SAME_POINT = 1e-9
 
 
 class Tips(NamedTuple):
-    """The tips (T, 3) of a spline, and its patches (patches,) with an edge or a corner there.
+    """The tips of a spline: `points` (T, 3), and the patches at them as flags (patches,).
 
-    Points within a distance `same` of a tip are that tip.
+    A `collapsed` patch has an edge that is a tip, a `touching` one a corner there. Points within a
+    distance `same` of a tip are that tip.
     """
 
     points: Array

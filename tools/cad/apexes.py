@@ -32,14 +32,20 @@ MIXED = 4  # the index of the coefficient of u v in Taylor polynomials; those of
 
 @dataclass(frozen=True, eq=False)
 class Apex:
-    """A side of the domain of a surface with a tape: u (axis 0) or v (axis 1) is `end`."""
+    """A side of a domain that is one point of the surface: there u (axis 0) or v (axis 1) is `end`.
+
+    The tape of the surface gives bounds over boxes beside it.
+    """
 
     tape: Tape
     axis: int
     end: float
 
     def decided(self, open_: Undecided, normals: Array) -> Undecided:
-        """Return the boxes that may hold a point with their normal, one of normals (S, 3)."""
+        """Return undecided boxes without those at the side that have no point with their normal.
+
+        The normals (S, 3) are those of the search, to which the numbers of boxes belong.
+        """
         low, high = 2 * self.axis, 2 * self.axis + 1
         # The boxes that touch the side.
         (rows,) = np.nonzero(

@@ -1,4 +1,4 @@
-"""The space of a part, and the weights of its samples."""
+"""The faces of a part as one space in which samples are placed, and the weights of samples."""
 
 from __future__ import annotations
 

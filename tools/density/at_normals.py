@@ -102,7 +102,8 @@ class Given:
 def at_normals(space: Space, normals: Array, curved: Iterable[int], progress: bool) -> Given:
     """Return all points that have one of normals (S, 3), each once.
 
-    Pieces that prove it have all; of the others, the `curved` ones are searched.
+    Pieces that can prove their points have all of them. Of the other pieces, only those in `curved`
+    are searched, on their splines.
     """
     density, found, estimated = len(normals) / (4 * math.pi), list[PieceSamples](), list[int]()
     for k, piece in enumerate(space.pieces):

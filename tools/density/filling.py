@@ -104,9 +104,9 @@ def fill(
 
 
 def _covered_tips(cover: Cover, angle: float) -> float:
-    """Add samples as `cover_normals`, in tips too narrow for its cells, too.
+    """Add samples as `cover_normals` does, and more in tips that are too narrow for its cells.
 
-    A search for the widest angle finds places in these. Return the widest that is left.
+    `widest_angle` finds places in these tips. Return the widest angle that is left.
     """
     reached, near = cover_normals(cover, angle), (1.0 - MARGIN) * chord_of(angle)
     for _ in range(MOST_SEARCHES):

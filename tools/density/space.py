@@ -301,7 +301,7 @@ class Space:
         return merged([cells, self._beside_borders(radius)])
 
     def parts(self, radius: float) -> Indices:
-        """Return the numbers (M, 2) of parts of each first cell along u and v in `cut`.
+        """Return into how many parts (M, 2), along u and v, `cut` cuts each of the first cells.
 
         Raises InputError if the parts are too many.
         """

@@ -13,7 +13,7 @@ from .kernels.greedy import Lists, note_samples
 
 __all__ = ["Voronoi"]
 
-# The largest number of samples in the list of a candidate.
+# A candidate has a list of at most this many samples, which may be the nearest ones in its cell.
 MOST = 16
 
 

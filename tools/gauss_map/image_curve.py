@@ -112,7 +112,7 @@ class Traced:
 
 
 class Curves:
-    """Curves on a surface or a spline, given by polylines of the parameters; they are straight.
+    """Curves on a surface or a spline: polylines in the parameters, or what `onto` makes of them.
 
     `jets` returns 2-jets (k, 6, 3) at parameters (k, 2); `size` is that of the surface.
     """

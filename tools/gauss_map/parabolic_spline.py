@@ -76,9 +76,9 @@ class ZerosOfSpline(Zeros):
         return cell[:, None] + 0.5 + local @ grid.CORNERS[patches % 4]
 
     def _edges(self, lines: list[tuple[int, Array]]) -> Array:
-        """Return the edges of patches (k, 2, 2), each once and cut where it meets lines.
+        """Return the edges of patches (k, 2, 2), each once, and cut where a line ends on it.
 
-        The lines are those of patches, with their ends in cells.
+        `lines` are the parabolic lines of patches: the number of a patch, and two ends, in cells.
         """
         corners = self._places(np.arange(self.spline.patches), CORNERS)
         ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 2)

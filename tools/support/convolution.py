@@ -209,7 +209,7 @@ def _sums(
 
 
 def _source(surface: Surface | AnySpline | SupportFunction, cells: Sequence[int] | None) -> Source:
-    """Return the points of a surface itself, if it is smooth and not given by points."""
+    """Return where branches come from: a smooth surface itself, a spline, or a support function."""
     if isinstance(surface, SupportFunction):
         return surface._source
     if not isinstance(surface, Surface | AnySpline):
@@ -243,7 +243,7 @@ def _branches(source: Source, normals: NDArray[np.float64]) -> Branches:
 
 
 def _flags(sources: Sequence[Source], i: NDArray[np.int64], j: NDArray[np.int64]) -> dict[str, Any]:
-    """Return which sums are of two points that are on their surfaces, unless one is of a spline."""
+    """Return the field `on_surface`: whether both points are on their surfaces; {} for splines."""
     if any(x.splines() for x in sources):
         return {}
     found = np.ones(len(i), dtype=np.bool_)

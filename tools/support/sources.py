@@ -54,8 +54,8 @@ class Source(Protocol):
         ...
 
 
-# Where x_u × x_v is smaller than this, relative to the larger of both, the surface has a pole; and
-# the turns of three rays there, relative to the domain.
+# At a pole, |x_u × x_v| is below this part of the larger of |x_u|² and |x_v|². From there, three
+# rays leave at these parts of a turn from the given point.
 COLLAPSED, RAYS = 1e-7, (0.0, 1 / 3, 2 / 3)
 
 

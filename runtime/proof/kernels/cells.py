@@ -49,8 +49,8 @@ EPS = 2.0**-52
 INFLATED = 1.0 + 1.0 / 16.0
 # The columns of `hot`: five vectors of the patch, then what it leaves out.
 HOT = 17
-# The columns of `noise`: of derivatives by s and t, of second derivatives; then how far bounds go,
-# and tolerances of derivatives.
+# The columns of `noise`: the rounding of x_s, of x_t, and of second derivatives; how far bounds
+# hold; the tolerances of n·x_s and of n·x_t at joints.
 FIRST_S, FIRST_T, SECOND, REACH, TOLERANCE_S, TOLERANCE_T = range(6)
 NOISE = 6
 # Normals of both sides of a joint differ by at most this angle, in radians.
@@ -71,8 +71,9 @@ class Cells(NamedTuple):
     what it leaves out of x_s and x_t.
     thirds (k, 24): x_sss, x_sst, x_stt, x_ttt, then how far they may be from these.
     noise (k, 6): the rounding of x_s and x_t, and of second derivatives; the largest |s|, |t| for
-    which all bounds hold, 0 if there are none, 1 if they end at a joint. There the normals of both
-    sides differ a little: n·x_s and n·x_t of points with the normal n are at most the last two.
+    which all bounds hold, 0 if there are none, 1 if they end at a joint; tolerances. At a joint the
+    normals of both sides differ a little: there, |n·x_s| and |n·x_t| of a point with the normal n
+    are not 0, but at most these tolerances.
     cone (k, 4): the axis of a cone that holds the normals of the cell, and its chord, the distance
     of its border on the sphere from the axis.
     """

@@ -46,7 +46,7 @@ from .pairs import distance, forms_at, is_beyond, most_of, newton
 
 __all__ = ["DECIDED", "PARTS", "degree_on"]
 
-# Whether a box has at most one point: that is not known, or it is.
+# What is known of a box: nothing, or its one point with the normal, or that it has none.
 UNDECIDED, DECIDED = range(2)
 # Boxes grow on each side by this part of their width, since the normal may not be on the border.
 # A joint that is nearer to a side than this part of the width becomes the side.
@@ -127,10 +127,10 @@ def middle_and_half(low, high):
 
 @loop
 def sign_on(tile, count, n):
-    """Return the sign of the determinant of the Hessian of n·x in all parts of a tile.
+    """Return the sign of the determinant of the Hessian of n·x if all parts of a tile share it.
 
-    It is 0 if it is not known, or if n may be no normal of one side of the surface there; 2 if −n
-    is in the cone of all normals.
+    Otherwise return 0, also if the products of n and the normals have no known common sign. Return
+    2 if all these products are negative: then no part has the normal n.
     """
     sign = side = 0
     for k in range(count):
@@ -169,9 +169,10 @@ def along_side(side, x):
 
 @loop
 def gradient_at(tile, k, n, e1, e2, s, t):
-    """Return the gradient at s, t in part k, times the area x_s × x_t, and bounds of its terms.
+    """Return the gradient at s, t in part k, times the area |x_s × x_t|, and what bounds it.
 
-    These are the forms A, B, C; the derivatives F1, F2; |x_s|, |x_t|, and a bound of the error.
+    This is: the forms A, B, C; the derivatives F1, F2; bounds of |x_s| and |x_t|; and a bound of
+    the error of the gradient.
     """
     patch = patch_of(tile.hot, k)
     a, b, c, p, q = linear_forms_of(patch, n)
@@ -219,7 +220,7 @@ def turns_less_than_half(tile, k, n, e1, e2, side, x, step):
         change_s, change_t = half * length(patch.b), half * length(patch.c)
     change = change1 * (size_t + change_t) + change2 * (size_s + change_s)
     change += abs(f1) * change_t + abs(f2) * change_s
-    # Errors of x_s and x_t go with the larger derivatives, too.
+    # The errors of x_s and x_t are also multiplied by the changes of F1 and F2.
     rest = error + change1 * tile.hot[k, REST_T] + change2 * tile.hot[k, REST_S]
     size = math.hypot(g1, g2)
     area = size_s * size_t
@@ -228,9 +229,9 @@ def turns_less_than_half(tile, k, n, e1, e2, side, x, step):
 
 @loop
 def winding(tile, along, across, n):
-    """Return the winding number of the gradient along the border of a box, in quarters.
+    """Return four times the winding number of the gradient along the border of a box.
 
-    It is a multiple of 4; 2 if the gradient may vanish on the border.
+    Return 2, which is no such number, if the gradient may vanish on the border.
     """
     e1, e2 = plane_of(n)
     total = 0.0
@@ -283,9 +284,10 @@ def plane_of(n):
 
 @loop
 def write_nearest(tape, work, tile, count, n, row):
-    """Write to a row the point in parts of a tile that is nearest to the normal; say whether.
+    """Write the best known solution in the parts of a tile to a row; return False if there is none.
 
-    Its radius reaches as far as all points whose normals are within the tolerance.
+    Its error bounds enclose the solutions of all parts, and, if several have one, all points whose
+    normals are within the tolerance.
     """
     outputs, place = tape.outputs, tile.place
     x, y, z = (
@@ -307,7 +309,7 @@ def write_nearest(tape, work, tile, count, n, row):
                 work.u[k], work.v[k] = place[k, 0] + h_u * s1, place[k, 1] + h_v * t1
                 continue
             reach, slack, none = reach_at(tile, k, n, s, t, p, q)
-            # Room for what the next part has found, and for the tolerance there.
+            # The patch of this part is no longer needed: its place holds error bounds instead.
             tile.hot[k, 0], tile.hot[k, 1] = reach * h_u, reach * h_v
             tile.hot[k, 2], tile.hot[k, 3] = slack * h_u, slack * h_v
             tile.hot[k, 4] = 0.0 if none else 1.0
@@ -332,9 +334,10 @@ def write_nearest(tape, work, tile, count, n, row):
 
 @loop
 def reach_at(tile, k, n, s, t, p, q):
-    """Return how far a solution in part k may be from s, t, where F is p, q; and by a tolerance.
+    """Return how far from s, t, where F is (p, q), a solution in part k may be.
 
-    The third value says whether there is none, within the tolerance.
+    The second value is how much farther the tolerance allows it to be; the third one says whether
+    there is no solution even with the tolerance.
     """
     patch = patch_of(tile.hot, k)
     a, b, c, _, _ = linear_forms_of(patch, n)

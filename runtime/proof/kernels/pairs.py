@@ -148,7 +148,7 @@ def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t,
 
 @inline
 def most_of(reached, gap):
-    """Return the largest |s|, |t| in a cell at which the tape gives its own derivatives."""
+    """Return up to which |s|, |t| the tape has the derivatives of a cell, not of its neighbour."""
     return 1.0 if reached > 1.0 else 1.0 - gap
 
 
@@ -180,7 +180,7 @@ def is_beyond(s, t, g1, g2, error, change):
 
 @loop
 def solved(low, high, f, own, rest):
-    """Return an interval of numbers x, without those for which |f + own x| exceeds `rest`."""
+    """Return the part of low … high where |f + own x| is at most `rest`; all of it if own = 0."""
     if own != 0.0:
         one, two = (-f - rest) / own, (rest - f) / own
         low, high = max(low, min(one, two)), min(high, max(one, two))

@@ -70,8 +70,8 @@ DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
 MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
 # The columns of boxes: u, v, the number of a cell, and half the widths relative to the cell's.
 BOX_COLUMNS = 5
-# A box is cut across its longer side only if this is longer by this factor, relative to the cell's;
-# sides are not contracted to less than a part of those before, so that clusters have a width.
+# A box is cut into two if one side is longer by SLENDER, with sides relative to those of its cell.
+# Contraction leaves at least the part SHRUNK of a side, so that clusters have a width.
 SLENDER, SHRUNK = 4.0, 2.0**-5
 # From this level on, rounding explains open boxes more than twice as many as on the level before.
 FINE = 10
@@ -165,15 +165,16 @@ def cut_boxes(tape, work, index, boxes, count, number, n, answers):
 
 @inline
 def inside(middle, half):
-    """Return the middle of an interval in −1 … 1 of some half width that is nearest to another."""
+    """Return a middle, moved as little as needed for its interval to lie in −1 … 1."""
     return min(max(middle, half - 1.0), 1.0 - half)
 
 
 @loop
 def keep_boxes(t, lanes, boxes, cells, following):
-    """Write the parts of boxes that are not decided; return the number of all parts.
+    """Contract and cut the boxes of a tile that are undecided; add the parts to the next level.
 
-    Boxes are contracted, and cut into four, or across their longer side only.
+    A box is cut into four parts, or into two if one of its sides is much longer. `following` is the
+    number of boxes on the next level so far; the new number is returned.
     """
     for k in range(lanes):
         i = np.uint64(k)

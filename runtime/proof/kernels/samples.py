@@ -74,11 +74,11 @@ def curvatures_of_tile(registers, outputs, scales, count, curvatures):
 def fill_places(
     tape, work, numbers, places, first, last, normals, scales, frame, cells, curvatures, fields
 ):
-    """Write the fields of the solutions [first, last).
+    """Write the fields of the samples at the solutions first, …, last − 1 of a search.
 
-    places (k, 6) are the solutions of a search, numbers (k,) the indices of their unit normals (S,
-    3). `scales` = (size, du, dv): `size` times the surface has cells du × dv of about the size 1.
-    `frame` are u₀, v₀, du, dv of the spline, which has m × n `cells`.
+    places (k, 6) are the solutions, numbers (k,) the indices of their unit normals (S, 3). `scales`
+    are (size, du, dv): on the surface times `size`, a rectangle of parameters du × dv has about the
+    size 1. `frame` are u₀, v₀, du, dv of the spline, which has m × n `cells`.
     """
     x, y, z = POINT * tape.outputs[0], POINT * tape.outputs[1], POINT * tape.outputs[2]
     curved = len(fields.gaussian_curvature) + len(fields.mean_curvature) > 0

@@ -35,7 +35,7 @@ PLACE = 6
 
 
 class Joints(NamedTuple):
-    """The lines u = const (k,) and v = const (l,) across which the tangent plane is continuous."""
+    """The lines u = const (k,), v = const (l,) where derivatives may jump, but no tangent plane."""
 
     u: NDArray[np.float64]
     v: NDArray[np.float64]

@@ -1,8 +1,8 @@
 """Lists of the pieces whose cones of normals meet the bins of the sphere.
 
-Bins are squares on the faces of a cube around the sphere, or on its face +z alone, to which a frame
-(3, 3), a linear map, brings a cap. They are numbered along a Morton curve on each face, so that the
-bins of a coarser level are those with the same leading bits.
+Bins are squares on the faces of a cube around the sphere. If all cones lie in a cap, only the face
++z has bins, and a linear map, the frame (3, 3), takes the cap to this face. On each face, bins are
+numbered along a Morton curve: the leading bits of a number are the bin of a coarser level.
 """
 
 from __future__ import annotations

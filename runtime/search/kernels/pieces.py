@@ -128,9 +128,10 @@ def step_to(mu, i, j, centre, scale):
 
 @loop
 def put_piece(pieces, k, patch, spread, noise, net):
-    """Write a patch, its cone, and the error of U, V, W in it.
+    """Write a patch, the cone of its normals, and a bound of the errors of its forms U, V, W.
 
-    `spread` are the largest differences of its coefficients, `noise` is their rounding.
+    `spread` are the largest differences of its coefficients in x, y and z. `noise` is an error in
+    addition to the rounding of these.
     """
     tangents = tangent_bounds(patch)
     square = max(tangents.x, tangents.y, tangents.z)

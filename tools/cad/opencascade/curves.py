@@ -63,7 +63,7 @@ def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
 
 
 def start_of_period(domain: Sequence[float], first: float, period: float) -> float:
-    """Return where the period starts that has a domain: at `first`, if that is possible."""
+    """Return the start of a period that contains a domain: `first` if possible, or the domain's."""
     slack = SAME * period
     inside = first - slack <= domain[0] and domain[1] <= first + period + slack
     return first if inside else float(domain[0])

@@ -27,7 +27,7 @@ SAME_SIDE = 0.5
 
 @inline
 def distance_to_cells(i, cell, x):
-    """Return the distance along an axis between the coordinate x and the cells with number i."""
+    """Return the distance of x from interval i of an axis that is cut into lengths `cell`."""
     return max(i * cell - x, x - (i + 1) * cell, 0.0)
 
 
