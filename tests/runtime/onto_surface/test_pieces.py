@@ -91,6 +91,7 @@ def test_points_of_all_pieces_are_proved():
     counts = np.bincount(samples.normal_index, minlength=len(normals))
     assert np.array_equal(counts, inside)
     assert (report_of(samples).proved, report_of(samples).undecided) == (len(normals), ())
+    assert samples.uv_radius is not None
     assert (samples.uv_radius < 1e-8).all()
     known = gm.GaussMap(barrel())
     assert np.array_equal(known.count(normals), counts)
