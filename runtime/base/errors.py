@@ -212,7 +212,8 @@ def in_memory(function: Callable[P, R]) -> Callable[P, R]:
             return function(*arguments, **named)
         except MemoryError:
             raise InputError(
-                "there is not enough memory for this; use fewer normals, samples or cells."
+                "there is not enough memory for this; if normals, samples or cells are many, use "
+                "fewer."
             ) from None
 
     return guarded
