@@ -40,6 +40,11 @@ LARGEST_DEVIATION = 30.0
 # at most the share PART of all triangles has an angle below ENOUGH.
 SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
+# A bound for which more than this share of the samples would be left out is not tried: where
+# normals of neighbours differ by 30° and more, no flip makes shapes better, and collapses go on.
+MOST_LOST = 0.1
+# The arrays that flips and collapses change.
+CHANGED = ("triangles", "sides", "neighbours")
 # The largest number of rounds for each bound: a collapse may allow another one.
 ROUNDS = 4
 # No vertex in more triangles than this is moved.
@@ -164,10 +169,15 @@ def improved(mesh: Triangulated, prefer: Prefer, angle: float) -> Triangulated:
     if has_grid:
         mesh = replace(mesh, is_free=mesh.is_free & ~mesh.is_node)
         return _without_small_angles(mesh, prefer, math.tan(math.radians(SMALLEST[0])), least)
-    for smallest in SMALLEST:
-        if smallest > SMALLEST[0] and _has_good_shape(mesh):
+    mesh = _without_small_angles(mesh, prefer, math.tan(math.radians(SMALLEST[0])), least)
+    fewest = (1.0 - MOST_LOST) * _samples_in(mesh)
+    for smallest in SMALLEST[1:]:
+        if _has_good_shape(mesh):
             break
+        before = replace(mesh, **{x: getattr(mesh, x).copy() for x in CHANGED})
         mesh = _without_small_angles(mesh, prefer, math.tan(math.radians(smallest)), least)
+        if _samples_in(mesh) < fewest:
+            return before
     return mesh
 
 
@@ -181,6 +191,11 @@ def flip_edges(mesh: Triangulated, prefer: Prefer, least: float = 1.0) -> int:
         *mesh.arrays(), by_shape, least if by_shape else 0.0,
         np.arange(len(mesh.triangles)), np.ones(len(mesh.triangles), dtype=np.bool_),
     )  # fmt: skip
+
+
+def _samples_in(mesh: Triangulated) -> int:
+    """Return the number of samples that are vertices of triangles."""
+    return int(np.count_nonzero(mesh.sample[np.unique(mesh.triangles)] >= 0))
 
 
 def _has_good_shape(mesh: Triangulated) -> bool:
