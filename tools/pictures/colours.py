@@ -13,6 +13,7 @@ from ...runtime.base.checks import known_name, real_values
 from ...runtime.base.errors import InputError
 from ...runtime.samples.fields import columns_of
 from ...runtime.samples.samples import Samples
+from ..files.lengths import unit_of, whole_of
 from .palette import SCALE
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ __all__ = ["CURVATURE", "Colours", "checked_values", "colours_of", "draw_scale"]
 CURVATURE = "gaussian_curvature"
 SIGNED = (CURVATURE, "mean_curvature")  # their scales are symmetric to zero
 UNITS = {CURVATURE: "1/length²", "mean_curvature": "1/length", "support": "length"}
+INDICES = ("face_index", "solid_index")
+MOST_DISTINCT, MOST_NAMES = 20, 12  # of discrete colours that differ well, and of their numbers
 ROBUST = 95.0  # the percentile of sizes at the ends of a scale that is symmetric to zero
 
 
@@ -31,7 +34,8 @@ ROBUST = 95.0  # the percentile of sizes at the ends of a scale that is symmetri
 class Colours:
     """The values of samples shown in colour, their scale, and the scale's label.
 
-    `clipped` says whether some values are beyond the ends of the scale.
+    `clipped` says whether some values are beyond the ends of the scale. Values that are `names`
+    have colours of their own.
     """
 
     values: NDArray[np.float64]
@@ -40,6 +44,7 @@ class Colours:
     label: str
     unit: str
     clipped: bool
+    names: tuple[str, ...] = ()  # of discrete colours, for the values 0, 1, …
 
 
 def checked_values(samples: Samples, color: str | ArrayLike) -> tuple[NDArray[np.float64], str]:
@@ -67,15 +72,44 @@ def colours_of(samples: Samples, color: str | ArrayLike) -> Colours:
     from matplotlib.colors import LinearSegmentedColormap, Normalize
 
     values, name = checked_values(samples, color)
+    if name in INDICES:
+        return _discrete(samples, values, name)
     label = "Gaussian curvature $K$" if name == CURVATURE else name.replace("_", " ")
     if name in SIGNED:
         limit, clipped = _limit(values)
         scale = LinearSegmentedColormap.from_list("curvature", SCALE)
-        return Colours(values, Normalize(-limit, limit), scale, label, UNITS[name], clipped)
+        unit = _unit(name, samples)
+        return Colours(values, Normalize(-limit, limit), scale, label, unit, clipped)
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
     norm = Normalize(low, high if high > low else low + 1.0)
-    return Colours(values, norm, colormaps["viridis"], label, UNITS.get(name, ""), False)
+    return Colours(values, norm, colormaps["viridis"], label, _unit(name, samples), False)
+
+
+def _unit(name: str, samples: Samples) -> str:
+    """Return the unit of a column, that of the part if it has one."""
+    return UNITS.get(name, "").replace("length", unit_of(samples) or "length")
+
+
+def _discrete(samples: Samples, values: NDArray[np.float64], name: str) -> Colours:
+    """Return a colour for each face or solid; faces have the numbers of the file."""
+    from matplotlib import colormaps
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+
+    found, codes = np.unique(values, return_inverse=True)
+    numbers, part = found.astype(np.int64), whole_of(samples)
+    if part is not None and name == "face_index":
+        own = next(x.values for x in part._face_columns() if x.name == "source_index")
+        numbers = np.array(own)[numbers]
+    few = len(found) <= MOST_DISTINCT
+    source = colormaps["tab20" if few else "turbo"]
+    places = np.arange(len(found)) if few else np.linspace(0.0, 1.0, len(found))
+    norm = BoundaryNorm(np.arange(len(found) + 1) - 0.5, max(len(found), 1))
+    label = name.removesuffix("_index") + (" in the file" if name == "face_index" else "")
+    shown = tuple(str(x) for x in numbers.tolist())
+    return Colours(
+        codes.astype(np.float64), norm, ListedColormap(source(places)), label, "", False, shown
+    )
 
 
 def _limit(values: NDArray[np.float64]) -> tuple[float, bool]:
@@ -87,11 +121,31 @@ def _limit(values: NDArray[np.float64]) -> tuple[float, bool]:
     return limit, largest > limit
 
 
+def _draw_names(axes: Axes, colours: Colours) -> None:
+    """Draw discrete colours with their numbers, some of them if there are many."""
+    from matplotlib.cm import ScalarMappable
+
+    step = -(-len(colours.names) // MOST_NAMES)
+    ticks = np.arange(0, len(colours.names), step)
+    bar: Any = axes.figure.colorbar(
+        ScalarMappable(colours.norm, colours.scale), cax=axes, orientation="horizontal",
+        ticks=ticks, spacing="uniform",
+    )  # fmt: skip
+    bar.set_ticks(ticks, labels=[colours.names[k] for k in ticks])
+    bar.minorticks_off()
+    bar.set_label(colours.label)
+    bar.outline.set_linewidth(0.4)
+    bar.ax.tick_params(width=0.0, length=0.0, labelsize=7)
+
+
 def draw_scale(axes: Axes, colours: Colours) -> None:
     """Draw the scale of colours into axes, with its label."""
     from matplotlib.cm import ScalarMappable
 
     norm, figure = colours.norm, axes.figure
+    if colours.names:
+        _draw_names(axes, colours)
+        return
     size = max(abs(norm.vmin or 0.0), abs(norm.vmax or 0.0)) or 1.0
     exponent = math.floor(math.log10(size))
     exponent = 0 if -2 <= exponent <= 3 else exponent

@@ -276,7 +276,7 @@ def _drawn(
         _write(figure, surface, TITLES, title, parse_math=True)
         figure.legend(
             handles=handles, loc="center", bbox_to_anchor=(sphere / WIDTH, LEGENDS / HEIGHT),
-            ncols=1 if len(handles) < 4 else 2, frameon=False, handletextpad=0.1, columnspacing=1.4,
+            frameon=False, handletextpad=0.1, labelspacing=0.5 if len(handles) < 4 else 0.2,
         )  # fmt: skip
     return figure
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import product
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.samples.samples import Samples
+from ..files.lengths import unit_of
 from .colours import Colours
 from .marked import Marked
 from .palette import INK, MARK
@@ -16,6 +18,8 @@ from .scene import Scene
 
 __all__ = ["Room", "View", "draw_surface"]
 
+# Numbers from LONG on have long labels; an axis is short relative to the longest.
+LONG, SHORT = 1e5, 0.35
 ARROWS, ARROW = 6, 0.16  # at most this many, with a length relative to the size of the surface
 View = tuple[float, float]  # elevation and azimuth of the viewer, in degrees
 Room = tuple[float, float]  # width and height in inches
@@ -38,7 +42,7 @@ def draw_surface(
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
     axes.computed_zorder = False
-    _frame(axes, scene, view, room)
+    _frame(axes, scene, view, room, unit_of(samples))
     for layer in scene.in_layers():
         greys = (0.60 + 0.33 * layer.brightness)[:, None] * [0.98, 0.99, 1.0]
         # Quadrangles are rasterized, also in .pdf and .svg files: seams would show between them.
@@ -56,14 +60,23 @@ def draw_surface(
     axes.scatter(
         *samples.points[visible].T, c=colours.values[visible], cmap=colours.scale,
         norm=colours.norm, s=areas, depthshade=False, edgecolors=INK,
-        linewidths=np.minimum(0.2, 0.09 * np.sqrt(areas)), zorder=3,
+        linewidths=np.clip(0.12 * np.sqrt(areas), 0.15, 0.35), zorder=3,
     )  # fmt: skip
     if marked is not None:
-        _mark(axes, samples.points[marked.visible], marked.normal, scene)
+        _mark(axes, samples.points[marked.visible], marked.normal, scene, math.sqrt(area))
 
 
-def _mark(axes: Any, points: NDArray[Any], normal: NDArray[np.float64], scene: Scene) -> None:  # noqa: ANN401
-    """Mark points with their normal; only a few get arrows, and none if heights are rescaled."""
+def _mark(
+    axes: Any,  # noqa: ANN401
+    points: NDArray[Any],
+    normal: NDArray[np.float64],
+    scene: Scene,
+    size: float,
+) -> None:
+    """Mark points with their normal; only a few get arrows, and none if heights are rescaled.
+
+    Many marks have about the `size` of samples in points.
+    """
     few = len(points) <= ARROWS
     if few and scene.factor == 1.0:
         length = ARROW * float(np.ptp(scene.quadrangles.reshape(-1, 3), axis=0).max())
@@ -72,13 +85,20 @@ def _mark(axes: Any, points: NDArray[Any], normal: NDArray[np.float64], scene: S
                 *point, *(length * normal), color=INK, linewidth=1.0, arrow_length_ratio=0.3,
                 zorder=4,
             )  # fmt: skip
+    diameter = 5.8 if few else min(1.3 * size, 3.5)
     axes.plot(
-        *points.T, linestyle="", marker="o", markersize=5.8 if few else 3.5, color=MARK,
-        markeredgecolor=INK, markeredgewidth=0.9 if few else 0.5, zorder=5,
+        *points.T, linestyle="", marker="o", markersize=diameter, color=MARK,
+        markeredgecolor=INK, markeredgewidth=0.9 if few else 0.3, zorder=5,
     )  # fmt: skip
 
 
-def _frame(axes: Any, scene: Scene, view: View, room: Room | None) -> None:  # noqa: ANN401
+def _frame(
+    axes: Any,  # noqa: ANN401
+    scene: Scene,
+    view: View,
+    room: Room | None,
+    unit: str | None,
+) -> None:
     """Set the viewer, the limits, the same scale along all axes, and the labels."""
     from matplotlib.ticker import FixedLocator, MaxNLocator
 
@@ -94,18 +114,25 @@ def _frame(axes: Any, scene: Scene, view: View, room: Room | None) -> None:  # n
     axes.set_box_aspect(aspect, zoom=_zoom(axes, aspect, room) if room else 1.0)
     axes.patch.set_visible(False)
 
-    label = "z"
+    label = of_length = f" ({unit})" if unit else ""
     if scene.factor != 1.0:
         by = max(scene.factor, 1 / scene.factor)
-        label = f"z ({'exaggerated' if scene.factor > 1.0 else 'reduced'} {by:g}×)"
+        label += f" ({'exaggerated' if scene.factor > 1.0 else 'reduced'} {by:g}×)"
     low = extent[2] < 0.7 * extent.max()  # then matplotlib would put the label of z far away
-    names = (axes.xaxis, "x", 1), (axes.yaxis, "y", 1), (axes.zaxis, label, -4 if low else 3)
+    names = (
+        (axes.xaxis, f"x{of_length}", 1),
+        (axes.yaxis, f"y{of_length}", 1),
+        (axes.zaxis, f"z{label}", -4 if low else 3),
+    )
     for k, (axis, name, distance) in enumerate(names):
         axis.set_label_text(name)
         axis.labelpad = distance
         flat = extent[k] < 0.02 * extent.max()
         middle = FixedLocator([limits[:, k].mean()])
-        axis.set_major_locator(middle if flat else MaxNLocator(4, prune="both"))
+        # Labels along short axes would overlap, and so would long ones; none has an offset.
+        long = np.abs(limits[:, k]).max() >= LONG or extent[k] < SHORT * extent.max()
+        axis.set_major_locator(middle if flat else MaxNLocator(2 if long else 4, prune="both"))
+        axis.set_major_formatter(lambda value, _: f"{value:.10g}".replace("-", "−"))
     axes.tick_params(labelsize=6.5, pad=-1, colors=INK)
 
 

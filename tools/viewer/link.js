@@ -106,7 +106,7 @@ Promise.all([
     Plotly.newPlot("sphere", layers.sphere, layout(ROUND, unit, EYE), config),
 ]).then(() => Promise.all([
     fitted(byId("surface"), vertices, data.aspect),
-    fitted(byId("sphere"), normals, ROUND),
+    fitted(byId("sphere"), rowsOf(layers.sphere[0]), ROUND), // all of the sphere, whatever its normals
 ])).then(() => {
     onTheme(() => {
         Plotly.restyle("surface", { color: theme.mesh }, [0]);

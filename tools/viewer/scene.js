@@ -22,7 +22,7 @@ function mesh() {
         i: column(triangles, 0), j: column(triangles, 1), k: column(triangles, 2),
         color: theme.mesh, flatshading: data.flat, hoverinfo: "skip", showlegend: false,
         lighting: { // without a limit below which triangles have no normal
-            ambient: 0.65, diffuse: 0.55, specular: 0.05, roughness: 0.9, facenormalsepsilon: 1e-15,
+            ambient: 0.75, diffuse: 0.4, specular: 0.02, roughness: 0.9, facenormalsepsilon: 1e-15,
         },
     };
 }
@@ -53,7 +53,7 @@ function globe() {
 }
 
 function ball() {
-    const x = [], y = [], z = [], i = [], j = [], k = [], M = 48, N = 24, r = 0.985;
+    const x = [], y = [], z = [], i = [], j = [], k = [], M = 144, N = 72, r = 0.996; // round, and just inside of its lines
     for (let a = 0; a <= M; a++) {
         for (let b = 0; b <= N; b++) {
             const [t, s] = [2 * Math.PI * a / M, Math.PI * (b / N - 0.5)];
@@ -65,8 +65,10 @@ function ball() {
         }
     }
     return { type: "mesh3d", x, y, z, i, j, k, color: theme.ball, hoverinfo: "skip", showlegend: false,
-        lighting: { ambient: 0.85, diffuse: 0.2, specular: 0 } };
+        lighting: { ambient: 0.92, diffuse: 0.12, specular: 0 } };
 }
+
+const rowsOf = ({ x, y, z }) => x.flatMap((a, i) => [a, y[i], z[i]]);
 
 // The diameter of samples in pixels: that of discs that would cover an eighth of the frame.
 const side = Math.min(byId("surface").clientWidth, byId("surface").clientHeight);

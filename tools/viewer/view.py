@@ -43,7 +43,7 @@ MOST = 50_000  # the most samples in a page that stays fluid
 NEIGHBOURS = 8  # for each sample, to find connected groups
 LEAST_ANGLE, MOST_ANGLE = 1.0, 20.0  # in degrees, the limits of the initial angle around a normal
 PARABOLIC_LEGEND = (
-    f'<span class="legend"><span class="dot" style="background:{PARABOLIC}"></span>'
+    '<span class="legend"><span class="dot" style="background:{}"></span>'
     "parabolic (K = 0)</span>"  # flat, too
 )
 # The hints for clicks: on a surface, and on a part.
@@ -51,7 +51,8 @@ HINTS = (
     "Click a place: its region and their normals light up.",
     "Click a face: its samples and their normals light up.",
 )
-PALE_PARABOLIC = "#b9b9b9"
+# The colours of samples: elliptic, hyperbolic, parabolic ones. What lights up has darker ones.
+PALE = (SCALE[4], SCALE[2], "#b9b9b9")
 # Colours of faces without a colour in the file; neighbours seldom have the same.
 COLOURS_OF_FACES = ("#c9d6df", "#e3d5bd", "#cfe0cf", "#dfcfdc", "#c8dcdc", "#e0d0c8", "#d3d3e3")
 # The margin around the surface, relative to its diameter: samples are drawn above it (LIFT in
@@ -92,7 +93,8 @@ def page(samples: Samples, surface: Surface | AnySpline | Part | None = None) ->
     if not len(samples):
         raise InputError("there are no samples to view.")
     check_count(len(samples))
-    data = _data(samples, scene_of_samples(samples, surface), surface)
+    scene = scene_of_samples(samples, surface)
+    data = _data(samples, scene, surface)
     here = files(__name__.rpartition(".")[0])
     offline = from_extra("plotly.offline", "view", "a page with a picture to turn")
     return Template((here / "page.html").read_text(encoding="utf-8")).substitute(
@@ -103,12 +105,20 @@ def page(samples: Samples, surface: Surface | AnySpline | Part | None = None) ->
         plotly=offline.get_plotlyjs().replace("</script", "<\\/script"),
         # A "<" in the data could end the script element.
         data=json.dumps(data, allow_nan=False).replace("<", "\\u003c"),
-        surface="Part" if data["part"] else "Surface",
+        surface=("Part" if data["part"] else "Surface") + _heights(scene),
         hint=HINTS[data["part"] is not None],
-        elliptic=ELLIPTIC,
-        hyperbolic=HYPERBOLIC,
-        parabolic_legend=PARABOLIC_LEGEND if samples.parabolic.any() else "",
+        elliptic=PALE[0],
+        hyperbolic=PALE[1],
+        parabolic_legend=PARABOLIC_LEGEND.format(PALE[2]) if samples.parabolic.any() else "",
     )
+
+
+def _heights(scene: Scene) -> str:
+    """Return what is said of heights that are drawn larger or smaller than they are."""
+    if scene.factor == 1.0:
+        return ""
+    how = "exaggerated" if scene.factor > 1.0 else "reduced"
+    return f" (heights {how} {max(scene.factor, 1 / scene.factor):g} times)"
 
 
 def _data(
@@ -149,7 +159,7 @@ def _data(
         "angle": _spacing(normals),
         "radius": RADIUS,
         "colours": [ELLIPTIC, HYPERBOLIC, PARABOLIC],
-        "pale": [SCALE[4], SCALE[2], PALE_PARABOLIC],
+        "pale": PALE,
         "part": None,
     }
     part = whole_of(samples) if surface is None else surface

@@ -166,3 +166,17 @@ def test_a_name_that_cannot_be_encoded(samples: gm.Samples, tmp_path: Path) -> N
     named = replace(samples, report=replace(samples.report, surface="a\udc80\x1b"))
     named.view(tmp_path / "a.html")
     assert r"<title>a\udc80\x1b</title>" in (tmp_path / "a.html").read_text(encoding="utf-8")
+
+
+def test_the_page_says_how_heights_are_drawn(samples: gm.Samples) -> None:
+    flat = gm.surfaces.wavy_graph().transformed(np.diag([1.0, 1.0, 0.1]))
+    page = module.page(gm.sample(flat, 50, cells=(8, 8)))
+    assert "<h2>Surface (heights exaggerated 10 times)</h2>" in page
+    assert "<h2>Surface</h2>" in module.page(samples)
+
+
+def test_the_legend_has_the_colours_of_the_points(samples: gm.Samples) -> None:
+    page = module.page(samples)
+    colours = read_page(page)["pale"]
+    dots = re.findall(r'class="dot" style="background:([^"]*)"></span>(\w+)', page)
+    assert dots == [(colours[0], "elliptic"), (colours[1], "hyperbolic")]
