@@ -402,7 +402,6 @@ class TestText:
             ([1, 0], "2 samples at 2 prescribed normals, exactly 1 each ("),
             ([1, 1, 1, 0], "4 samples at 2 prescribed normals ("),
             ([1, 1], "2 samples at 1 of 2 prescribed normals ("),
-            ([1], "1 sample at 1 of 2 prescribed normals ("),
             ([1, -1], "2 samples: 1 at 1 of 2 prescribed normals, 1 filling gaps ("),
             ([0, 1, 1], "3 samples at 2 prescribed normals ("),
             ([0, 1, -1], "3 samples: 2 at 2 prescribed normals, 1 filling gaps ("),
