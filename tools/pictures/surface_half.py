@@ -18,8 +18,9 @@ from .scene import Scene
 
 __all__ = ["Room", "View", "draw_surface"]
 
-# Numbers from LONG on have long labels; an axis is short relative to the longest.
-LONG, SHORT = 1e5, 0.35
+# Numbers from LONG on have long labels. Axes that are SHORT relative to the longest have fewer
+# labels, FLAT ones have one.
+LONG, SHORT, FLAT = 1e5, 0.35, 0.15
 ARROWS, ARROW = 6, 0.16  # at most this many, with a length relative to the size of the surface
 View = tuple[float, float]  # elevation and azimuth of the viewer, in degrees
 Room = tuple[float, float]  # width and height in inches
@@ -127,12 +128,12 @@ def _frame(
     for k, (axis, name, distance) in enumerate(names):
         axis.set_label_text(name)
         axis.labelpad = distance
-        flat = extent[k] < 0.02 * extent.max()
+        flat = extent[k] < FLAT * extent.max()
         middle = FixedLocator([limits[:, k].mean()])
         # Labels along short axes would overlap, and so would long ones; none has an offset.
         long = np.abs(limits[:, k]).max() >= LONG or extent[k] < SHORT * extent.max()
         axis.set_major_locator(middle if flat else MaxNLocator(2 if long else 4, prune="both"))
-        axis.set_major_formatter(lambda value, _: f"{value:.10g}".replace("-", "−"))
+        axis.set_major_formatter(lambda value, _: f"{value:.7g}".replace("-", "−"))
     axes.tick_params(labelsize=6.5, pad=-1, colors=INK)
 
 

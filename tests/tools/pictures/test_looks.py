@@ -54,19 +54,21 @@ def drawn_boxes(items: list[Any]) -> list[Any]:
     "surface",
     [
         gm.surfaces.torus().transformed(np.diag([1.0, 1.0, 30.0])),
-        gm.surfaces.wavy_graph().transformed(np.diag([1.0, 8.0, 1.0])),
+        gm.surfaces.wavy_graph().transformed(np.diag([1.0, 16.0, 1.0])),
+        gm.surfaces.torus().transformed(np.diag([6.0, 1.0, 1.0])),
+        gm.surfaces.torus().transformed(np.diag([25.0, 1.0, 1.0])),
         gm.surfaces.wavy_graph().transformed(
             np.array([[9e3, 0, 0, 5e5], [0, 9e3, 0, 4.1e6], [0, 0, 300, 900], [0, 0, 0, 1.0]])
         ),
     ],
-    ids=["high", "wide", "far"],
+    ids=["high", "wide", "long", "longer", "far"],
 )
 def test_labels_of_ticks_do_not_overlap(surface: gm.Surface) -> None:
     figure = gm.plot(surface, gm.sample(surface, 200, cells=(16, 16)))
     figure.canvas.draw()
     axes: Any = figure.axes[0]
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
-        labels = axis.get_ticklabels()
+        labels = [x.label1 for x in axis.majorTicks]  # as drawn
         assert any(x.get_text() for x in labels)
         assert axis.get_offset_text().get_text() == ""
         for one, other in combinations(drawn_boxes(labels), 2):
