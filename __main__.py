@@ -6,9 +6,12 @@ import gc
 import os
 import signal
 import sys
+import threading
 from contextlib import suppress
 
 __all__ = ["main"]
+
+INTERRUPTED = 130
 
 
 def main() -> int:
@@ -34,6 +37,8 @@ def main() -> int:
     code = cli.main(ready=ready)
     if heard:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if code == INTERRUPTED and threading.active_count() > 1:
+        os._exit(code)  # threads may be inside of a long compiled call
     gc.freeze()
     return code
 
@@ -42,7 +47,7 @@ def _leave(*_: object) -> None:
     # Not KeyboardInterrupt: what is being imported might take it for an error of its own.
     with suppress(OSError):
         os.write(2, b"gaussmap: interrupted\n")
-    os._exit(130)
+    os._exit(INTERRUPTED)
 
 
 if __name__ == "__main__":

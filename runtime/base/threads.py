@@ -15,7 +15,7 @@ from typing import TypeVar
 
 from .checks import whole_number, yes_or_no
 
-__all__ = ["counted", "over_ranges", "seen", "shown", "thread_count"]
+__all__ = ["counted", "interruptible", "over_ranges", "seen", "shown", "thread_count"]
 
 Result = TypeVar("Result")
 
@@ -75,6 +75,13 @@ def _in_threads(
     finally:
         for future in ahead:  # after an error or Ctrl-C: remaining ranges are cancelled
             future.cancel()
+
+
+def interruptible(work: Callable[[], Result]) -> Result:
+    """Return work(), a long compiled call, computed by a thread: Ctrl-C does not wait for it."""
+    if getattr(_HERE, "is_worker", False):
+        return work()
+    return next(_in_threads(lambda _: work(), (0,), 1))
 
 
 @cache

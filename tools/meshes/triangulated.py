@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError, shown
+from ...runtime.base.threads import interruptible
 from ...runtime.base.tolerances import NO_AREA
 from ...runtime.domain.domain import Boundary, Domain
 from .kernels import collapses
@@ -187,15 +189,18 @@ def flip_edges(mesh: Triangulated, prefer: Prefer, least: float = 1.0) -> int:
     For "shape" cosines between triangles and normals may fall, down to `least`.
     """
     by_shape = prefer == "shape"
-    return kernels.flip_edges(
+    given = (
         *mesh.arrays(), by_shape, least if by_shape else 0.0,
         np.arange(len(mesh.triangles)), np.ones(len(mesh.triangles), dtype=np.bool_),
     )  # fmt: skip
+    return interruptible(partial(kernels.flip_edges, *given))
 
 
 def _samples_in(mesh: Triangulated) -> int:
     """Return the number of samples that are vertices of triangles."""
-    return int(np.count_nonzero(mesh.sample[np.unique(mesh.triangles)] >= 0))
+    used = np.zeros(len(mesh.sample), dtype=np.bool_)
+    used[mesh.triangles] = True
+    return int(np.count_nonzero(used & (mesh.sample >= 0)))
 
 
 def _has_good_shape(mesh: Triangulated) -> bool:
@@ -210,9 +215,11 @@ def _without_small_angles(
 ) -> Triangulated:
     """Collapse and flip edges at triangles below the tangent `smallest`, while that helps."""
     for _ in range(ROUNDS):
-        if mesh.tangents().min(initial=np.inf) >= smallest or not collapses.collapse_edges(
-            *mesh.arrays(), mesh.is_free, smallest, least, np.empty(MOST_AROUND, dtype=np.int64)
-        ):
+        if mesh.tangents().min(initial=np.inf) >= smallest:
+            break
+        given = (*mesh.arrays(), mesh.is_free, smallest, least)
+        around = np.empty(MOST_AROUND, dtype=np.int64)
+        if not interruptible(partial(collapses.collapse_edges, *given, around)):
             break
         mesh = mesh.chosen(mesh.triangles[:, 0] >= 0)
         flip_edges(mesh, prefer, least)

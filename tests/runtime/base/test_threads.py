@@ -1,13 +1,14 @@
 """Threads: the results of ranges in order, and errors that end the work."""
 
 import os
+import signal
 import threading
 import time
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.base.threads import over_ranges, thread_count
+from gaussmap.runtime.base.threads import interruptible, over_ranges, thread_count
 
 from ...products import covering
 from ...refusals import refused
@@ -102,3 +103,19 @@ def test_how_many_threads(monkeypatch):
 @pytest.mark.parametrize("threads", [0, -1, 1.5, True, "2", np.nan, [2]])
 def test_threads_that_are_none(threads):
     refused(r"^threads must be a whole number of at least 1", thread_count, threads)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends no signals to threads")
+def test_a_long_call_does_not_keep_an_interruption_waiting():
+    assert interruptible(lambda: 7) == 7
+    ends, start = threading.Event(), time.perf_counter()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    main = threading.get_ident()
+    threading.Timer(0.1, lambda: signal.pthread_kill(main, signal.SIGINT)).start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            interruptible(lambda: ends.wait(5.0))
+    finally:
+        signal.signal(signal.SIGINT, before)
+        ends.set()
+    assert time.perf_counter() - start < 2.5
