@@ -198,6 +198,7 @@ class GaussMap(Methods):
         On a closed surface it is χ/2 for every normal, χ being the Euler characteristic. If the
         surface ends in tips, normals in the cone of a tip are counted there: once at the tip of a
         convex cone, as often as it is covered by the normals at the tip, with signs, at others.
+        Where the report lists an undecided box with a degree, this is added.
 
         Parameters
         ----------
@@ -230,6 +231,8 @@ class GaussMap(Methods):
         for piece in self._pieces:
             if isinstance(piece, OnSpline):
                 sums += tip_degrees(piece, directions)
+        for place in found.report.undecided or ():
+            sums[place.normal] += place.degree or 0
         return sums
 
     @in_memory

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isnan
 from typing import NamedTuple
 
 import numpy as np
@@ -121,8 +122,10 @@ def proof_of(
         return Proof(len(normals), ())
     open_ = _not_outside(trim, open_, normals)
     undecided = tuple(
-        UndecidedNormal(number, tuple(box), KINDS[kind], border, face)
-        for number, box, kind, border in zip(*(x.tolist() for x in open_), strict=True)
+        UndecidedNormal(
+            number, tuple(box), KINDS[kind], border, face, None if isnan(degree) else int(degree)
+        )
+        for number, box, kind, border, degree in zip(*(x.tolist() for x in open_), strict=True)
     )
     return Proof(len(normals) - len(np.unique(open_.numbers)), undecided)
 

@@ -97,6 +97,9 @@ class UndecidedNormal(NamedTuple):
         Whether the box reaches an open side of the domain, or may meet the boundary of the trim.
     face : int or None
         For a CAD part: the index of the face to which the parameters belong.
+    degree : int or None
+        The degree of the Gauss map around what is in the box, if it is known: the sum of the signs
+        of K of points in the box with any normal nearby. If it is not 0, there is a point.
 
     Examples
     --------
@@ -104,6 +107,9 @@ class UndecidedNormal(NamedTuple):
     >>> place = gm.sample("torus", normals=[[0, 0, 1]]).report.undecided[0]
     >>> place.normal, place.kind, place.border, len(place.box), place.face
     (0, 'continuum', False, 4, None)
+    >>> flat = gm.sample("monkey_saddle", normals=[[0, 0, 1]]).report.undecided
+    >>> [place.degree for place in flat]
+    [-2]
 
     """
 
@@ -112,14 +118,15 @@ class UndecidedNormal(NamedTuple):
     kind: str
     border: bool
     face: int | None = None
+    degree: int | None = None
 
     @classmethod
     def of(cls, values: Sequence[Any]) -> UndecidedNormal:
         """Return an undecided normal from plain values, such as those of a file."""
         normal, (u0, u1, v0, v1), kind, border, *rest = values
         box = float(u0), float(u1), float(v0), float(v1)
-        face = int(rest[0]) if rest and rest[0] is not None else None
-        return cls(int(normal), box, str(kind), bool(border), face)
+        face, degree = (None if x is None else int(x) for x in (*rest, None, None)[:2])
+        return cls(int(normal), box, str(kind), bool(border), face, degree)
 
 
 # Functions that convert the entries to plain values, and refuse others; only KNOWN are never None.

@@ -51,7 +51,9 @@ class FaceIndex(Protocol):
 def undecided(numbers: Indices, boxes: Array, kind: int, border: bool) -> Undecided:
     """Return boxes (k, 4) of one kind as undecided, for the normals with indices (k,)."""
     count = len(numbers)
-    return Undecided(numbers, boxes, np.full(count, kind), np.full(count, border))
+    return Undecided(
+        numbers, boxes, np.full(count, kind), np.full(count, border), np.full(count, np.nan)
+    )
 
 
 NO_NUMBERS = np.empty(0, np.int64)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -17,9 +18,11 @@ __all__ = [
     "COLUMNS",
     "CONTINUUM",
     "DOUBLE_KIND",
+    "INDEX",
     "KINDS",
     "MULTIPLE",
     "SINGULAR",
+    "WHERE",
     "Answers",
     "add_open",
     "add_place",
@@ -33,10 +36,15 @@ DOUBLE_KIND, MULTIPLE, CONTINUUM, SINGULAR = range(4)
 # The columns of solutions: u, v, their error bounds, D; then the box without other solutions, u₀,
 # u₁, v₀, v₁; and whether the error bounds reach the boundary of the domain.
 BOX, BORDER, COLUMNS = 5, 9, 10
+# The columns of undecided boxes: the winding number, then the box around which it is.
+INDEX, WHERE = 5, 6
 
 
 class Answers(NamedTuple):
-    """Arrays for solutions (k, 10), undecided boxes (k, 5) with their kinds, and normals of both.
+    """Arrays for solutions (k, 10), undecided boxes (k, 10) with their kinds, and normals of both.
+
+    The columns of the latter are u₀, u₁, v₀, v₁, whether the box reaches the boundary, the winding
+    number around a larger box, NaN if it is unknown, and that box.
 
     `counts` are the numbers of solutions and boxes.
     """
@@ -52,7 +60,7 @@ class Answers(NamedTuple):
     def new(cls, room: int) -> Answers:
         """Return empty arrays."""
         return cls(
-            np.empty((room, COLUMNS)), np.empty(room, np.int64), np.empty((room, 5)),
+            np.empty((room, COLUMNS)), np.empty(room, np.int64), np.empty((room, COLUMNS)),
             np.empty(room, np.int64), np.empty(room, np.int64), np.zeros(2, np.int64),
         )  # fmt: skip
 
@@ -79,6 +87,7 @@ def add_open(answers, number, u0, u1, v0, v1, kind, domain):
         v0, v1 = max(v0, domain[2]), min(v1, domain[3])
     row = answers.open_boxes[at]
     row[0], row[1], row[2], row[3], row[4] = u0, u1, v0, v1, border
+    row[INDEX] = math.nan
     answers.kinds[at], answers.open_numbers[at] = kind, number
     answers.counts[1] = at + 1
     return True

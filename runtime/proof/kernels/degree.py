@@ -23,7 +23,7 @@ from ....generated.vectors import Vector
 from ...directions.kernels.vectors import dot, length
 from ...machine_code.jit import inline, loop
 from ...search.kernels.pieces import REST_S, REST_T
-from ...tape.kernels.points import POINT, evaluate_points
+from ...tape.kernels.points import LANES, POINT, evaluate_points
 from .answers import BORDER
 from .cells import (
     EPS,
@@ -44,7 +44,7 @@ from .cells import (
 )
 from .pairs import distance, forms_at, is_beyond, most_of, newton
 
-__all__ = ["DECIDED", "PARTS", "degree_on"]
+__all__ = ["DECIDED", "PARTS", "PATH", "degree_on", "index_around"]
 
 # What is known of a box: nothing, or its one point with the normal, or that it has none.
 UNDECIDED, DECIDED = range(2)
@@ -55,13 +55,19 @@ GROWN, LEAST, NEAR_SIDE = 0.4, 2.0**-23, 0.05
 # The largest number of parts along u and along v.
 PARTS = 4
 # Segments of a side of a part are at least this long; a side has the length 2.
-LONGEST, SHORTEST = 1.0, 2.0**-6
+LONGEST, SHORTEST = 1.0, 2.0**-14
 # The computed gradient has at most this relative error at ends of segments, so that two of them
 # and the jump at a joint do not add up to half a turn.
 ERROR = 0.3
 # A normal is at least this multiple of the tolerance away from that of the border.
 AWAY = 4.0
 STEPS = 8
+# The numbers of a path along a border.
+PATH = 6
+# The index of a small hull, relative to the domain, is that around boxes which are larger by these
+# parts of the domain: next to the hull the gradient is too small. Each side of a path has so many
+# cells.
+LARGEST, AROUND, EACH = 0.01, (3e-6, 1e-4, 1e-3, 1e-2), LANES // 4
 
 
 @loop
@@ -228,42 +234,113 @@ def turns_less_than_half(tile, k, n, e1, e2, side, x, step):
 
 
 @loop
-def winding(tile, along, across, n):
-    """Return four times the winding number of the gradient along the border of a box.
+def walk_side(tile, k, n, e1, e2, side, path):
+    """Follow the gradient along a side of part k; return whether it is known to have no zero there.
 
-    Return 2, which is no such number, if the gradient may vanish on the border.
+    `path` (6,) are the angle turned through so far, the last gradient, the first one, and whether
+    there was one.
     """
+    x, step = 0.0, LONGEST
+    while True:
+        s, t = along_side(side, x)
+        g1, g2, _, _, _, _, _, _, _, error = gradient_at(tile, k, n, e1, e2, s, t)
+        if not error < ERROR * math.hypot(g1, g2):
+            return False
+        if path[5] == 0.0:
+            path[3], path[4], path[5] = g1, g2, 1.0
+        else:
+            path[0] += angle_between(path[1], path[2], g1, g2)
+        path[1], path[2] = g1, g2
+        if x >= 2.0:
+            return True
+        step = min(2.0 * step, 2.0 - x)
+        while not turns_less_than_half(tile, k, n, e1, e2, side, x, step):
+            step *= 0.5
+            if step < SHORTEST:
+                return False
+        x += step
+
+
+@loop
+def start_path(path):
+    """Begin a path along a border; see `walk_side`."""
+    for x in range(path.size):
+        path[x] = 0.0
+
+
+@inline
+def turns_of(path):
+    """Return the winding number of a path, which is closed here."""
+    total = path[0] + angle_between(path[1], path[2], path[3], path[4])
+    return np.rint(total / (2.0 * math.pi))
+
+
+@loop
+def winding(tile, along, across, n, path):
+    """Return the winding number of the gradient along the border of a box; NaN if it is unknown."""
     e1, e2 = plane_of(n)
-    total = 0.0
-    last1 = last2 = first1 = first2 = 0.0
+    start_path(path)
     for side in range(4):
         parts = along if side % 2 == 0 else across
         for part in range(parts):
             number = part if side < 2 else parts - 1 - part
             i = number if side % 2 == 0 else (along - 1 if side == 1 else 0)
             j = number if side % 2 == 1 else (0 if side == 0 else across - 1)
-            k = i * across + j
-            x, step = 0.0, LONGEST
-            while True:
-                s, t = along_side(side, x)
-                g1, g2, _, _, _, _, _, _, _, error = gradient_at(tile, k, n, e1, e2, s, t)
-                if not error < ERROR * math.hypot(g1, g2):
-                    return 2
-                if side == 0 and part == 0 and x == 0.0:
-                    first1, first2 = g1, g2
-                else:
-                    total += angle_between(last1, last2, g1, g2)
-                last1, last2 = g1, g2
-                if x >= 2.0:
-                    break
-                step = min(2.0 * step, 2.0 - x)
-                while not turns_less_than_half(tile, k, n, e1, e2, side, x, step):
-                    step *= 0.5
-                    if step < SHORTEST:
-                        return 2
-                x += step
-    total += angle_between(last1, last2, first1, first2)
-    return 4 * int(np.rint(total / (2.0 * math.pi)))
+            if not walk_side(tile, i * across + j, n, e1, e2, side, path):
+                return math.nan
+    return turns_of(path)
+
+
+@loop
+def index_around(tape, work, tile, domain, hull, n, path, box):
+    """Return the winding number of the gradient around a hull; NaN if it is unknown.
+
+    The path goes around a larger `box` (4,), which is written, in the domain; it crosses no joint.
+    """
+    e1, e2 = plane_of(n)
+    size_u, size_v = domain[1] - domain[0], domain[3] - domain[2]
+    if max((hull[1] - hull[0]) / size_u, (hull[3] - hull[2]) / size_v) > LARGEST:
+        return math.nan
+    for factor in AROUND:
+        more_u = max(factor * size_u, GROWN * (hull[1] - hull[0]))
+        more_v = max(factor * size_v, GROWN * (hull[3] - hull[2]))
+        box[0], box[1], box[2], box[3] = (
+            hull[0] - more_u, hull[1] + more_u, hull[2] - more_v, hull[3] + more_v
+        )  # fmt: skip
+        if domain[4] == 0.0 and (box[0] < domain[0] or box[1] > domain[1]):
+            return math.nan
+        if domain[5] == 0.0 and (box[2] < domain[2] or box[3] > domain[3]):
+            return math.nan
+        write_ring(tape, work, tile, box)
+        start_path(path)
+        known = True
+        for k in range(4 * EACH):
+            known = (
+                known
+                and tile.noise[k, REACH] > 0.0
+                and side_of(patch_of(tile.hot, k), tile.hot[k, REST_S], tile.hot[k, REST_T], n) > 0
+                and walk_side(tile, k, n, e1, e2, k // EACH, path)
+            )
+        if known:
+            return turns_of(path)
+    return math.nan
+
+
+@loop
+def write_ring(tape, work, tile, box):
+    """Write bounds over cells along the border of a box, counter-clockwise, inside of it."""
+    u, v = 0.5 * (box[0] + box[1]), 0.5 * (box[2] + box[3])
+    h_u, h_v = 0.5 * (box[1] - box[0]), 0.5 * (box[3] - box[2])
+    for k in range(4 * EACH):
+        side, place = k // EACH, tile.place[k]
+        along = (2.0 * (k % EACH) + 1.0) / EACH - 1.0
+        s = along if side == 0 else -along if side == 2 else 1.0 - 1.0 / EACH
+        t = along if side == 1 else -along if side == 3 else 1.0 - 1.0 / EACH
+        s, t = -s if side == 3 else s, -t if side == 0 else t
+        place[0], place[1] = u + h_u * s, v + h_v * t
+        place[2], place[3] = h_u / EACH, h_v / EACH
+        tile.noise[k, REACH] = 0.0
+    write_cells(tape, work, 1.0, tile, 4 * EACH)
 
 
 @inline
@@ -357,7 +434,7 @@ def reach_at(tile, k, n, s, t, p, q):
 
 
 @loop
-def degree_on(tape, work, tile, joints, domain, hull, n, ends, row):
+def degree_on(tape, work, tile, joints, domain, hull, n, ends, path, row):
     """Decide whether a box has no point with the normal n, or one, which is written to a row.
 
     Returns DECIDED, or UNDECIDED if it may have several; row[4] is 0 if it has none.
@@ -371,10 +448,10 @@ def degree_on(tape, work, tile, joints, domain, hull, n, ends, row):
         return DECIDED
     if sign == 0:
         return UNDECIDED
-    turns = winding(tile, along, across, n)
-    if turns == 0:
+    turns = winding(tile, along, across, n, path)
+    if turns == 0.0:
         return DECIDED
-    if turns != 4 * sign:
+    if turns != float(sign):
         return UNDECIDED
     row[5], row[6], row[7], row[8] = ends[0, 0], ends[0, along], ends[1, 0], ends[1, across]
     row[BORDER] = -1.0

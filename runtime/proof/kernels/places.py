@@ -19,8 +19,10 @@ from .answers import (
     COLUMNS,
     CONTINUUM,
     DOUBLE_KIND,
+    INDEX,
     MULTIPLE,
     SINGULAR,
+    WHERE,
     add_open,
     add_place,
 )
@@ -37,7 +39,7 @@ from .cells import (
     write_patch,
 )
 from .clusters import cluster
-from .degree import DECIDED, PARTS, degree_on
+from .degree import DECIDED, PARTS, PATH, degree_on, index_around
 from .folds import DOUBLE, NO_PLACE, at_fold
 from .pairs import (
     DETERMINANT,
@@ -89,6 +91,7 @@ class Boxes(NamedTuple):
     numbers: NDArray[np.int64]
     levels: NDArray[np.int64]
     ends: NDArray[np.float64]
+    path: NDArray[np.float64]
     tile: Cells
 
     @classmethod
@@ -98,7 +101,8 @@ class Boxes(NamedTuple):
         return cls(
             np.empty((most, BOX_COLUMNS)), np.empty((most, BOX_COLUMNS)), np.empty((most, 4)),
             np.empty(most, np.int64), np.empty(most, np.int64), np.zeros(ROWS * LANES),
-            np.zeros(LANES, np.int64), np.array(FOLDS), np.empty((2, PARTS + 1)), Cells.new(LANES),
+            np.zeros(LANES, np.int64), np.array(FOLDS), np.empty((2, PARTS + 1)),
+            np.empty(PATH), Cells.new(LANES),
         )  # fmt: skip
 
 
@@ -244,7 +248,18 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
             return -1
         row = answers.places[at]
         if (
-            degree_on(tape, work, tile, index.joints, domain, boxes.hulls[i], n, boxes.ends, row)
+            degree_on(
+                tape,
+                work,
+                tile,
+                index.joints,
+                domain,
+                boxes.hulls[i],
+                n,
+                boxes.ends,
+                boxes.path,
+                row,
+            )
             == DECIDED
         ):
             boxes.fates[i] = NO_PLACE
@@ -258,17 +273,23 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
         boxes.fates[i] = at_fold(tape, work, tile, n)
         if boxes.fates[i] == DOUBLE:
             u, v, r_u, r_v = tile.place[0, 0], tile.place[0, 1], tile.place[0, 2], tile.place[0, 3]
+            first = answers.counts[1]
             if not add_open(
                 answers, number, u - r_u, u + r_u, v - r_v, v + r_v, DOUBLE_KIND, domain
             ):
                 return -1
+            if answers.counts[1] > first:
+                add_index(tape, work, boxes, answers, domain, n)
         elif boxes.fates[i] != NO_PLACE and last:
             kind = MULTIPLE
             for k in range(count):
                 if boxes.owner[k] == i and cells.cone[int(boxes.following[k, 2]), 3] >= WIDE:
                     kind = SINGULAR
+            first = answers.counts[1]
             if not add_open(answers, number, u0, u1, v0, v1, kind, domain):
                 return -1
+            if answers.counts[1] > first:
+                add_index(tape, work, boxes, answers, domain, n)
             boxes.fates[i] = NO_PLACE
     left = 0
     for k in range(count):
@@ -280,7 +301,16 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
 
 
 @loop
-def give_up(index, boxes, rows, count, domain, number, answers):
+def add_index(tape, work, boxes, answers, domain, n):
+    """Write the winding number around the last undecided box, if that is known."""
+    row = answers.open_boxes[answers.counts[1] - 1]
+    row[INDEX] = index_around(
+        tape, work, boxes.tile, domain, row[:4], n, boxes.path, row[WHERE:COLUMNS]
+    )
+
+
+@loop
+def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
     """List all boxes of rows as a continuum, or as singular; return whether there was room."""
     cells = index.cells
     hulls = cluster(rows, count, cells, domain[4:], boxes.hulls, boxes.owner)
@@ -290,8 +320,11 @@ def give_up(index, boxes, rows, count, domain, number, answers):
             if boxes.owner[k] == i and cells.cone[int(rows[k, 2]), 3] >= WIDE:
                 kind = SINGULAR
         hull = boxes.hulls[i]
+        first = answers.counts[1]
         if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
             return False
+        if answers.counts[1] > first:
+            add_index(tape, work, boxes, answers, domain, n)
     return True
 
 
@@ -300,10 +333,10 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
     """Find the solutions for a normal in whole cells; return whether there was room."""
     fold = growing = 0
     if count > MOST:
-        return give_up(index, boxes, boxes.now, count, domain, number, answers)
+        return give_up(tape, work, index, boxes, boxes.now, count, domain, number, n, answers)
     for level in range(DEEPEST + 1):
         if count > 4 * MOST or (count > MANY and growing >= TIMES):
-            return give_up(index, boxes, boxes.now, count, domain, number, answers)
+            return give_up(tape, work, index, boxes, boxes.now, count, domain, number, n, answers)
         following = cut_boxes(tape, work, index, boxes, count, number, n, answers)
         if following < 0:
             return False

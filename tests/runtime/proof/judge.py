@@ -35,7 +35,6 @@ FORMULAS: dict[str, tuple[Any, Any, Any]] = {
     # The third derivatives of its height are those of functions of one parameter.
     "sum": (("u", "v", "exp(u) + cos(2*v)/2"), SQUARE, (OPEN, OPEN)),
     "menn": (("u", "v", "u**4 + u**2*v - v**2"), (("-4/5", "4/5"),) * 2, (OPEN, OPEN)),
-    "cusp": (("u", "v", "u**4/4 + u**2*v/2 + v**2/3 + u**3*v/10"), SQUARE, (OPEN, OPEN)),
     "rim": (("u*cos(v)", "u*sin(v)", "sqrt(u)"), (("1/2", 1), TURN), (OPEN, AROUND)),
     "bump": (("u", "v", "exp(-4*(u**2 + v**2))/2 + u*v/10"), SQUARE, (OPEN, OPEN)),
     "asphere": (

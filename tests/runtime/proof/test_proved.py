@@ -184,7 +184,6 @@ PLACES: dict[str, Callable[[], Places]] = {
     **{f"spline {x}": partial(in_spline, *x) for x in ((3, 1), (2, 1), (3, 2))},
     "knots of a smooth spline": partial(on_knots, 3, 1),
     "valley": in_a_valley,
-    "cusp": lambda: Places.on("cusp", [0.6204688721150239, 0.5], [-0.32456658279734163, 0.5]),
     "root": lambda: Places.on("root", [0.5, 0.02], [0.3, 0.7], cells=(8, 8)),
     "horn": lambda: Places.on(
         "horn", [0.3, 2.0, 4.0], [0.5, 0.1, 0.9], 1, 1.0, SINGULAR, cells=(16, 8)
@@ -451,6 +450,39 @@ def test_small_boxes_hold_what_is_not_decided(name: str) -> None:
     holds = (u_low <= u[here]) & (u[here] <= u_high) & (v_low <= v[here]) & (v[here] <= v_high)
     assert set(here[holds]) == set(range(len(u)))
     assert len(found.numbers) == 0 or name != "multiple, flat"
+
+
+FLAT: dict[str, tuple[str, list[int], list[list[float]]]] = {
+    "monkey saddle": ("u**3 - 3*u*v**2", [-2], []),
+    "of degree 4": ("u**4 - 6*u**2*v**2 + v**4", [-3], []),
+    "minimum": ("u**4 + v**4", [1], []),
+    "fold": ("u**3 + v**2", [0], []),
+    "cusp": ("u**4/4 + u**2*v/2 + v**2/3", [1], []),
+    "cusp and a point": (
+        "u**4/4 + u**2*v/2 + v**2/3 + u**3*v/10",
+        [1],
+        [[0.620468872115, -0.324566582797]],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FLAT)
+def test_flat_points_have_an_index(name: str) -> None:
+    """The index is that of the gradient of the height: the judge turns along a circle."""
+    height, expected, others = FLAT[name]
+    surface = gm.Surface.from_sympy(("u", "v", height), ("u", "v"), ((-0.9, 1.1), (-1.1, 0.9)))
+    found = new_index(surface).query(np.array([[0.0, 0.0, 1.0]]))
+    np.testing.assert_allclose(found.uv, np.reshape(others, (-1, 2)), rtol=0.0, atol=1e-9)
+    at_zero = np.abs(found.undecided.boxes).max(axis=1) < 1e-2
+    assert at_zero.any()
+    indices = found.undecided.degree[at_zero]
+    np.testing.assert_array_equal(indices, expected)
+    angle = np.linspace(0.0, TAU, 2000)
+    jets = surface.jets(0.02 * np.cos(angle), 0.02 * np.sin(angle))
+    turns = np.unwrap(np.arctan2(jets[:, 2, 2], jets[:, 1, 2]))
+    assert round((turns[-1] - turns[0]) / TAU) == expected[0]
+    total = expected[0] + int(found.sign.sum())
+    np.testing.assert_array_equal(gm.GaussMap(surface).degree([[0.0, 0.0, 1.0]]), total)
 
 
 @pytest.mark.parametrize(

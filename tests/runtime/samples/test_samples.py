@@ -187,7 +187,7 @@ class TestReport:
             str, int, int, int, float, int, float, float, int, str, int, int, tuple,
             float, float, float, int, int, str, int, int, int, bool, int, tuple, str, str, tuple,
         ]  # fmt: skip
-        assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "double", True, None),)
+        assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "double", True, None, None),)
         assert report.reach == (0.0, 0.0, 1.0, 60.0)
         assert report.undecided
         place = report.undecided[0]
