@@ -107,9 +107,6 @@ class UndecidedNormal(NamedTuple):
     >>> place = gm.sample("torus", normals=[[0, 0, 1]]).report.undecided[0]
     >>> place.normal, place.kind, place.border, len(place.box), place.face
     (0, 'continuum', False, 4, None)
-    >>> flat = gm.sample("monkey_saddle", normals=[[0, 0, 1]]).report.undecided
-    >>> [place.degree for place in flat]
-    [-2]
 
     """
 
