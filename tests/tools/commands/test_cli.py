@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 import warnings
 from collections.abc import Sequence
 from itertools import cycle
@@ -660,23 +661,24 @@ def test_interrupted_in_a_callback(
 @compiled
 @posix
 def test_interrupted_by_a_signal(tmp_path: Path) -> None:
-    os.mkfifo("pipe.npy")  # who reads from it is past the imports
     # A test run in the background ignores interrupts, and what it starts would do so too.
     code = (
-        "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "import signal, sys, time; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "from pathlib import Path; from gaussmap.tools.commands import inputs; "
+        "inputs.sample_and_normals = lambda *_, **__: (Path('begun').touch(), time.sleep(60)); "
         "from gaussmap.__main__ import main; sys.exit(main())"
     )
-    command = [sys.executable, "-c", code, "sample", "pipe.npy", "-o", "a.ply"]
-    with (
-        subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-        ) as process,
-        open("pipe.npy", "wb"),
-    ):
+    command = [sys.executable, "-c", code, "sample", "torus", "-o", "a.ply"]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        while not Path("begun").exists():  # past the imports
+            assert process.poll() is None
+            time.sleep(0.01)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=30)
     assert (process.returncode, out, err) == (130, "", "gaussmap: interrupted\n")
-    assert [path.name for path in tmp_path.iterdir()] == ["pipe.npy"]
+    assert [path.name for path in tmp_path.iterdir()] == ["begun"]
 
 
 @compiled
