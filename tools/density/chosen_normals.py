@@ -69,7 +69,9 @@ class Chosen:
             searched = replace(geometry, index=None)  # nobody has asked for a proof
             found = searched.samples_at(normals, fields, dtype, progress, self.density)
         # Nobody has asked for these normals: others take the place of those without a point.
-        return replace(found, report=replace(found.report, undecided=None)), normals
+        report = replace(found.report, undecided=None)
+        arrays, spline, surface = found.arrays(), found.spline, found.surface
+        return Samples(**arrays, report=report, spline=spline, surface=surface), normals
 
 
 def choose(geometry: OnPatches, count: int, progress: bool) -> Chosen:

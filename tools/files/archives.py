@@ -66,7 +66,7 @@ def archive_of(file: BufferedReader) -> Iterator[Archive]:
         if arrays.unpacked > max(HARMLESS, MOST_TIMES * packed):
             raise UnusableError(
                 f"has {packed / 1e6:,.1f} MB, and would unpack to {arrays.unpacked / 1e6:,.0f} MB, "
-                f"more than {MOST_TIMES} times as much; if you trust it, write it again by "
-                "numpy.savez, which does not compress."
+                f"more than {MOST_TIMES} times as much; if you trust it, write it again "
+                "without compression (numpy.savez)."
             )
         yield arrays
