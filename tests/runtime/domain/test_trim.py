@@ -407,16 +407,16 @@ def test_flat_points_outside_of_a_trim_are_known(place):
     surface = gm.surfaces.monkey_saddle()
     for trimmed, side in ((surface.trimmed([loop]), 1), (surface.trimmed([loop]).flipped(), -1)):
         report = gm.GaussMap(trimmed).points(side * np.array([[0, 0, 1], [0.3, 0, 1]])).report
-        assert [(x.normal, x.kind, x.border) for x in report.undecided or ()] == [
-            (0, "multiple", x) for x in borders
-        ]
+        found = report.undecided or ()
+        assert {(x.normal, x.kind) for x in found} == {(0, "multiple") for _ in borders}
+        assert any(x.border for x in found) == any(borders)
         assert report.proved == 2 - len(borders)
 
 
 def test_normals_out_of_reach_are_known():
-    with pytest.warns(gm.GaussmapWarning, match="none of the normals"):
+    with pytest.warns(gm.GaussmapWarning, match="in boxes of report.undecided"):
         report = gm.sample("torus", normals=[[0, 0, 1], [0, 0, -1]], reach=((0, 0, 1), 40)).report
-    assert (report.proved, [x.normal for x in report.undecided or ()]) == (1, [0])
+    assert (report.proved, {x.normal for x in report.undecided or ()}) == (1, {0})
 
 
 PREDICATES = {
@@ -466,4 +466,6 @@ def test_predicates_that_are_not_inequalities_leave_boxes_open(within):
 def test_flat_points_outside_of_a_predicate_are_known(edge, borders):
     surface = gm.surfaces.monkey_saddle().trimmed(within=lambda u, v: u + v > edge)
     report = gm.GaussMap(surface).points([[0, 0, 1], [0.3, 0, 1]]).report
-    assert [x.border for x in report.undecided or ()] == borders
+    found = report.undecided or ()
+    assert {x.normal for x in found} == {0 for _ in borders}
+    assert any(x.border for x in found) == any(borders)

@@ -422,7 +422,8 @@ def test_a_spline_has_its_pieces() -> None:
 def test_words() -> None:
     samples = gm.curves.sample(closed("eight"), normals=gm.directions.circle(10))
     assert repr(samples) == f"CurveSamples({len(samples)} points on eight)"
+    found = len(set(samples.normal_index.tolist()))
     assert samples.summary() == (
-        f"{len(samples)} samples at 10 prescribed normals; 2 inflections; "
+        f"{len(samples)} samples at {found} of 10 prescribed normals; 2 inflections; "
         "0.15 % of the curve is straight; proved to be complete for 10 of 10 normals"
     )
