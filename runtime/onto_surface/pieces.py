@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from ..base.aliases import Array
 from ..base.checks import pair_of_cells
 from ..base.errors import InputError, SurfaceError
 from ..samples.fields import FLAG_NAMES, dtype_of, new_field
-from ..samples.report import SamplingReport, count_unrefined
+from ..samples.report import SamplingReport, count_unrefined, joined_proof
 from ..samples.samples import Samples
 from ..spline.nets import AnySpline
 from ..surface.surface import Surface
@@ -148,16 +147,10 @@ def samples_of_pieces(
     arrays: dict[str, Any] = {x: np.concatenate([part[x] for part in parts]) for x in wanted}
     report = report_of(name, [x for _, x in kept], len(normals), None, developable, arrays)
     if all(geometry.index is not None for _, geometry in kept):
-        report = replace(report, **_proof(len(normals), reports))
+        report = replace(report, **joined_proof(len(normals), reports))
     elif on_surface:
         report = replace(report, undecided=tuple(y for x in reports for y in x.undecided or ()))
     return Samples(**{x: arrays[x] for x in fields}, report=report, surface=surface)
-
-
-def _proof(normals: int, reports: Sequence[SamplingReport]) -> dict[str, Any]:
-    """Return for how many normals all points of all pieces are known, and the open boxes."""
-    places = sorted((y for x in reports for y in x.undecided or ()), key=attrgetter("normal"))
-    return {"proved": normals - len({x.normal for x in places}), "undecided": tuple(places)}
 
 
 def report_of(

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from operator import attrgetter
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -28,6 +29,7 @@ __all__ = [
     "count_infinite",
     "count_unrefined",
     "have_large_squares",
+    "joined_proof",
     "sampling_report",
     "warn_of",
 ]
@@ -423,6 +425,15 @@ def common_report(
     if all(x.undecided is not None for x in reports):
         common["undecided"] = tuple(y for x in reports for y in x.undecided or ())
     return SamplingReport(**common)
+
+
+def joined_proof(normals: int, reports: Iterable[SamplingReport]) -> dict[str, Any]:
+    """Return `proved` and `undecided` for normals that were searched on each of several surfaces.
+
+    The undecided boxes come in the order of their normals.
+    """
+    undecided = sorted((y for x in reports for y in x.undecided or ()), key=attrgetter("normal"))
+    return {"proved": normals - len({x.normal for x in undecided}), "undecided": tuple(undecided)}
 
 
 def count_infinite(arrays: Mapping[str, NDArray[Any]]) -> int | None:

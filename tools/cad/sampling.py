@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from numpy.typing import DTypeLike, NDArray
 from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.base.memory import check_memory
 from ...runtime.samples.fields import EDGE_NAMES, FLAG_NAMES
-from ...runtime.samples.report import SamplingReport, count_unrefined
+from ...runtime.samples.report import SamplingReport, count_unrefined, joined_proof
 from ...runtime.samples.samples import Samples
 from ..density.cover import Cover
 from ..density.filling import fields_of, fill, target_of
@@ -128,15 +127,9 @@ def _proof(space: PartSpace, cover: Cover) -> dict[str, Any]:
     given = cover.at_normals
     if not given.same_normals or not len(given.normals):
         return {}
-    places = [y for x in given.found for y in x.samples.report.undecided or ()]
-    places.sort(key=attrgetter("normal"))
+    proof = joined_proof(len(given.normals), (x.samples.report for x in given.found))
     estimated = len(given.estimated) + len(space.failed)
-    proved = len(given.normals) - len({x.normal for x in places})
-    return {
-        "proved": None if estimated else proved,
-        "undecided": tuple(places),
-        "estimated_faces": estimated,
-    }
+    return proof | {"estimated_faces": estimated} | ({"proved": None} if estimated else {})
 
 
 def _warn(part: Part, report: SamplingReport, failed: int, angle: float | None) -> None:

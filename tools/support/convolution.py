@@ -18,7 +18,13 @@ from ...runtime.directions.unit import as_normals
 from ...runtime.fitting.fit import patches_of
 from ...runtime.map import GaussMap
 from ...runtime.samples.fields import new_field
-from ...runtime.samples.report import SamplingReport, count_infinite, sampling_report, warn_of
+from ...runtime.samples.report import (
+    SamplingReport,
+    count_infinite,
+    joined_proof,
+    sampling_report,
+    warn_of,
+)
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.nets import AnySpline
 from ...runtime.spline.spline import short_label
@@ -274,7 +280,5 @@ def _accuracy(
     entries["unrefined"] = int(np.count_nonzero(~arrays["on_surface"]))
     reports = [x.report for x in sources if isinstance(x, SurfaceSource)]
     if all(x.proved is not None for x in reports):
-        undecided = [x for report in reports for x in report.undecided or ()]
-        proved = count - len({x.normal for x in undecided})
-        entries |= {"proved": proved, "undecided": tuple(undecided)}
+        entries |= joined_proof(count, reports)
     return entries
