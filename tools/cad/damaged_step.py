@@ -10,7 +10,8 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from .inspection import NOT_FINITE, TEXTS, BadFileError
+from ..files.reading import UnusableError
+from .inspection import NOT_FINITE, TEXTS
 
 __all__ = ["COMMENT", "ENTITY", "LostFace", "numbers_of_entities", "without_damaged_faces"]
 
@@ -40,8 +41,8 @@ def without_damaged_faces(
 ) -> tuple[bytes, tuple[LostFace, ...]]:
     """Return a STEP file without its damaged faces, and these faces.
 
-    `damaged` maps numbers of entities that Open CASCADE cannot read to reasons. Raises BadFileError
-    for numbers that are not finite and belong to no face.
+    `damaged` maps numbers of entities that Open CASCADE cannot read to reasons. Raises
+    UnusableError for numbers that are not finite and belong to no face.
     """
     content = COMMENT.sub(b"", content)
     bodies = {int(number): body for number, body in ENTITY.findall(content)}
@@ -55,7 +56,7 @@ def without_damaged_faces(
     reached = _faces_above(roots, bodies, references)
     for k in not_finite:
         if not reached[k]:
-            raise BadFileError(f"holds a number that is not finite, in #{k}; export it again.")
+            raise UnusableError(f"holds a number that is not finite, in #{k}; export it again.")
     shells = {k for k, body in bodies.items() if body.lstrip().startswith(SHELLS)}
     used = {x for k in shells for x in references[k]}
     faces = {face: roots[root] for root, found in reached.items() for face in found & used}

@@ -12,13 +12,13 @@ from pathlib import Path
 
 from ...runtime.base.advice import CAD_SUFFIXES
 from ..files.numpy_files import array_file
-from ..files.reading import LFS, POINTER
+from ..files.reading import UnusableError
 
 __all__ = [
     "HEAD",
     "NOT_FINITE",
     "TEXTS",
-    "BadFileError",
+    "UnusableError",
     "checked_format",
     "faces_said",
     "format_of",
@@ -52,31 +52,25 @@ IGES_FACES = (b"143", b"144", b"510")
 NAMES = {"about.npy", "face_loops.npy"}
 
 
-class BadFileError(Exception):
-    """A file cannot be read; the text continues "'path' …" and ends in a full stop."""
-
-
 def checked_format(content: bytes) -> tuple[str, bool]:
     """Return the format of a file, STEP, IGES or BREP, and whether all its numbers are finite.
 
-    Raises BadFileError for damaged files; only STEP files may hold numbers that are not finite.
+    Raises UnusableError for damaged files; only STEP files may hold numbers that are not finite.
     """
     if not content.strip():
-        raise BadFileError("is empty.")
-    if content.startswith(LFS):
-        raise BadFileError(POINTER)
+        raise UnusableError("is empty.")
     form = format_of(content[:HEAD])
     if form is None:
-        raise BadFileError("is not a STEP, IGES or BREP file.")
+        raise UnusableError("is not a STEP, IGES or BREP file.")
     if form == "STEP" and END_OF_STEP not in content[-HEAD:]:
-        raise BadFileError("is truncated: a STEP file ends with END-ISO-10303-21; get it again.")
+        raise UnusableError("is truncated: a STEP file ends with END-ISO-10303-21; get it again.")
     if form == "IGES":
         _check_iges(content)
     if form == "BREP":
         _check_brep(content)
     finite = _is_finite(content, form)
     if not finite and form != "STEP":
-        raise BadFileError("holds numbers that are not finite; export it again.")
+        raise UnusableError("holds numbers that are not finite; export it again.")
     return form, finite
 
 
@@ -105,28 +99,28 @@ def _letters(lines: list[bytes]) -> str:
 
 
 def _check_iges(content: bytes) -> None:
-    """Compare the line counts of sections with those in the last line; BadFileError."""
+    """Compare the line counts of sections with those in the last line; UnusableError."""
     lines = [x for x in content.splitlines() if x.strip()]
     letters = _letters(lines)
     end = letters.find("T")
     if end < 0:
-        raise BadFileError("is truncated: it lacks the last line of an IGES file; get it again.")
+        raise UnusableError("is truncated: it lacks the last line of an IGES file; get it again.")
     said = dict(re.findall(r"([SGDP])\s*(\d+)", lines[end][:32].decode("ascii", "replace")))
     for letter in "SGDP":
         count = letters[:end].count(letter)
         if int(said.get(letter, count)) != count:
-            raise BadFileError(
+            raise UnusableError(
                 f"is damaged: its last line says {said[letter]} lines of section {letter}, and it "
                 f"has {count}; get it again."
             )
 
 
 def _check_brep(content: bytes) -> None:
-    """Check that each shape ends with a star, and the last line exists, else BadFileError."""
+    """Check that each shape ends with a star, and the last line exists, else UnusableError."""
     start = SHAPES.search(content)
     whole = start is not None and WHOLE.search(content[-HEAD:])
     if start is None or not whole or content.count(b"*", start.end()) != int(start[1]):
-        raise BadFileError("is truncated or damaged: it lacks shapes; save it again.")
+        raise UnusableError("is truncated or damaged: it lacks shapes; save it again.")
 
 
 def faces_said(content: bytes, form: str) -> int:

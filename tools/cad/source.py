@@ -16,7 +16,7 @@ from ...runtime.base.wording import plural
 from ..files.paths import reason_of
 from ..files.reading import UnusableError, regular_file
 from .damaged_step import COMMENT, ENTITY, LostFace, without_damaged_faces
-from .inspection import BadFileError, checked_format, faces_said
+from .inspection import checked_format, faces_said
 
 __all__ = ["PartFiles", "Source", "prepared"]
 
@@ -79,7 +79,7 @@ class PartFiles:
         copy = self.copies[real] = f"gaussmap-{len(self.copies)}-{COPY}"
         try:
             content, lost = _checked_part(path)
-        except (BadFileError, UnusableError) as error:
+        except UnusableError as error:
             self.unreadable[name] = str(error).rstrip(".")
         except OSError as error:
             lacks = isinstance(error, FileNotFoundError)
@@ -135,7 +135,7 @@ class Source:
 
 
 def prepared(path: Path, folder: Path) -> Source:
-    """Return the readable content of a file; BadFileError with the reason if there is none."""
+    """Return the readable content of a file; UnusableError with the reason if there is none."""
     content = path.read_bytes()
     form, finite = checked_format(content)
     source = Source(path, folder, form, content)
@@ -150,7 +150,7 @@ def _checked_part(path: Path) -> tuple[bytes, tuple[LostFace, ...]]:
     with regular_file(path) as file:
         content = file.read()
     if checked_format(content)[0] != "STEP":
-        raise BadFileError("is not a STEP file.")
+        raise UnusableError("is not a STEP file.")
     return without_damaged_faces(content, {})
 
 

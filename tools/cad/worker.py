@@ -36,12 +36,12 @@ def main(text: str) -> None:
 
 def _read(request: dict[str, str], folder: Path) -> str:
     """Write the part; return the reason if it cannot be read, else ""."""
-    from .inspection import BadFileError
+    from ..files.reading import UnusableError
     from .source import prepared
 
     try:  # before Open CASCADE is loaded, which takes a second
         source = prepared(Path(request["path"]), folder)
-    except BadFileError as error:
+    except UnusableError as error:
         return str(error)
     except OSError as error:
         return f"cannot be read: {error.strerror or type(error).__name__}."
@@ -54,7 +54,7 @@ def _read(request: dict[str, str], folder: Path) -> str:
     try:
         record = part_record(source, request["name"], request["unit"])
         write_record(record, folder / PART)
-    except BadFileError as error:
+    except UnusableError as error:
         return str(error)
     except MemoryError:
         raise

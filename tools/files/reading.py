@@ -11,7 +11,7 @@ from pathlib import Path
 from ...runtime.base.errors import FileError, InputError
 from .paths import reason_of
 
-__all__ = ["LFS", "POINTER", "UnusableError", "opened", "readable", "regular_file"]
+__all__ = ["UnusableError", "opened", "readable", "regular_file"]
 
 # The beginning of the files that Git leaves in place of large ones, and what they are.
 LFS = b"version https://git-lfs.github.com/spec/"

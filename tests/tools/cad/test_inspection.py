@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from gaussmap.tools.cad.damaged_step import without_damaged_faces
-from gaussmap.tools.cad.inspection import BadFileError, checked_format, faces_said
+from gaussmap.tools.cad.inspection import UnusableError, checked_format, faces_said
 from gaussmap.tools.cad.source import prepared
 
 from ...refusals import refused
@@ -43,7 +43,7 @@ def test_formats_are_known_by_their_content(content, form):
     ],
 )
 def test_what_is_wrong_is_one_sentence(content, reason):
-    said = refused(reason, checked_format, content, error=BadFileError)
+    said = refused(reason, checked_format, content, error=UnusableError)
     assert said.count(". ") == 0
 
 
@@ -66,7 +66,7 @@ def test_a_face_with_numbers_that_are_not_finite_is_left_out(number):
 
 def test_a_number_that_is_not_finite_and_in_no_face_is_an_error():
     content = STEP.replace(b"ENDSEC;\nEND", b"#10=AXIS('',(nan));\nENDSEC;\nEND")
-    refused("in #10", without_damaged_faces, content, {}, error=BadFileError)
+    refused("in #10", without_damaged_faces, content, {}, error=UnusableError)
 
 
 def test_faces_that_refer_to_nothing_are_left_out():

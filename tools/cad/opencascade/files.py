@@ -16,8 +16,8 @@ from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TopoDS import TopoDS_Shape
 
 from ...files.lengths import METRES, unit_named
+from ...files.reading import UnusableError
 from ..damaged_step import LostFace, numbers_of_entities
-from ..inspection import BadFileError
 from ..source import Source
 from .documents import Document, PlacedShape, new_document, pieces_of
 from .shapes import sequence
@@ -32,7 +32,7 @@ DAMAGE = ("not a real", UNRESOLVED)
 def read_file(source: Source) -> tuple[Document, tuple[LostFace, ...]]:
     """Return the document in a file, in millimetres, and the faces that were left out.
 
-    Raises BadFileError with the reason if the file cannot be read.
+    Raises UnusableError with the reason if the file cannot be read.
     """
     if source.format == "STEP":
         return _step(source)
@@ -58,12 +58,12 @@ def _read_step(path: Path) -> Any:  # noqa: ANN401
 
 
 def _read_by(reader: Any, path: Path) -> Any:  # noqa: ANN401
-    """Return the reader, with names and colours of the file; BadFileError if it cannot read it."""
+    """Return the reader, with names and colours of the file; UnusableError if it cannot read it."""
     reader.SetNameMode(True)
     reader.SetColorMode(True)
     reader.SetLayerMode(False)
     if reader.ReadFile(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
-        raise BadFileError("is damaged: Open CASCADE cannot read it; export it again.")
+        raise UnusableError("is damaged: Open CASCADE cannot read it; export it again.")
     return reader
 
 
@@ -130,5 +130,5 @@ def _iges(path: Path) -> Document:
 def _brep(path: Path) -> Document:
     shape = TopoDS_Shape()
     if not BRepTools.Read_s(shape, str(path), BRep_Builder()) or shape.IsNull():
-        raise BadFileError("is damaged or truncated: Open CASCADE cannot read it; save it again.")
+        raise UnusableError("is damaged or truncated: Open CASCADE cannot read it; save it again.")
     return Document([PlacedShape(shape)])

@@ -13,8 +13,8 @@ from OCP.TopoDS import TopoDS
 
 from ....runtime.base.wording import plural
 from ...files.lengths import METRES
+from ...files.reading import UnusableError
 from ..damaged_step import LostFace
-from ..inspection import BadFileError
 from ..records import FaceRecord, Geometry, PartRecord
 from ..source import Source
 from ..units import with_unit
@@ -32,15 +32,15 @@ MOST_NAMED = 5
 
 
 def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
-    """Return the part in a file, in a unit or its own; BadFileError with a reason if not."""
+    """Return the part in a file, in a unit or its own; UnusableError with a reason if not."""
     document, lost = read_file(source)
     found = gathered(document)
     said = source.faces_said()
     _warn_of_part_files(document, source)
     if not found.faces and not lost:
         if document.warnings and source.parts:
-            raise BadFileError(f"has no faces that can be read: {document.warnings[-1]}")
-        raise BadFileError(
+            raise UnusableError(f"has no faces that can be read: {document.warnings[-1]}")
+        raise UnusableError(
             f"is damaged: Open CASCADE can make none of its {said} faces; export it again."
             if said
             else f"has no faces{_others(document)}; a part needs solids, shells or faces."
@@ -49,7 +49,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
     faces = [_face(x, reader) for x in found.faces]
     if all(x.reason for x in faces):
         why = faces[0].reason if faces else lost[0].reason
-        raise BadFileError(f"has no face that can be used: of the first one, {why}.")
+        raise UnusableError(f"has no face that can be used: of the first one, {why}.")
     missing = said - _different(found.faces) - len(lost)
     if missing > 0:
         document.warnings.append(

@@ -12,7 +12,7 @@ from scipy.special import ellipeinc, ellipkinc
 
 pytest.importorskip("OCP")
 
-from gaussmap.tools.cad.inspection import BadFileError
+from gaussmap.tools.cad.inspection import UnusableError
 from gaussmap.tools.cad.opencascade.shapes import sequence
 from gaussmap.tools.cad.part import part_of
 from OCP.BRep import BRep_Builder, BRep_Tool
@@ -247,7 +247,7 @@ def test_part_files_that_are_missing_or_cut_are_a_warning(cut, assembly, read):
 def test_the_top_file_alone_says_which_files_it_refers_to(assembly, read):
     for name in ("pin", "nut"):
         assembly.with_name(f"of-{name}.stp").unlink()
-    said = refused("has no faces that can be read: 2 of 2", read, assembly, error=BadFileError)
+    said = refused("has no faces that can be read: 2 of 2", read, assembly, error=UnusableError)
     assert "'of-nut.stp' does not exist; 'of-pin.stp' does not exist" in said
 
 
@@ -280,7 +280,7 @@ def test_numbers_that_are_none_cost_only_their_faces(number, write, read):
     part = read(path)
     assert [bool(x.reason) for x in part.faces] == 3 * [False] + 3 * [True]
     path.write_text(re.sub(r"(CARTESIAN_POINT\('',\()[^,]*,", rf"\g<1>{number},", text))
-    refused("", read, path, error=BadFileError)
+    refused("", read, path, error=UnusableError)
 
 
 @pytest.mark.parametrize("suffix", ["step", "iges", "brep"])
@@ -291,7 +291,7 @@ def test_files_without_faces_say_what_they_have(joined, points, suffix, write, r
     alone = [shapes.vertex(9.0, 9.0, k) for k in range(points)]
     path = write(compound(*edges, *alone) if alone else edges[0], f"wires.{suffix}")
     held = "3 edges, 2 points" if points else "1 edge"
-    refused(f"has no faces: {held}; a part needs", read, path, error=BadFileError)
+    refused(f"has no faces: {held}; a part needs", read, path, error=UnusableError)
 
 
 @pytest.mark.parametrize("suffix", ["step", "iges", "brep"])
@@ -301,7 +301,7 @@ def test_files_that_end_too_early_are_refused(suffix, write, read):
     content = path.read_bytes().rstrip()
     for length in (*(len(content) * k // 10 for k in range(1, 10)), len(content) - 20):
         path.write_bytes(content[:length])
-        refused(r"is (truncated|damaged|empty)", read, path, error=BadFileError)
+        refused(r"is (truncated|damaged|empty)", read, path, error=UnusableError)
 
 
 @pytest.mark.parametrize("kind", ["PLANE", "VERTEX_POINT", "EDGE_LOOP", "LINE"])
@@ -323,7 +323,7 @@ def test_faces_that_open_cascade_leaves_out_are_told(write, read):
         "1 of 7 faces are missing: Open CASCADE cannot make them; export the file again."
     ]
     path.write_text(re.sub(r"(SOLID_BREP\('',)#\d+", r"\g<1>#99999", text))
-    refused("can make none of its 7 faces", read, path, error=BadFileError)
+    refused("can make none of its 7 faces", read, path, error=UnusableError)
 
 
 PLANE = gp_Pln(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(0.0, 0.0, 1.0))
