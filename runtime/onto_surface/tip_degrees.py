@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.aliases import Array
+from ..base.kept import kept
 from ..spline.tips import collapsed_sides
 from .on_spline import OnSpline
 
@@ -26,18 +27,24 @@ PRODUCTS_AT_A_TIME = 1 << 20
 
 def tip_degrees(geometry: OnSpline, normals: Array) -> NDArray[np.int64]:
     """Return the sum (S,) over the tips of a surface of their degrees at unit normals (S, 3)."""
-    found, spline = np.zeros(len(normals), np.int64), geometry.spline
+    found = np.zeros(len(normals), np.int64)
+    for rays in kept(geometry.spline, f"rays of tips, {geometry.on}", lambda: _tips(geometry)):
+        size = max(PRODUCTS_AT_A_TIME // len(rays), 1)
+        for first in range(0, len(normals), size):
+            found[first : first + size] += _degrees(rays, normals[first : first + size])
+    return found
+
+
+def _tips(geometry: OnSpline) -> list[Array]:
+    """Return the rays (k, 3) of each tip, anticlockwise around it; none on a trimmed surface."""
+    found, spline = list[Array](), geometry.spline
     for axis, end in [] if spline.trim is not None else collapsed_sides(spline):
         if spline.boundary[1 - axis][0] != "periodic":
             continue
         rays = _rays(geometry, axis, end)
-        if not rays.any(axis=1).all():
-            continue
-        # The ring runs round the tip anticlockwise, along the other parameter or against it.
-        rays = rays if axis == end else rays[::-1]
-        size = max(PRODUCTS_AT_A_TIME // len(rays), 1)
-        for first in range(0, len(normals), size):
-            found[first : first + size] += _degrees(rays, normals[first : first + size])
+        if rays.any(axis=1).all():
+            # The other parameter runs anticlockwise round the tip, or clockwise.
+            found.append(rays if axis == end else rays[::-1])
     return found
 
 

@@ -501,7 +501,8 @@ def _undecided(answers: list[Answers], places: Sorted, periods: Array) -> Undeci
     order = np.lexsort((boxes[:, 2], boxes[:, 0], numbers))
     boxes, numbers = boxes[order], numbers[order]
     for k in np.flatnonzero(np.isfinite(boxes[:, INDEX])).tolist():
-        opened = boxes[numbers == numbers[k]]
+        first, last = np.searchsorted(numbers, [numbers[k], numbers[k] + 1])
+        opened = boxes[first:last]
         boxes[k, INDEX] -= _others(int(numbers[k]), boxes[k], opened, places, periods)
     return Undecided(
         numbers, boxes[:, :4].copy(), kinds[order], boxes[:, 4] > 0.0, boxes[:, INDEX].copy()

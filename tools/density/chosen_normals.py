@@ -70,8 +70,7 @@ class Chosen:
             found = searched.samples_at(normals, fields, dtype, progress, self.density)
         # Nobody has asked for these normals: others take the place of those without a point.
         report = replace(found.report, undecided=None)
-        held = {"spline": found.spline, "surface": found.surface, "offset_of": None}
-        return Samples(**found.arrays(), **held, report=report), normals
+        return geometry.samples(found.arrays(), report), normals
 
 
 def choose(geometry: OnPatches, count: int, progress: bool) -> Chosen:
