@@ -196,8 +196,8 @@ class GaussMap(Methods):
         """Return Σ sign K over the points with each of the normals.
 
         On a closed surface it is χ/2 for every normal, χ being the Euler characteristic. If the
-        surface ends in tips, normals in the cone of a tip are counted there: once at the tip of a
-        convex cone, as often as it is covered by the normals at the tip, with signs, at others.
+        surface ends in tips, their degrees are added: 1 for normals in the normal cone of a convex
+        tip, and in general the signed number of times that the normals at the tip cover a normal.
         Where the report lists an undecided box with a degree, this is added.
 
         Parameters

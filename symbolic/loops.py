@@ -50,7 +50,7 @@ def array_function(formula: Formula, over: Collection[sp.Symbol]) -> str:
 def jet_function(formula: Formula) -> str:
     """Return the 2-jet of a surface, a formula of u, v and parameters, as a function of arrays.
 
-    Each of the 18 numbers is stored as soon as it is computed, which keeps the source short.
+    Each of the 18 coordinates is assigned to its entry of the array, without a variable of its own.
     """
     u, v, *parameters = formula.inputs
     places = {

@@ -22,8 +22,8 @@ CREASE_ANGLE = 0.1
 # The largest smooth ratio of tangent lengths. The spline of a surface has no folds at this ratio,
 # but has some from 5 on.
 LARGEST_JUMP = 3.0
-# If |x_u × x_v| on a line is below SINGULAR times the largest |x_u| |x_v|, x_u or x_v vanishes; the
-# normal is then taken beside the line, at BESIDE times the knot span.
+# Where |x_u × x_v| on a knot line is below SINGULAR times the largest |x_u| |x_v|, x_u or x_v
+# vanishes. The normal is then evaluated at a distance of BESIDE times the knot span from the line.
 BESIDE, SINGULAR = 1e-4, 1e-9
 
 

@@ -64,9 +64,9 @@ AWAY = 4.0
 STEPS = 8
 # The numbers of a path along a border.
 PATH = 6
-# The index of a small hull, relative to the domain, is that around boxes which are larger by these
-# parts of the domain: next to the hull the gradient is too small. Each side of a path has so many
-# cells.
+# A hull is small if it is at most LARGEST times the domain. Its index is computed along the border
+# of a larger box, since the gradient is too small next to the hull: the box grows by the fractions
+# AROUND of the domain in turn. Each of the four sides of the border has EACH cells.
 LARGEST, AROUND, EACH = 0.01, (3e-6, 1e-4, 1e-3, 1e-2), LANES // 4
 
 

@@ -12,7 +12,7 @@ HALF = np.pi / 3
 TURN = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
 TURN = TURN * np.sign(np.linalg.det(TURN))
 SHAPES = ("lemon", "ogive")
-MOTIONS = {"as it is": np.eye(3), "turned": TURN, "small": 1e-6 * TURN}
+MOTIONS = {"identity": np.eye(3), "turned": TURN, "small": 1e-6 * TURN}
 
 
 def grid(shape: str) -> Array:

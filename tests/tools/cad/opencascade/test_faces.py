@@ -91,7 +91,7 @@ def distances(uv, record):
 
 
 def area_of(surface, side):
-    """Return the area inside the trim from jittered places, a square of so many on a side."""
+    """Estimate the area inside the trim from side × side jittered parameters."""
     (u0, u1), (v0, v1) = surface.domain
     cells = np.stack(np.meshgrid(*[np.arange(side)] * 2, indexing="ij"), axis=-1).reshape(-1, 2)
     parts = (cells + np.random.default_rng(3).random(cells.shape)) / side
