@@ -16,8 +16,8 @@ from .directions.unit import as_normals
 from .map_methods import Methods
 from .onto_surface.on_spline import OnPatches, OnSpline, on_grids
 from .onto_surface.on_surface import checked_place
-from .onto_surface.pieces import geometries_of, samples_of_pieces
 from .onto_surface.reach import in_reach
+from .onto_surface.smooth_pieces import geometries_of, samples_of_pieces
 from .onto_surface.tip_degrees import tip_degrees
 from .samples.fields import checked_dtype, checked_fields
 from .samples.samples import Samples

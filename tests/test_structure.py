@@ -37,7 +37,7 @@ EXCEPTIONS = {
     },
     "test_any_argument.py": {"gaussmap.tools.cad.examples.box"},
     # Faces of parts alone have borders that are sampled.
-    "tools/cad/test_sampling.py": {"gaussmap.tools.density.space.PLACES_AT_A_TIME"},
+    "tools/cad/test_part_sampling.py": {"gaussmap.tools.density.space.PLACES_AT_A_TIME"},
 }
 # What tests of all rooms use.
 SHARED = {path.stem for path in TESTS.glob("*.py") if not path.stem.startswith("test_")}

@@ -217,7 +217,7 @@ def mesh(
     if not len(self):
         raise InputError("there are no samples, and so there is nothing to make a mesh of.")
     if isinstance(self.surface, Whole):
-        from .cad.meshing import mesh_of_samples
+        from .cad.part_meshing import mesh_of_samples
 
         with busy("meshing", progress):
             return mesh_of_samples(self, angle, prefer)

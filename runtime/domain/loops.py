@@ -139,11 +139,11 @@ class Loops:
         return sorted({0, *range(first, last + 1)}, key=abs)
 
     @cached_property
-    def _cells(self) -> tuple[kernels.Cells, Array]:
+    def _cells(self) -> tuple[kernels.SegmentGrid, Array]:
         """The cached result of `in_cells`."""
         return self.in_cells()
 
-    def in_cells(self) -> tuple[kernels.Cells, Array]:
+    def in_cells(self) -> tuple[kernels.SegmentGrid, Array]:
         """Return the segments sorted into cells, and the shifts, both scaled by powers of two."""
         sizes = self.box[1] - self.box[0]
         scales = np.array([scale_to_one(float(x)) for x in sizes])
@@ -160,7 +160,7 @@ class Loops:
         count = max(min(count, int(MOST_ENTRIES / reach)), 1) if reach > 0.0 else count
         steps = sizes / count
         frame = np.concatenate([self.box[0] * scales, 1.0 / steps, steps])
-        cells = kernels.Cells(
+        cells = kernels.SegmentGrid(
             segments, frame, np.zeros(count * count + 1, dtype=np.int64),
             np.empty(0, dtype=np.int32), np.empty((count, count), dtype=np.bool_),
         )  # fmt: skip

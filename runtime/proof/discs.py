@@ -25,9 +25,9 @@ from ..tape.kernels.points import Tape
 from ..tape.kernels.rounding import rounding_of_boxes
 from ..tape.tapes import bounds_over_boxes, jets_of, moved_tape
 from .ball import Ball
-from .kernels.cells import EPS, WIDE, Cells, write_one_cone
+from .grid_lines import jumps_of, lines_of
+from .kernels.cell_bounds import EPS, WIDE, CellBounds, write_one_cone
 from .kernels.discs import Disc
-from .lines import jumps_of, lines_of
 from .polar_tapes import PolarTapes, polar_tapes
 from .spline_quotient import mapped_spline
 
@@ -62,7 +62,7 @@ class PoleDisc:
     radius: float
     tape: Tape
     disc: Disc
-    cell: Cells
+    cell: CellBounds
 
 
 class Bounds(NamedTuple):
@@ -352,11 +352,11 @@ def _is_steady(bounds: Bounds, middle: Array) -> bool:
     return bool((np.abs(np.linalg.inv(hessian)) @ np.array([a + b, b + c])).max() < CHANGE)
 
 
-def _cell(hot: Array, changes: Array, noise: float) -> Cells | None:
+def _cell(hot: Array, changes: Array, noise: float) -> CellBounds | None:
     """Return a disc as a cell with a cone of normals; None if that is wide."""
     if not noise < math.inf:
         return None
-    cell = Cells.new(1)
+    cell = CellBounds.new(1)
     cell.hot[0, :15] = hot
     a, b, c = np.linalg.norm(changes[1], axis=1)  # in the disc itself
     pad = noise + 2.0**-48 * np.abs(hot).max()

@@ -23,12 +23,12 @@ from ..domain.domain import Boundary, Domain
 from ..search.kernels.lists import NUMBER, Lists
 from ..search.kernels.pieces import CHORD, CONE, EVERYTHING, WIDTH, Pieces
 from ..search.kernels.search import CELLS as KIND
-from ..search.kernels.search import Found as Pairs
-from ..search.kernels.search import Memory, search
+from ..search.kernels.search import Memory, Pairs, search
 from ..search.patch_index import listed, ordered
 from ..tape.kernels.points import LANES, Tape
 from .caps import Cap, cap_of
 from .discs import PoleDisc, pole_disc
+from .grid_lines import joints_of, lines_of
 from .kernels.answers import (
     BORDER,
     BOX,
@@ -40,12 +40,11 @@ from .kernels.answers import (
     Answers,
     merge_places,
 )
-from .kernels.cells import OPEN, REACH, WIDE, Cells, Work, cut_cells
+from .kernels.cell_bounds import OPEN, REACH, WIDE, CellBounds, Work, cut_cells
 from .kernels.discs import decide_discs
+from .kernels.evaluated_pairs import Index, Joints, Outcome, Tiles, evaluate_pairs
 from .kernels.places import Boxes, decide_normals
-from .kernels.search import Found, Index, Joints, Tiles, evaluate_pairs
 from .kernels.sorting import Sorted, count_places, order_places, put_places, start_normals
-from .lines import joints_of, lines_of
 
 __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
@@ -130,7 +129,7 @@ class Rooms(NamedTuple):
     tiles: Tiles
     boxes: Boxes
     pairs: list[Pairs]
-    found: list[Found]
+    found: list[Outcome]
     answers: list[Answers]
 
 
@@ -197,11 +196,11 @@ class ProvedIndex:
         blind = cut.noise[:, REACH] == 0.0
         u, v, h_u, h_v = cut.place[blind].T
         unbounded = np.vstack([poles, np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])])
-        cut = Cells(*(x[~blind] for x in cut))
+        cut = CellBounds(*(x[~blind] for x in cut))
         sizes = cut.place[:, 2] * cut.place[:, 3]
         if sizes[cut.cone[:, 3] >= OPEN].sum() > MOST_OPEN * sizes.sum():
             return None
-        both = Cells(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
+        both = CellBounds(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
         joints = Joints(*(joints_of(tape, k, domain, boundary) for k in (0, 1)))
         index = Index(both, len(cut.place), joints)
         pieces = _pieces_of(index)
@@ -264,7 +263,7 @@ class ProvedIndex:
             self.index.cells, self.tape, rooms.work, normals, keys, rooms.tiles, rooms.found[0]
         ):
             room = rooms.found[0]
-            rooms.found[0] = Found.new(2 * len(room.numbers), 2 * len(room.hard))
+            rooms.found[0] = Outcome.new(2 * len(room.numbers), 2 * len(room.hard))
         found = rooms.found[0]
         places, hard = found.counts
         close = Places(found.places[:places].copy(), numbers[found.numbers[:places]])
@@ -373,7 +372,7 @@ class ProvedIndex:
                 Work.new(len(self.tape.operations)),
                 Memory.new(int(np.diff(self.lists.starts).max())), Tiles.new(),
                 Boxes.new(len(self.index.cells.place)), [Pairs.new(PAIRS)],
-                [Found.new(ROOM, ROOM)], [Answers.new(ROOM)],
+                [Outcome.new(ROOM, ROOM)], [Answers.new(ROOM)],
             )  # fmt: skip
         yield rooms
         self._rooms.append(rooms)
@@ -430,22 +429,23 @@ def _has_no_normals(tape: Tape, lines: list[NDArray[np.float64]]) -> bool:
 
 def _cut(
     tape: Tape, lines: list[NDArray[np.float64]], most: tuple[int, int], threads: int | None
-) -> Cells:
+) -> CellBounds:
     """Return the cells of a grid, cut as often as `LEVELS` say."""
     levels, deepest = np.array(most), 3 * max(most) + 2
     count = (len(lines[0]) - 1) * (len(lines[1]) - 1)
 
-    def work(first: int, last: int) -> list[Cells]:
+    def work(first: int, last: int) -> list[CellBounds]:
         state = np.array([first, 0, 0])
-        stack, tile, room = np.empty((LANES * deepest, 5)), Cells.new(LANES), Cells.new(CELL_ROOM)
+        tile, room = CellBounds.new(LANES), CellBounds.new(CELL_ROOM)
+        stack = np.empty((LANES * deepest, 5))
         arrays, parts = Work.new(len(tape.operations)), []
         while state[0] < last or state[1] > 0:
             cut_cells(tape, arrays, lines[0], lines[1], state, last, levels, stack, tile, room)
-            parts.append(Cells(*(x[: state[2]].copy() for x in room)))
+            parts.append(CellBounds(*(x[: state[2]].copy() for x in room)))
         return parts
 
     parts = [x for y in over_ranges(work, count, CELLS_AT_A_TIME, threads) for x in y]
-    return Cells(*(np.concatenate(x) for x in zip(*parts, strict=True)))
+    return CellBounds(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
 
 def _pieces_of(index: Index) -> Pieces:

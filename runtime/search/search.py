@@ -26,7 +26,7 @@ from .fill import fill
 from .hits import Hits
 from .in_nets import decide_in_nets, flat_nets
 from .kernels.lists import NUMBER
-from .kernels.search import PATCHES, Found, Memory, search
+from .kernels.search import PATCHES, Memory, Pairs, search
 from .kernels.sort import order_few
 from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
@@ -98,7 +98,7 @@ def _ranges(
     order = ordered(normals, index.lists, threads)
 
     def work(first: int, last: int) -> list[tuple[Indices, Indices]]:
-        memory, found, parts = Memory.new(index.most), Found.new(ROOM), []
+        memory, found, parts = Memory.new(index.most), Pairs.new(ROOM), []
         while first < last:
             first, needed = search(
                 PATCHES, index.pieces, index.lists, normals, order, first, last, memory, found
@@ -106,7 +106,7 @@ def _ranges(
             certain, undecided = found.counts
             parts.append((found.certain[:certain].copy(), found.undecided[:undecided].copy()))
             if needed > len(found.certain):
-                found = Found.new(needed)
+                found = Pairs.new(needed)
         return parts
 
     yield from over_ranges(work, len(order), RANGE, threads, progress)

@@ -22,7 +22,7 @@ from ...runtime.base.extras import from_extra
 from ...runtime.machine_code.sources import digest
 from .folder import SETTINGS, read_settings
 from .inputs import Input
-from .options import Plan
+from .plan import Plan
 from .workers import Tally, Worker, sampled
 
 __all__ = ["connected", "run_on_cluster"]

@@ -21,8 +21,8 @@ from ...runtime.base.threads import seen, thread_count
 from ..files.paths import PathLike, atomic_path, checked_path
 from .folder import NORMALS, opened, remove_from
 from .inputs import Source, inputs_of
-from .options import Plan
 from .part_files import write_manifest
+from .plan import Plan
 from .workers import Tally, run_locally
 
 __all__ = ["limits_of", "make", "progress", "watched"]

@@ -24,7 +24,7 @@ from ..sampling.sample import sample_and_normals
 from .dataset import Dataset, open_dataset
 from .inputs import Source
 from .making import make
-from .options import CODEC, SECONDS, plan_of
+from .plan import CODEC, SECONDS, plan_of
 
 __all__ = ["sample_many"]
 

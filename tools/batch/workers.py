@@ -19,9 +19,9 @@ from ...runtime.base.extras import from_extra
 from .folder import PARTIAL
 from .inputs import Input
 from .manifest import FAILED, ManifestRow
-from .options import Plan
 from .part_files import row_of, write_part
-from .sampling import KEPT, STOPPED, Task, serve
+from .plan import Plan
+from .worker_loop import KEPT, STOPPED, Task, serve
 
 __all__ = ["Tally", "Worker", "run_locally", "sampled"]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from ...runtime.base.kept import kept
 from .mesh_edges import MeshEdges
 from .mesh_spacing import Spacing
-from .meshing import mesh_of_part
 from .part import Part
 from .part_mesh import PartMesh
+from .part_meshing import mesh_of_part
 from .results import space_of
 
 __all__ = ["obstacle_of"]

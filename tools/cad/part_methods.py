@@ -12,7 +12,7 @@ __all__ = ["Methods"]
 MEASURES, PLOT = "gaussmap.tools.cad.measures", "gaussmap.tools.pictures.plot"
 SELECTION = "gaussmap.tools.cad.selection"
 FROM_SURFACES = "gaussmap.tools.cad.from_surfaces"
-RESULTS, SAMPLING = "gaussmap.tools.cad.results", "gaussmap.tools.cad.sampling"
+RESULTS, SAMPLING = "gaussmap.tools.cad.results", "gaussmap.tools.cad.part_sampling"
 
 
 class Methods:

@@ -7,7 +7,7 @@ class Methods:
     from .measures import bounds_of as _bounds_of
     from .measures import gap_of as _gap_of
     from .measures import volume_of as _volume_of
+    from .part_sampling import sample_part as _sampled
+    from .part_sampling import samples_at as _samples_at
     from .results import space_of as _space
-    from .sampling import sample_part as _sampled
-    from .sampling import samples_at as _samples_at
     from .selection import select as select

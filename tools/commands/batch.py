@@ -17,13 +17,13 @@ from ...runtime.base.wording import plural
 from ...runtime.surface.surfaces import CATALOGUE
 from ..batch.inputs import Source
 from ..batch.making import make, progress
-from ..batch.options import SECONDS, plan_of
+from ..batch.plan import SECONDS, plan_of
 from ..batch.workers import Tally
 from ..sources.named import Named
 from ..sources.surface_of import surface_of
 from .console import complain, say, table
-from .inputs import request_of
 from .part_lists import listed
+from .sampled import request_of
 
 __all__ = ["run"]
 

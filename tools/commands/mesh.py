@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 from ..files.formats import check_mesh_target
 from .console import summarize
-from .inputs import sampled
+from .sampled import sampled
 
 __all__ = ["run"]
 

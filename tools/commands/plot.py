@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from ...runtime.base.progress import busy
 from ..pictures.plot import COUNT, check_target, plot_samples, write_figure
 from .console import summarize
-from .inputs import sampled
+from .sampled import sampled
 
 __all__ = ["run"]
 

@@ -14,7 +14,7 @@ from ...runtime.samples.samples import Samples
 from ..cad.inspection import is_part_file
 from ..files.formats import check_fields, check_samples_target
 from .console import pour, summarize
-from .inputs import sampled
+from .sampled import sampled
 
 __all__ = ["run"]
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 from ..viewer.view import COUNT, check_count, check_target, view
 from .console import summarize
-from .inputs import sampled
+from .sampled import sampled
 
 __all__ = ["run"]
 

@@ -15,7 +15,7 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.threads import counted
 from ...runtime.base.tolerances import FLAT_SURFACE, LENGTH_ERROR
 from ...runtime.directions.sets import frequency_within
-from ...runtime.onto_surface.pieces import LEAST_IMAGE
+from ...runtime.onto_surface.smooth_pieces import LEAST_IMAGE
 from ...runtime.samples.fields import dtype_of
 from .angles import MARGIN, choose_apart, chord_of, cover_normals
 from .at_normals import Given, at_count, at_lattices, at_normals

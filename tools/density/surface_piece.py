@@ -12,7 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.aliases import Array
 from ...runtime.onto_surface.on_spline import OnSpline
-from ...runtime.onto_surface.pieces import with_area
+from ...runtime.onto_surface.smooth_pieces import with_area
 from .kernels.sizing import TargetDensity
 from .piece import Piece, boxes_between
 from .space import Space

@@ -45,7 +45,7 @@ def trimmed_triangles(
 
     Complete means that the triangles end only at the boundary of the surface. `vertices` are those
     of the whole domain, `points` those of the samples, `lengths` (2,) those of the surface along u
-    and v; `triangulate` returns the same as `_triangles` of meshing.
+    and v; `triangulate` returns the same as `_triangles` of `meshing.py`.
     """
     own = vertices.chosen(vertices.sample >= 0)
     tree = tree_of(points[own.sample] * spline.scale)

@@ -17,8 +17,8 @@ from ...runtime.base.progress import busy
 from ...runtime.map import check_part, kept_map
 from ...runtime.onto_surface.on_spline import OnPatches, OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import place_of_samples
-from ...runtime.onto_surface.pieces import geometries_of, report_of
 from ...runtime.onto_surface.reach import in_reach
+from ...runtime.onto_surface.smooth_pieces import geometries_of, report_of
 from ...runtime.samples.fields import (
     FLAG_NAMES,
     GRID_NAMES,

@@ -16,7 +16,7 @@ from ...runtime.base.threads import shown
 from ...runtime.map import kept_map
 from ...runtime.onto_surface.on_spline import OnPatches
 from ...runtime.onto_surface.on_surface import place_of_samples
-from ...runtime.onto_surface.pieces import geometries_of, pieces_to_sample
+from ...runtime.onto_surface.smooth_pieces import geometries_of, pieces_to_sample
 from ...runtime.samples.fields import checked_dtype, checked_fields
 from ...runtime.samples.report import UndecidedNormal, count_infinite, warn_of
 from ...runtime.samples.samples import Samples

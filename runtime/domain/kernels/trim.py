@@ -23,8 +23,8 @@ from ...machine_code.jit import inline, jit, loop
 from .patch_numbers import place_of
 
 __all__ = [
-    "Cells",
     "Joined",
+    "SegmentGrid",
     "find_inside",
     "find_inside_each",
     "find_parities",
@@ -33,7 +33,7 @@ __all__ = [
 ]
 
 
-class Cells(NamedTuple):
+class SegmentGrid(NamedTuple):
     """Segments of polygons, sorted into the rows (along v) and columns (along u) of a grid.
 
     segments (n, 4): the ends u, v of each, the one with the smaller v first (or the smaller u).
@@ -163,7 +163,7 @@ def find_inside_each(joined, owners, places, inside):
         owner = owners[k]
         first = joined.starts[owner]
         last = joined.starts[owner + 1]
-        cells = Cells(
+        cells = SegmentGrid(
             joined.segments[first[0] : last[0]],
             joined.frames[owner],
             joined.cell_starts[first[1] : last[1]],

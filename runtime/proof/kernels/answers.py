@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...machine_code.jit import jit, loop
-from .cells import EPS
+from .cell_bounds import EPS
 from .clusters import shift_to
 
 __all__ = [

@@ -25,7 +25,7 @@ from ...machine_code.jit import inline, loop
 from ...search.kernels.pieces import REST_S, REST_T
 from ...tape.kernels.points import LANES, POINT, evaluate_points
 from .answers import BORDER
-from .cells import (
+from .cell_bounds import (
     EPS,
     FIRST_S,
     FIRST_T,

@@ -18,7 +18,7 @@ from ...directions.kernels.vectors import dot, row_vector
 from ...machine_code.jit import inline, jit, loop
 from ...tape.kernels.points import POINT, U, V, evaluate_points
 from .answers import BORDER, MULTIPLE, add_open
-from .cells import EPS, linear_forms_of, patch_of
+from .cell_bounds import EPS, linear_forms_of, patch_of
 from .pairs import CLOSE, CONTRACTING
 
 __all__ = ["Disc", "decide_discs"]

@@ -9,7 +9,7 @@ import numpy as np
 from ....generated.proved import fold_curve, fold_extreme, turned, turned_forms
 from ...machine_code.jit import loop
 from ...tape.kernels.points import POINT, evaluate_points
-from .cells import (
+from .cell_bounds import (
     EPS,
     FIRST_S,
     FIRST_T,

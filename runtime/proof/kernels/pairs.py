@@ -14,7 +14,7 @@ from ....generated.proved import excesses, model_at, remainders
 from ....generated.vectors import Vector
 from ...machine_code.jit import inline, long_vectors, loop
 from ...tape.kernels.points import LANES, POINT
-from .cells import (
+from .cell_bounds import (
     EPS,
     FIRST_S,
     FIRST_T,
@@ -55,7 +55,7 @@ __all__ = [
 ]
 
 # The rows of a tile of pairs, of LANES numbers: the normal, the cell, the forms of the pair, bounds
-# (see `Cells`), the inverse of the Hessian and bounds of its product with it (see `inverse_of`),
+# (see `CellBounds`), the inverse of the Hessian and bounds of its product with it (`inverse_of`),
 # how far solutions within the tolerances may be from exact ones; and the solution: s, t, its error
 # bound, D, the number of evaluations, a state.
 (

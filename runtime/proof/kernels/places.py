@@ -26,13 +26,13 @@ from .answers import (
     add_open,
     add_place,
 )
-from .cells import (
+from .cell_bounds import (
     EPS,
     FIRST_S,
     FIRST_T,
     SECOND,
     WIDE,
-    Cells,
+    CellBounds,
     patch_of,
     side_of,
     third_sizes,
@@ -92,7 +92,7 @@ class Boxes(NamedTuple):
     levels: NDArray[np.int64]
     ends: NDArray[np.float64]
     path: NDArray[np.float64]
-    tile: Cells
+    tile: CellBounds
 
     @classmethod
     def new(cls, cells: int) -> Boxes:
@@ -102,7 +102,7 @@ class Boxes(NamedTuple):
             np.empty((most, BOX_COLUMNS)), np.empty((most, BOX_COLUMNS)), np.empty((most, 4)),
             np.empty(most, np.int64), np.empty(most, np.int64), np.zeros(ROWS * LANES),
             np.zeros(LANES, np.int64), np.array(FOLDS), np.empty((2, PARTS + 1)),
-            np.empty(PATH), Cells.new(LANES),
+            np.empty(PATH), CellBounds.new(LANES),
         )  # fmt: skip
 
 

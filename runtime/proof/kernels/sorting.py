@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...machine_code.jit import jit, loop
-from .search import PLACE
+from .evaluated_pairs import PLACE
 
 __all__ = ["Sorted", "count_places", "order_places", "put_places", "start_normals"]
 

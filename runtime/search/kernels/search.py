@@ -23,7 +23,7 @@ from ...spline.kernels.patch import normal_of_patch
 from .lists import FINEST, NUMBER, meets
 from .pieces import BOUND, CHORD, EVERYTHING, REST_S, REST_T, WIDTH
 
-__all__ = ["CELLS", "PATCHES", "Found", "Memory", "search"]
+__all__ = ["CELLS", "PATCHES", "Memory", "Pairs", "search"]
 
 # The kinds of pieces.
 PATCHES, CELLS = 0, 1
@@ -49,10 +49,10 @@ class Memory(NamedTuple):
         return cls(np.zeros(4 * LANES), np.zeros(4), np.empty(members + 1, np.int64))
 
 
-class Found(NamedTuple):
-    """The output: keys, number of a normal << 32 | piece, certain and undecided ones.
+class Pairs(NamedTuple):
+    """Pairs of a normal and a piece that has it, certain and undecided ones.
 
-    `counts` (2,) are their numbers.
+    Each is a key, number of the normal << 32 | piece; `counts` (2,) are their numbers.
     """
 
     certain: NDArray[np.int64]
@@ -60,7 +60,7 @@ class Found(NamedTuple):
     counts: NDArray[np.int64]
 
     @classmethod
-    def new(cls, room: int) -> Found:
+    def new(cls, room: int) -> Pairs:
         """Return room for a number of keys of each kind."""
         return cls(np.empty(room, np.int64), np.empty(room, np.int64), np.zeros(2, np.int64))
 

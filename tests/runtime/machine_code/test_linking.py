@@ -88,8 +88,8 @@ def test_copies_are_listed() -> None:
     """Kernels that are compiled here, one of each family that calls the most parts."""
     copies: set[str] = set()
     names = ("decide.decide_exactly", "fill.fill_samples", "search.search")
-    kernels = [f"search.kernels.{x}" for x in names] + ["proof.kernels.search.evaluate_pairs"]
-    for name in kernels:
+    pairs = "proof.kernels.evaluated_pairs.evaluate_pairs"
+    for name in [*(f"search.kernels.{x}" for x in names), pairs]:
         full = f"gaussmap.runtime.{name}"
         kernel = jit.jit(building.kernel_named(full).py_func)
         kernel._cache = NullCache()

@@ -18,7 +18,7 @@ import click
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.commands import inputs
+from gaussmap.tools.commands import sampled
 from gaussmap.tools.commands.cli import main
 
 FEW = ["--count", "60", "--cells", "8", "8"]
@@ -234,13 +234,13 @@ def test_every_file_type(suffix: str, capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_quiet(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     progress = []
-    sample = inputs.sample_and_normals
+    sample = sampled.sample_and_normals
 
     def spy(*arguments: object, **options: object) -> object:
         progress.append(options["progress"])
         return sample(*arguments, **options)  # pyright: ignore[reportArgumentType]
 
-    monkeypatch.setattr(inputs, "sample_and_normals", spy)
+    monkeypatch.setattr(sampled, "sample_and_normals", spy)
     assert main(["sample", "torus", *FEW, "-o", "a.npz", "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
     assert main(["sample", "torus", *FEW, "-o", "a.npz"]) == 0
@@ -254,7 +254,7 @@ def test_the_default_is_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
         asked.update(vars(request) | options)
         raise gm.errors.InputError("enough")
 
-    monkeypatch.setattr(inputs, "sample_and_normals", spy)
+    monkeypatch.setattr(sampled, "sample_and_normals", spy)
     assert main(["sample", "torus", "-o", "a.npz"]) == 2
     assert (asked["count"], asked["normals"]) == (10_000, None)
     assert main(["sample", "torus", "--frequency", "2", "--threads", "3", "-o", "a.npz"]) == 2
@@ -600,7 +600,7 @@ def test_bad_output_is_found_before_the_work(monkeypatch: pytest.MonkeyPatch) ->
     def work(*_: object, **__: object) -> None:
         pytest.fail("worked in vain")
 
-    monkeypatch.setattr(inputs, "sample_and_normals", work)
+    monkeypatch.setattr(sampled, "sample_and_normals", work)
     assert main(["sample", "torus", "-o", "a.stl"]) == 2
     assert main(["sample", "torus", "-o", "missing/a.ply"]) == 2
 
@@ -625,7 +625,7 @@ def test_no_memory(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.Monke
     def sample(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(inputs, "sample_and_normals", sample)
+    monkeypatch.setattr(sampled, "sample_and_normals", sample)
     assert main(["sample", "torus", *TO]) == 2
     assert re.fullmatch("gaussmap: error: there is not enough memory.*\n", capsys.readouterr().err)
 
@@ -634,7 +634,7 @@ def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     def sample(*_: object, **__: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr(inputs, "sample_and_normals", sample)
+    monkeypatch.setattr(sampled, "sample_and_normals", sample)
     with pytest.raises(ZeroDivisionError):
         main(["sample", "torus", *TO])
 
@@ -651,7 +651,7 @@ def test_interrupted_in_a_callback(
         sys.unraisablehook(Unraisable())  # pyright: ignore[reportArgumentType]
         raise RuntimeError("compilation failed")
 
-    monkeypatch.setattr(inputs, "sample_and_normals", sample)
+    monkeypatch.setattr(sampled, "sample_and_normals", sample)
     hook = sys.unraisablehook
     assert main(["sample", "torus", *TO]) == 130
     assert capsys.readouterr() == ("", "gaussmap: interrupted\n")
@@ -664,8 +664,8 @@ def test_interrupted_by_a_signal(tmp_path: Path) -> None:
     # A test run in the background ignores interrupts, and what it starts would do so too.
     code = (
         "import signal, sys, time; signal.signal(signal.SIGINT, signal.default_int_handler); "
-        "from pathlib import Path; from gaussmap.tools.commands import inputs; "
-        "inputs.sample_and_normals = lambda *_, **__: (Path('begun').touch(), time.sleep(60)); "
+        "from pathlib import Path; from gaussmap.tools.commands import sampled; "
+        "sampled.sample_and_normals = lambda *_, **__: (Path('begun').touch(), time.sleep(60)); "
         "from gaussmap.__main__ import main; sys.exit(main())"
     )
     command = [sys.executable, "-c", code, "sample", "torus", "-o", "a.ply"]

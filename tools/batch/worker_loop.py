@@ -21,7 +21,7 @@ from ..files.processes import end_with_parent, limit
 if TYPE_CHECKING:
     from .inputs import Input
     from .manifest import ManifestRow
-    from .options import Plan
+    from .plan import Plan
 
 __all__ = ["KEPT", "STOPPED", "Task", "serve"]
 

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad import meshing
+from gaussmap.tools.cad import part_meshing as meshing
 from gaussmap.tools.cad.examples import box, box_faces
 from gaussmap.tools.cad.face_pieces import FacePiece
 from gaussmap.tools.cad.mesh_spacing import TurnedPiece
@@ -387,7 +387,7 @@ def test_steps_of_arcs(other, prefer, count, ratio):
 def test_even_meshes_are_flipped_to_the_normals_where_no_angle_becomes_small(monkeypatch):
     mesh = sound(CYLINDER, 1000, euler=2, closed=True)
     assert np.quantile(mesh.smallest_angles, 0.01) > 24.0
-    monkeypatch.setattr("gaussmap.tools.cad.meshing.ENOUGH", 89.0)  # which no triangle has
+    monkeypatch.setattr("gaussmap.tools.cad.part_meshing.ENOUGH", 89.0)  # which no triangle has
     by_shape = meshed(CYLINDER, 1000)
     assert by_shape.smallest_angles.mean() > mesh.smallest_angles.mean() + 1.0
     assert mesh.angles.mean() < 0.95 * by_shape.angles.mean()

@@ -33,7 +33,7 @@ __all__ = [
     "TOLERANCE_S",
     "TOLERANCE_T",
     "WIDE",
-    "Cells",
+    "CellBounds",
     "cut_cells",
     "inverse_of",
     "linear_forms_of",
@@ -63,7 +63,7 @@ REGULAR = 0.8
 FLAT = 1e-9
 
 
-class Cells(NamedTuple):
+class CellBounds(NamedTuple):
     """Bounds over cells; all arrays have one row for each.
 
     place (k, 4): u₀, v₀, h_u, h_v.
@@ -85,7 +85,7 @@ class Cells(NamedTuple):
     cone: NDArray[np.float64]
 
     @classmethod
-    def new(cls, count: int) -> Cells:
+    def new(cls, count: int) -> CellBounds:
         """Return room for some cells."""
         return cls(*(np.zeros((count, columns)) for columns in (4, HOT, 24, NOISE, 4)))
 

@@ -11,7 +11,7 @@ from ...directions.kernels.vectors import row_vector
 from ...machine_code.jit import jit, loop
 from ...search.kernels.lists import NUMBER
 from ...tape.kernels.points import LANES, evaluate_points
-from .cells import Cells
+from .cell_bounds import CellBounds
 from .pairs import (
     DETERMINANT,
     HARD,
@@ -27,7 +27,7 @@ from .pairs import (
     load_pair,
 )
 
-__all__ = ["PLACE", "Found", "Index", "Joints", "Tiles", "evaluate_pairs"]
+__all__ = ["PLACE", "Index", "Joints", "Outcome", "Tiles", "evaluate_pairs"]
 
 # The columns of places: u, v, how far each may be from the exact one, D, and whether the border of
 # the domain is so near.
@@ -44,7 +44,7 @@ class Joints(NamedTuple):
 class Index(NamedTuple):
     """Cells; from number `discs` on, they are discs around poles. Joints are sides of cells."""
 
-    cells: Cells
+    cells: CellBounds
     discs: int
     joints: Joints
 
@@ -66,8 +66,8 @@ class Tiles(NamedTuple):
         return cls(np.zeros(ROWS * LANES), cells, numbers, u, v)
 
 
-class Found(NamedTuple):
-    """What a search finds: places (k, 6) and their normals; hard pairs (k, 2) of normal and cell.
+class Outcome(NamedTuple):
+    """The outcome: proved places (k, 6) and their normals; hard pairs (k, 2) of normal and cell.
 
     `counts` are the numbers of both.
     """
@@ -78,7 +78,7 @@ class Found(NamedTuple):
     counts: NDArray[np.int64]
 
     @classmethod
-    def new(cls, places: int, hard: int) -> Found:
+    def new(cls, places: int, hard: int) -> Outcome:
         """Return room for some of both."""
         return cls(
             np.empty((places, PLACE)), np.empty(places, np.int64), np.empty((hard, 2), np.int64),

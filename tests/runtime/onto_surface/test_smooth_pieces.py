@@ -6,7 +6,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.onto_surface.pieces import cells_of_piece
+from gaussmap.runtime.onto_surface.smooth_pieces import cells_of_piece
 
 from ...products import covering
 from ...refusals import refused

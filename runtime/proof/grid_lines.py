@@ -10,7 +10,7 @@ from ..domain.domain import Boundary, Domain
 from ..tape.kernels.points import Tape
 from ..tape.kernels.spline_bounds import SLACK
 from ..tape.tapes import jets_of
-from .kernels.cells import SMOOTH
+from .kernels.cell_bounds import SMOOTH
 
 __all__ = ["joints_of", "jumps_of", "lines_of"]
 
