@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -15,7 +15,16 @@ from ..base.evaluation import called
 from .domain import Boundary, Domain, brought_inside, domain_text
 from .loops import Loops, checked_loops
 
-__all__ = ["Predicate", "Trim", "TrimPart", "trimmed_by"]
+__all__ = [
+    "Predicate",
+    "Trim",
+    "TrimPart",
+    "Turned",
+    "samples_inside",
+    "trimmed",
+    "trimmed_by",
+    "with_uv",
+]
 
 
 POINTS_AT_A_TIME = 1 << 20
@@ -181,9 +190,11 @@ class Trim:
         parts = [replace(x, boundary=boundary) if isinstance(x, Loops) else x for x in self.parts]
         return Trim(self.domain, boundary, tuple(parts))
 
-    def and_(self, *parts: TrimPart) -> Trim:
-        """Return the trim with further conditions."""
-        return replace(self, parts=(*self.parts, *parts))
+    def turned(self, boundary: Boundary) -> Trim:
+        """Return the trim of the surface with reversed u and the given boundary conditions."""
+        low, high = self.domain[0]
+        parts = tuple(Turned.of(part, low + high) for part in self.parts)
+        return replace(self, boundary=boundary, parts=parts)
 
 
 class OnBoxes(Protocol):
@@ -237,6 +248,35 @@ class Predicate:
         return found
 
 
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """One condition of a trim after u → total - u."""
+
+    part: TrimPart
+    total: float
+
+    @staticmethod
+    def of(part: TrimPart, total: float) -> TrimPart:
+        """Return a condition after reversal; two reversals give the original one."""
+        return part.part if isinstance(part, Turned) else Turned(part, total)
+
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
+        """Return whether points (k, 2) fulfil the condition."""
+        own = np.stack([self.total - uv[:, 0], uv[:, 1]], axis=1)
+        return self.part.contains(own, threads)
+
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
+        """Return the cells (m, n) of a grid that its boundary may intersect."""
+        (low, high), along_v = domain
+        found = self.part.cells_of_border(((self.total - high, self.total - low), along_v), cells)
+        return None if found is None else found[::-1]
+
+    def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
+        """Classify boxes (k, 4) as inside (1), outside (−1) or undecided (0)."""
+        own = np.column_stack([self.total - boxes[:, 1::-1], boxes[:, 2:]])
+        return self.part.sides(own, normals)
+
+
 def trimmed_by(
     trim: Trim | None, loops: object, within: object, domain: Domain, boundary: Boundary,
     name: str, traced: Traced,
@@ -251,4 +291,28 @@ def trimmed_by(
         parts.append(Predicate(within, name, domain, traced))
     if not parts:
         raise InputError("trimmed needs loops, within=..., or both.")
-    return Trim(domain, boundary, tuple(parts)) if trim is None else trim.and_(*parts)
+    return trimmed(trim, domain, boundary, *parts)
+
+
+def trimmed(trim: Trim | None, domain: Domain, boundary: Boundary, *parts: TrimPart) -> Trim:
+    """Return a trim, by default that of the whole domain, with further conditions."""
+    whole = Trim(domain, boundary, ()) if trim is None else trim
+    return replace(whole, parts=(*whole.parts, *parts))
+
+
+# --- samples of a surface that may have a trim ----------------------------------------------------
+
+
+def with_uv(trim: Trim | None, fields: Sequence[str]) -> tuple[str, ...]:
+    """Return fields of samples, with uv if there is a trim, which needs it."""
+    return (*fields, "uv") if trim is not None and "uv" not in fields else tuple(fields)
+
+
+def samples_inside(
+    trim: Trim | None, arrays: dict[str, NDArray[Any]], fields: Sequence[str]
+) -> dict[str, NDArray[Any]]:
+    """Return fields of the samples that are inside a trim; `arrays` have uv, too."""
+    if trim is None:
+        return arrays
+    inside = trim.contains(arrays["uv"].astype(np.float64))
+    return {name: x[inside] for name, x in arrays.items() if name in fields}

@@ -15,6 +15,7 @@ from ..base.errors import GaussmapWarning, InputError, SurfaceError, in_memory
 from ..base.evaluation import returned
 from ..base.progress import busy
 from ..domain.domain import Domain, cells_between, closes
+from ..domain.trim import Trim, trimmed
 from ..spline.inner_coefficients import values_at
 from ..spline.misfit import Misfit
 from ..spline.missing import known_of_values
@@ -172,8 +173,9 @@ def fit(
         else:
             spline = _fitted(surface, cells)
             misfit = probe_of(surface, spline.cells).compare(spline).misfit
-            spline = replace(spline, misfit=misfit, trim=surface.trim)
-    return replace(spline, apexes=apexes, georeference=surface.georeference)
+            spline = replace(spline, misfit=misfit)
+    trim = _trim_of(surface, spline, finest=cells is None)
+    return replace(spline, trim=trim, apexes=apexes, georeference=surface.georeference)
 
 
 def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
@@ -192,7 +194,7 @@ def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
     )
     if not reached and (asked is not None or misfit.distance > FAR_OFF * (goal.distance or 0.0)):
         _warn(spline, misfit, "the tolerance" if asked else "the accuracy of the default")
-    return replace(spline, misfit=misfit, trim=surface.trim)
+    return replace(spline, misfit=misfit)
 
 
 def _fit_data(
@@ -207,14 +209,18 @@ def _fit_data(
         misfit = compare_with_data(spline, grid, surface.boundary).misfit
     else:
         spline, misfit = _fit_data_to(surface, grid, asked)
-    trim = surface.trim
-    finest = cells is None and spline.cells == cells_between(grid.shape, surface.boundary)
-    if trim is not None and not finest and np.isnan(grid).any():
-        known = known_of_values(
-            trim.parts[0].contains, spline.domain, spline.boundary, spline.cells
-        )
-        trim = trim.and_(known)
-    return replace(spline, misfit=misfit, trim=trim)
+    return replace(spline, misfit=misfit)
+
+
+def _trim_of(surface: Surface, spline: Spline, finest: bool) -> Trim | None:
+    """Return the trim of a surface, without patches of a coarse spline that need missing points."""
+    trim, grid = surface.trim, surface.grid
+    if trim is None or grid is None or not np.isnan(grid).any():
+        return trim
+    if finest and spline.cells == cells_between(grid.shape, surface.boundary):
+        return trim
+    known = known_of_values(trim.parts[0].contains, spline.domain, spline.boundary, spline.cells)
+    return trimmed(trim, trim.domain, trim.boundary, known)
 
 
 def _fit_data_to(

@@ -22,6 +22,7 @@ from ..base.aliases import Array
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from ..directions.regions import Cap
+from ..domain.trim import samples_inside, with_uv
 from ..fitting.fit import check_range
 from ..proof.index import ProvedIndex
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
@@ -31,20 +32,24 @@ from ..search.fill import fill
 from ..search.kernels.tile import fill_known
 from ..search.search import Hits, find, find_in_turn
 from ..spline.developable import CellMeasure
-from ..spline.inside import count_of, samples_inside, with_uv
 from ..spline.kernels.forms import forms_of_jets, jets_on_spline, patches_at
 from ..spline.nets import AnySpline, on_grid
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .reach import InReach, reached
 
-__all__ = ["Fields", "FieldsOfSamples", "OnPatches", "OnSpline", "grouped", "on_grids"]
+__all__ = ["Fields", "FieldsOfSamples", "OnPatches", "OnSpline", "count_of", "grouped", "on_grids"]
 
 Fields = dict[str, NDArray[Any]]
 
 AT_A_TIME = 1 << 12
 # Normals of a spline at a pole are taken this part of the domain away from it.
 BESIDE_POLE = 1e-6
+
+
+def count_of(arrays: Fields) -> int:
+    """Return the number of samples that have these fields."""
+    return len(next(iter(arrays.values())))
 
 
 class FieldsOfSamples(NamedTuple):
@@ -241,10 +246,9 @@ class OnSpline(OnPatches):
         """Return the part whose normals are in a cap, or all of it."""
         if reach is None:
             return self
-        x = self.spline
-        trim = reached(x.trim, x.domain, x.boundary, InReach(self.normals, reach))
-        surface = None if self.surface is None else replace(self.surface, trim=trim)
-        return replace(self, spline=replace(x, trim=trim), surface=surface, reach=reach)
+        spline = reached(self.spline, InReach(self.normals, reach))
+        surface = self.surface and replace(self.surface, trim=spline.trim)
+        return replace(self, spline=spline, surface=surface, reach=reach)
 
     def normals(self, places: Array) -> Array:
         """Return the unit normals (k, 3) at parameters (k, 2); 0 or NaN where there is none."""

@@ -12,13 +12,13 @@ from numpy.typing import DTypeLike, NDArray
 from ..base.checks import known_name
 from ..base.errors import InputError
 from ..base.kept import kept
+from ..domain.trim import samples_inside
 from ..fitting.fit import patches_of
 from ..samples.fields import FLAG_NAMES
 from ..samples.report import PLACES, UndecidedNormal
 from ..samples.samples import Samples
 from ..search.search import Hits
 from ..spline.developable import CellMeasure
-from ..spline.inside import count_of, samples_inside
 from ..spline.nets import AnySpline
 from ..spline.spline import Spline
 from ..surface.derivatives import Differentiable
@@ -26,7 +26,7 @@ from ..surface.surface import Surface
 from .kernels import nodes as kernels
 from .moved_samples import as_fields, moved_samples, part_of, unmoved
 from .newton import evaluate_on_surface
-from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline
+from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline, count_of
 from .pole_charts import PoleChart, pole_charts
 from .proved import index_of, proved_samples
 from .repeats import kept_once

@@ -11,14 +11,13 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
-from ..domain.trim import Trim
+from ..domain.trim import Trim, samples_inside, with_uv
 from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
 from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places, order_by_patch
 from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, row_shape
 from ..samples.report import UndecidedNormal
 from ..samples.samples import Samples
 from ..search.search import developable_patches
-from ..spline.inside import samples_inside, with_uv
 from ..surface.derivatives import power_of_two
 from ..surface.surface import Surface
 from .newton import near_poles

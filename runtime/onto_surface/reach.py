@@ -5,18 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
 from ..directions.regions import Cap
-from ..domain.domain import Boundary, Domain
-from ..domain.trim import Trim
+from ..domain.domain import Domain
+from ..domain.trim import trimmed
+from ..spline.spline import Spline
 from ..surface.derivatives import normals_of_jets
 from ..surface.surface import Surface
 
 __all__ = ["InReach", "in_reach", "reached"]
+
+Whole = TypeVar("Whole", Spline, Surface)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,16 +67,17 @@ class InReach:
         return (normals @ self.cap.axis).reshape(len(u), len(v))
 
 
-def reached(trim: Trim | None, domain: Domain, boundary: Boundary, condition: InReach) -> Trim:
-    """Return a trim, by default that of the whole domain, with a condition on normals."""
-    whole = Trim(domain, boundary, ()) if trim is None else trim
-    return whole.and_(condition)
+def reached(whole: Whole, condition: InReach) -> Whole:
+    """Return the part of a spline or a surface that fulfils a condition on normals."""
+    return replace(whole, trim=trimmed(whole.trim, whole.domain, whole.boundary, condition))
 
 
 def in_reach(surface: Surface | None, reach: Cap | None) -> Surface | None:
     """Return a surface of several pieces, trimmed to the points with normals in a cap."""
     if surface is None or reach is None:
         return surface
-    x = surface
-    condition = InReach(lambda places: normals_of_jets(x.jets(*places.T.copy())), reach)
-    return replace(x, trim=reached(x.trim, x.domain, x.boundary, condition))
+
+    def normals(uv: Array) -> Array:
+        return normals_of_jets(surface.jets(*uv.T.copy()))
+
+    return reached(surface, InReach(normals, reach))

@@ -98,7 +98,7 @@ class SampleArrays:
         if base is not None:
             base = replace(base, surface=_if_it_pickles(base.surface))
         spline = self.spline
-        if spline is not None and spline.trim is not None and not _pickles(spline.trim):
+        if spline is not None and not _pickles(spline.trim):
             spline = None
         known = {"report": self.report, "spline": spline, "offset_of": base}
         surface = _if_it_pickles(self.surface)

@@ -5,29 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
+from ..domain.inside import widened
 
-__all__ = ["CellMeasure", "widened"]
+__all__ = ["CellMeasure"]
 
 # Regions that 10,000 normals would sample count as curved, even with fewer normals.
 LEAST_DENSITY = 10_000 / (4 * math.pi)
-
-
-def widened(values: NDArray[Any], mode: Literal["edge", "wrap"] = "wrap") -> NDArray[Any]:
-    """Return the largest of the values (m, n) of each cell and its neighbours.
-
-    At the border that of the opposite side is a neighbour ("wrap"), or none ("edge").
-    """
-    for axis in (0, 1):
-        padded = np.pad(values, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], mode=mode)
-        parts = [np.take(padded, np.arange(k, k + values.shape[axis]), axis) for k in range(3)]
-        values = np.maximum.reduce(parts)
-    return values
 
 
 @dataclass(frozen=True, eq=False)

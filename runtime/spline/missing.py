@@ -15,7 +15,7 @@ from ..base.aliases import Array, Flags
 from ..base.checks import as_float
 from ..base.errors import GaussmapWarning, InputError, shown
 from ..domain.domain import Boundary, BoundaryPair, Domain
-from .developable import widened
+from ..domain.inside import extremes_around
 from .ghosts import Border, coefficients_with_ring
 from .inner_coefficients import from_grid, from_values, values_at
 from .kernels import spline as kernels
@@ -64,8 +64,7 @@ class Known:
         """Return the cells (m, n) that the boundary intersects; None for cells of another grid."""
         if (domain, cells) != (self.domain, self.cells):
             return None
-        of_cell = self.patches.reshape(*cells, 4).astype(np.float64)
-        least, most = -widened(-of_cell.min(axis=2)), widened(of_cell.max(axis=2))
+        least, most = extremes_around(self.patches.reshape(*cells, 4).astype(np.float64))
         return least < most
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:

@@ -16,8 +16,8 @@ from ..base.checks import finite_array, finite_number, text
 from ..base.errors import InputError, SurfaceError
 from ..base.formula_calls import python_function, vector
 from ..base.tolerances import SINGULAR_POINT
+from ..domain.inside import subcentroids
 from .developable import CellMeasure
-from .inside import subcentroids
 from .joints import Joints, Topology, merged_points
 from .patch_spline import PatchSpline
 from .spline import Spline, short_label

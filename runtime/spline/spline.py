@@ -16,8 +16,8 @@ from ..base.georeference import Georeference
 from ..base.threads import over_ranges
 from ..base.tolerances import SAME_PARAMETER
 from ..domain.domain import Boundary, Domain, brought_inside, checked_boundary, checked_domain
+from ..domain.inside import Inside
 from .developable import CellMeasure
-from .inside import Inside
 from .kernels import spline as kernels
 from .patch_spline import PatchSpline
 from .spline_methods import Methods
@@ -248,9 +248,7 @@ class Spline(PatchSpline, Methods):
     @cached_property
     def inside(self) -> Inside | None:
         """The part of each patch inside the trim, None without one."""
-        return (
-            None if self.trim is None else Inside.of(self.trim, self.frame, self.cells, self.name)
-        )
+        return self.trim and Inside.of(self.trim, self.frame, self.cells, self.name)
 
     def _evaluate(
         self, u: ArrayLike, v: ArrayLike

@@ -5,20 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from ..base.aliases import Array, Flags
+from ..base.aliases import Array
 from ..base.checks import finite_array
 from ..base.errors import InputError
 from ..base.evaluation import returned
-from ..domain.domain import Boundary, Domain, Interval
-from ..domain.trim import Trim, TrimPart
+from ..domain.domain import Boundary, Interval
 from ..tape.kernels.points import Tape
 from ..tape.tapes import moved_tape
 from .derivatives import Differences, Differentiable
 from .surface_values import SurfaceValues
 
-__all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid", "turned_trim"]
+__all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,39 +140,3 @@ def moved_grid(grid: Array, boundary: Boundary, map_: AffineMap, turned: bool) -
     if along_u == "mirrored":  # u = 0 is now the other end of u, where rows are mirrored
         points[0] = points[0, ::-1] if along_v != "periodic" else np.roll(points[0, ::-1], 1, 0)
     return points
-
-
-def turned_trim(trim: Trim, boundary: Boundary) -> Trim:
-    """Return a trim of the surface with reversed u and the given boundary conditions."""
-    low, high = trim.domain[0]
-    parts = (Turned.of(part, low + high) for part in trim.parts)
-    return replace(trim, boundary=boundary, parts=tuple(parts))
-
-
-@dataclass(frozen=True, eq=False)
-class Turned:
-    """One condition of a trim after u → total - u."""
-
-    part: TrimPart
-    total: float
-
-    @staticmethod
-    def of(part: TrimPart, total: float) -> TrimPart:
-        """Return a condition after reversal; two reversals give the original one."""
-        return part.part if isinstance(part, Turned) else Turned(part, total)
-
-    def contains(self, uv: Array, threads: int | None = None) -> Flags:
-        """Return whether points (k, 2) fulfil the condition."""
-        own = np.stack([self.total - uv[:, 0], uv[:, 1]], axis=1)
-        return self.part.contains(own, threads)
-
-    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
-        """Return the cells (m, n) of a grid that its boundary may intersect."""
-        (low, high), along_v = domain
-        found = self.part.cells_of_border(((self.total - high, self.total - low), along_v), cells)
-        return None if found is None else found[::-1]
-
-    def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Classify boxes (k, 4) as inside (1), outside (−1) or undecided (0)."""
-        own = np.column_stack([self.total - boxes[:, 1::-1], boxes[:, 2:]])
-        return self.part.sides(own, normals)

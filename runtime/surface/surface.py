@@ -22,7 +22,7 @@ from ..domain.domain import (
 )
 from ..domain.trim import Trim, trimmed_by
 from ..spline.quasi_interpolant import fit_grid
-from .moved import IDENTITY, AffineMap, Moved, affine_map, moved_grid, turned_trim
+from .moved import IDENTITY, AffineMap, Moved, affine_map, moved_grid
 from .names import label
 from .surface_values import Evaluation, SurfaceValues
 from .traced import traced_condition
@@ -483,7 +483,7 @@ class Surface(SurfaceValues):
     def _moved(self, map_: AffineMap, turned: bool) -> Surface:
         (low, high), along_v = self.boundary
         boundary: Boundary = (high, low) if turned else (low, high), along_v
-        trim = turned_trim(self.trim, boundary) if turned and self.trim else self.trim
+        trim = self.trim.turned(boundary) if turned and self.trim else self.trim
         moved = replace(self, boundary=boundary, trim=trim, derivative_function=None)
         if self.grid is None:
             return replace(moved, function=Moved.of(self).then(map_, turned))

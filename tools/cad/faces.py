@@ -21,7 +21,7 @@ from ...runtime.domain.domain import Boundary, BoundaryPair, Domain, Interval, c
 from ...runtime.domain.loops import checked_loops
 from ...runtime.domain.trim import Trim
 from ...runtime.surface.derivatives import Differentiable
-from ...runtime.surface.moved import AffineMap, Moved, turned_trim
+from ...runtime.surface.moved import AffineMap, Moved
 from ...runtime.surface.nurbs import Nurbs
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import CatalogueFunction
@@ -85,7 +85,7 @@ def face_surface(
     # boundary condition.
     moved = Moved(Surface(name, function, *ends), shape.placement, is_reversed, shape.domain[0])
     if is_reversed and trim is not None:
-        trim = turned_trim(trim, shape.boundary)
+        trim = trim.turned(shape.boundary)
     return Surface(name, moved, *ends, trim=trim, assumed_open=assumed)
 
 

@@ -16,7 +16,7 @@ from ...runtime.base.errors import GaussmapWarning, InputError, SurfaceError, sh
 from ...runtime.base.wording import plural
 from ...runtime.domain.domain import closes
 from ...runtime.domain.loops import Loops
-from ...runtime.surface.moved import Turned
+from ...runtime.domain.trim import Turned
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from ..files.lengths import METRES, checked_unit

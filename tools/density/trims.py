@@ -11,7 +11,7 @@ from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.domain.domain import closes, less_periods
 from ...runtime.domain.kernels.trim import Joined, find_inside_each
 from ...runtime.domain.loops import Loops
-from ...runtime.surface.moved import Turned
+from ...runtime.domain.trim import Turned
 from .cells import grouped
 from .piece import Piece
 

@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags, Indices
 from ..base.errors import SurfaceError
-from ..domain.kernels.trim import to_cells
-from ..domain.trim import Trim
-from .developable import widened
+from .kernels.trim import to_cells
+from .trim import Trim
 
-__all__ = [
-    "FINEST",
-    "Inside",
-    "count_of",
-    "samples_inside",
-    "subcentroids",
-    "with_uv",
-]
+__all__ = ["FINEST", "Inside", "extremes_around", "subcentroids", "widened"]
 
 
 # A patch is tested at the centroids of the square of this number of triangles: COARSE for all
@@ -53,8 +44,7 @@ class Inside:
 
         shares = shares_of(number, 1 if all_known else COARSE)
         if not all_known:
-            by_cell = shares.reshape(*cells, 4)
-            least, most = -widened(-by_cell.min(axis=2)), widened(by_cell.max(axis=2))
+            least, most = extremes_around(shares.reshape(*cells, 4))
             passed |= (least < 1.0) & (most > 0.0)
         cut = np.repeat(passed.ravel(), 4)
         shares[cut] = shares_of(number[cut], FINEST)
@@ -64,26 +54,6 @@ class Inside:
                 "less than a part of a cell of its spline; is it inside the domain?"
             )
         return cls(shares, cut | (shares > 0.0))
-
-
-def with_uv(trim: Trim | None, fields: Sequence[str]) -> tuple[str, ...]:
-    """Return fields of samples, with uv if there is a trim, which needs it."""
-    return (*fields, "uv") if trim is not None and "uv" not in fields else tuple(fields)
-
-
-def samples_inside(
-    trim: Trim | None, arrays: dict[str, NDArray[Any]], fields: Sequence[str]
-) -> dict[str, NDArray[Any]]:
-    """Return fields of the samples that are inside a trim; `arrays` have uv, too."""
-    if trim is None:
-        return arrays
-    inside = trim.contains(arrays["uv"].astype(np.float64))
-    return {name: x[inside] for name, x in arrays.items() if name in fields}
-
-
-def count_of(arrays: dict[str, NDArray[Any]]) -> int:
-    """Return the number of samples that have these fields."""
-    return len(next(iter(arrays.values())))
 
 
 def subcentroids(parts: int) -> Array:
@@ -108,3 +78,20 @@ def _shares(trim: Trim, frame: Array, columns: int, patches: Indices, parts: int
         inside = trim.contains(uv * frame[2:] + frame[:2])
         shares[first : first + step] = inside.reshape(count, -1).mean(axis=1)
     return shares
+
+
+def extremes_around(values: Array) -> tuple[Array, Array]:
+    """Return the extremes (m, n), (m, n) of the values (m, n, 4) of cells and their neighbours."""
+    return -widened(-values.min(axis=2)), widened(values.max(axis=2))
+
+
+def widened(values: NDArray[Any], mode: Literal["edge", "wrap"] = "wrap") -> NDArray[Any]:
+    """Return the largest of the values (m, n) of each cell and its neighbours.
+
+    At the border that of the opposite side is a neighbour ("wrap"), or none ("edge").
+    """
+    for axis in (0, 1):
+        padded = np.pad(values, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], mode=mode)
+        parts = [np.take(padded, np.arange(k, k + values.shape[axis]), axis) for k in range(3)]
+        values = np.maximum.reduce(parts)
+    return values
