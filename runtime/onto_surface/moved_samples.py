@@ -61,7 +61,7 @@ def unmoved(spline: Spline, numbers: Indices, uv: Array) -> tuple[UndecidedNorma
     most = np.minimum(np.maximum.reduceat(uv, starts) + spline.frame[2:], high)
     open_ = np.array([[x == "open" for x in ends] for ends in spline.boundary])
     at_ends = np.stack([least <= low, most >= high], axis=2) & open_
-    border: Flags = at_ends.any(axis=(1, 2)) | (spline.trim is not None)
+    border: Flags = np.any(at_ends, axis=(1, 2)) | np.bool_(spline.trim is not None)
     boxes = np.stack([least, most], axis=2).reshape(-1, 4)
     rows = zip(numbers[starts].tolist(), boxes.tolist(), border.tolist(), strict=True)
     return tuple(UndecidedNormal(k, tuple(box), "unmoved", x) for k, box, x in rows)
