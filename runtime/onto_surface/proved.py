@@ -124,7 +124,7 @@ def proof_of(
         UndecidedNormal(
             number, tuple(box), KINDS[kind], border, face, None if isnan(degree) else int(degree)
         )
-        for number, box, kind, border, degree in zip(*(x.tolist() for x in open_), strict=True)
+        for number, box, kind, border, degree, _ in zip(*(x.tolist() for x in open_), strict=True)
     )
     return Proof(len(normals) - len(np.unique(open_.numbers)), undecided)
 

@@ -27,20 +27,19 @@ from ..search.kernels.search import Memory, Pairs, search
 from ..search.patch_index import listed, ordered
 from ..tape.kernels.points import LANES, Tape
 from .caps import Cap, cap_of
+from .components import Undecided, components_of, with_kinds
 from .discs import PoleDisc, pole_disc
 from .grid_lines import joints_of, lines_of
 from .kernels.answers import (
     BORDER,
     BOX,
-    COLUMNS,
-    INDEX,
     KINDS,
-    SINGULAR,
-    WHERE,
+    OPEN_BOX,
     Answers,
     merge_places,
 )
 from .kernels.cell_bounds import OPEN, REACH, WIDE, CellBounds, Work, cut_cells
+from .kernels.components import indices_around
 from .kernels.discs import decide_discs
 from .kernels.evaluated_pairs import Index, Joints, Outcome, Tiles, evaluate_pairs
 from .kernels.places import Boxes, decide_normals
@@ -61,22 +60,6 @@ CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
 # Cells without a cone of normals are in all bins: they are this part of the domain at most.
 MOST_OPEN = 0.25
 NO_PAIRS = np.empty((0, 2), np.int64)
-
-
-class Undecided(NamedTuple):
-    """Boxes of parameters in which the points with a normal are not known.
-
-    numbers (k,) int64 are those of normals; boxes (k, 4) are u₀, u₁, v₀, v₁; kinds (k,) int64 are
-    positions in `KINDS`; border (k,) bool says whether a box touches an open side of the domain;
-    degree (k,) is that of the Gauss map around what is in the box, the sum of the signs of K of
-    points there with any normal nearby, NaN if it is unknown.
-    """
-
-    numbers: NDArray[np.int64]
-    boxes: NDArray[np.float64]
-    kinds: NDArray[np.int64]
-    border: NDArray[np.bool_]
-    degree: NDArray[np.float64]
 
 
 class ProvedPlaces(NamedTuple):
@@ -221,7 +204,20 @@ class ProvedIndex:
             answers.extend(unknown)
         answers += [_in_cap(cap, normals) for cap in self.caps]
         places = _sorted(parts, len(normals))
-        return ProvedPlaces(*places, _undecided(answers, places, self.domain[4:]))
+        open_ = components_of(answers, self.domain)
+        if len(open_.numbers) > 0:
+            open_ = with_kinds(open_, self._around(open_, normals), places, self.domain)
+        return ProvedPlaces(*places, open_)
+
+    def _around(self, open_: Undecided, normals: NDArray[np.float64]) -> Array:
+        """Return winding numbers around boxes, and the boxes of their paths (k, 5)."""
+        around = np.empty((len(open_.numbers), 5))
+        with self.room() as rooms:
+            indices_around(
+                self.tape, rooms.work, rooms.boxes.tile, self.index.joints, self.domain,
+                open_.boxes, open_.numbers, normals, rooms.boxes.ends, rooms.boxes.path, around,
+            )  # fmt: skip
+        return around
 
     def _search(
         self, normals: NDArray[np.float64], threads: int | None
@@ -460,11 +456,10 @@ def _pieces_of(index: Index) -> Pieces:
 
 def _in_cap(cap: Cap, normals: NDArray[np.float64]) -> Answers:
     """Return a cap as an undecided box for the normals that it may have."""
-    numbers, found = cap.holds(normals), Answers.new(0)
-    boxes = np.full((len(numbers), COLUMNS), np.nan)
-    boxes[:, :4], boxes[:, 4] = cap.box, 0.0
-    kinds = np.full(len(numbers), SINGULAR, np.int64)
-    return found._replace(open_boxes=boxes, kinds=kinds, open_numbers=numbers)
+    numbers = cap.holds(normals)
+    row = np.array([*cap.box, 0.0, *cap.box.reshape(2, 2).mean(axis=1)])
+    boxes, kinds = np.tile(row, (len(numbers), 1)), np.full(len(numbers), OPEN_BOX)
+    return Answers.new(0)._replace(open_boxes=boxes, kinds=kinds, open_numbers=numbers)
 
 
 def _taken(room: Answers) -> Answers:
@@ -487,46 +482,3 @@ def _sorted(parts: list[Places], count: int) -> Sorted:
         put_places(part.rows, part.numbers, starts, room)
     order_places(room)
     return room
-
-
-def _undecided(answers: list[Answers], places: Sorted, periods: Array) -> Undecided:
-    """Return the undecided boxes of answers, in the order of their normals."""
-    if not answers:
-        none = np.empty(0, np.int64)
-        return Undecided(none, np.empty((0, 4)), none, np.empty(0, np.bool_), np.empty(0))
-    numbers = np.concatenate([x.open_numbers for x in answers])
-    boxes, kinds = (
-        np.concatenate(x) for x in zip(*((y.open_boxes, y.kinds) for y in answers), strict=True)
-    )
-    order = np.lexsort((boxes[:, 2], boxes[:, 0], numbers))
-    boxes, numbers = boxes[order], numbers[order]
-    for k in np.flatnonzero(np.isfinite(boxes[:, INDEX])).tolist():
-        first, last = np.searchsorted(numbers, [numbers[k], numbers[k] + 1])
-        opened = boxes[first:last]
-        boxes[k, INDEX] -= _others(int(numbers[k]), boxes[k], opened, places, periods)
-    return Undecided(
-        numbers, boxes[:, :4].copy(), kinds[order], boxes[:, 4] > 0.0, boxes[:, INDEX].copy()
-    )
-
-
-def _others(
-    number: int, row: Array, opened: Array, places: Sorted, periods: NDArray[np.float64]
-) -> float:
-    """Return the sum of the indices of other points of a normal inside of the path of a row.
-
-    It is NaN if the path goes around one of the boxes that are `opened` (k, 4), or meets it, other
-    than its own.
-    """
-    low, high = row[WHERE::2], row[WHERE + 1 :: 2]
-
-    def meet(first: Array, last: Array) -> NDArray[np.bool_]:
-        away = 0.5 * (low + high) - 0.5 * (first + last)
-        shift = periods * np.rint(away / np.where(periods > 0.0, periods, 1.0))
-        return np.all((first + shift <= high) & (last + shift >= low), axis=1)
-
-    if meet(opened[:, 0:4:2], opened[:, 1:4:2]).sum() > 1:
-        return np.nan
-    start, end = np.searchsorted(places.numbers, [number, number + 1]).tolist()
-    found = places.places[start:end]
-    mine = meet(found[:, :2] - found[:, 2:4], found[:, :2] + found[:, 2:4])
-    return float(np.sign(found[mine][:, 4]).sum())

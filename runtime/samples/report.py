@@ -90,11 +90,11 @@ class UndecidedNormal(NamedTuple):
         The row of the normal among the prescribed ones.
     box : (u0, u1, v0, v1) of float
         The rectangle of parameters. All points outside these boxes are known.
-    kind : {"double", "multiple", "continuum", "singular", "unmoved"}
-        "double": none or two points, next to a fold, up to rounding. "multiple": several points
-        that may coincide. "continuum": a curve or a region with this normal, such as a ruling of a
-        cylinder. "singular": x_u × x_v may vanish. "unmoved": points of the spline could not be
-        moved to the surface.
+    kind : {"isolated", "curve", "open", "unmoved"}
+        "isolated": a point where K is 0, or several that cannot be told apart. "curve": a curve or
+        a region with this normal, such as a ruling of a cylinder. "open": it is not known whether
+        there is a point, as next to a fold, up to rounding, or where x_u × x_v may vanish.
+        "unmoved": points of the spline could not be moved to the surface.
     border : bool
         Whether the box reaches an open side of the domain, or may meet the boundary of the trim.
     face : int or None
@@ -108,7 +108,7 @@ class UndecidedNormal(NamedTuple):
     >>> import gaussmap as gm
     >>> place = gm.sample("torus", normals=[[0, 0, 1]]).report.undecided[0]
     >>> place.normal, place.kind, place.border, len(place.box), place.face
-    (0, 'continuum', False, 4, None)
+    (0, 'curve', False, 4, None)
 
     """
 

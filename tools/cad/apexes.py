@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.proof.index import KINDS, Undecided
+from ...runtime.proof.index import Undecided
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.kernels.points import Tape
 from ...runtime.tape.tapes import bounds_over_boxes
@@ -21,7 +21,6 @@ __all__ = ["Apex", "apexes_of"]
 
 Array = NDArray[np.float64]
 
-SINGULAR = KINDS.index("singular")
 # A side of the domain is mapped to one point if the points at PLACES parameters along it differ
 # by at most ROUNDINGS units in the last place of the largest coordinate of all sides. The
 # coordinates of the point itself are no measure: near the origin they are small, but their rounding
@@ -48,11 +47,7 @@ class Apex:
         """
         low, high = 2 * self.axis, 2 * self.axis + 1
         # The boxes that touch the side.
-        (rows,) = np.nonzero(
-            (open_.kinds == SINGULAR)
-            & (open_.boxes[:, low] <= self.end)
-            & (open_.boxes[:, high] >= self.end)
-        )
+        (rows,) = np.nonzero((open_.boxes[:, low] <= self.end) & (open_.boxes[:, high] >= self.end))
         if not len(rows):
             return open_
         boxes = open_.boxes[rows].reshape(-1, 2, 2)

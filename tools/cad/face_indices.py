@@ -34,7 +34,7 @@ CELLS = (4, 4)
 # A side of the domain may be one point if the distance of its ends is less than this part of the
 # largest such distance.
 CLOSE = 1e-3
-SINGULAR = KINDS.index("singular")
+OPEN_BOX = KINDS.index("open")
 # The indices of Taylor coefficients in bounds.
 U1, V1, U2, U1V1, V2 = range(1, 6)
 
@@ -128,7 +128,7 @@ class Offset:
         keep, lost = is_known & (sign * sides.middle > 0.0), ~is_known
         u, v, of_u, of_v = np.concatenate([found.uv, found.radius], axis=1)[lost].T
         small = np.stack([u - of_u, u + of_u, v - of_v, v + of_v], axis=1)
-        singular = undecided(found.numbers[lost], small, SINGULAR, border=False)
+        singular = undecided(found.numbers[lost], small, OPEN_BOX, border=False)
         both = Undecided._make(
             np.concatenate([x, y]) for x, y in zip(found.undecided, singular, strict=True)
         )

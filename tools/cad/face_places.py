@@ -31,13 +31,12 @@ class FacePlaces(NamedTuple):
 
     def reversed_in(self, total: float) -> FacePlaces:
         """Return the same points for the parameter total − u in place of u."""
-        uv, boxes = self.uv.copy(), self.undecided.boxes.copy()
-        uv[:, 0] = total - uv[:, 0]
+        uv, boxes, middles = self.uv.copy(), self.undecided.boxes.copy(), self.undecided.uv.copy()
+        uv[:, 0], middles[:, 0] = total - uv[:, 0], total - middles[:, 0]
         boxes[:, :2] = total - boxes[:, 1::-1]
         rounding = np.array([2.0**-52 * abs(total), 0.0])
-        return self._replace(
-            uv=uv, radius=self.radius + rounding, undecided=self.undecided._replace(boxes=boxes)
-        )
+        open_ = self.undecided._replace(boxes=boxes, uv=middles)
+        return self._replace(uv=uv, radius=self.radius + rounding, undecided=open_)
 
 
 class FaceIndex(Protocol):
@@ -52,8 +51,9 @@ def undecided(numbers: Indices, boxes: Array, kind: int, border: bool) -> Undeci
     """Return boxes (k, 4) of one kind as undecided, for the normals with indices (k,)."""
     count = len(numbers)
     return Undecided(
-        numbers, boxes, np.full(count, kind), np.full(count, border), np.full(count, np.nan)
-    )
+        numbers, boxes, np.full(count, kind), np.full(count, border), np.full(count, np.nan),
+        boxes.reshape(-1, 2, 2).mean(axis=2),
+    )  # fmt: skip
 
 
 NO_NUMBERS = np.empty(0, np.int64)

@@ -37,7 +37,7 @@ EPS = 2.0**-52
 ANGLE_ERROR = 16.0 * EPS
 # Normals farther than this from those of a plane, a cylinder or a cone are rejected first.
 NEAR = 1e-6
-CONTINUUM, SINGULAR = KINDS.index("continuum"), KINDS.index("singular")
+CURVE, OPEN_BOX = KINDS.index("curve"), KINDS.index("open")
 
 
 class Angles(NamedTuple):
@@ -136,7 +136,7 @@ class RoundFace:
             return NOTHING
         own = normals[near] @ self.frame
         near = near[np.hypot(own[:, 0], own[:, 1]) <= self.error * own[:, 2]]
-        return Angles.on_lines(near, self.domain).boxes(CONTINUUM, self.domain)
+        return Angles.on_lines(near, self.domain).boxes(CURVE, self.domain)
 
     def _on_rulings(self, normals: Array) -> FacePlaces:
         """Return the rulings of a cylinder or cone with normals (S, 3), beyond an apex, too."""
@@ -157,7 +157,7 @@ class RoundFace:
                 u=np.arctan2(own[rows, 1], own[rows, 0]),
                 of_u=np.full(rows.sum(), self.error / math.cos(angle)),
             )
-            found.append(part.within(self.domain[0], 0).boxes(CONTINUUM, self.domain))
+            found.append(part.within(self.domain[0], 0).boxes(CURVE, self.domain))
         return joined(found)
 
     def _on_circles(self, normals: Array) -> FacePlaces:
@@ -173,12 +173,12 @@ class RoundFace:
             on_axis = part.of_u >= TURN
             found += [
                 part.at(~on_axis & (sizes > noise)).places(side * sign),
-                part.at(~on_axis & (np.abs(sizes) <= noise)).boxes(SINGULAR, self.domain),
+                part.at(~on_axis & (np.abs(sizes) <= noise)).boxes(OPEN_BOX, self.domain),
             ]
             if sign > 0.0 and on_axis.any():
                 circles = part.at(on_axis & (sizes > -noise))
                 u, of_u = whole(self.domain[0], len(circles.u))
-                found.append(circles._replace(u=u, of_u=of_u).boxes(CONTINUUM, self.domain))
+                found.append(circles._replace(u=u, of_u=of_u).boxes(CURVE, self.domain))
         return joined(found)
 
     def _at_angles(self, own: Array, sign: float) -> Angles:

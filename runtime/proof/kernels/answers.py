@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -16,12 +15,10 @@ __all__ = [
     "BORDER",
     "BOX",
     "COLUMNS",
-    "CONTINUUM",
-    "DOUBLE_KIND",
-    "INDEX",
+    "CURVE",
+    "ISOLATED",
     "KINDS",
-    "MULTIPLE",
-    "SINGULAR",
+    "OPEN_BOX",
     "WHERE",
     "Answers",
     "add_open",
@@ -29,22 +26,22 @@ __all__ = [
     "merge_places",
 ]
 
-# Kinds of undecided boxes: none or two solutions, none or several, a curve or a region of
-# solutions, or points where the surface may have no normal.
-KINDS = ("double", "multiple", "continuum", "singular")
-DOUBLE_KIND, MULTIPLE, CONTINUUM, SINGULAR = range(4)
+# Kinds of boxes without regular points: it is open whether there are solutions, there is a small
+# component of them, or a curve or a region of solutions.
+KINDS = ("open", "isolated", "curve")
+OPEN_BOX, ISOLATED, CURVE = range(3)
 # The columns of solutions: u, v, their error bounds, D; then the box without other solutions, u₀,
 # u₁, v₀, v₁; and whether the error bounds reach the boundary of the domain.
 BOX, BORDER, COLUMNS = 5, 9, 10
-# The columns of undecided boxes: the winding number, then the box around which it is.
-INDEX, WHERE = 5, 6
+# The columns of boxes end with u and v of a point, for curves a solution.
+WHERE, OPEN_COLUMNS = 5, 7
 
 
 class Answers(NamedTuple):
-    """Arrays for solutions (k, 10), undecided boxes (k, 10) with their kinds, and normals of both.
+    """Arrays for solutions (k, 10), other boxes (k, 7) with their kinds, and normals of both.
 
-    The columns of the latter are u₀, u₁, v₀, v₁, whether the box reaches the boundary, the winding
-    number around a larger box, NaN if it is unknown, and that box.
+    The columns of the latter are u₀, u₁, v₀, v₁, whether the box reaches the boundary, and u and v
+    of a point of it.
 
     `counts` are the numbers of solutions and boxes.
     """
@@ -60,7 +57,7 @@ class Answers(NamedTuple):
     def new(cls, room: int) -> Answers:
         """Return empty arrays."""
         return cls(
-            np.empty((room, COLUMNS)), np.empty(room, np.int64), np.empty((room, COLUMNS)),
+            np.empty((room, COLUMNS)), np.empty(room, np.int64), np.empty((room, OPEN_COLUMNS)),
             np.empty(room, np.int64), np.empty(room, np.int64), np.zeros(2, np.int64),
         )  # fmt: skip
 
@@ -87,17 +84,17 @@ def add_open(answers, number, u0, u1, v0, v1, kind, domain):
         v0, v1 = max(v0, domain[2]), min(v1, domain[3])
     row = answers.open_boxes[at]
     row[0], row[1], row[2], row[3], row[4] = u0, u1, v0, v1, border
-    row[INDEX] = math.nan
+    row[WHERE], row[WHERE + 1] = 0.5 * (u0 + u1), 0.5 * (v0 + v1)
     answers.kinds[at], answers.open_numbers[at] = kind, number
     answers.counts[1] = at + 1
     return True
 
 
 @loop
-def add_place(answers, number, row, kind, domain):
+def add_place(answers, number, row, domain):
     """List the box of a possible solution as undecided; return whether there was room."""
     u, v, r_u, r_v = row[0], row[1], row[2], row[3]
-    return add_open(answers, number, u - r_u, u + r_u, v - r_v, v + r_v, kind, domain)
+    return add_open(answers, number, u - r_u, u + r_u, v - r_v, v + r_v, OPEN_BOX, domain)
 
 
 @jit
@@ -123,7 +120,7 @@ def merge_places(places, numbers, groups, first, last, fast, fast_starts, domain
                 if keep[k]:
                     same = worse(same, either(places[at], places[k], domain[4:]))
             keep[at] = same == 0
-            if same == -1 and not add_place(answers, numbers[at], places[at], MULTIPLE, domain):
+            if same == -1 and not add_place(answers, numbers[at], places[at], domain):
                 answers.counts[1] = start
                 return np.int64(g)
     return np.int64(last)

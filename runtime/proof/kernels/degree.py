@@ -44,7 +44,7 @@ from .cell_bounds import (
 )
 from .pairs import distance, forms_at, is_beyond, most_of, newton
 
-__all__ = ["DECIDED", "PARTS", "PATH", "degree_on", "index_around"]
+__all__ = ["DECIDED", "LARGEST", "PARTS", "PATH", "degree_on", "index_around"]
 
 # What is known of a box: nothing, or its one point with the normal, or that it has none.
 UNDECIDED, DECIDED = range(2)
@@ -66,8 +66,9 @@ STEPS = 8
 PATH = 6
 # A hull is small if it is at most LARGEST times the domain. Its index is computed along the border
 # of a larger box, since the gradient is too small next to the hull: the box grows by the fractions
-# AROUND of the domain in turn. Each of the four sides of the border has EACH cells.
-LARGEST, AROUND, EACH = 0.01, (3e-6, 1e-4, 1e-3, 1e-2), LANES // 4
+# AROUND of the domain in turn. Each of the four sides of the border has up to EACH cells, which are
+# THIN relative to the box.
+LARGEST, AROUND, EACH, THIN = 0.01, (3e-6, 1e-4, 1e-3, 1e-2, 3e-2), LANES // 4, 2.0**-7
 
 
 @loop
@@ -292,10 +293,10 @@ def winding(tile, along, across, n, path):
 
 
 @loop
-def index_around(tape, work, tile, domain, hull, n, path, box):
+def index_around(tape, work, tile, joints, domain, hull, n, ends, path, box):
     """Return the winding number of the gradient around a hull; NaN if it is unknown.
 
-    The path goes around a larger `box` (4,), which is written, in the domain; it crosses no joint.
+    The path goes around a larger `box` (4,), which is written, in the domain.
     """
     e1, e2 = plane_of(n)
     size_u, size_v = domain[1] - domain[0], domain[3] - domain[2]
@@ -311,15 +312,20 @@ def index_around(tape, work, tile, domain, hull, n, path, box):
             return math.nan
         if domain[5] == 0.0 and (box[2] < domain[2] or box[3] > domain[3]):
             return math.nan
-        write_ring(tape, work, tile, box)
+        along = ends_of_parts(joints.u, domain[4], box[0], box[1], ends[0])
+        across = ends_of_parts(joints.v, domain[5], box[2], box[3], ends[1])
+        if along * across == 0:
+            return math.nan
+        box[0], box[1], box[2], box[3] = ends[0, 0], ends[0, along], ends[1, 0], ends[1, across]
+        count = write_ring(tape, work, tile, ends, along, across)
         start_path(path)
         known = True
-        for k in range(4 * EACH):
+        for k in range(count):
             known = (
                 known
                 and tile.noise[k, REACH] > 0.0
                 and side_of(patch_of(tile.hot, k), tile.hot[k, REST_S], tile.hot[k, REST_T], n) > 0
-                and walk_side(tile, k, n, e1, e2, k // EACH, path)
+                and walk_side(tile, k, n, e1, e2, int(work.levels[k]), path)
             )
         if known:
             return turns_of(path)
@@ -327,20 +333,32 @@ def index_around(tape, work, tile, domain, hull, n, path, box):
 
 
 @loop
-def write_ring(tape, work, tile, box):
-    """Write bounds over cells along the border of a box, counter-clockwise, inside of it."""
-    u, v = 0.5 * (box[0] + box[1]), 0.5 * (box[2] + box[3])
-    h_u, h_v = 0.5 * (box[1] - box[0]), 0.5 * (box[3] - box[2])
-    for k in range(4 * EACH):
-        side, place = k // EACH, tile.place[k]
-        along = (2.0 * (k % EACH) + 1.0) / EACH - 1.0
-        s = along if side == 0 else -along if side == 2 else 1.0 - 1.0 / EACH
-        t = along if side == 1 else -along if side == 3 else 1.0 - 1.0 / EACH
-        s, t = -s if side == 3 else s, -t if side == 0 else t
-        place[0], place[1] = u + h_u * s, v + h_v * t
-        place[2], place[3] = h_u / EACH, h_v / EACH
-        tile.noise[k, REACH] = 0.0
-    write_cells(tape, work, 1.0, tile, 4 * EACH)
+def write_ring(tape, work, tile, ends, along, across):
+    """Write bounds over cells along the border of a box, counter-clockwise, inside of it.
+
+    The box is cut at joints into parts with these ends. The sides are written to `levels`; return
+    the number of cells.
+    """
+    count = 0
+    for side in range(4):
+        axis = side % 2
+        other = 1 - axis
+        parts, last = (along, across) if axis == 0 else (across, along)
+        each = EACH // parts
+        depth = THIN * (ends[other, last] - ends[other, 0])
+        inside = ends[other, 0] + depth if side % 3 == 0 else ends[other, last] - depth
+        for step in range(parts * each):
+            k = step if side < 2 else parts * each - 1 - step
+            low, high = ends[axis, k // each], ends[axis, k // each + 1]
+            half = 0.5 * (high - low) / each
+            place = tile.place[count]
+            place[axis], place[2 + axis] = low + half * (2.0 * (k % each) + 1.0), half
+            place[other], place[2 + other] = inside, depth
+            tile.noise[count, REACH] = 0.0
+            work.levels[count] = float(side)
+            count += 1
+    write_cells(tape, work, 1.0, tile, count)
+    return count
 
 
 @inline

@@ -17,7 +17,7 @@ from ....generated.patch import eliminated_forms
 from ...directions.kernels.vectors import dot, row_vector
 from ...machine_code.jit import inline, jit, loop
 from ...tape.kernels.points import POINT, U, V, evaluate_points
-from .answers import BORDER, MULTIPLE, add_open
+from .answers import BORDER, OPEN_BOX, add_open
 from .cell_bounds import EPS, linear_forms_of, patch_of
 from .pairs import CLOSE, CONTRACTING
 
@@ -223,9 +223,9 @@ def decide_discs(tape, work, disc, normals, numbers, first, last, domain, answer
         if radius == math.inf:
             low, high = min(end, end + inward * size), max(end, end + inward * size)
             if angle == 0:
-                add_open(answers, number, start, start + turn, low, high, MULTIPLE, domain)
+                add_open(answers, number, start, start + turn, low, high, OPEN_BOX, domain)
             else:
-                add_open(answers, number, low, high, start, start + turn, MULTIPLE, domain)
+                add_open(answers, number, low, high, start, start + turn, OPEN_BOX, domain)
             continue
         error = 1.4143 * radius * frame[UNIT]
         of_r, rest = frame[BY_R] * error, 4.0 * EPS * (abs(end) + r)

@@ -6,6 +6,7 @@ boxes, which are listed.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -13,15 +14,12 @@ from numpy.typing import NDArray
 
 from ...directions.kernels.vectors import row_vector
 from ...machine_code.jit import inline, jit, loop
-from ...tape.kernels.points import LANES, evaluate_points
+from ...tape.kernels.points import LANES, POINT, evaluate_points
 from .answers import (
     BORDER,
     COLUMNS,
-    CONTINUUM,
-    DOUBLE_KIND,
-    INDEX,
-    MULTIPLE,
-    SINGULAR,
+    CURVE,
+    OPEN_BOX,
     WHERE,
     add_open,
     add_place,
@@ -31,6 +29,8 @@ from .cell_bounds import (
     FIRST_S,
     FIRST_T,
     SECOND,
+    TOLERANCE_S,
+    TOLERANCE_T,
     WIDE,
     CellBounds,
     patch_of,
@@ -39,7 +39,7 @@ from .cell_bounds import (
     write_patch,
 )
 from .clusters import cluster
-from .degree import DECIDED, PARTS, PATH, degree_on, index_around
+from .degree import DECIDED, PARTS, PATH, degree_on
 from .folds import DOUBLE, NO_PLACE, at_fold
 from .pairs import (
     DETERMINANT,
@@ -58,8 +58,10 @@ from .pairs import (
     bound_pairs,
     compact,
     contracted,
+    forms_at,
     improve_pairs,
     load_box,
+    newton,
     write_forms,
 )
 
@@ -75,6 +77,10 @@ BOX_COLUMNS = 5
 # A box is cut into two if one side is longer by SLENDER, with sides relative to those of its cell.
 # Contraction leaves at least the part SHRUNK of a side, so that clusters have a width.
 SLENDER, SHRUNK = 4.0, 2.0**-5
+# A cluster is a curve of solutions if SETTLING steps from the middles of its boxes, of up to
+# CHECKED ones, lead to solutions no farther away than BESIDE half widths. A Hessian whose
+# determinant is less than RANK times the square of its larger eigenvalue has the rank 1.
+SETTLING, CHECKED, BESIDE, RANK = 32, 256, 4.0, 1e-4
 # From this level on, rounding explains open boxes more than twice as many as on the level before.
 FINE = 10
 
@@ -273,23 +279,11 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
         boxes.fates[i] = at_fold(tape, work, tile, n)
         if boxes.fates[i] == DOUBLE:
             u, v, r_u, r_v = tile.place[0, 0], tile.place[0, 1], tile.place[0, 2], tile.place[0, 3]
-            first = answers.counts[1]
-            if not add_open(
-                answers, number, u - r_u, u + r_u, v - r_v, v + r_v, DOUBLE_KIND, domain
-            ):
+            if not add_open(answers, number, u - r_u, u + r_u, v - r_v, v + r_v, OPEN_BOX, domain):
                 return -1
-            if answers.counts[1] > first:
-                add_index(tape, work, boxes, answers, domain, n)
         elif boxes.fates[i] != NO_PLACE and last:
-            kind = MULTIPLE
-            for k in range(count):
-                if boxes.owner[k] == i and cells.cone[int(boxes.following[k, 2]), 3] >= WIDE:
-                    kind = SINGULAR
-            first = answers.counts[1]
-            if not add_open(answers, number, u0, u1, v0, v1, kind, domain):
+            if not add_open(answers, number, u0, u1, v0, v1, OPEN_BOX, domain):
                 return -1
-            if answers.counts[1] > first:
-                add_index(tape, work, boxes, answers, domain, n)
             boxes.fates[i] = NO_PLACE
     left = 0
     for k in range(count):
@@ -301,31 +295,75 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
 
 
 @loop
-def add_index(tape, work, boxes, answers, domain, n):
-    """Write the winding number around the last undecided box, if that is known."""
-    row = answers.open_boxes[answers.counts[1] - 1]
-    row[INDEX] = index_around(
-        tape, work, boxes.tile, domain, row[:4], n, boxes.path, row[WHERE:COLUMNS]
-    )
+def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
+    """List the clusters of boxes of rows, as curves if they are; return whether there was room."""
+    hulls = cluster(rows, count, index.cells, domain[4:], boxes.hulls, boxes.owner)
+    for i in range(hulls):
+        hull = boxes.hulls[i]
+        first = answers.counts[1]
+        kind = CURVE if is_curve(tape, work, index.cells, boxes, rows, count, i, n) else OPEN_BOX
+        if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
+            return False
+        if answers.counts[1] > first and kind == CURVE:
+            row = answers.open_boxes[first]
+            row[WHERE], row[WHERE + 1] = boxes.ends[0, 0], boxes.ends[1, 0]
+    return True
 
 
 @loop
-def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
-    """List all boxes of rows as a continuum, or as singular; return whether there was room."""
-    cells = index.cells
-    hulls = cluster(rows, count, cells, domain[4:], boxes.hulls, boxes.owner)
-    for i in range(hulls):
-        kind = CONTINUUM
-        for k in range(count):
-            if boxes.owner[k] == i and cells.cone[int(rows[k, 2]), 3] >= WIDE:
-                kind = SINGULAR
-        hull = boxes.hulls[i]
-        first = answers.counts[1]
-        if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
-            return False
-        if answers.counts[1] > first:
-            add_index(tape, work, boxes, answers, domain, n)
+def is_curve(tape, work, cells, boxes, rows, count, owner, n):
+    """Return whether there are solutions beside all boxes of a cluster, up to rounding.
+
+    Up to CHECKED boxes are checked. The solution of the first one is written to `ends`.
+    """
+    own = 0
+    for k in range(count):
+        own += 1 if boxes.owner[k] == owner else 0
+    step, own = (own + CHECKED - 1) // CHECKED, 0
+    for k in range(count):
+        if boxes.owner[k] != owner:
+            continue
+        if own % step == 0:
+            if not settles(tape, work, cells, rows[k], n):
+                return False
+            if own == 0:
+                boxes.ends[0, 0], boxes.ends[1, 0] = work.u[0], work.v[0]
+        own += 1
     return True
+
+
+@loop
+def settles(tape, work, cells, box, n):
+    """Move from the middle of a box to a solution by Gauss and Newton's method, to work.u, work.v.
+
+    Return whether its residual is explained by rounding, and whether it is near the box.
+    """
+    j, outputs = int(box[2]), tape.outputs
+    h_u, h_v = cells.place[j, 2], cells.place[j, 3]
+    x, y, z = (
+        np.uint64(POINT * outputs[0]), np.uint64(POINT * outputs[1]), np.uint64(POINT * outputs[2])
+    )  # fmt: skip
+    first, far = cells.noise[j], BESIDE * max(box[3], box[4])
+    s = t = 0.0
+    for _ in range(SETTLING):
+        work.u[0], work.v[0] = box[0] + h_u * s, box[1] + h_v * t
+        evaluate_points(tape, work.u, work.v, 1, work.registers)
+        a, b, c, p, q = forms_at(work.registers, x, y, z, n, h_u, h_v)
+        rest_s, rest_t = first[FIRST_S] + first[TOLERANCE_S], first[FIRST_T] + first[TOLERANCE_T]
+        if abs(p) <= rest_s and abs(q) <= rest_t:
+            return True
+        large = 0.5 * (a + c) + math.copysign(math.hypot(0.5 * (a - c), b), a + c)
+        if not abs(large) > 0.0:
+            return False
+        if abs(a * c - b * b) > RANK * large * large:
+            s, t, _ = newton(a, b, c, p, q, s, t)
+        else:
+            e_s, e_t = (b, large - a) if abs(a) < abs(c) else (large - c, b)
+            step = (e_s * p + e_t * q) / (large * (e_s * e_s + e_t * e_t))
+            s, t = s - step * e_s, t - step * e_t
+        if not max(abs(s), abs(t)) <= far:
+            return False
+    return False
 
 
 @loop
@@ -360,7 +398,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
 
 @loop
 def orient(tape, work, index, boxes, first, domain, number, n, answers):
-    """Remove solutions with the normal −n; list those that may have no normal as singular.
+    """Remove solutions with the normal −n; list those that may have no normal.
 
     Return whether there was room.
     """
@@ -373,7 +411,7 @@ def orient(tape, work, index, boxes, first, domain, number, n, answers):
         if j >= 0 and cells.cone[j, 3] >= WIDE:
             r_u, r_v = row[2] + 4.0 * EPS * abs(row[0]), row[3] + 4.0 * EPS * abs(row[1])
             side = side_at(tape, work, boxes.tile, cells, j, row[0], row[1], r_u, r_v, n)
-        if side == 0 and not add_place(answers, number, row, SINGULAR, domain):
+        if side == 0 and not add_place(answers, number, row, domain):
             return False
         if side > 0:
             for x in range(COLUMNS):

@@ -89,7 +89,7 @@ def corners(name: str) -> Places:
     surface = surface_of(name)
     lines = (np.linspace(low, high, 33) for low, high in surface.domain)
     u, v = (x.ravel() for x in np.meshgrid(*lines))
-    return Places.on(name, u, v, 1, 0.1, frozenset({"double", "multiple", "continuum"}))
+    return Places.on(name, u, v, 1, 0.1, frozenset({"open", "isolated", "curve"}))
 
 
 def beside_borders(name: str, distance: float, inside: bool) -> Places:
@@ -153,7 +153,7 @@ def beside_a_tip(bump: float, tip: float) -> Places:
     """Tips of cones, and poles where curvatures depend on the direction too much."""
     u, v = np.array([0.3, 0.7, 0.01]), np.array([0.5, 0.1, 0.9])
     surface = cap(bump, tip)
-    return Places(surface, new_index(surface, cells=(16, 16)), u, v, 1, 1.0, SINGULAR)
+    return Places(surface, new_index(surface, cells=(16, 16)), u, v, 1, 1.0, OPEN)
 
 
 def in_a_valley() -> Places:
@@ -168,7 +168,7 @@ def in_a_valley() -> Places:
     return Places(surface, new_index(surface), u, v)
 
 
-SINGULAR = frozenset({"singular"})
+OPEN = frozenset({"open"})
 PLACES: dict[str, Callable[[], Places]] = {
     **{f"corners of {x}": partial(corners, x) for x in ("torus", "knobby", "waves")},
     **{
@@ -186,7 +186,7 @@ PLACES: dict[str, Callable[[], Places]] = {
     "valley": in_a_valley,
     "root": lambda: Places.on("root", [0.5, 0.02], [0.3, 0.7], cells=(8, 8)),
     "horn": lambda: Places.on(
-        "horn", [0.3, 2.0, 4.0], [0.5, 0.1, 0.9], 1, 1.0, SINGULAR, cells=(16, 8)
+        "horn", [0.3, 2.0, 4.0], [0.5, 0.1, 0.9], 1, 1.0, OPEN, cells=(16, 8)
     ),
     **{
         f"tip {x}": partial(beside_a_tip, *x) for x in ((0.02, 1.5), (0.02, 1.0 + 1e-6), (0.5, 1.0))
@@ -355,7 +355,7 @@ def test_poles_without_a_disc_are_open_for_their_own_normals() -> None:
     normals = normals_at(surface, u, v)
     found = index.query(np.concatenate([normals, -normals, [[0.0, 0.0, -1.0]]]))
     is_open = np.isin(np.arange(801), found.undecided.numbers)
-    np.testing.assert_array_equal(kinds(found), {"singular"})
+    np.testing.assert_array_equal(kinds(found), {"open"})
     assert (is_open[:400] | (near(surface, found, u, v, 1e-9)[:400] == 1)).all()
     assert is_open[:400][v < cap.size].all()
     assert not is_open[400:800].any()
@@ -431,10 +431,10 @@ def test_few_normals_near_folds_are_undecided(name: str) -> None:
 # --- what is not decided --------------------------------------------------------------------------
 
 UNDECIDED: dict[str, tuple[Callable[[], Places], float]] = {
-    "double": (
+    "open": (
         lambda: Places.on("waves", *fold_points(surface_of("waves"), 20)), 1e-5
     ),
-    "multiple, flat": (lambda: Places.on("monkey_saddle", [0.0], [0.0]), 1e-6),
+    "isolated": (lambda: Places.on("monkey_saddle", [0.0], [0.0]), 1e-6),
 }  # fmt: skip
 
 
@@ -443,13 +443,14 @@ def test_small_boxes_hold_what_is_not_decided(name: str) -> None:
     made, size = UNDECIDED[name]
     surface, index, u, v, *_ = made()
     found = index.query(normals_at(surface, u, v))
-    assert kinds(found) == {name.split(",")[0]}
+    assert kinds(found) == {name}
     u_low, u_high, v_low, v_high = found.undecided.boxes.T
     assert (np.maximum(u_high - u_low, v_high - v_low) < size).all()
     here = found.undecided.numbers
     holds = (u_low <= u[here]) & (u[here] <= u_high) & (v_low <= v[here]) & (v[here] <= v_high)
     assert set(here[holds]) == set(range(len(u)))
-    assert len(found.numbers) == 0 or name != "multiple, flat"
+    assert len(found.numbers) == 0 or name != "isolated"
+    assert len(here) == len(u) or name != "isolated"
 
 
 FLAT: dict[str, tuple[str, list[int], list[list[float]]]] = {
@@ -473,10 +474,10 @@ def test_flat_points_have_an_index(name: str) -> None:
     surface = gm.Surface.from_sympy(("u", "v", height), ("u", "v"), ((-0.9, 1.1), (-1.1, 0.9)))
     found = new_index(surface).query(np.array([[0.0, 0.0, 1.0]]))
     np.testing.assert_allclose(found.uv, np.reshape(others, (-1, 2)), rtol=0.0, atol=1e-9)
-    at_zero = np.abs(found.undecided.boxes).max(axis=1) < 1e-2
-    assert at_zero.any()
-    indices = found.undecided.degree[at_zero]
-    np.testing.assert_array_equal(indices, expected)
+    (box,), (kind,) = found.undecided.boxes, kinds(found)
+    assert np.abs(box).max() < 1e-2
+    assert kind == ("isolated" if expected[0] else "open")
+    np.testing.assert_array_equal(found.undecided.degree, expected)
     angle = np.linspace(0.0, TAU, 2000)
     jets = surface.jets(0.02 * np.cos(angle), 0.02 * np.sin(angle))
     turns = np.unwrap(np.arctan2(jets[:, 2, 2], jets[:, 1, 2]))
@@ -489,14 +490,16 @@ def test_flat_points_have_an_index(name: str) -> None:
     ("name", "normal"),
     [("plane", (0, 0, 1)), ("cylinder", (1, 0, 0)), ("torus", (0, 0, 1)), ("torus", (0, 0, -1))],
 )
-def test_curves_of_points_are_a_continuum(name: str, normal: tuple[float, float, float]) -> None:
+def test_curves_of_points_are_one_component(name: str, normal: tuple[float, float, float]) -> None:
     found = index_of(name).query(np.array([normal], dtype=np.float64))
-    assert kinds(found) == {"continuum"}
+    assert kinds(found) == {"curve"}
     assert len(found.numbers) == 0
+    assert len(found.undecided.numbers) == 1
     u_low, u_high, v_low, v_high = found.undecided.boxes.T
     (u0, u1), (v0, v1) = surface_of(name).domain
-    whole = (u_high - u_low >= 0.99 * (u1 - u0)) | (v_high - v_low >= 0.99 * (v1 - v0))
-    assert whole.any()
+    assert max((u_high - u_low) / (u1 - u0), (v_high - v_low) / (v1 - v0)) == pytest.approx(1.0)
+    own = normals_at(surface_of(name), *found.undecided.uv.T)
+    np.testing.assert_allclose(own, [normal], rtol=0.0, atol=1e-12)
     assert found.undecided.border.all() == (name != "torus")
 
 
@@ -506,13 +509,13 @@ def test_other_normals_of_developables_have_no_points() -> None:
         assert len(found.numbers) == len(found.undecided.numbers) == 0
 
 
-def test_places_without_a_normal_are_singular() -> None:
+def test_places_without_a_normal_are_open() -> None:
     horn = surface_of("horn")
     normals = normals_at(horn, np.array([0.3, 2.0, 4.0]), np.array([0.5, 0.1, 0.9]))
     found = new_index(horn, cells=(16, 8)).query(normals)
     np.testing.assert_array_equal(counts(found, normals), 1)
     # x_v is perpendicular to the normal there on two of the lines that end in the apex.
-    assert kinds(found) == {"singular"}
+    assert kinds(found) == {"open"}
     np.testing.assert_array_equal(np.bincount(found.undecided.numbers), 2)
     assert (found.undecided.boxes[:, 3] < 1e-9).all()
     assert found.undecided.border.all()

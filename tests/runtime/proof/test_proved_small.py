@@ -47,7 +47,7 @@ def test_a_graph_with_a_fold() -> None:
 
 def test_a_double_point() -> None:
     found = query("folded", [normal_of(-1.0, 0.2)], (4, 4))
-    assert kinds(found) == {"double"}
+    assert kinds(found) == {"open"}
     assert len(found.undecided.kinds) == 1
     u_low, u_high, v_low, v_high = found.undecided.boxes[0]
     assert u_low <= 0.0 <= u_high
@@ -66,15 +66,15 @@ def test_points_at_poles() -> None:
     np.testing.assert_allclose(points, exact, rtol=0.0, atol=1e-12)
 
 
-def test_continua() -> None:
+def test_a_flat_region() -> None:
     found = query("plane", [(0, 0, 1), (0, 0.6, 0.8)], (4, 4))
-    assert kinds(found) == {"continuum"}
+    assert kinds(found) == {"curve"}
     assert len(found.undecided.kinds) == 1
 
 
 def test_a_singular_point() -> None:
     slope = 1.25  # of the meridian at v = 1/2, where it has the angle 1
     found = query("horn", [(slope * np.cos(1.0), slope * np.sin(1.0), -1.0)], (8, 4))
-    assert kinds(found) == {"singular"}
+    assert kinds(found) == {"open"}
     assert (found.undecided.boxes[:, 3] < 1e-6).all()
     np.testing.assert_allclose(found.uv, [[1.0, 0.5]], rtol=0.0, atol=1e-12)

@@ -165,7 +165,7 @@ class TestReport:
             "on": "surface",
             "unrefined": np.uint8(2),
             "proved": np.int16(0),
-            "undecided": [(np.int64(0), np.arange(4), np.str_("double"), np.bool_(True))],
+            "undecided": [(np.int64(0), np.arange(4), np.str_("open"), np.bool_(True))],
             "fit_distance": np.float32(1),
             "fit_rms": np.int8(1),
             "fit_angle": np.float64(1),
@@ -187,7 +187,7 @@ class TestReport:
             str, int, int, int, float, int, float, float, int, str, int, int, tuple,
             float, float, float, int, int, str, int, int, int, bool, int, tuple, str, str, tuple,
         ]  # fmt: skip
-        assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "double", True, None, None),)
+        assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "open", True, None, None),)
         assert report.reach == (0.0, 0.0, 1.0, 60.0)
         assert report.undecided
         place = report.undecided[0]

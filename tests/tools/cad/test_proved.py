@@ -164,7 +164,7 @@ def test_the_pole_of_a_sphere():
 
 @pytest.mark.parametrize("is_reversed", [False, True])
 def test_planes_cylinders_and_cones_have_lines_of_points(is_reversed):
-    """Their normals are known to be those of a continuum; all others have no point."""
+    """Their normals are known to be those of curves; all others have no point."""
     sign, angle = -1.0 if is_reversed else 1.0, 0.3
     more = {"reversed": is_reversed}
     lines = part([
@@ -188,7 +188,7 @@ def test_planes_cylinders_and_cones_have_lines_of_points(is_reversed):
     assert samples.report.proved == 3
     assert "proved to be complete for 3 of 6 normals" in samples.summary()
     assert [(x.normal, x.face, x.kind) for x in samples.report.undecided] == [
-        (k, k, "continuum") for k in range(3)
+        (k, k, "curve") for k in range(3)
     ]
     u = 3.0 - phi if is_reversed else phi
     assert samples.report.undecided[0].box == (0.0, 1.0, 0.0, 2.0)
@@ -208,7 +208,7 @@ def test_rulings_outside_of_a_trim_are_known():
     normals = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
     report = gm.GaussMap(part([band])).points(normals).report
     assert [(x.normal, x.kind, x.border) for x in report.undecided] == [
-        (k, "continuum", True) for k in (2, 3, 4)
+        (k, "curve", True) for k in (2, 3, 4)
     ]
     assert report.proved == 3
 
@@ -371,7 +371,7 @@ def test_where_the_side_of_an_offset_is_open_is_said():
             samples = gm.GaussMap(untrimmed(offset)).points(np.array([normal, -normal]))
             near = np.abs(samples.uv - [0.4, 0.6]).max(axis=1) < 1e-9
             assert near.sum() == count
-            places = [x.box for x in samples.report.undecided if x.kind == "singular"]
+            places = [x.box for x in samples.report.undecided if x.kind == "open"]
             holds = [u0 <= 0.4 <= u1 and v0 <= 0.6 <= v1 for u0, u1, v0, v1 in places]
             assert any(holds) == (count == 0)
 

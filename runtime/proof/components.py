@@ -1,0 +1,129 @@
+"""Components of the points with one normal, other than regular points: one box for each.
+
+Boxes that bisection leaves open are joined where they touch. The winding number of the height's
+gradient around a small one, less the indices of regular points there, is the component's index; if
+it is not 0, there is a point. Boxes along curves are known from the search.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.aliases import Array, Indices
+from .kernels.answers import CURVE, ISOLATED, OPEN_BOX, WHERE, Answers
+from .kernels.degree import LARGEST
+from .kernels.sorting import Sorted
+
+__all__ = ["Undecided", "components_of", "with_kinds"]
+
+# Boxes touch if they are nearer than the widths of both, or than this part of the domain.
+NEAR = 3e-6
+
+
+class Undecided(NamedTuple):
+    """Boxes of parameters with points that are not regular, or where points are not known.
+
+    numbers (k,) int64 are those of normals; boxes (k, 4) are u₀, u₁, v₀, v₁; kinds (k,) int64 are
+    positions in `KINDS`; border (k,) bool says whether a box touches an open side of the domain;
+    degree (k,) is that of the Gauss map around what is in the box, the sum of the signs of K of
+    points there with any normal nearby, NaN if it is unknown; uv (k, 2) is a point in the box.
+    """
+
+    numbers: Indices
+    boxes: Array
+    kinds: Indices
+    border: NDArray[np.bool_]
+    degree: Array
+    uv: Array
+
+
+def components_of(answers: Sequence[Answers], domain: Array) -> Undecided:
+    """Return the open boxes of answers, joined where they touch, in the order of their normals.
+
+    `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v or 0. The degrees are unknown.
+    """
+    numbers = np.concatenate([np.empty(0, np.int64), *(x.open_numbers for x in answers)])
+    rows = np.concatenate([np.empty((0, WHERE + 2)), *(x.open_boxes for x in answers)])
+    kinds = np.concatenate([np.empty(0, np.int64), *(x.kinds for x in answers)])
+    order = np.lexsort((rows[:, 2], rows[:, 0], numbers))
+    rows, kinds, numbers = rows[order], kinds[order], numbers[order]
+    keep = np.ones(len(numbers), np.bool_)
+    _, starts, counts = np.unique(numbers, return_index=True, return_counts=True)
+    for first, count in zip(starts[counts > 1].tolist(), counts[counts > 1].tolist(), strict=True):
+        some = slice(first, first + count)
+        _join(rows[some], kinds[some], keep[some], domain)
+    rows, kinds, numbers = rows[keep], kinds[keep], numbers[keep]
+    low, high = domain[0:4:2], domain[1:4:2]
+    around = (rows[:, 1:4:2] - rows[:, 0:4:2] >= high - low) & (domain[4:] > 0.0)
+    rows[:, 0:4:2] = np.where(around, low, rows[:, 0:4:2])
+    rows[:, 1:4:2] = np.where(around, high, rows[:, 1:4:2])
+    uv = rows[:, WHERE:]
+    uv -= np.where(domain[4:] > 0.0, domain[4:] * np.floor((uv - low) / (high - low)), 0.0)
+    degree = np.full(len(numbers), np.nan)
+    return Undecided(numbers, rows[:, :4].copy(), kinds, rows[:, 4] > 0.0, degree, uv)
+
+
+def _join(rows: Array, kinds: Indices, keep: NDArray[np.bool_], domain: Array) -> None:
+    """Join the boxes of one normal that touch: the first one of each component is kept."""
+    k, slack, periods = 0, NEAR * (domain[1:4:2] - domain[0:4:2]), domain[4:]
+    while k < len(rows):
+        low, high = rows[:, 0:4:2], rows[:, 1:4:2]
+        shift = _shift(0.5 * (low + high), 0.5 * (low[k] + high[k]), periods)
+        low, high, width = low + shift, high + shift, high - low
+        near = np.maximum(np.maximum(width, width[k]), slack)
+        touch = keep & np.all((low <= high[k] + near) & (high >= low[k] - near), axis=1)
+        touch[k] = False
+        if not keep[k] or not touch.any():
+            k += 1
+            continue
+        touch[k] = True
+        rows[k, 0:4:2], rows[k, 1:4:2] = low[touch].min(axis=0), high[touch].max(axis=0)
+        rows[k, 4] = rows[touch, 4].max()
+        if kinds[k] != CURVE or (kinds[touch] != CURVE).any():
+            kinds[k], rows[k, WHERE:] = OPEN_BOX, 0.5 * (rows[k, 0:4:2] + rows[k, 1:4:2])
+        touch[k] = False
+        keep[touch] = False
+        k = 0
+
+
+def _shift(x: Array, towards: Array, periods: Array) -> Array:
+    """Return the multiples of the periods that bring x (k, 2) nearest to another point."""
+    return periods * np.rint((towards - x) / np.where(periods > 0.0, periods, 1.0))
+
+
+def with_kinds(open_: Undecided, around: Array, places: Sorted, domain: Array) -> Undecided:
+    """Return components with degrees and kinds.
+
+    `around` (k, 5) are winding numbers and the boxes of their paths, `places` the regular points.
+    """
+    degree = around[:, 0].copy()
+    for k in np.flatnonzero(np.isfinite(degree)).tolist():
+        some = slice(*np.searchsorted(open_.numbers, [open_.numbers[k], open_.numbers[k] + 1]))
+        degree[k] -= _others(open_.numbers[k], around[k, 1:], open_.boxes[some], places, domain[4:])
+    sizes = (open_.boxes[:, 1::2] - open_.boxes[:, 0::2]) / (domain[1:4:2] - domain[0:4:2])
+    small = np.where(np.nan_to_num(degree) != 0.0, ISOLATED, OPEN_BOX)
+    kinds = np.where(sizes.max(axis=1, initial=0.0) <= LARGEST, small, open_.kinds)
+    return open_._replace(degree=degree, kinds=kinds)
+
+
+def _others(number: int, path: Array, boxes: Array, places: Sorted, periods: Array) -> float:
+    """Return the sum of the indices of regular points of a normal inside of a path's box.
+
+    It is NaN if the path goes around one of the boxes (k, 4), or meets it, other than its own.
+    """
+    low, high = path[0::2], path[1::2]
+
+    def meet(first: Array, last: Array) -> NDArray[np.bool_]:
+        shift = _shift(0.5 * (first + last), 0.5 * (low + high), periods)
+        return np.all((first + shift <= high) & (last + shift >= low), axis=1)
+
+    if meet(boxes[:, 0::2], boxes[:, 1::2]).sum() > 1:
+        return np.nan
+    start, end = np.searchsorted(places.numbers, [number, number + 1]).tolist()
+    found = places.places[start:end]
+    mine = meet(found[:, :2] - found[:, 2:4], found[:, :2] + found[:, 2:4])
+    return float(np.sign(found[mine][:, 4]).sum())

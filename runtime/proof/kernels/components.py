@@ -1,0 +1,22 @@
+"""Winding numbers around the boxes that hold components of solutions."""
+
+from __future__ import annotations
+
+from ...directions.kernels.vectors import row_vector
+from ...machine_code.jit import jit
+from .degree import index_around
+
+__all__ = ["indices_around"]
+
+
+@jit
+def indices_around(tape, work, tile, joints, domain, boxes, numbers, normals, ends, path, around):
+    """Write the winding number around each box (k, 4) to `around` (k, 5), and the path's box.
+
+    numbers (k,) are those of the normals (S, 3). The winding number is NaN if it is unknown.
+    """
+    for k in range(numbers.size):
+        n, row = row_vector(normals, numbers[k]), around[k]
+        row[0] = index_around(
+            tape, work, tile, joints, domain, boxes[k], n, ends, path, row[1:]
+        )  # fmt: skip

@@ -1,0 +1,62 @@
+"""Components of the points with one normal that are not regular."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from gaussmap.runtime.proof.components import components_of
+from gaussmap.runtime.proof.index import KINDS
+from gaussmap.runtime.proof.kernels.answers import Answers
+
+OPEN, CURVE = KINDS.index("open"), KINDS.index("curve")
+# u from 0 to 1 and v from 0 to 2, u with a period.
+DOMAIN = np.array([0.0, 1.0, 0.0, 2.0, 1.0, 0.0])
+
+
+def answers(*boxes: tuple[int, int, list[float]]) -> Answers:
+    """Return answers with boxes: number of the normal, kind, u₀, u₁, v₀, v₁."""
+    numbers, kinds, sides = (np.array(x) for x in zip(*boxes, strict=True))
+    middles = sides.reshape(-1, 2, 2).mean(axis=2)
+    rows = np.column_stack([sides, np.zeros(len(sides)), middles])
+    return Answers.new(0)._replace(open_boxes=rows, kinds=kinds, open_numbers=numbers)
+
+
+APART = [[0.1, 0.2, 0.5, 0.6], [0.4, 0.5, 0.5, 0.6]]
+ENDS = [[0.1, 0.2, 0.0, 0.1], [0.1, 0.2, 1.9, 2.0]]
+JOINED: dict[str, tuple[list[list[float]], list[list[float]]]] = {
+    "touching": ([[0.1, 0.2, 0.5, 0.6], [0.2, 0.3, 0.5, 0.6]], [[0.1, 0.3, 0.5, 0.6]]),
+    "at a corner": ([[0.1, 0.2, 0.5, 0.6], [0.2, 0.3, 0.6, 0.7]], [[0.1, 0.3, 0.5, 0.7]]),
+    "apart": (APART, APART),
+    "over the seam": ([[0.9, 1.0, 0.5, 0.6], [0.0, 0.1, 0.5, 0.6]], [[-0.1, 0.1, 0.5, 0.6]]),
+    "no seam": (ENDS, ENDS),
+    "a chain": (
+        [[0.1, 0.2, 0.1, 0.2], [0.5, 0.6, 0.1, 0.2], [0.2, 0.5, 0.1, 0.2]], [[0.1, 0.6, 0.1, 0.2]]
+    ),
+    "around": (
+        [[0.0, 0.4, 0.1, 0.2], [0.4, 0.8, 0.1, 0.2], [0.8, 1.0, 0.1, 0.2]], [[0.0, 1.0, 0.1, 0.2]]
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", JOINED)
+def test_boxes_of_one_normal_that_touch_are_joined(name: str) -> None:
+    boxes, expected = JOINED[name]
+    for order in (boxes, boxes[::-1]):
+        found = components_of([answers(*((5, CURVE, x) for x in order))], DOMAIN)
+        np.testing.assert_allclose(found.boxes, expected, rtol=0.0, atol=1e-15)
+        assert set(found.kinds) == {CURVE}
+        # The points of curves are those of the search.
+        middles = np.reshape(boxes, (-1, 2, 2)).mean(axis=2)
+        assert (np.abs(found.uv[:, None] - middles).max(axis=2).min(axis=1) < 1e-15).all()
+
+
+def test_components_are_those_of_one_normal_and_kind() -> None:
+    one: Any = [0.1, 0.2, 0.5, 0.6]
+    found = components_of(
+        [answers((2, CURVE, one)), answers((1, OPEN, one), (2, OPEN, one))], DOMAIN
+    )
+    np.testing.assert_array_equal(found.numbers, [1, 2])
+    np.testing.assert_array_equal(found.kinds, OPEN)
+    assert len(components_of([], DOMAIN).numbers) == 0
