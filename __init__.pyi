@@ -9,6 +9,7 @@ from .runtime.directions import fibonacci as fibonacci
 from .runtime.directions import icosphere as icosphere
 from .runtime.fitting.fit import fit as fit
 from .runtime.map import GaussMap as GaussMap
+from .runtime.samples.fields import Component as Component
 from .runtime.samples.samples import Samples as Samples
 from .runtime.spline.spline import Spline as Spline
 from .runtime.surface import surfaces as surfaces

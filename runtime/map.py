@@ -260,7 +260,7 @@ class GaussMap(Methods):
             return surface._samples_at(normals, wanted, number, threads, progress)
         on_surface = self._pieces[0].on == "surface"
         proved = all(x.index is not None for x in self._pieces)
-        wanted = checked_fields(fields, on_surface, proved)
+        wanted = checked_fields(fields, on_surface, proved, given=True)
         memory = {} if out is None else out.arrays()
         pieces = [x.used(number, threads, memory).within(reach) for x in self._pieces]
         if len(pieces) == 1:

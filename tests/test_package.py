@@ -11,7 +11,7 @@ import gaussmap as gm
 import pytest
 
 NAMES = (
-    "Dataset GaussMap Mesh Part Samples Spline SupportFunction Surface GaussmapError "
+    "Component Dataset GaussMap Mesh Part Samples Spline SupportFunction Surface GaussmapError "
     "GaussmapWarning fit sample sample_many sample_stream read_cad read_part read_samples "
     "open_dataset icosphere fibonacci convolve silhouette plot terrain curves directions errors "
     "gauss_map surfaces formulas symbolic"

@@ -9,7 +9,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array, Flags, Indices
 from ..base.memory import check_memory
-from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of
+from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, regular
 from ..samples.report import UndecidedNormal
 from ..search.fill import fill
 from ..search.search import Hits
@@ -78,5 +78,6 @@ def as_fields(arrays: Fields, fields: Sequence[str], dtype: DTypeLike) -> Fields
     if "support" in fields:
         support = np.einsum("ij,ij->i", arrays["points"], arrays["normals"])
         arrays = arrays | {"support": support}
+    arrays = arrays | regular(len(arrays["uv"]), fields)
     kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
     return FieldsOfSamples(kept, unrefined)

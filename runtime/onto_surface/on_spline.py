@@ -25,7 +25,7 @@ from ..directions.regions import Cap
 from ..domain.trim import samples_inside, with_uv
 from ..fitting.fit import check_range
 from ..proof.index import ProvedIndex
-from ..samples.fields import FLOAT_NAMES, bytes_of, new_field
+from ..samples.fields import FLOAT_NAMES, bytes_of, new_field, regular
 from ..samples.report import SamplingReport, UndecidedNormal, sampling_report
 from ..samples.samples import Samples
 from ..search.fill import fill
@@ -197,6 +197,7 @@ class OnPatches:
         wanted = with_uv(self.spline.trim, fields)
         check_memory("stored", len(hits), bytes_of(set(wanted) - set(self.memory), dtype))
         arrays = fill(self.spline, normals, hits, self.threads, wanted, dtype, self.memory)
+        arrays |= regular(len(hits), fields, self.memory)
         return FieldsOfSamples(samples_inside(self.spline.trim, arrays, fields))
 
     def at_hits_in_turn(

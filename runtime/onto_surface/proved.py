@@ -14,7 +14,7 @@ from ..base.threads import over_ranges
 from ..domain.trim import Trim, samples_inside, with_uv
 from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
 from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places, order_by_patch
-from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, row_shape
+from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, regular, row_shape
 from ..samples.report import UndecidedNormal
 from ..samples.samples import Samples
 from ..search.search import developable_patches
@@ -110,7 +110,7 @@ def _arrays(
     list(over_ranges(work, count, PLACES_AT_A_TIME, geometry.threads))
     arrays = {name: x for name, x in rooms._asdict().items() if name in fields}
     flags = {name: np.ones(count, dtype=np.bool_) for name in FLAG_NAMES}
-    return arrays | flags | {"normal_index": numbers}
+    return arrays | flags | {"normal_index": numbers} | regular(count, fields)
 
 
 def proof_of(

@@ -58,6 +58,7 @@ class SampleArrays:
     patch_index: NDArray[np.int64] = _NOT_ASKED
     on_surface: NDArray[np.bool_] | None = None
     uv_radius: NDArray[np.float64] | None = None
+    component: NDArray[np.uint8] | None = None
     row: NDArray[np.int64] | None = None
     column: NDArray[np.int64] | None = None
     face_index: NDArray[np.int64] | None = None

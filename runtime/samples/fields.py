@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from enum import IntEnum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 from warnings import catch_warnings, simplefilter
@@ -23,6 +24,7 @@ __all__ = [
     "EDGE_NAMES",
     "FLAG_NAMES",
     "FLOAT_NAMES",
+    "GIVEN_NAMES",
     "GRID_NAMES",
     "INDEX_NAMES",
     "INTEGER_NAMES",
@@ -30,6 +32,7 @@ __all__ = [
     "PROVED_NAMES",
     "REAL_NAMES",
     "UNITS",
+    "Component",
     "bytes_of",
     "checked_dtype",
     "checked_fields",
@@ -37,8 +40,43 @@ __all__ = [
     "dtype_of",
     "missing_fields",
     "new_field",
+    "regular",
     "row_shape",
 ]
+
+
+class Component(IntEnum):
+    """The components of the points that have a prescribed normal; each has one sample.
+
+    Attributes
+    ----------
+    REGULAR
+        A point with K ≠ 0: the only one with this normal nearby.
+    ISOLATED
+        A point with K = 0 that is the only one with this normal nearby.
+    CURVE
+        A curve of points with one normal; the sample is one of these.
+    TIP
+        A tip of the surface, whose normal cone contains the normal.
+    CREASE
+        A point of a crease, where the normal is between those of both sides.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.GaussMap("torus").points([[1, 0, 0]])
+    >>> samples.component.tolist() == [gm.Component.REGULAR] * 2
+    True
+    >>> [x.name.lower() for x in gm.Component]
+    ['regular', 'isolated', 'curve', 'tip', 'crease']
+
+    """
+
+    REGULAR = 0
+    ISOLATED = 1
+    CURVE = 2
+    TIP = 3
+    CREASE = 4
 
 
 class Field(NamedTuple):
@@ -65,6 +103,7 @@ FIELDS: dict[str, Field] = {
     "patch_index": Field(("patch_index",), kind="index"),
     "on_surface": Field(("on_surface",), kind="flag", only="surface"),
     "uv_radius": Field(("u_radius", "v_radius"), "parameter", only="proved"),
+    "component": Field(("component",), kind="code", only="given"),
     "row": Field(("row",), kind="index", only="grid"),
     "column": Field(("column",), kind="index", only="grid"),
     "face_index": Field(("face_index",), kind="index", only="part"),
@@ -77,6 +116,7 @@ FIELDS: dict[str, Field] = {
 ONLY = {
     "surface": 'on the surface only; see on="surface"',
     "proved": "at prescribed normals of surfaces with bounds of their derivatives only",
+    "given": "at prescribed normals only",
     "grid": 'on a grid only; see density="aligned"',
     "part": "of CAD parts only; see gm.read_part",
     "edges": "of CAD parts with edges=True only",
@@ -93,7 +133,9 @@ def _of_kind(kind: str) -> tuple[str, ...]:
 
 COLUMNS = {name: x.columns for name, x in FIELDS.items()}
 UNITS = {name: x.unit for name, x in FIELDS.items() if x.unit}
-ARRAY_NAMES, FLAG_NAMES, PROVED_NAMES, GRID_NAMES, PART_NAMES, EDGE_NAMES = map(_only, ("", *ONLY))
+ARRAY_NAMES, FLAG_NAMES, PROVED_NAMES, GIVEN_NAMES, GRID_NAMES, PART_NAMES, EDGE_NAMES = map(
+    _only, ("", *ONLY)
+)
 REAL_NAMES, INTEGER_NAMES = _of_kind("real"), _of_kind("index")
 FLOAT_NAMES = tuple(name for name in ARRAY_NAMES if name in REAL_NAMES)
 INDEX_NAMES = tuple(name for name in ARRAY_NAMES if name in INTEGER_NAMES)
@@ -119,15 +161,15 @@ def dtype_of(name: str, floating: DTypeLike) -> np.dtype[Any]:
     """Return the dtype of a field, `floating` for all fields of real numbers."""
     import numpy as np
 
-    kind = FIELDS[name].kind
-    return np.dtype(floating if kind == "real" else np.int64 if kind == "index" else np.bool_)
+    types = {"index": np.int64, "flag": np.bool_, "code": np.uint8}
+    return np.dtype(types.get(FIELDS[name].kind, floating))
 
 
 def bytes_of(fields: Iterable[str], floating: DTypeLike) -> int:
     """Return the number of bytes of the fields of one sample."""
     import numpy as np
 
-    sizes = {"flag": 1, "index": 8, "real": np.dtype(floating).itemsize}
+    sizes = {"flag": 1, "code": 1, "index": 8, "real": np.dtype(floating).itemsize}
     return sum(len(COLUMNS[x]) * sizes[FIELDS[x].kind] for x in fields)
 
 
@@ -149,6 +191,18 @@ def new_field(
     return np.empty((count, *row_shape(name)), dtype=dtype)
 
 
+def regular(
+    count: int,
+    fields: Sequence[str],
+    memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+) -> dict[str, NDArray[Any]]:
+    """Return the component of `count` regular points, if it is among the fields."""
+    found = {x: new_field(x, count, dtype_of(x, "f8"), memory) for x in GIVEN_NAMES if x in fields}
+    for array in found.values():
+        array[:] = Component.REGULAR
+    return found
+
+
 def columns_of(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Return the columns of fields, each (N,), as views."""
     return {
@@ -165,19 +219,21 @@ def checked_fields(
     grid: bool = False,
     part: bool = False,
     edges: bool = False,
+    given: bool = False,
 ) -> tuple[str, ...]:
     """Return the requested fields, in the order of `COLUMNS`; None means all.
 
-    With `surface` they are for samples on the surface, with `proved` for those of a proved search,
-    with `grid` for those that may be on a grid, with `part` for those of a CAD part, and with
-    `edges` also on its sharp edges. Raises UnknownNameError for an unknown name, and InputError for
-    anything but a tuple of names, for no names, for a repeated name, and for an attribute that is
-    computed from fields.
+    With `surface` they are for samples on the surface, with `given` for those at prescribed
+    normals, with `proved` also of a proved search, with `grid` for those that may be on a grid,
+    with `part` for those of a CAD part, and with `edges` also on its sharp edges. Raises
+    UnknownNameError for an unknown name, and InputError for anything but a tuple of names, for no
+    names, for a repeated name, and for an attribute that is computed from fields.
     """
     from ..base.checks import known_name, listed
 
     has = {
-        "": True, "surface": surface, "proved": proved, "grid": grid, "part": part, "edges": edges
+        "": True, "surface": surface, "proved": proved, "given": given or proved, "grid": grid,
+        "part": part, "edges": edges,
     }  # fmt: skip
     without = ("patch_index",) if part else ()
     known = tuple(x for x in FIELDS if has[FIELDS[x].only] and x not in without)

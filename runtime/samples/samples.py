@@ -63,6 +63,9 @@ class Samples(SampleArrays, Methods):
     uv_radius : (N, 2) float64 array or None
         For points that are proved to be all with prescribed normals: bounds of the errors of `uv`;
         NaN on faces of parts where points are estimated. None for others.
+    component : (N,) uint8 array or None
+        For samples at prescribed normals: what the points near a sample with its normal are, see
+        `Component`. None for others, which are regular.
     row, column : (N,) int64 array or None
         For samples on a grid (see ``density="aligned"`` of `sample`): the indices, from 0 on, of
         the lines v = const and u = const that meet at a sample; −1 for a sample that is not on a
@@ -129,6 +132,8 @@ class Samples(SampleArrays, Methods):
     >>> proved = gm.sample("torus", normals=[[1, 0, 0]])
     >>> proved.uv_radius.shape, bool(proved.uv_radius.max() < 1e-12)
     ((2, 2), True)
+    >>> bool((proved.component == gm.Component.REGULAR).all())
+    True
     >>> on_grid = gm.sample("torus", 200, density="aligned", cells=(16, 16))
     >>> bool((on_grid.row >= -1).all()), bool((on_grid.column >= -1).all())
     (True, True)

@@ -317,7 +317,7 @@ class Dataset:
         parts : int, default 16
             The number of parts in a batch; parts without samples are left out.
         fields : sequence of str, default ("points", "normals")
-            The requested fields of the samples. A field that a part lacks is NaN, −1 or False.
+            The requested fields of the samples. A field that a part lacks is NaN, −1, False or 0.
         shuffle : int or sequence of int, optional
             A seed for shuffling the parts and for drawing points at random, without repetition if
             the part has enough. ``shuffle=(seed, epoch)`` gives each epoch its own order. Without a

@@ -187,17 +187,16 @@ def _parquet() -> Any:  # noqa: ANN401
 
 
 def arrays_in(table: Any, names: Sequence[str]) -> dict[str, list[NDArray[Any]]]:  # noqa: ANN401
-    """Return the columns of fields; nulls become NaN, −1 or False."""
+    """Return the columns of fields; nulls become NaN, −1, False or 0."""
     return {name: [_filled(table[column]) for column in COLUMNS[name]] for name in names}
 
 
 def _filled(column: Any) -> NDArray[Any]:  # noqa: ANN401
     arrow = from_extra("pyarrow", "batch", "a data set")
     if column.null_count:
-        kind = column.type.to_pandas_dtype()
-        empty = np.nan if arrow.types.is_floating(column.type) else kind(-1)
-        if arrow.types.is_boolean(column.type):
-            empty = False
+        empty = np.nan if arrow.types.is_floating(column.type) else -1
+        if column.type.bit_width <= 8:
+            empty = column.type.to_pandas_dtype()(0)
         column = column.fill_null(empty)
     return column.to_numpy()
 

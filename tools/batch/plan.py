@@ -109,7 +109,7 @@ def plan_of(
         asked["normals"] = f"{len(data)}, SHA-256 {hashlib.sha256(data.data).hexdigest()}"
     settings = Settings.of_this_version(
         asked=asked,
-        fields=FLOAT_NAMES if fields is None else _known_fields(fields),
+        fields=FLOAT_NAMES if fields is None else _known_fields(fields, "normals" in asked),
         dtype=checked_dtype(dtype).name,
         compression=known_name(compression, CODECS, "compression"),
         files=None if files is None else known_name(files, SUFFIXES, "suffix of files"),
@@ -117,11 +117,11 @@ def plan_of(
     return Plan(settings, arguments, named, measured)
 
 
-def _known_fields(fields: Sequence[str]) -> tuple[str, ...]:
+def _known_fields(fields: Sequence[str], given: bool) -> tuple[str, ...]:
     """Return the fields; some parts may lack those of CAD parts and of grids."""
     names = listed(fields)
     if names is None:
         return checked_fields(fields)  # which raises
     others = [name for name in names if not isinstance(name, str) or name not in PART_NAMES]
-    wanted = checked_fields(others, True, grid=True)
+    wanted = checked_fields(others, True, grid=True, given=given)
     return wanted + tuple(name for name in PART_NAMES if name in names)

@@ -155,11 +155,12 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
         named = replace(plan.named, cells=arguments["cells"], quiet=True)
         surface, arguments["cells"] = with_tolerance(source, named)
     on = "surface" if part else place_of_samples(surface, arguments.get("on"))
-    grid = arguments.get("density") == "aligned"
-    known = checked_fields(None, on == "surface", grid=grid and not part, part=part)
+    density, normals = arguments.get("density"), plan.normals()
+    grid, given = density == "aligned" and not part, normals is not None and density == "gauss"
+    known = checked_fields(None, on == "surface", grid=grid, part=part, given=given)
     samples = sample(
         surface,
-        normals=plan.normals(),
+        normals=normals,
         fields=tuple(name for name in settings.fields if name in known),
         dtype=settings.dtype,
         threads=1,

@@ -23,7 +23,7 @@ from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import geometry_of
 from ...runtime.onto_surface.proved import proof_of
 from ...runtime.onto_surface.reach import in_reach
-from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, bytes_of, dtype_of
+from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, GIVEN_NAMES, bytes_of, dtype_of, regular
 from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.kernels.jets import evaluate_jets
@@ -180,6 +180,7 @@ class FacePiece(Piece):
             "support": np.einsum("kx,kx->k", fields["points"], given),
             "normal_index": found.numbers[inside],
             "uv_radius": found.radius[inside],
+            **regular(len(given), GIVEN_NAMES),
         }
         return Samples(**arrays, report=report)
 

@@ -52,7 +52,7 @@ def _sampled(options: SimpleNamespace) -> Samples:
     fields = None if options.fields is None else options.fields.split(",")
     is_part = is_part_file(options.surface)
     written = checked_fields(
-        fields, options.on != "spline", part=is_part, edges=options.edges and is_part
+        fields, options.on != "spline", part=is_part, edges=options.edges and is_part, given=True
     )
     check_fields("a.xyz" if options.format == "npy" else options.output, written)
     if options.progressive and not {"points", "normals"} <= {*written}:

@@ -16,7 +16,7 @@ from numpy.typing import DTypeLike, NDArray
 from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.errors import GaussmapError, GaussmapWarning
 from ...runtime.onto_surface.on_spline import OnSpline
-from ...runtime.samples.fields import ARRAY_NAMES_ON_SURFACE, dtype_of, row_shape
+from ...runtime.samples.fields import ARRAY_NAMES_ON_SURFACE, GIVEN_NAMES, dtype_of, row_shape
 from ...runtime.samples.samples import Samples
 from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
 from .fibonacci_lattice import Lattice
@@ -114,7 +114,7 @@ def at_normals(space: Space, normals: Array, curved: Iterable[int], progress: bo
             found += [PieceSamples(k, x, normals) for x in proved]
 
     def search(geometry: OnSpline) -> tuple[Samples, Array]:
-        fields = ARRAY_NAMES_ON_SURFACE
+        fields = ARRAY_NAMES_ON_SURFACE + GIVEN_NAMES
         return geometry.samples_at(normals, fields, np.float64, progress), normals
 
     found += _searched(space, (k for k in curved if k in estimated), search)

@@ -21,7 +21,6 @@ from ...runtime.base.errors import InputError
 from ...runtime.samples.fields import (
     ARRAY_NAMES,
     COLUMNS,
-    FLAG_NAMES,
     REAL_NAMES,
     columns_of,
     dtype_of,
@@ -195,7 +194,7 @@ def _empty_arrays(fields: Sequence[str], vertices: _Element) -> dict[str, NDArra
     for name in fields:
         dtype = dtype_of(name, np.float32 if single else np.float64)
         for kind in (kinds[column] for column in COLUMNS[name]):
-            if not np.can_cast(kind, np.int64 if name in FLAG_NAMES else dtype, "safe"):
+            if not np.can_cast(kind, np.int64 if dtype.itemsize == 1 else dtype, "safe"):
                 raise UnusableError(f"has {kind.name} numbers as {name}; write it again.")
         arrays[name] = new_field(name, vertices.rows, dtype)
     return arrays

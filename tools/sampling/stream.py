@@ -95,7 +95,8 @@ def sample_stream(
     size = whole_number(chunk, "chunk")
     surface, number = named(surface), checked_dtype(dtype)
     is_on_surface = place_of_samples(surface, on) == "surface"
-    wanted = checked_fields(fields, is_on_surface, proved=is_on_surface)
+    given = normals is not None
+    wanted = checked_fields(fields, is_on_surface, proved=is_on_surface, given=given)
     request = checked_request(normals, count, None, None, "gauss", threads)
     if pieces := pieces_to_sample(surface):
         raise InputError(
@@ -110,7 +111,7 @@ def sample_stream(
         pieces = kept_map(surface, cells, on)._pieces
     geometry = pieces[0].used(number, threads)
     if geometry.index is None:
-        wanted = checked_fields(fields, is_on_surface)
+        wanted = checked_fields(fields, is_on_surface, given=given)
     shows = yes_or_no(progress, "progress")
     return _Stream(geometry, request, size, wanted, number, shows).chunks()
 

@@ -72,6 +72,24 @@ def test_principal_curvatures_of_float32():
     assert (error <= 4 * 2.0**-24 * size * (1 + size / gap)).all()
 
 
+@pytest.mark.parametrize("on", ["surface", "spline"])
+def test_components_are_those_of_prescribed_normals(tmp_path, on):
+    torus, codes = gm.surfaces.torus(), [gm.Component.REGULAR] * 2
+    at_normal = gm.GaussMap(torus, cells=(12, 8), on=on).points([[1, 0, 0]])
+    assert at_normal.component is not None
+    assert (at_normal.component.dtype, at_normal.component.tolist()) == (np.uint8, codes)
+    assert gm.sample(torus, 50, cells=(12, 8), on=on).component is None
+    for name in ("a.npz", "a.ply"):
+        at_normal.write(tmp_path / name)
+        assert np.array_equal(gm.read_samples(tmp_path / name).arrays()["component"], codes)
+    fields = ("component", "points")
+    (chunk,) = gm.sample_stream(torus, normals=[[1, 0, 0]], cells=(12, 8), on=on, fields=fields)
+    chunk.write(tmp_path / "a.csv")
+    assert (tmp_path / "a.csv").read_text().splitlines()[1].endswith(",0")
+    refused("at prescribed normals only", gm.sample, torus, 50, fields=fields)
+    refused("at prescribed normals only", gm.sample_stream, torus, 50, fields=fields)
+
+
 # --- what is missing ------------------------------------------------------------------------------
 
 

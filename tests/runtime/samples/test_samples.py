@@ -12,10 +12,7 @@ import pytest
 from gaussmap.runtime.samples.fields import (
     ARRAY_NAMES,
     ARRAY_NAMES_ON_SURFACE,
-    EDGE_NAMES,
-    GRID_NAMES,
-    PART_NAMES,
-    PROVED_NAMES,
+    COLUMNS,
 )
 from gaussmap.runtime.samples.report import SamplingReport, warn_of
 from gaussmap.runtime.samples.samples import Samples
@@ -62,7 +59,7 @@ def curved(K: object, H: object) -> Samples:
 
 class TestConstruction:
     def test_the_array_names_are_the_fields(self):
-        arrays = (*ARRAY_NAMES_ON_SURFACE, *PROVED_NAMES, *GRID_NAMES, *PART_NAMES, *EDGE_NAMES)
+        arrays = tuple(COLUMNS)
         assert (*arrays, "report", "spline", "surface", "offset_of") == tuple(
             field.name for field in fields(Samples)
         )

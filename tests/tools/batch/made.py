@@ -9,7 +9,10 @@ from gaussmap.tools.batch.folder import Settings, opened
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow
 from gaussmap.tools.batch.part_files import write_manifest, write_part
 
-FIELDS = ("points", "normals", "gaussian_curvature", "normal_index", "on_surface", "face_index")
+FIELDS = (
+    *("points", "normals", "gaussian_curvature", "normal_index", "on_surface", "component"),
+    "face_index",
+)
 # Of 13 parts two have no samples, and one has fewer than a batch takes.
 COUNTS = (40, 0, 55, 3, 70, 50, 50, 60, 45, 50, 61, 50, 0)
 BROKEN = 12
@@ -28,6 +31,7 @@ def samples_of(part: int, count: int, dtype: str = "float64") -> gm.Samples:
         gaussian_curvature=rng.normal(size=count).astype(dtype),
         normal_index=np.arange(count) - 1,
         on_surface=None if on_spline else rng.random(count) < 0.5,
+        component=None if of_cad else np.full(count, 1 + part % 4, np.uint8),
         face_index=rng.integers(9, size=count) if of_cad else None,
         report=SamplingReport(surface=f"part {part}", normals=None, samples=count, patches=None,
                               developable_share=None, developable_patches=None),

@@ -109,15 +109,16 @@ def test_the_last_batch(dataset):
 
 
 def test_fields_and_what_parts_lack(dataset):
-    fields = ("face_index", "on_surface", "normals", "gaussian_curvature", "normal_index")
+    fields = ("face_index", "on_surface", "component", "normals", "gaussian_curvature")
     for *arrays, numbers in dataset.batches(10, 4, fields=fields, dtype=np.float32):
-        faces, on, normals, K, index = arrays
-        assert [x.dtype for x in arrays] == [np.int64, np.bool_, *2 * [np.float32], np.int64]
+        faces, on, component, normals, K = arrays
+        assert [x.dtype for x in arrays] == [np.int64, np.bool_, np.uint8, *2 * [np.float32]]
         assert normals.shape == (len(numbers), 10, 3)
-        assert K.shape == index.shape == faces.shape == (len(numbers), 10)
+        assert K.shape == component.shape == faces.shape == (len(numbers), 10)
         for k, part in enumerate(numbers.tolist()):
             assert (faces[k] >= 0).all() if part % 3 == 2 else (faces[k] == -1).all()
             assert not on[k].any() or part % 3 != 1
+            assert (component[k] == (0 if part % 3 == 2 else 1 + part % 4)).all()
 
 
 def test_labels(dataset):

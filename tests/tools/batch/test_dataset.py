@@ -53,7 +53,8 @@ def test_manifest(dataset):
 @pytest.mark.parametrize("part", [0, 1, 2, 3, 10])
 def test_samples_of_a_part(dataset, part):
     found, expected = dataset.samples(part), made.samples_of(part, made.COUNTS[part])
-    absent = set() if made.COUNTS[part] else {"on_surface", "face_index"} & {*found.fields}
+    some = {"on_surface", "component", "face_index"} & {*found.fields}
+    absent = set() if made.COUNTS[part] else some
     assert {*found.fields} - absent == {*expected.fields} - absent
     for name in expected.fields:
         assert getattr(found, name).flags.writeable
