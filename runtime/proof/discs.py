@@ -26,7 +26,7 @@ from ..tape.kernels.rounding import rounding_of_boxes
 from ..tape.tapes import bounds_over_boxes, jets_of, moved_tape
 from .ball import Ball
 from .grid_lines import jumps_of, lines_of
-from .kernels.cell_bounds import EPS, WIDE, CellBounds, write_one_cone
+from .kernels.cell_bounds import EPS, LEFT_S, WIDE, CellBounds, write_one_cone
 from .kernels.discs import Disc
 from .polar_tapes import PolarTapes, polar_tapes
 from .spline_quotient import mapped_spline
@@ -358,8 +358,9 @@ def _cell(hot: Array, changes: Array, noise: float) -> CellBounds | None:
         return None
     cell = CellBounds.new(1)
     cell.hot[0, :15] = hot
-    a, b, c = np.linalg.norm(changes[1], axis=1)  # in the disc itself
-    pad = noise + 2.0**-48 * np.abs(hot).max()
-    cell.hot[0, REST_S], cell.hot[0, REST_T] = a + b + pad, b + c + pad
+    a, b, c = changes[1]  # in the disc itself
+    left = np.stack([a + b, b + c]) + noise + 2.0**-48 * np.abs(hot).max()
+    cell.noise[0, LEFT_S:] = left.ravel()
+    cell.hot[0, [REST_S, REST_T]] = np.linalg.norm(left, axis=1)
     write_one_cone(cell)
     return cell if cell.cone[0, 3] < WIDE else None

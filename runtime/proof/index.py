@@ -21,7 +21,7 @@ from ..base.aliases import Array
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
 from ..search.kernels.lists import NUMBER, Lists
-from ..search.kernels.pieces import CHORD, CONE, EVERYTHING, WIDTH, Pieces
+from ..search.kernels.pieces import CHORD, CONE, EVERYTHING, REST_S, REST_T, WIDTH, Pieces
 from ..search.kernels.search import CELLS as KIND
 from ..search.kernels.search import Memory, Pairs, search
 from ..search.patch_index import listed, ordered
@@ -48,16 +48,19 @@ from .kernels.sorting import Sorted, count_places, order_places, put_places, sta
 __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
 
-# How often irregular cells are cut into four, and cells without a narrow cone of normals.
-LEVELS = (2, 5)
+# How often irregular cells are cut into four; those without a narrow cone of normals are cut into
+# two or four in further rounds, until there are MOST cells for each one of the grid.
+LEVELS, ROUNDS, MOST = 2, 3, 8
+# A cell is cut into two if the change of tangents along the other parameter is smaller by this.
+SLENDER = 4.0
 CELLS = (64, 64)
-# Cells along u and v that are looked at first, whether there are normals.
-PROBES = 4
+# The number of cells of which a part is looked at first, whether there are normals; its size.
+PROBES, SMALL = 16, 2.0**-5
 # Base cells, normals and hard normals that are worked on at a time.
 CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
 # The first lengths of arrays: of cells, of pairs of a normal and a cell, and of answers.
 CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
-# Cells without a cone of normals are in all bins: they are this part of the domain at most.
+# CellBounds without a cone of normals are in all bins: they are this part of the domain at most.
 MOST_OPEN = 0.25
 NO_PAIRS = np.empty((0, 2), np.int64)
 
@@ -173,9 +176,11 @@ class ProvedIndex:
         box = np.array([*domain[0], *domain[1], *periods])
         discs, caps, inside, poles = _poles(tape, domain, boundary, cells)
         lines = [lines_of(tape, k, inside[k], cells[k]) for k in (0, 1)]
-        if _has_no_normals(tape, lines):
+        grid = _grid(*lines)
+        if _has_no_normals(tape, grid):
             return None
-        cut = _cut(tape, lines, LEVELS, threads)
+        cut = _cut(tape, grid, LEVELS, threads)
+        cut = _narrowed(tape, cut, len(cut.place) + MOST * len(grid), threads)
         blind = cut.noise[:, REACH] == 0.0
         u, v, h_u, h_v = cut.place[blind].T
         unbounded = np.vstack([poles, np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])])
@@ -409,26 +414,27 @@ def _poles(
     return tuple(discs), tuple(caps), inside, np.array(unknown).reshape(-1, 4)
 
 
-def _has_no_normals(tape: Tape, lines: list[NDArray[np.float64]]) -> bool:
+def _has_no_normals(tape: Tape, grid: Array) -> bool:
     """Return whether a few small cells have no cones of normals, as on a surface that is a curve.
 
     All cells of such a surface would be cut as often as can be, which takes seconds.
     """
-    few = [np.unique(np.linspace(0, len(x) - 2, PROBES).round()).astype(int) for x in lines]
-    ends = [
-        np.stack([x[k], x[k] + (x[k + 1] - x[k]) / 2 ** LEVELS[1]])
-        for x, k in zip(lines, few, strict=True)
-    ]
-    cells = _cut(tape, [x.T.ravel() for x in ends], (0, 0), 1)
+    few = grid[np.linspace(0, len(grid) - 1, PROBES).round().astype(int)]
+    few[:, 2:] *= SMALL
+    cells = _cut(tape, few, 0, 1)
     return bool(((cells.cone[:, 3] >= OPEN) & (cells.noise[:, REACH] > 0.0)).all())
 
 
-def _cut(
-    tape: Tape, lines: list[NDArray[np.float64]], most: tuple[int, int], threads: int | None
-) -> CellBounds:
-    """Return the cells of a grid, cut as often as `LEVELS` say."""
-    levels, deepest = np.array(most), 3 * max(most) + 2
-    count = (len(lines[0]) - 1) * (len(lines[1]) - 1)
+def _grid(lines_u: Array, lines_v: Array) -> Array:
+    """Return the places (k, 4) of the cells of a grid."""
+    (u, h_u), (v, h_v) = ((0.5 * (x[1:] + x[:-1]), 0.5 * np.diff(x)) for x in (lines_u, lines_v))
+    columns = [*np.meshgrid(u, v, indexing="ij"), *np.meshgrid(h_u, h_v, indexing="ij")]
+    return np.column_stack([x.ravel() for x in columns])
+
+
+def _cut(tape: Tape, places: Array, levels: int, threads: int | None) -> CellBounds:
+    """Return the cells at places (k, 4), cut into four at most `levels` times."""
+    deepest = 3 * levels + 2
 
     def work(first: int, last: int) -> list[CellBounds]:
         state = np.array([first, 0, 0])
@@ -436,11 +442,45 @@ def _cut(
         stack = np.empty((LANES * deepest, 5))
         arrays, parts = Work.new(len(tape.operations)), []
         while state[0] < last or state[1] > 0:
-            cut_cells(tape, arrays, lines[0], lines[1], state, last, levels, stack, tile, room)
+            cut_cells(tape, arrays, places, state, last, levels, stack, tile, room)
             parts.append(CellBounds(*(x[: state[2]].copy() for x in room)))
         return parts
 
-    parts = [x for y in over_ranges(work, count, CELLS_AT_A_TIME, threads) for x in y]
+    parts = [x for y in over_ranges(work, len(places), CELLS_AT_A_TIME, threads) for x in y]
+    return _joined(parts)
+
+
+def _narrowed(tape: Tape, cells: CellBounds, most: int, threads: int | None) -> CellBounds:
+    """Return at most `most` cells; those without a narrow cone of normals are cut."""
+    done = list[CellBounds]()
+    for _ in range(ROUNDS):
+        wide = cells.cone[:, 3] >= WIDE
+        parts = _parts_of(CellBounds(*(x[wide] for x in cells)))
+        most -= len(cells.place) - wide.sum()
+        if not 0 < len(parts) <= most:
+            break
+        done.append(CellBounds(*(x[~wide] for x in cells)))
+        cells = _cut(tape, parts, 0, threads)
+    return _joined([*done, cells])
+
+
+def _parts_of(cells: CellBounds) -> Array:
+    """Return the places of parts of cells, which are cut along the parameters that change them."""
+    places, hot = cells.place, cells.hot
+    a, _, c, d, e = (np.linalg.norm(hot[:, k : k + 3], axis=1) for k in range(0, REST_S, 3))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        changes = np.stack([(a + hot[:, REST_S]) / d, (c + hot[:, REST_T]) / e], axis=1)
+    cut = ~(SLENDER * changes < changes[:, ::-1])
+    half = places[:, 2:] * np.where(cut, 0.5, 1.0)
+    parts = [
+        np.hstack([places[:, :2] + cut * side * half, half])[((side < 0) | cut).all(axis=1)]
+        for side in np.array([(-1, -1), (-1, 1), (1, -1), (1, 1)])
+    ]
+    return np.concatenate(parts)
+
+
+def _joined(parts: list[CellBounds]) -> CellBounds:
+    """Return the cells of all parts."""
     return CellBounds(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
 

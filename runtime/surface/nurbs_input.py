@@ -18,6 +18,8 @@ __all__ = ["MOST_DEGREE", "nurbs_of"]
 
 # No format for CAD data holds larger degrees.
 MOST_DEGREE = 25
+# Control points with smaller weights, relative to the largest one, say nothing about the centre.
+LIGHT = 0.1
 
 
 def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nurbs:  # noqa: ANN401
@@ -40,12 +42,14 @@ def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nur
             _pair(knots, "knots"), (p, q), points.shape, "uv", strict=False
         )
     )
-    low, high = (f(axis=(0, 1)) for f in (points.min, points.max))
-    centre = low / 2 + high / 2
+    factors = np.ones(points.shape[:2]) if weights is None else _weights(weights, points.shape[:2])
+    # Quotients are small differences of large numbers where one weight outweighs all others, unless
+    # its point is the origin.
+    heavy = points[factors >= LIGHT * factors.max()]
+    centre = heavy.min(axis=0) / 2 + heavy.max(axis=0) / 2
     points = points - centre
     if weights is not None:
-        factors = _weights(weights, points.shape[:2])[:, :, None]
-        points = np.concatenate([points * factors, factors], axis=2)
+        points = np.concatenate([points * factors[:, :, None], factors[:, :, None]], axis=2)
     domain = (
         (float(knots_u[p]), float(knots_u[-p - 1])), (float(knots_v[q]), float(knots_v[-q - 1])),
     )  # fmt: skip

@@ -26,6 +26,7 @@ __all__ = [
     "EPS",
     "FIRST_S",
     "FIRST_T",
+    "LEFT_S",
     "OPEN",
     "REACH",
     "SECOND",
@@ -38,6 +39,8 @@ __all__ = [
     "inverse_of",
     "linear_forms_of",
     "patch_of",
+    "rests_in",
+    "side_in",
     "thirds_of",
     "write_cells",
     "write_one_cone",
@@ -52,7 +55,9 @@ HOT = 17
 # The columns of `noise`: the rounding of x_s, of x_t, and of second derivatives; how far bounds
 # hold; the tolerances of n·x_s and of n·x_t at joints.
 FIRST_S, FIRST_T, SECOND, REACH, TOLERANCE_S, TOLERANCE_T = range(6)
-NOISE = 6
+# Three each: what the patch leaves out of the coordinates of x_s and of x_t.
+LEFT_S, LEFT_T = 6, 9
+NOISE = 12
 # Normals of both sides of a joint differ by at most this angle, in radians.
 SMOOTH = 1e-9
 # The chord of a cone: from here on its half angle is too wide to tell n from −n; no bound at all.
@@ -70,10 +75,11 @@ class CellBounds(NamedTuple):
     hot (k, 17): the vectors a, b, c, d, e of the patch that osculates at the centre, and bounds of
     what it leaves out of x_s and x_t.
     thirds (k, 24): x_sss, x_sst, x_stt, x_ttt, then how far they may be from these.
-    noise (k, 6): the rounding of x_s and x_t, and of second derivatives; the largest |s|, |t| for
+    noise (k, 12): the rounding of x_s and x_t, and of second derivatives; the largest |s|, |t| for
     which all bounds hold, 0 if there are none, 1 if they end at a joint; tolerances. At a joint the
     normals of both sides differ a little: there, |n·x_s| and |n·x_t| of a point with the normal n
-    are not 0, but at most these tolerances.
+    are not 0, but at most these tolerances. Then what the patch leaves out of x_s and of x_t, by
+    coordinates.
     cone (k, 4): the axis of a cone that holds the normals of the cell, and its chord, the distance
     of its border on the sphere from the axis.
     """
@@ -203,41 +209,80 @@ def write_rest(cells, j):
     patch = patch_of(hot, j)
     # Neighbouring cells meet up to the rounding of their sides.
     gap = gap_of(place[j, 0], place[j, 1], place[j, 2], place[j, 3])
-    t0, t1, t2, t3 = third_sizes(cells.thirds, j)
-    rest_s, rest_t = remainders(t0, t1, t2, t3)
+    left_s, left_t = rests_in(cells, j, 1.0 + 2.0 * gap, 1.0 + 2.0 * gap)
     a, b, c = length(patch.a), length(patch.b), length(patch.c)
     d, e = length(patch.d), length(patch.e)
-    second = 2.0 * noise[j, SECOND]
-    rest_s = rest_s * (1.0 + 4.0 * gap) + noise[j, FIRST_S] + second + gap * (a + b + d)
-    rest_t = rest_t * (1.0 + 4.0 * gap) + noise[j, FIRST_T] + second + gap * (b + c + e)
+    rest_s = length(left_s) * (1.0 + 4.0 * EPS) + gap * (a + b + d)
+    rest_t = length(left_t) * (1.0 + 4.0 * EPS) + gap * (b + c + e)
     at_joint = noise[j, REACH] == 1.0
     noise[j, TOLERANCE_S] = SMOOTH * (d + a + b + rest_s) if at_joint else 0.0
     noise[j, TOLERANCE_T] = SMOOTH * (e + b + c + rest_t) if at_joint else 0.0
     hot[j, REST_S] = rest_s + noise[j, TOLERANCE_S]
     hot[j, REST_T] = rest_t + noise[j, TOLERANCE_T]
+    write_left(noise, j, LEFT_S, widened(left_s, gap * (a + b + d) + noise[j, TOLERANCE_S]))
+    write_left(noise, j, LEFT_T, widened(left_t, gap * (b + c + e) + noise[j, TOLERANCE_T]))
 
 
 @inline
-def third_sizes(thirds, j):
-    """Return bounds of the lengths of x_sss, x_sst, x_stt, x_ttt."""
+def write_left(noise, j, column, bounds):
+    """Write bounds of coordinates; see `left_of`."""
+    noise[j, column], noise[j, column + 1], noise[j, column + 2] = bounds.x, bounds.y, bounds.z
+
+
+@inline
+def widened(bounds, slack):
+    """Return bounds of coordinates, each with the same slack."""
+    return Vector(bounds.x + slack, bounds.y + slack, bounds.z + slack)
+
+
+@loop
+def rests_in(cells, j, size_u, size_v):
+    """Return bounds of the coordinates of what a patch leaves out of x_s and x_t.
+
+    The patch osculates in the middle of a part of cell j; the sizes are those of the part, relative
+    to the cell.
+    """
+    x0, x1, x2, x3 = thirds_along(cells.thirds, j, 0)
+    y0, y1, y2, y3 = thirds_along(cells.thirds, j, 1)
+    z0, z1, z2, z3 = thirds_along(cells.thirds, j, 2)
+    x_s, x_t = remainders(x0, x1, x2, x3)
+    y_s, y_t = remainders(y0, y1, y2, y3)
+    z_s, z_t = remainders(z0, z1, z2, z3)
+    square = max(size_u, size_v) ** 2
+    second = 2.0 * square * cells.noise[j, SECOND]
+    slack_s = size_u * cells.noise[j, FIRST_S] + second
+    slack_t = size_v * cells.noise[j, FIRST_T] + second
+    cubic_s, cubic_t = size_u * square * (1.0 + 4.0 * EPS), size_v * square * (1.0 + 4.0 * EPS)
     return (
-        third_size(thirds, j, 0),
-        third_size(thirds, j, 3),
-        third_size(thirds, j, 6),
-        third_size(thirds, j, 9),
+        widened(Vector(cubic_s * x_s, cubic_s * y_s, cubic_s * z_s), slack_s),
+        widened(Vector(cubic_t * x_t, cubic_t * y_t, cubic_t * z_t), slack_t),
     )
 
 
 @inline
-def third_size(thirds, j, k):
-    """Return the length of the largest components of a third derivative."""
-    return length(
-        Vector(
-            abs(thirds[j, k]) + thirds[j, 12 + k],
-            abs(thirds[j, k + 1]) + thirds[j, 13 + k],
-            abs(thirds[j, k + 2]) + thirds[j, 14 + k],
-        )
-    ) * (1.0 + 4.0 * EPS)
+def thirds_along(thirds, j, x):
+    """Return bounds of coordinate x of x_sss, x_sst, x_stt, x_ttt."""
+    return (
+        abs(thirds[j, x]) + thirds[j, 12 + x],
+        abs(thirds[j, 3 + x]) + thirds[j, 15 + x],
+        abs(thirds[j, 6 + x]) + thirds[j, 18 + x],
+        abs(thirds[j, 9 + x]) + thirds[j, 21 + x],
+    )
+
+
+@loop
+def third_sizes(thirds, j):
+    """Return bounds of the lengths of x_sss, x_sst, x_stt, x_ttt."""
+    x0, x1, x2, x3 = thirds_along(thirds, j, 0)
+    y0, y1, y2, y3 = thirds_along(thirds, j, 1)
+    z0, z1, z2, z3 = thirds_along(thirds, j, 2)
+    more = 1.0 + 4.0 * EPS
+    return (
+        length(Vector(x0, y0, z0)) * more,
+        length(Vector(x1, y1, z1)) * more,
+        length(Vector(x2, y2, z2)) * more,
+        length(Vector(x3, y3, z3)) * more,
+    )
 
 
 @loop
@@ -336,12 +381,39 @@ def write_noise(tape, errors, reach, cells, j):
     noise[j, REACH] = reach if math.isfinite(total) else 0.0
 
 
-@inline
+@loop
 def normal_error(patch, rest_s, rest_t):
-    """Return a bound of what a patch leaves out of x_s × x_t."""
-    along = length(patch.d) + length(patch.a) + length(patch.b)
-    across = length(patch.e) + length(patch.b) + length(patch.c)
-    return rest_s * (across + rest_t) + rest_t * along + 16.0 * EPS * along * across
+    """Return a bound of what a patch leaves out of x_s × x_t, from bounds of coordinates.
+
+    Where x_s and x_t are nearly parallel, lengths alone would bound it by far too much.
+    """
+    along = sizes_of(patch.d, patch.a, patch.b)
+    across = sizes_of(patch.e, patch.b, patch.c)
+    error = Vector(
+        rest_s.y * (across.z + rest_t.z) + rest_s.z * (across.y + rest_t.y)
+        + rest_t.y * along.z + rest_t.z * along.y,
+        rest_s.z * (across.x + rest_t.x) + rest_s.x * (across.z + rest_t.z)
+        + rest_t.z * along.x + rest_t.x * along.z,
+        rest_s.x * (across.y + rest_t.y) + rest_s.y * (across.x + rest_t.x)
+        + rest_t.x * along.y + rest_t.y * along.x,
+    )  # fmt: skip
+    return length(error) * (1.0 + 16.0 * EPS) + 16.0 * EPS * length(along) * length(across)
+
+
+@inline
+def sizes_of(v, w, x):
+    """Return the sums of the moduli of the coordinates of three vectors."""
+    return Vector(
+        abs(v.x) + abs(w.x) + abs(x.x), abs(v.y) + abs(w.y) + abs(x.y),
+        abs(v.z) + abs(w.z) + abs(x.z),
+    )  # fmt: skip
+
+
+@inline
+def left_of(cells, j, column):
+    """Return bounds of the coordinates of what the patch of cell j leaves out of x_s or x_t."""
+    noise = cells.noise
+    return Vector(noise[j, column], noise[j, column + 1], noise[j, column + 2])
 
 
 @loop
@@ -354,6 +426,12 @@ def side_of(patch, rest_s, rest_t, n):
         height = dot(ordinates[k], n)
         least, most = min(least, height), max(most, height)
     return 1 if least > error else -1 if most < -error else 0
+
+
+@loop
+def side_in(cells, j, n):
+    """Return the sign of the products of n and the normals of cell j, 0 if unknown."""
+    return side_of(patch_of(cells.hot, j), left_of(cells, j, LEFT_S), left_of(cells, j, LEFT_T), n)
 
 
 @loop
@@ -370,7 +448,7 @@ def write_cone(cells, j):
         return
     axis = Vector(axis.x / size, axis.y / size, axis.z / size)
     set_row(cone, j, axis)
-    error = normal_error(patch, hot[j, REST_S], hot[j, REST_T])
+    error = normal_error(patch, left_of(cells, j, LEFT_S), left_of(cells, j, LEFT_T))
     tangent = 0.0
     for k in range(9):
         height = dot(ordinates[k], axis)
@@ -430,21 +508,19 @@ def copy_cell(cells, j, target, k):
 
 
 @jit
-def cut_cells(tape, work, lines_u, lines_v, state, last, levels, stack, tile, cells):
-    """Write the cells of the base cells of a grid, each cut into four until it is regular.
+def cut_cells(tape, work, places, state, last, levels, stack, tile, cells):
+    """Write the cells of base cells, each cut into four until it is regular.
 
-    The lines of the grid are at these u (m,) and v (n,). `levels` are how often cells are cut, and
-    those that have no narrow cone of normals. `state` holds the next base cell, the number of cells
-    on the `stack` (…, 5), and the number of cells written; it ends at base cell `last` unless there
-    is no more room. `tile` are work arrays, of LANES cells.
+    The base cells are at these places (k, 4). They are cut at most `levels` times. `state` holds
+    the next base cell, the number of cells on the `stack` (…, 5), and the number of cells written;
+    it ends at base cell `last` unless there is no more room. `tile` are work arrays, of LANES
+    cells.
     """
     count = 0
     while count + LANES <= cells.place.shape[0] and (state[0] < last or state[1] > 0):
         while state[1] < LANES and state[0] < last:
-            i, k = state[0] // (lines_v.size - 1), state[0] % (lines_v.size - 1)
-            u0, u1, v0, v1 = lines_u[i], lines_u[i + 1], lines_v[k], lines_v[k + 1]
-            u, v, h_u, h_v = 0.5 * (u0 + u1), 0.5 * (v0 + v1), 0.5 * (u1 - u0), 0.5 * (v1 - v0)
-            put_on_stack(stack, state, u, v, h_u, h_v, 0.0)
+            base = places[state[0]]
+            put_on_stack(stack, state, base[0], base[1], base[2], base[3], 0.0)
             state[0] += 1
         taken = min(state[1], LANES)
         state[1] -= taken
@@ -454,8 +530,7 @@ def cut_cells(tape, work, lines_u, lines_v, state, last, levels, stack, tile, ce
             work.levels[j] = stack[state[1] + j, 4]
         write_cells(tape, work, INFLATED, tile, taken)
         for j in range(taken):
-            most = levels[0] if tile.cone[j, 3] < WIDE else levels[1]
-            if work.levels[j] >= most or is_done(tile, j):
+            if work.levels[j] >= levels or is_done(tile, j):
                 copy_cell(tile, j, cells, count)
                 count += 1
                 continue

@@ -38,7 +38,7 @@ from .cell_bounds import (
     inverse_of,
     linear_forms_of,
     patch_of,
-    side_of,
+    side_in,
     thirds_of,
     write_cells,
 )
@@ -144,7 +144,7 @@ def sign_on(tile, count, n):
         if tile.noise[k, REACH] == 0.0:
             return 0
         patch = patch_of(tile.hot, k)
-        own_side = side_of(patch, tile.hot[k, REST_S], tile.hot[k, REST_T], n)
+        own_side = side_in(tile, k, n)
         if own_side == 0 or (k > 0 and own_side != side):
             return 0
         side = own_side
@@ -324,7 +324,7 @@ def index_around(tape, work, tile, joints, domain, hull, n, ends, path, box):
             known = (
                 known
                 and tile.noise[k, REACH] > 0.0
-                and side_of(patch_of(tile.hot, k), tile.hot[k, REST_S], tile.hot[k, REST_T], n) > 0
+                and side_in(tile, k, n) > 0
                 and walk_side(tile, k, n, e1, e2, int(work.levels[k]), path)
             )
         if known:

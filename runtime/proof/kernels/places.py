@@ -28,14 +28,13 @@ from .cell_bounds import (
     EPS,
     FIRST_S,
     FIRST_T,
-    SECOND,
     TOLERANCE_S,
     TOLERANCE_T,
     WIDE,
     CellBounds,
     patch_of,
+    rests_in,
     side_of,
-    third_sizes,
     write_patch,
 )
 from .clusters import cluster
@@ -120,19 +119,8 @@ def side_at(tape, work, tile, cells, j, u, v, r_u, r_v, n):
     tile.place[0, 0], tile.place[0, 1], tile.place[0, 2], tile.place[0, 3] = u, v, r_u, r_v
     write_patch(tape, work.registers, tile, 0)
     size_u, size_v = r_u / cells.place[j, 2], r_v / cells.place[j, 3]
-    rest_s, rest_t = rest_in(cells, j, size_u, size_v)
+    rest_s, rest_t = rests_in(cells, j, size_u, size_v)
     return side_of(patch_of(tile.hot, 0), rest_s, rest_t, n)
-
-
-@loop
-def rest_in(cells, j, size_u, size_v):
-    """Return the remainders of x_s, x_t beyond the patch in a part of cell j of this size."""
-    t0, t1, t2, t3 = third_sizes(cells.thirds, j)
-    square = max(size_u, size_v) ** 2
-    second = 2.0 * square * cells.noise[j, SECOND]
-    rest_s = size_u * (0.5 * square * (t0 + 2.0 * t1 + t2) + cells.noise[j, FIRST_S]) + second
-    rest_t = size_v * (0.5 * square * (t1 + 2.0 * t2 + t3) + cells.noise[j, FIRST_T]) + second
-    return rest_s, rest_t
 
 
 @loop
@@ -158,7 +146,7 @@ def cut_boxes(tape, work, index, boxes, count, number, n, answers):
             place, box = boxes.tile.place, boxes.now[first + k]
             place[k, 2], place[k, 3] = box[3] * cells.place[j, 2], box[4] * cells.place[j, 3]
             write_patch(tape, work.registers, boxes.tile, k)
-            rest_s, rest_t = rest_in(cells, j, box[3], box[4])
+            rest_s, rest_t = rests_in(cells, j, box[3], box[4])
             if side_of(patch_of(boxes.tile.hot, k), rest_s, rest_t, n) < 0:
                 t[np.uint64(k) + STATE] = NONE
         following = keep_boxes(t, lanes, boxes, cells, following)
