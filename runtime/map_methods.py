@@ -18,3 +18,4 @@ class Methods:
     border_image = Later(CURVES)
     folds = Later(CURVES)
     margin = Later(CURVES)
+    support = Later("gaussmap.tools.support_points")

@@ -226,8 +226,9 @@ SELF = {
 COMMON: dict[str, Any] = {
     "surface": Of("spline"), "first": Of("spline"), "second": Of("support"), "spline": Of("spline"),
     "surfaces": Listed("spline"), "parts": Listed("samples"), "curve": Of("circle"),
-    "normals": NORMALS, "count": 10, "counts": [40, 60], "frequency": 2, "nside": 2, "angle": 10.0,
-    "direction": (0.0, 0.0, 1.0), "axis": (0.0, 0.0, 1.0), "corners": np.eye(3),
+    "normals": NORMALS, "directions": NORMALS, "count": 10, "counts": [40, 60],
+    "frequency": 2, "nside": 2, "angle": 10.0, "direction": (0.0, 0.0, 1.0),
+    "axis": (0.0, 0.0, 1.0), "corners": np.eye(3),
     "control_points": PATCH, "path": "nothing.npz", "part": 0, "distance": 0.1,
     "shift": (1.0, 2.0, 3.0), "factor": 2.0,
     "rotation": np.eye(3), "matrix": np.eye(3), "u": 0.5, "v": 0.5, "t": 0.5, "h": "1 + n_x",

@@ -76,3 +76,7 @@ class Whole:
     def _face_columns(self) -> list[FaceColumn]:
         """Return the columns on faces in tables of samples."""
         raise NotImplementedError
+
+    def _boundaries(self) -> Any:  # noqa: ANN401
+        """Return the boundaries of all surfaces, as a list of `Segments`."""
+        raise NotImplementedError

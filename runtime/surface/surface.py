@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -490,6 +491,22 @@ class Surface(SurfaceValues):
         grid = moved_grid(self.grid, boundary, map_, turned)
         spline = fit_grid(grid, self.domain, boundary, self.name)
         return replace(moved, function=spline.evaluate, grid=grid)
+
+    @cached_property
+    def bounds(self) -> NDArray[np.float64]:
+        """The smallest and the largest x, y, z (2, 3) of the surface inside its trim.
+
+        They are six values of `GaussMap.support`, which says how exact they are.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.surfaces.torus(major=1.0, minor=0.35).bounds.round(12)
+        array([[-1.35, -1.35, -0.35],
+               [ 1.35,  1.35,  0.35]])
+
+        """
+        return self._bounds_of()
 
     def trimmed(
         self,

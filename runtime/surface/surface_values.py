@@ -14,6 +14,7 @@ from ..base.errors import InputError, shown
 from ..base.evaluation import check_finite, evaluated
 from ..base.georeference import Georeference
 from ..base.kept import Immutable
+from ..base.later import Later
 from ..base.scales import scale_to_one
 from ..domain.domain import Assumed, Boundary, Domain, checked_boundary, checked_domain, domain_text
 from ..domain.trim import Trim
@@ -41,6 +42,8 @@ class SurfaceValues(Immutable):
     trim: Trim | None = None
     assumed_open: Assumed = (False, False)
     georeference: Georeference | None = None
+
+    _bounds_of = Later("gaussmap.tools.support_points", "bounds_of")
 
     def __post_init__(self) -> None:
         text(self.name, "name")

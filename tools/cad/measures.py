@@ -1,4 +1,4 @@
-"""The bounding box of a part, the volume of its solids, and the gaps between its faces."""
+"""The boundaries of a part, the volume of its solids, and the gaps between its faces."""
 
 from __future__ import annotations
 
@@ -10,21 +10,19 @@ import numpy as np
 from ...runtime.base.aliases import Array, Flags
 from ...runtime.base.errors import GaussmapWarning, SurfaceError
 from ...runtime.base.wording import plural
-from ..density.cells import RADIUS, by_piece
+from ..support_points import Segments
 from .edges import edges_of, sides_at
 from .face_pieces import FacePiece
 from .part import Part
 from .records import NO_AREA
 from .results import space_of
 
-__all__ = ["bounds_of", "gap_of", "integrals_of", "signs_of", "volume_of"]
+__all__ = ["boundaries_of", "gap_of", "integrals_of", "signs_of", "volume_of"]
 
 # Nodes and weights of Gauss's rule on [0, 1], for each span of a surface and each segment of a
 # boundary.
 NODES, WEIGHTS = (x / 2.0 for x in np.polynomial.legendre.leggauss(5))
 NODES = NODES + 0.5
-# The number of steps of Newton's method.
-STEPS = 8
 # A point this far to the left of a boundary, relative to the domain, decides on which side the
 # face is.
 BESIDE = 1e-6
@@ -147,71 +145,16 @@ def _divided(polygon: Array, lines: tuple[Array, Array]) -> tuple[Array, Array]:
     ]
 
 
-# --- bounds ---------------------------------------------------------------------------------------
+# --- boundaries -----------------------------------------------------------------------------------
 
 
-def bounds_of(part: Part) -> Array:
-    """Return the smallest and the largest coordinates (2, 3); SurfaceError if no face is usable.
-
-    A coordinate is extremal on a boundary, or where its derivatives are 0: Newton's method starts
-    in all cells, and on all boundary segments, that may reach beyond the points known so far.
-    """
-    space, found = space_of(part, None), []
-    for k, rows in by_piece(space.first):
-        piece, places = space.pieces[k], space.first.places[rows]
-        points = _points(piece, places)
-        found.append((piece, places, None, points, space.first.numbers[rows, RADIUS] / space.unit))
-        lines = piece.lines(0), piece.lines(1)
-        for polygon in piece.polygons:
-            starts, steps = _divided(polygon, lines)
-            points, ends = _points(piece, starts), _points(piece, starts + steps)
-            # A segment that turns by less than half a turn stays within this radius of its start.
-            reach = np.linalg.norm(ends - points, axis=1)
-            found.append((piece, starts, steps, points, reach))
-    directions = np.concatenate([-np.eye(3), np.eye(3)])
-    best = np.max([(x[3] @ directions.T).max(axis=0) for x in found], axis=0)
-    for piece, places, steps, points, reach in found:
-        for k, direction in enumerate(directions):
-            far = points @ direction + reach > best[k]
-            if far.any():
-                if steps is None:
-                    highest = _highest_inside(piece, places[far], direction)
-                else:
-                    highest = _highest_on_border(piece, places[far], steps[far], direction)
-                values = _points(piece, highest) @ direction
-                best[k] = max(best[k], float(values.max(initial=-np.inf)))
-    return best.reshape(2, 3) * [[-1.0], [1.0]] + 0.0
-
-
-def _points(piece: FacePiece, places: Array) -> Array:
-    return piece.surface.jets(*places.T.copy())[:, 0]
-
-
-def _highest_inside(piece: FacePiece, places: Array, direction: Array) -> Array:
-    """Return parameter pairs (m, 2) where a coordinate may be largest, from starts (k, 2)."""
-    low, high = np.array(piece.surface.domain).T
-    for _ in range(STEPS):
-        jets = piece.surface.jets(*places.T.copy()) @ direction
-        _, fu, fv, fuu, fuv, fvv = jets.T
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            moved = np.stack([fuv * fv - fvv * fu, fuv * fu - fuu * fv], axis=1)
-            moved /= (fuu * fvv - fuv**2)[:, None]
-        places = np.clip(places + np.where(np.isfinite(moved), moved, 0.0), low, high)
-    return places[piece.contains(places)]
-
-
-def _highest_on_border(piece: FacePiece, starts: Array, steps: Array, direction: Array) -> Array:
-    """Return the parameter pairs (k, 2) on boundary segments where a coordinate is largest."""
-    share = np.full((len(starts), 1), 0.5)
-    for _ in range(STEPS):
-        jets = piece.surface.jets(*(starts + share * steps).T.copy()) @ direction
-        slope = np.einsum("ij,ij->i", jets[:, 1:3], steps)
-        squares = np.stack([steps[:, 0] ** 2, 2.0 * steps[:, 0] * steps[:, 1], steps[:, 1] ** 2])
-        bend = np.einsum("ij,ji->i", jets[:, 3:], squares)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            moved = np.where(bend < 0.0, -slope / bend, np.sign(slope))
-        share = np.clip(share + moved[:, None], 0.0, 1.0)
-    return starts + share * steps
+def boundaries_of(part: Part) -> list[Segments]:
+    """Return the boundary polygons of all faces, cut at lines between which faces are smooth."""
+    return [
+        Segments(piece, *_divided(polygon, (piece.lines(0), piece.lines(1))), piece.face.index)
+        for piece in space_of(part, None).pieces
+        for polygon in piece.polygons
+    ]
 
 
 # --- gaps -----------------------------------------------------------------------------------------

@@ -2,9 +2,10 @@
 
 class Methods:
     from ..pictures.plot import plot_part as plot
+    from ..support_points import bounds_of as _bounds_of
     from .face_columns import face_columns as _face_columns
     from .from_surfaces import part_of_surfaces as _made_of
-    from .measures import bounds_of as _bounds_of
+    from .measures import boundaries_of as _boundaries
     from .measures import gap_of as _gap_of
     from .measures import volume_of as _volume_of
     from .part_sampling import sample_part as _sampled

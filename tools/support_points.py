@@ -1,0 +1,518 @@
+"""Support points: the farthest points of a surface in given directions.
+
+A farthest point has the direction as its normal, or the opposite one, or lies on a boundary.
+`GaussMap.points` finds the former, with a proof where there is one; on a boundary, n·x is maximized
+along short segments. The bounding box of a surface is made of six support points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..runtime.base.aliases import Array, Flags, Indices
+from ..runtime.base.errors import SurfaceError
+from ..runtime.base.kept import kept
+from ..runtime.directions.unit import as_normals
+from ..runtime.domain.domain import Domain, brought_inside
+from ..runtime.domain.trim import Predicate, Trim
+from ..runtime.map import GaussMap, kept_map
+from ..runtime.onto_surface.on_spline import OnPatches, OnSpline, on_grids
+from ..runtime.samples.report import UndecidedNormal
+from ..runtime.samples.whole import Whole
+from ..runtime.search.search import developable_patches
+from ..runtime.spline.joints import EDGES
+from ..runtime.spline.kernels.developable import count_developable
+from ..runtime.spline.nets import NetSpline
+from ..runtime.spline.spline import Spline
+from ..runtime.spline.tips import tips_of
+from ..runtime.surface.surface import Surface
+from .meshes.border import border_lines
+from .meshes.places import on_side, uv_at, wrapped
+
+__all__ = ["Segments", "SupportPoints", "bounds_of", "support"]
+
+# Sides of the domain are cut into this number of segments for each cell.
+STEPS_A_CELL = 2
+# Segments are looked at in blocks of this number, with all directions, so many products at a time.
+BLOCK, PRODUCTS_AT_A_TIME = 8, 1 << 21
+# Steps of Newton's method, and of bisection where the boundary of a trim crosses a side.
+STEPS, BISECTIONS = 6, 50
+# Newton's method starts at these places in undecided boxes.
+IN_BOXES = (np.indices((3, 3)).reshape(2, -1).T + 0.5) / 3.0
+# A side is tested this far inside the domain, relative to it.
+BESIDE = 1e-8
+# Values of n·x are bounded up to this many units of rounding of the largest coordinate.
+ROUNDING = 32.0 * np.finfo(np.float64).eps
+
+
+class SupportPoints(NamedTuple):
+    """The farthest points of a surface in S directions.
+
+    Attributes
+    ----------
+    points : (S, 3) float64 array
+        For each direction n, scaled to unit length, a point x with the largest n·x.
+    values : (S,) float64 array
+        The values n·x there: the support function of the convex hull.
+    errors : (S,) float64 array
+        Bounds of the differences from the largest values. They are rounding errors where all points
+        with the normals n and −n are proved to be known; in undecided boxes, the last step of
+        Newton's method counts. Without a proof, they follow from the measured distance of the
+        spline from the surface (`Misfit.distance`); for faces of a part they are then infinite.
+    uv : (S, 2) float64 array
+        The parameters of the points; NaN on splines of nets.
+    face_index : (S,) int64 array
+        For a part: the indices of the faces. −1 for other surfaces.
+    on_border : (S,) bool array
+        Whether the point is on a boundary of the surface, of a face or of a net.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> found = gm.GaussMap("torus").support([[0, 0, 2], [1, 0, 0]])
+    >>> found.values.round(12), found.points[1].round(12), found.uv[1].round(12)
+    (array([0.35, 1.35]), array([1.35, 0.  , 0.  ]), array([0., 0.]))
+    >>> bool(found.errors.max() < 1e-13), found.on_border.any(), found.face_index
+    (True, np.False_, array([-1, -1]))
+
+    """
+
+    points: Array
+    values: Array
+    errors: Array
+    uv: Array
+    face_index: Indices
+    on_border: Flags
+
+    @classmethod
+    def nothing(cls, count: int) -> SupportPoints:
+        """Return the values −∞."""
+        return cls(
+            np.full((count, 3), np.nan), np.full(count, -np.inf), np.zeros(count),
+            np.full((count, 2), np.nan), np.full(count, -1), np.zeros(count, np.bool_),
+        )  # fmt: skip
+
+    def add(
+        self, owner: Indices, normals: Array, points: Array, uv: Array | None,
+        faces: Indices | int = -1, border: Flags | bool = False, errors: Array | float = 0.0,
+    ) -> None:  # fmt: skip
+        """Take points (k, 3) of directions (k,) where they are farther, the first one of several.
+
+        `normals` (S, 3) are all directions.
+        """
+        values = np.einsum("kx,kx->k", points, normals[owner])
+        order = np.lexsort((-values, owner))
+        order = order[np.isfinite(values[order])]
+        order = order[np.diff(owner[order], prepend=-1) != 0]
+        order = order[values[order] > self.values[owner[order]]]
+        given = (points, values, errors, np.nan if uv is None else uv, faces, border)
+        for mine, new in zip(self, given, strict=True):
+            mine[owner[order]] = new[order] if isinstance(new, np.ndarray) else new
+
+
+def support(self: GaussMap, directions: ArrayLike) -> SupportPoints:
+    """Return the farthest point of the surface in each direction, wherever it lies.
+
+    It is a point with this normal or the opposite one, or a point of a boundary, a corner, a tip,
+    or one point of a curve or a region of farthest points, always the same. The values are those of
+    the support function of the convex hull.
+
+    Parameters
+    ----------
+    directions : (S, 3) array_like
+        Directions of any length but 0.
+
+    Returns
+    -------
+    SupportPoints
+        The points, the values n·x, and bounds of their errors. The boundary is that of the trim:
+        loops are polygons, and the boundary of a predicate is a polyline through points on it.
+
+    Raises
+    ------
+    InputError
+        For unusable directions.
+    SurfaceError
+        If no point of the surface is finite.
+
+    See Also
+    --------
+    points : all points with given normals.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> half = gm.surfaces.torus().trimmed(within=lambda u, v: u < 3)
+    >>> found = gm.GaussMap(half).support([[0, 1, 0], [0, -1, 0]])
+    >>> found.values.round(6), found.on_border
+    (array([1.35, 0.  ]), array([False,  True]))
+
+    """
+    normals = as_normals(directions)
+    found = _farthest(self, normals)
+    if not np.isfinite(found.values).all():
+        name = getattr(self.surface, "name", "surface")
+        raise SurfaceError(f"{name!r} has no farthest point: no point inside its trim is finite.")
+    rounding = ROUNDING * np.maximum(np.abs(found.values), np.linalg.norm(found.points, axis=1))
+    return found._replace(errors=found.errors + rounding)
+
+
+def bounds_of(self: Surface | Whole) -> Array:
+    """Return the smallest and the largest coordinates (2, 3) of a surface or a part."""
+    gauss_map = kept_map(self) if isinstance(self, Surface) else GaussMap(self)
+    values = support(gauss_map, np.concatenate([-np.eye(3), np.eye(3)])).values
+    return values.reshape(2, 3) * [[-1.0], [1.0]] + 0.0
+
+
+def _farthest(gauss_map: GaussMap, normals: Array) -> SupportPoints:
+    """Return the farthest points in unit directions (S, 3), with errors but those of rounding."""
+    count, surface = len(normals), gauss_map.surface
+    found = SupportPoints.nothing(count)
+    fields = ["points", "uv", "normal_index"] + ["face_index"] * isinstance(surface, Whole)
+    samples = gauss_map.points(np.concatenate([normals, -normals]), fields=fields)
+    faces = -1 if samples.face_index is None else samples.face_index.astype(np.int64)
+    uv = None if isinstance(gauss_map.spline, NetSpline) else samples.uv
+    found.add(samples.normal_index % count, normals, samples.points, uv, faces)
+    report = samples.report
+    _add_undecided(found, gauss_map, normals, report.undecided or ())
+    for curves in _curves_of(gauss_map):
+        curves.add(found, normals)
+    if report.estimated_faces:
+        found.errors[:] = np.inf
+    elif report.proved is None and report.on == "surface":
+        _compare_with_splines(found, gauss_map, normals)
+    return found
+
+
+def _compare_with_splines(found: SupportPoints, gauss_map: GaussMap, normals: Array) -> None:
+    """Bound the errors by the values of splines and their distances from the surface."""
+    on_splines = [(x, _farthest(kept_map(x.spline), normals)) for x in on_grids(gauss_map._pieces)]
+    for piece, near in on_splines:
+        points = piece.jets(*near.uv.T.copy())[:, 0]
+        found.add(np.arange(len(normals)), normals, points, near.uv, -1, near.on_border)
+    for piece, near in on_splines:
+        bounds = near.values + piece.distance - found.values
+        np.maximum(found.errors, bounds, out=found.errors)
+
+
+# --- boundaries -----------------------------------------------------------------------------------
+
+
+class HasJets(Protocol):
+    """A surface, a piece or a face."""
+
+    def jets(self, u: Array, v: Array) -> Array:
+        """Return the 2-jets (k, 6, 3) at parameters."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """M segments `starts` + t `steps` (M, 2) of the parameters of a surface, 0 ≤ t ≤ 1.
+
+    The curves turn by less than half a turn each. `face` is the index of the face of a part, and
+    `border` is False for lines inside a surface. The boundary is within `errors` (M,) of them.
+    """
+
+    surface: HasJets
+    starts: Array
+    steps: Array
+    face: int = -1
+    border: bool = True
+    errors: Array | float = 0.0
+
+    def at(self, rows: Indices, t: Array) -> tuple[Array, Array, Array, Array]:
+        """Return u, v (k, 2) at t (k,) of segments (k,), and x, dx/dt, d²x/dt² (k, 3)."""
+        steps = self.steps[rows]
+        uv = self.starts[rows] + t[:, None] * steps
+        if isinstance(self.surface, OnSpline):
+            spline = self.surface.spline
+            u, v = uv.T
+            uv = np.stack(brought_inside(u, v, spline.domain, spline.boundary), axis=1)
+        x, xu, xv, xuu, xuv, xvv = np.moveaxis(self.surface.jets(*uv.T.copy()), 1, 0)
+        du, dv = steps[:, :1], steps[:, 1:]
+        return uv, x, du * xu + dv * xv, du * (du * xuu + 2.0 * dv * xuv) + dv * dv * xvv
+
+
+@dataclass(frozen=True, eq=False)
+class NetEdges:
+    """The M edges of nets: quadratic Bézier curves with control points (M, 3, 3)."""
+
+    control: Array
+    face = -1
+    border = True
+    errors = 0.0
+
+    def at(self, rows: Indices, t: Array) -> tuple[Array, Array, Array, Array]:
+        """Return u, v = NaN at t (k,) of edges (k,), and x, dx/dt, d²x/dt² (k, 3)."""
+        a, b, c = np.moveaxis(self.control[rows], 1, 0)
+        s = t[:, None]
+        ab, bc = a + s * (b - a), b + s * (c - b)
+        nowhere = np.full((len(rows), 2), np.nan)
+        return nowhere, ab + s * (bc - ab), 2.0 * (bc - ab), 2.0 * (c - 2.0 * b + a)
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Segments of one surface or more, with the points and tangents (M, 2, 3) at their ends.
+
+    Each is within a distance `reach` (M,) of its start, and each block of segments in a ball.
+    """
+
+    parts: Sequence[Segments | NetEdges]
+    part: Indices
+    row: Indices
+    points: Array
+    tangents: Array
+    reach: Array
+    centres: Array
+    radii: Array
+
+    @classmethod
+    def of(cls, parts: Sequence[Segments | NetEdges]) -> Curves:
+        """Return the segments of all parts that are finite."""
+        rows = [np.arange(len(x.starts if isinstance(x, Segments) else x.control)) for x in parts]
+        part = np.repeat(np.arange(len(parts)), [len(x) for x in rows])
+        row = np.concatenate([np.empty(0, np.int64), *rows])
+        points, tangents = np.empty((len(part), 2, 3)), np.empty((len(part), 2, 3))
+        for k, x in enumerate(parts):
+            for t in (0, 1):
+                at = x.at(rows[k], np.full(len(rows[k]), float(t)))
+                points[part == k, t], tangents[part == k, t] = at[1:3]
+        finite = np.isfinite(points).all(axis=(1, 2)) & np.isfinite(tangents).all(axis=(1, 2))
+        part, row, points, tangents = part[finite], row[finite], points[finite], tangents[finite]
+        rounding = ROUNDING * np.abs(points).max(initial=0.0)
+        reach = np.linalg.norm(points[:, 1] - points[:, 0], axis=1) + rounding
+        if not len(part):
+            return cls(parts, part, row, points, tangents, reach, points[:, 0], reach)
+        firsts = np.arange(0, len(part), BLOCK)
+        sizes = np.diff(firsts, append=len(part))
+        centres = np.add.reduceat(points[:, 0], firsts) / sizes[:, None]
+        away = np.linalg.norm(points[:, 0] - np.repeat(centres, sizes, axis=0), axis=1) + reach
+        radii = np.maximum.reduceat(away, firsts)
+        return cls(parts, part, row, points, tangents, reach, centres, radii)
+
+    def add(self, found: SupportPoints, normals: Array) -> None:
+        """Take the points of segments that are farther in the directions (S, 3)."""
+        size = max(PRODUCTS_AT_A_TIME // max(len(self.centres), 1), 1)
+        for first in range(0, len(normals) if len(self.part) else 0, size):
+            here = slice(first, first + size)
+            owner, rows = self._near(normals[here], found.values[here])
+            self._add(found, normals, first + owner, rows)
+
+    def _near(self, normals: Array, values: Array) -> tuple[Indices, Indices]:
+        """Return directions (k,) and segments (k,) that may have points beyond the values (S,)."""
+        best = np.maximum(values, (normals @ self.points[::BLOCK, 0].T).max(axis=1))
+        owner, block = np.nonzero(normals @ self.centres.T + self.radii >= best[:, None])
+        rows = (block[:, None] * BLOCK + np.arange(BLOCK)).ravel()
+        owner = np.repeat(owner, BLOCK)[rows < len(self.part)]
+        rows = rows[rows < len(self.part)]
+        heights = np.einsum("kx,kx->k", self.points[rows, 0], normals[owner])
+        np.maximum.at(best, owner, heights)
+        near = heights + self.reach[rows] >= best[owner]
+        return owner[near], rows[near]
+
+    def _add(self, found: SupportPoints, normals: Array, owner: Indices, rows: Indices) -> None:
+        """Take the highest points of segments (k,) in directions (k,), which are sorted."""
+        ends = np.einsum("kex,kx->ek", self.points[rows], normals[owner])
+        slopes = np.einsum("kex,kx->ek", self.tangents[rows], normals[owner])
+        inside = (slopes[0] > 0.0) & (slopes[1] < 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = np.where(inside, slopes[0] / (slopes[0] - slopes[1]), ends[1] > ends[0])
+        # A concave curve is below its tangents; twice their slopes leave room for others.
+        most = (ends + np.array([[2.0], [-2.0]]) * slopes).min(axis=0)
+        peaks = np.flatnonzero(inside & (most >= found.values[owner]))
+        highest = np.flatnonzero(~inside)
+        highest = highest[np.lexsort((-ends[:, highest].max(axis=0), owner[highest]))]
+        highest = highest[np.diff(owner[highest], prepend=-1) != 0]
+        rest = np.concatenate([peaks, highest])
+        order = rest[np.argsort(self.part[rows[rest]], kind="stable")]
+        numbers, firsts = np.unique(self.part[rows[order]], return_index=True)
+        for k, some in zip(numbers, np.split(order, firsts[1:]), strict=True):
+            part = self.parts[k]
+            _add_highest(part, found, normals, owner[some], self.row[rows[some]], t[some])
+
+
+def _add_highest(
+    part: Segments | NetEdges, found: SupportPoints, normals: Array,
+    owner: Indices, rows: Indices, t: Array,
+) -> None:  # fmt: skip
+    """Take the highest points of segments (k,) in directions (k,), near t (k,)."""
+    n, steps, inside = normals[owner], np.zeros(len(t)), (t > 0.0) & (t < 1.0)
+    for _ in range(STEPS):
+        some = np.flatnonzero(inside)
+        if not len(some):
+            break
+        _, _, d, dd = part.at(rows[some], t[some])
+        slope, bend = (np.einsum("kx,kx->k", x, n[some]) for x in (d, dd))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = np.where(bend < 0.0, -slope / bend, 0.0)
+        moved = np.clip(t[some] + step, 0.0, 1.0)
+        inside[some] = moved != t[some]
+        t[some], steps[some] = moved, np.abs(slope * step)
+    uv, points, _, _ = part.at(rows, t)
+    off = part.errors[rows] if isinstance(part.errors, np.ndarray) else part.errors
+    errors = off + np.where(inside, steps, 0.0)
+    found.add(owner, normals, points, uv, part.face, part.border, errors)
+
+
+def _curves_of(gauss_map: GaussMap) -> list[Curves]:
+    """Return the boundaries of the surface, and lines on which other farthest points may lie."""
+    if isinstance(gauss_map.surface, Whole):
+        part = gauss_map.surface
+        return [kept(part, support, lambda: Curves.of(part._boundaries()))]
+    return [
+        kept(x.spline, ("support points", x.on), lambda x=x: Curves.of(list(_lines(x))))
+        for x in gauss_map._pieces
+    ]
+
+
+def _lines(geometry: OnPatches) -> Iterator[Segments | NetEdges]:
+    """Yield the boundary of a geometry, and the edges of patches without a normal of their own."""
+    if not isinstance(geometry, OnSpline):
+        rows = [[x.start, x.middle, x.end] for x in EDGES]
+        assert isinstance(geometry.spline, NetSpline)
+        yield NetEdges(geometry.spline.control_nets[:, rows].reshape(-1, 3, 3))
+        return
+    spline, sizes = geometry.spline, np.ptp(geometry.spline.domain, axis=1)
+    for axis, ends in enumerate(spline.boundary):
+        t = np.linspace(0.0, 1.0, STEPS_A_CELL * spline.cells[1 - axis] + 1)
+        for place, end in enumerate(ends):
+            if end == "open":
+                uv = uv_at(spline, on_side(axis, float(place), t))
+                inwards = np.array([1 - axis, axis]) * (BESIDE, -BESIDE)[place] * sizes
+                yield _inside(geometry, uv[:-1], np.diff(uv, axis=0), inwards)
+    if spline.trim is not None:
+        yield from (_of_trim(geometry, x) for x in border_lines(spline))
+    if geometry.on == "spline":
+        yield _inside(geometry, *_edges_of_flat(spline), np.zeros(2), border=False)
+
+
+def _of_trim(geometry: OnSpline, line: Array) -> Segments:
+    """Return a polyline (k, 2) in the unit square as segments; that of a predicate has errors."""
+    spline, middles = geometry.spline, (line[1:] + line[:-1]) / 2.0
+    around = wrapped(middles, spline.boundary)
+    low, high = np.array(spline.domain).T
+    starts = low + (around + line[:-1] - middles) * (high - low)
+    found = Segments(geometry, starts, np.diff(line, axis=0) * (high - low))
+    if spline.trim is None or not any(isinstance(x, Predicate) for x in spline.trim.parts):
+        return found
+    points = found.at(np.arange(len(starts)), np.zeros(len(starts)))[1]
+    chords, steps = points[2:] - points[:-2], np.diff(points, axis=0)[:-1]
+    squares = np.maximum(np.einsum("kx,kx->k", chords, chords), np.finfo(np.float64).tiny)
+    along = np.einsum("kx,kx->k", steps, chords) / squares
+    off = np.linalg.norm(steps - along[:, None] * chords, axis=1)
+    return replace(found, errors=np.maximum(*(np.pad(off, x, "edge") for x in ((2, 0), (1, 1)))))
+
+
+def _inside(
+    geometry: OnSpline, starts: Array, steps: Array, inwards: Array, border: bool = True
+) -> Segments:
+    """Return the parts of segments inside the trim, tested at places moved by `inwards` (2,)."""
+    trim = geometry.spline.trim
+    if trim is None:
+        return Segments(geometry, starts, steps, border=border)
+
+    def contains(t: Array) -> Flags:
+        return trim.contains(starts + t[:, None] * steps + inwards)
+
+    def crossing(out: Array, inner: Array) -> Array:
+        """Return the parameters t where the segments enter the trim, by bisection."""
+        for _ in range(BISECTIONS):
+            middle = (out + inner) / 2.0
+            is_in = contains(middle)
+            out, inner = np.where(is_in, out, middle), np.where(is_in, middle, inner)
+        return inner
+
+    ends = np.array([[0.0], [0.5], [1.0]]) * np.ones(len(starts))
+    known = np.array([contains(t) for t in ends])
+    some = np.take_along_axis(ends, known.argmax(axis=0)[None], axis=0)[0]
+    low, high = (np.where(known[k], ends[k], crossing(ends[k], some)) for k in (0, 2))
+    kept_ = known.any(axis=0)
+    starts, steps = starts + low[:, None] * steps, (high - low)[:, None] * steps
+    return Segments(geometry, starts[kept_], steps[kept_], border=border)
+
+
+def _edges_of_flat(spline: Spline) -> tuple[Array, Array]:
+    """Return the edges of developable regions: starts and steps (k, 2) of the parameters.
+
+    On a developable patch, critical points of n·x are lines, which end on edges. Patches at tips
+    have no samples either.
+    """
+    flat, tips = _developable(spline), tips_of(spline)
+    flat = flat.reshape(*spline.cells, 4)
+    if tips is not None:
+        flat |= tips.collapsed.reshape(flat.shape)
+    beside = [(1, 1), (-1, 0), (-1, 1), (1, 0)]  # shifts of cells along an axis
+    across = [np.roll(flat[..., (k + 2) % 4], *beside[k]) for k in range(4)]
+    others = [np.stack(across, axis=-1), np.roll(flat, -1, axis=-1)]
+    corners = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.5)])
+    u0, v0, du, dv = spline.frame
+    starts, steps = list[Array](), list[Array]()
+    for other, from_centre in zip(others, (False, True), strict=True):
+        i, j, turn = np.nonzero(flat != other)
+        first, last = corners[4 if from_centre else turn], corners[(turn + 1) % 4]
+        starts.append((u0, v0) + (np.stack([i, j], axis=1) + first) * (du, dv))
+        steps.append((last - first) * (du, dv))
+    return np.concatenate(starts), np.concatenate(steps)
+
+
+def _developable(spline: Spline) -> Flags:
+    """Return which patches are developable, from their numbers in ranges, by bisection."""
+    flat, ranges = np.zeros(spline.patches, np.bool_), [(0, spline.patches)]
+    while ranges and developable_patches(spline, None):
+        first, last = ranges.pop()
+        number = count_developable(spline.coefficients, spline.scale, spline.noise, first, last)
+        if number == last - first:
+            flat[first:last] = True
+        elif number:
+            middle = (first + last) // 2
+            ranges += [(first, middle), (middle, last)]
+    return flat
+
+
+# --- normals with undecided points ----------------------------------------------------------------
+
+
+def _add_undecided(
+    found: SupportPoints, gauss_map: GaussMap, normals: Array, places: Sequence[UndecidedNormal]
+) -> None:
+    """Take points of undecided boxes, such as one of a circle of points with the same normal."""
+    if not places:
+        return
+    repeated = [x for x in places for _ in IN_BOXES]
+    owner = np.array([x.normal for x in repeated]) % len(normals)
+    boxes = np.array([x.box for x in repeated]).reshape(-1, 2, 2)
+    starts = boxes[:, :, 0] + np.tile(IN_BOXES, (len(places), 1)) * np.ptp(boxes, axis=2)
+    for surface, domain, trim, face in _surfaces(gauss_map):
+        low, high = np.array(domain).T
+        here = ((starts >= low) & (starts <= high)).all(axis=1)
+        here &= np.array([x.face is None or x.face == face for x in repeated])
+        n, (low, high) = normals[owner[here]], np.moveaxis(boxes[here], 2, 0)
+        uv, sizes = starts[here], high - low
+        errors = np.zeros(len(n))
+        for _ in range(STEPS):
+            jets = np.einsum("kjx,kx->kj", surface.jets(*uv.T.copy()), n)
+            slopes = jets[:, 1:3] * sizes
+            bends = jets[:, [3, 4, 4, 5]].reshape(-1, 2, 2) * sizes[:, :, None] * sizes[:, None]
+            steps = -np.einsum("kij,kj->ki", np.linalg.pinv(bends, 1e-6, hermitian=True), slopes)
+            errors, uv = np.abs(slopes * steps).sum(axis=1), np.clip(uv + steps * sizes, low, high)
+        points = surface.jets(*uv.T.copy())[:, 0]
+        kept_ = np.ones(len(n), np.bool_) if trim is None else trim.contains(uv)
+        rows = np.flatnonzero(here)[kept_]
+        found.add(owner[rows], normals, points[kept_], uv[kept_], face, errors=errors[kept_])
+
+
+def _surfaces(gauss_map: GaussMap) -> Iterator[tuple[HasJets, Domain, Trim | None, int]]:
+    """Yield the surfaces of a map, with their domains, trims, and the indices of faces or −1."""
+    if isinstance(gauss_map.surface, Whole):
+        for x in gauss_map.surface._space(None).pieces:
+            yield x, x.domain, x.trim, x.face.index
+    for x in gauss_map._pieces:
+        if isinstance(x, OnSpline):
+            yield x, x.spline.domain, x.spline.trim, -1
