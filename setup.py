@@ -42,6 +42,9 @@ class BuildKernels(build_py):
                 command.append("--usual")
             environment = os.environ | {"PYTHONPATH": str(folder)}
             subprocess.run(command, env=environment, cwd=folder, check=True)
+        # Machine code that others can write is not run, and neither should sources be.
+        for path in (folder / "gaussmap").rglob("*"):
+            path.chmod(path.stat().st_mode & ~0o022)
 
 
 class WithKernels(Distribution):

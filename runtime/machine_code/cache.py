@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from typing import Any
 
@@ -58,7 +59,8 @@ class KernelCache(NullCache):
         folder = disk.kept_folder()
         if folder is not None:
             key, processor = key_of(self._function, sig), _processor(cres.target_context)
-            disk.save(folder, key, processor, entry_of(cres))
+            with suppress(TypeError):  # a kernel of somebody else, of other types than ours
+                disk.save(folder, key, processor, entry_of(cres))
         if self._lock is not None:
             self._lock.release()
 

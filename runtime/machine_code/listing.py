@@ -28,19 +28,18 @@ def compiled_in(folder: Path) -> dict[str, list[Any]]:
     """Return the signatures of the kernels of this package that a folder keeps."""
     found: dict[str, list[Any]] = defaultdict(list)
     for entry in entries_in(folder):
-        module, name, types = signature_in(entry) or ("", "", ())
-        kinds = [signatures.as_json(x) for x in types]
-        if _is_named(module, name) and kinds not in found[f"{module}.{name}"]:
-            found[f"{module}.{name}"].append(kinds)
+        name, kinds = signature_in(entry) or ("", [])
+        if _is_named(name) and kinds not in found[name]:
+            found[name].append(kinds)
     return {name: kinds for name, kinds in found.items() if kinds}
 
 
-def _is_named(module: str, name: str) -> bool:
+def _is_named(name: str) -> bool:
     """Return whether a kernel is one of this package, and not one of a test or a user."""
-    if not module.startswith(f"{PACKAGE}."):
+    if not name.startswith(f"{PACKAGE}."):
         return False
     try:
-        return signatures.named(f"{module}.{name}") is not None
+        return signatures.named(name) is not None
     except (ImportError, AttributeError):
         return False
 

@@ -6,7 +6,7 @@ the level; else kernels are compiled here. The results are the same, bit for bit
 
 The file is `MAGIC`, the size of a header, the header (sealed JSON), and the entries that it lists.
 It is read from the folder of the package only, and not if others can write it than can write the
-sources: entries are pickles, which could run anything.
+sources: machine code could do anything.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any
 
 from numba.core import config as numba_config
 
-from .entries import opened, replace_file, sealed
+from .entries import WORD, opened, replace_file, sealed
 from .processors import changed_options, identity, level_here, runs_here
 from .sources import PACKAGE, digest
 from .trust import is_as_safe_as_sources
@@ -28,8 +28,7 @@ from .trust import is_as_safe_as_sources
 __all__ = ["MAGIC", "SWITCH", "WORD", "Pack", "misfit", "open_pack", "pack_path", "write_pack"]
 
 config: Any = numba_config  # Numba makes its attributes at run time
-MAGIC = b"gaussmap kernels 1\n"
-WORD = 8  # bytes of the size of the header
+MAGIC = b"gaussmap kernels 2\n"
 SWITCH = "GAUSSMAP_KERNELS"  # set to 0, the file is neither built nor used
 
 

@@ -3,7 +3,7 @@
 `usual.json` names those that usual calls need: `pip install .` compiles these.
 
 A type is a text, as "float64", "int64 2 C" (an array: item, dimensions, layout) or "int64 2 C
-readonly", a list of types (a tuple), or {"module.Class": a list of types} (a named tuple).
+readonly", a list of types (a tuple), {"module.Class": a list of types} (a named tuple), or "none".
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def as_json(kind: Any) -> Any:
         if made is None:
             return items
         return {f"{made.__module__}.{made.__qualname__}": items}
-    if isinstance(kind, types.Number | types.Boolean):
+    if isinstance(kind, types.Number | types.Boolean | types.NoneType):
         return str(kind)
     raise TypeError(f"{kind} in a signature of a kernel")
 

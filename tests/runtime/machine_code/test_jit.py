@@ -1,12 +1,14 @@
 """The machine code of kernels: made of these sources, kept, and made again when it is damaged."""
 
 import os
+import pickle
 import shutil
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numba
 import pytest
@@ -117,6 +119,41 @@ def test_damaged_machine_code_is_compiled_again(
     path.write_bytes(damage(path.read_bytes()))
     assert compiled_when(jit.jit(triple)) == 1
     assert compiled_when(jit.jit(triple)) == 0
+
+
+class Trap:
+    """What runs code when it is read as a pickle."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return pytest.fail, ("a pickle was read",)
+
+
+@pytest.mark.compiled
+def test_pickles_are_not_read(folder: Path) -> None:
+    assert compiled_when(jit.jit(triple)) == 1
+    (path,) = folder.glob("*.kernel")
+    path.write_bytes(entries.sealed(pickle.dumps(Trap())))
+    assert compiled_when(jit.jit(triple)) == 1
+    assert compiled_when(jit.jit(triple)) == 0
+
+
+class Pair(NamedTuple):
+    first: float
+    second: float
+
+
+def halved(pair: Pair, by: int) -> tuple[Any, ...]:
+    return pair.first / by, (pair.second / by, by)
+
+
+@pytest.mark.compiled
+def test_kernels_of_tuples_are_kept(folder: Path) -> None:
+    results = []
+    for is_compiled in (True, False):
+        with event.install_recorder("numba:compile") as events:
+            results.append(jit.jit(halved)(Pair(3.0, 5.0), 2))
+        assert (len(events.buffer) > 0) == is_compiled
+    assert results == [(1.5, (2.5, 2))] * 2
 
 
 @pytest.mark.compiled
