@@ -14,12 +14,13 @@ from .base.threads import thread_count
 from .directions.regions import Cap
 from .directions.unit import as_normals
 from .map_methods import Methods
+from .onto_surface.at_tips import samples_at
 from .onto_surface.on_spline import OnPatches, OnSpline, on_grids
 from .onto_surface.on_surface import checked_place
 from .onto_surface.reach import in_reach
 from .onto_surface.smooth_pieces import geometries_of, samples_of_pieces
 from .onto_surface.tip_degrees import tip_degrees
-from .samples.fields import checked_dtype, checked_fields
+from .samples.fields import Component, checked_dtype, checked_fields
 from .samples.samples import Samples
 from .samples.whole import Whole
 from .spline.nets import AnySpline
@@ -117,6 +118,8 @@ class GaussMap(Methods):
         out: Samples | None = None,
     ) -> Samples:
         """Return every point whose normal is one of `normals`, each exactly once.
+
+        A tip is a point with the normals in its normal cone.
 
         Parameters
         ----------
@@ -224,9 +227,13 @@ class GaussMap(Methods):
         array([0, 0])
 
         """
-        fields, directions = ("normal_index", "gaussian_curvature"), as_normals(normals)
+        fields, directions = (
+            ("normal_index", "gaussian_curvature", "component"),
+            as_normals(normals),
+        )
         found = self.points(directions, fields=fields, threads=threads)
-        signs, asked = np.copysign(1.0, found.gaussian_curvature), found.report.normals or 0
+        asked, signs = found.report.normals or 0, np.copysign(1.0, found.gaussian_curvature)
+        signs[found.component != Component.REGULAR] = 0.0
         sums = np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
         for piece in self._pieces:
             if isinstance(piece, OnSpline):
@@ -264,7 +271,7 @@ class GaussMap(Methods):
         memory = {} if out is None else out.arrays()
         pieces = [x.used(number, threads, memory).within(reach) for x in self._pieces]
         if len(pieces) == 1:
-            return pieces[0].samples_at(normals, wanted, number, progress)
+            return samples_at(pieces[0], normals, wanted, number, progress)
         assert isinstance(surface, Surface)
         known = in_reach(surface, reach) if on_surface else None
         return samples_of_pieces(

@@ -38,7 +38,16 @@ from ..spline.spline import Spline
 from ..surface.surface import Surface
 from .reach import InReach, reached
 
-__all__ = ["Fields", "FieldsOfSamples", "OnPatches", "OnSpline", "count_of", "grouped", "on_grids"]
+__all__ = [
+    "Fields",
+    "FieldsOfSamples",
+    "OnPatches",
+    "OnSpline",
+    "count_of",
+    "grouped",
+    "in_turn",
+    "on_grids",
+]
 
 Fields = dict[str, NDArray[Any]]
 
@@ -238,10 +247,11 @@ class OnPatches:
 class OnSpline(OnPatches):
     """A spline on a grid of cells, which is sampled; `OnSurface` samples its `surface` instead.
 
-    With a `reach`, the trim excludes all points whose normals are outside of it.
+    With a `reach`, the trim excludes all points of the `whole` whose normals are outside of it.
     """
 
     spline: Spline
+    whole: OnSpline | None = None
 
     def within(self, reach: Cap | None) -> Self:
         """Return the part whose normals are in a cap, or all of it."""
@@ -249,7 +259,7 @@ class OnSpline(OnPatches):
             return self
         spline = reached(self.spline, InReach(self.normals, reach))
         surface = self.surface and replace(self.surface, trim=spline.trim)
-        return replace(self, spline=spline, surface=surface, reach=reach)
+        return replace(self, spline=spline, surface=surface, reach=reach, whole=self)
 
     def normals(self, places: Array) -> Array:
         """Return the unit normals (k, 3) at parameters (k, 2); 0 or NaN where there is none."""
@@ -335,6 +345,16 @@ def on_grids(geometries: Sequence[OnPatches]) -> list[OnSpline]:
     for geometry in geometries:
         on_grid(geometry.spline)
     return [x for x in geometries if isinstance(x, OnSpline)]
+
+
+def in_turn(found: Samples, size: int) -> Iterator[Samples]:
+    """Yield at most `size` of the samples at a time; what is undecided is with the first ones."""
+    yield found[:size]
+    report = found.report
+    proved, undecided = report.proved and 0, report.undecided and ()
+    report = replace(report, proved=proved, undecided=undecided)
+    for first in range(size, len(found), size):
+        yield replace(found[first : first + size], report=report)
 
 
 def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:

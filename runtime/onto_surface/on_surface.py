@@ -26,7 +26,7 @@ from ..surface.surface import Surface
 from .kernels import nodes as kernels
 from .moved_samples import as_fields, moved_samples, part_of, unmoved
 from .newton import evaluate_on_surface
-from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline, count_of
+from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline, count_of, in_turn
 from .pole_charts import PoleChart, pole_charts
 from .proved import index_of, proved_samples
 from .repeats import kept_once
@@ -174,11 +174,7 @@ class OnSurface(OnSpline):
         if self.index is None:
             yield from super().samples_in_turn(normals, fields, dtype, size, progress, density)
             return
-        found = self.samples_at(normals, fields, dtype, progress, density)
-        yield found[:size]
-        report = replace(found.report, proved=0, undecided=())
-        for first in range(size, len(found), size):
-            yield self.samples(found[first : first + size].arrays(), report)
+        yield from in_turn(self.samples_at(normals, fields, dtype, progress, density), size)
 
     def at_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike

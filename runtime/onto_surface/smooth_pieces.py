@@ -18,6 +18,7 @@ from ..samples.report import SamplingReport, count_unrefined, joined_proof
 from ..samples.samples import Samples
 from ..spline.nets import AnySpline
 from ..surface.surface import Surface
+from .at_tips import samples_at
 from .on_spline import OnPatches, OnSpline
 from .on_surface import geometry_of, place_of_samples
 
@@ -138,7 +139,7 @@ def samples_of_pieces(
     for first, geometry in kept:
         is_proved = geometry.index is not None
         if is_proved or float(np.abs(geometry.measure[1]).sum()) > LEAST_IMAGE:
-            found = geometry.samples_at(normals, wanted, dtype, progress)
+            found = samples_at(geometry, normals, wanted, dtype, progress)
             developable = (developable or 0) + (found.report.developable_patches or 0)
             parts.append(found.arrays())
             reports.append(found.report)

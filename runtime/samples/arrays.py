@@ -23,6 +23,7 @@ from .fields import (
     COLUMNS,
     DERIVED,
     REAL_NAMES,
+    Component,
     dtype_of,
     missing_fields,
     row_shape,
@@ -228,6 +229,12 @@ class SampleArrays:
         if self.other_face_index is not None:
             kinds[self.other_face_index >= 0] = "edge"
         return kinds
+
+    @property
+    def _regular(self) -> NDArray[np.bool_]:
+        """(N,) bool array: the samples that stand for a part of the surface."""
+        component = self.arrays().get("component")
+        return np.ones(len(self), bool) if component is None else component == Component.REGULAR
 
     @property
     def principal_curvatures(self) -> NDArray[np.floating]:

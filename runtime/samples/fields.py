@@ -57,7 +57,7 @@ class Component(IntEnum):
     CURVE
         A curve of points with one normal; the sample is one of these.
     TIP
-        A tip of the surface, whose normal cone contains the normal.
+        A tip of the surface, such as that of a cone, whose normal cone contains the normal.
     CREASE
         A point of a crease, where the normal is between those of both sides.
 

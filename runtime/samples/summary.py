@@ -8,6 +8,7 @@ import numpy as np
 
 from ..base.georeference import crs_label
 from ..base.wording import at_normals, plural
+from .fields import Component
 from .report import SamplingReport, count_infinite, have_large_squares
 
 if TYPE_CHECKING:
@@ -15,6 +16,13 @@ if TYPE_CHECKING:
 
 __all__ = ["kinds_of_points", "misfit_clause", "summary_of"]
 
+# In the singular and in the plural.
+SPECIAL = {
+    Component.ISOLATED: ("isolated with K = 0",) * 2,
+    Component.CURVE: ("on a curve with one normal", "on curves with one normal"),
+    Component.TIP: ("at a tip", "at tips"),
+    Component.CREASE: ("on a crease", "on creases"),
+}
 GRID = "a grid that follows the curvature"  # a graded grid, in plain words
 
 
@@ -137,13 +145,17 @@ def _infinite(samples: SampleArrays) -> str:
 def kinds_of_points(samples: SampleArrays) -> str:
     """Return the numbers of points by the sign of K, or the fields if K is missing.
 
-    Parabolic points are counted as such, and not by the sign bit of K.
+    Parabolic points are counted as such, and not by the sign bit of K. Components that are not
+    regular are counted by what they are.
     """
     if "gaussian_curvature" not in samples.fields:
         return f" ({', '.join(samples.fields)} only)"
     parabolic, negative = samples.parabolic, samples.hyperbolic
-    zero, hyperbolic = (int(np.count_nonzero(x)) for x in (parabolic, negative & ~parabolic))
-    elliptic = len(samples) - hyperbolic - zero
-    numbers = {">": elliptic, "<": hyperbolic, "=": zero}
+    regular = samples._regular
+    kinds = {">": ~parabolic & ~negative, "<": ~parabolic & negative, "=": parabolic}
+    numbers = {sign: int(np.count_nonzero(x & regular)) for sign, x in kinds.items()}
     said = [f"{number:,} with K {sign} 0" for sign, number in numbers.items() if number]
+    for component, words in SPECIAL.items() if not regular.all() else ():
+        count = int(np.count_nonzero(samples.component == component))
+        said += [f"{count:,} {words[count > 1]}"] if count else []
     return f": {', '.join(said or ['none'])}"

@@ -52,12 +52,16 @@ class Vertices:
 
     @classmethod
     def of(cls, samples: Samples, spline: Spline, boundary: Boundary) -> Vertices:
-        """Return the samples, one for each position, with vertices on open sides and at poles."""
+        """Return the samples, one for each position, with vertices on open sides and at poles.
+
+        Tips, and other samples that are not regular, are left out.
+        """
         positions = np.clip(spline.in_cells(samples.uv.astype(np.float64)) / spline.cells, 0.0, 1.0)
         for axis, place in collapsed_sides(spline):
             positions[np.abs(positions[:, axis] - place) <= ON_SIDE, 1 - axis] = 0.0
         pairs = _unique(positions, boundary).view(np.complex128)[:, 0]
-        sample = np.sort(np.unique(pairs, return_index=True)[1])
+        sample = np.flatnonzero(samples._regular)
+        sample = sample[np.sort(np.unique(pairs[sample], return_index=True)[1])]
         inner = cls(positions[sample], sample, np.ones(len(sample), dtype=bool))
         if all(end in ("periodic", "mirrored") for end, _ in boundary):
             return inner.apart(boundary)

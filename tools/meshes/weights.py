@@ -30,7 +30,9 @@ def area_weights(samples: Samples, angle: float | None) -> Array:
     owner, added = mesh.sample_index.copy(), np.flatnonzero(mesh.sample_index < 0)
     if len(added):
         scale = scale_to_one(float(np.abs(samples.points).max()))
-        owner[added] = tree_of(samples.points * scale).query(mesh.vertices[added] * scale)[1]
+        regular = np.flatnonzero(samples._regular)
+        tree = tree_of(samples.points[regular] * scale)
+        owner[added] = regular[tree.query(mesh.vertices[added] * scale)[1]]
     return np.bincount(owner[triangles].ravel(), parts.ravel(), len(samples)).astype(np.float64)
 
 

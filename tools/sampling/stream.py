@@ -14,6 +14,7 @@ from ...runtime.base.checks import whole_number, yes_or_no
 from ...runtime.base.errors import InputError
 from ...runtime.base.threads import shown
 from ...runtime.map import kept_map
+from ...runtime.onto_surface.at_tips import samples_in_turn
 from ...runtime.onto_surface.on_spline import OnPatches
 from ...runtime.onto_surface.on_surface import place_of_samples
 from ...runtime.onto_surface.smooth_pieces import geometries_of, pieces_to_sample
@@ -141,11 +142,13 @@ class _Stream:
         alone = len(starts) == 1
         came, unrefined, last, chunk = 0, 0, None, None
         left, listed = list[UndecidedNormal](), self.request.count is None
+        search = samples_in_turn if listed else type(geometry).samples_in_turn
         for first in shown(iter(starts), len(starts), self.progress and not alone):
             end = min(first + NORMALS_AT_A_TIME, total)
             normals = chosen.part(first, end, geometry.threads)
-            for part in geometry.samples_in_turn(
-                normals, self.fields, self.dtype, self.size, self.progress and alone, chosen.density
+            shows = self.progress and alone
+            for part in search(
+                geometry, normals, self.fields, self.dtype, self.size, shows, chosen.density
             ):
                 last, chunk = part.report, _chunk(part, first, total, listed)
                 came, unrefined = came + len(part), unrefined + (last.unrefined or 0)

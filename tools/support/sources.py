@@ -14,6 +14,7 @@ from ...runtime.base.bridge import bezier_triangle
 from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.map import GaussMap
+from ...runtime.samples.fields import Component
 from ...runtime.samples.report import SamplingReport
 from ...runtime.search.fill import fill
 from ...runtime.search.search import find
@@ -78,6 +79,7 @@ class SurfaceSource:
         order = np.argsort(found.normal_index, kind="stable")
         found, self.on_surface = found[order], found.on_surface[order]
         hessian = _hessians_on_surface(self.surface, normals[found.normal_index], found.uv)
+        hessian[found.component == Component.TIP] = 0.0  # there the support function is linear
         return Sheets(
             found.normal_index, found.points, hessian, found.gaussian_curvature,
             found.mean_curvature, found.patch_index, found.uv,

@@ -42,7 +42,57 @@ def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, alo
     image = gm.GaussMap(lemon(name, along_u), cells=(64, 64), on=on)
     n = directions()
     np.testing.assert_array_equal(image.degree(n), 1)
-    assert (image.count(n) == 0).any()  # the tips have samples of none of these
+    points = image.points(n)
+    regular = points[points.component == gm.Component.REGULAR]
+    tips = points[points.component == gm.Component.TIP]
+    assert len(regular) + len(tips) == len(points)
+    # Where the other points do not add up to 1, there is a tip.
+    signs = np.copysign(1, regular.gaussian_curvature)
+    missing = np.bincount(regular.normal_index, signs, len(n)) != 1
+    assert missing.any()
+    assert missing[tips.normal_index].sum() >= missing.sum()
+    if name == "round":  # exactly one point for each normal
+        np.testing.assert_array_equal(points.normal_index, np.arange(len(n)))
+    assert (tips.gaussian_curvature == 0).all()
+    assert (tips.normals == n[tips.normal_index]).all()
+    np.testing.assert_allclose(np.abs(tips.points), [[0, 0, 3**0.5]] * len(tips), atol=1e-15)
+    assert image.surface is not None
+    np.testing.assert_array_equal(tips.uv[:, int(along_u)], 0.0)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("on", ["spline", "surface"])
+def test_tips_are_samples_and_no_area(on: str) -> None:
+    """They are in streams, in reach and in sums; meshes and weights are those without them."""
+    surface, n, how = lemon("round", False), directions(), {"cells": (64, 64), "on": on}
+    points = gm.sample(surface, normals=n, **how)
+    is_tip = points.component == gm.Component.TIP
+    assert f", {is_tip.sum()} at tips)" in points.summary()
+    one = int(np.flatnonzero(is_tip)[0])
+    assert repr(points[one]).endswith(": 1 at a tip)")
+    chunks = gm.sample_stream(surface, normals=n, chunk=100, **how)
+    for name, array in gm.Samples.concatenate(chunks).arrays().items():
+        np.testing.assert_array_equal(array, getattr(points, name))
+    up = n[:, 2] > np.cos(np.radians(40))
+    reached = gm.sample(surface, normals=n, reach=((0, 0, 1), 40), **how)
+    np.testing.assert_array_equal(reached.normal_index, np.flatnonzero(up))
+    few = gm.GaussMap(surface, **how).points(n, fields=("points",))
+    np.testing.assert_array_equal(few.points, points.points)
+    assert gm.sample(surface, 100, density="gauss", **how).component is None
+    areas = points.weights()
+    assert (areas[is_tip] == 0.0).all()
+    assert areas.sum() == pytest.approx(points[~is_tip].weights().sum(), rel=1e-14)
+
+
+def test_the_offset_of_a_tip_is_round() -> None:
+    ball = gm.SupportFunction.from_sympy("1/10")
+    n, surface = directions(), lemon("round", False)
+    moved = gm.convolve(surface, ball, n).samples
+    np.testing.assert_array_equal(moved.normal_index, np.arange(len(n)))
+    is_tip = np.abs(n[:, 2]) > np.sin(np.pi / 3)
+    centres = np.array([0.0, 0.0, 3**0.5]) * np.sign(n[is_tip, 2:])
+    np.testing.assert_allclose(moved.points[is_tip], centres + n[is_tip] / 10, atol=1e-15)
+    np.testing.assert_allclose(moved.gaussian_curvature[is_tip], 100, rtol=1e-14)
 
 
 def test_data_have_tips_as_well() -> None:

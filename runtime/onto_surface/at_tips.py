@@ -1,0 +1,89 @@
+"""Samples at prescribed normals, and at the tips whose normal cones contain one of these."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import DTypeLike
+
+from ..base.aliases import Array, Indices
+from ..samples.fields import COLUMNS, Component, dtype_of
+from ..samples.samples import Samples
+from .on_spline import Fields, OnPatches, OnSpline, in_turn
+from .tip_degrees import Tip, tips_on
+
+__all__ = ["samples_at", "samples_in_turn"]
+
+
+def samples_at(
+    geometry: OnPatches,
+    normals: Array,
+    fields: Sequence[str],
+    dtype: DTypeLike,
+    progress: bool = False,
+    density: float | None = None,
+) -> Samples:
+    """Return all points that have one of the unit normals (S, 3), and tips, by normal.
+
+    A tip comes after the other points with a normal.
+    """
+    at_tips = _at_tips(geometry, normals)
+    if not at_tips or not isinstance(geometry, OnSpline):
+        return geometry.samples_at(normals, fields, dtype, progress, density)
+    wanted = list(dict.fromkeys([*fields, "normal_index"]))
+    found = geometry.samples_at(normals, wanted, dtype, progress, density)
+    parts = [found.arrays()]
+    parts += [_fields(geometry, tip, numbers, normals, wanted, dtype) for tip, numbers in at_tips]
+    index = np.concatenate([x["normal_index"] for x in parts])
+    order = np.argsort(index, kind="stable")
+    arrays = {x: np.concatenate([part[x] for part in parts])[order] for x in fields}
+    return geometry.samples(arrays, replace(found.report, samples=len(order)))
+
+
+def samples_in_turn(
+    geometry: OnPatches,
+    normals: Array,
+    fields: Sequence[str],
+    dtype: DTypeLike,
+    size: int,
+    progress: bool,
+    density: float,
+) -> Iterator[Samples]:
+    """Yield at most `size` of the samples at a time; see `samples_at`."""
+    if _at_tips(geometry, normals):
+        return in_turn(samples_at(geometry, normals, fields, dtype, progress, density), size)
+    return geometry.samples_in_turn(normals, fields, dtype, size, progress, density)
+
+
+def _at_tips(geometry: OnPatches, normals: Array) -> list[tuple[Tip, Indices]]:
+    """Return the tips that have some of the normals (S, 3), with the numbers of these."""
+    if not isinstance(geometry, OnSpline):
+        return []
+    tips = [(x, x.degrees(normals) != 0) for x in tips_on(geometry.whole or geometry)]
+    if geometry.reach is not None:
+        tips = [(x, has & geometry.reach.contains(normals)) for x, has in tips]
+    return [(x, np.flatnonzero(has)) for x, has in tips if has.any()]
+
+
+def _fields(
+    geometry: OnSpline, tip: Tip, numbers: Indices, normals: Array, fields: Sequence[str],
+    dtype: DTypeLike,
+) -> Fields:  # fmt: skip
+    """Return fields of the samples at a tip, for the normals with some numbers."""
+    given, zero = normals[numbers], np.zeros(1)
+    there = geometry.at_parameters(tip.uv[None], given[:1], zero, ("patch_index",), dtype)
+    known = there | {
+        "points": tip.point,
+        "normals": given,
+        "uv": tip.uv,
+        "support": given @ tip.point,
+        "normal_index": numbers,
+        "on_surface": True,
+        "component": Component.TIP,
+    }
+    shapes = {x: (len(numbers), len(COLUMNS[x]))[: 1 + (len(COLUMNS[x]) > 1)] for x in fields}
+    return {
+        x: np.broadcast_to(known.get(x, 0.0), shapes[x]).astype(dtype_of(x, dtype)) for x in fields
+    }
