@@ -64,11 +64,12 @@ class Component(IntEnum):
     Examples
     --------
     >>> import gaussmap as gm
+    >>> kinds = gm.Component
     >>> samples = gm.GaussMap("torus").points([[1, 0, 0]])
-    >>> samples.component.tolist() == [gm.Component.REGULAR] * 2
+    >>> samples.component.tolist() == [kinds.REGULAR] * 2
     True
-    >>> [x.name.lower() for x in gm.Component]
-    ['regular', 'isolated', 'curve', 'tip', 'crease']
+    >>> [int(x) for x in (kinds.ISOLATED, kinds.CURVE, kinds.TIP, kinds.CREASE)]
+    [1, 2, 3, 4]
 
     """
 
