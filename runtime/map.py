@@ -15,10 +15,11 @@ from .directions.regions import Cap
 from .directions.unit import as_normals
 from .map_methods import Methods
 from .onto_surface.at_tips import samples_at
-from .onto_surface.on_spline import OnPatches, OnSpline, on_grids
+from .onto_surface.on_spline import OnPatches, OnSpline
 from .onto_surface.on_surface import checked_place
+from .onto_surface.proved import ProvedSurface
 from .onto_surface.reach import in_reach
-from .onto_surface.smooth_pieces import geometries_of, samples_of_pieces
+from .onto_surface.smooth_pieces import proved_or_fitted, samples_of_pieces
 from .onto_surface.tip_degrees import tip_degrees
 from .samples.fields import Component, checked_dtype, checked_fields
 from .samples.samples import Samples
@@ -36,10 +37,11 @@ KEPT = 8
 class GaussMap(Methods):
     """The inverse Gauss map of a surface: all points with given normals, for repeated queries.
 
-    The surface is fitted and indexed when the map is made. After that a query of one normal takes a
-    fraction of a millisecond. Results do not depend on earlier queries, nor on the number of
-    threads; several threads may query one map at once, and maps can be pickled. `sample` with
-    `normals` gives the same samples, and caches the maps of the last eight surfaces.
+    The surface is indexed when the map is made; it is fitted only if its points cannot be proved,
+    or when its spline is read. After that a query of one normal takes a fraction of a millisecond.
+    Results do not depend on earlier queries, nor on the number of threads; several threads may
+    query one map at once, and maps can be pickled. `sample` with `normals` gives the same samples,
+    and caches the maps of the last eight surfaces.
 
     Parameters
     ----------
@@ -84,11 +86,11 @@ class GaussMap(Methods):
         on: str | None = None,
     ) -> None:
         self._surface = named(surface)
-        self._pieces: tuple[OnPatches, ...] = ()
+        self._pieces: tuple[OnPatches | ProvedSurface, ...] = ()
         if isinstance(self._surface, Whole):
             check_part(cells, on)
         else:
-            self._pieces = geometries_of(self._surface, cells, on, indexed=True)
+            self._pieces = proved_or_fitted(self._surface, cells, on)
 
     @property
     def surface(self) -> Surface | AnySpline | Whole:
@@ -103,6 +105,20 @@ class GaussMap(Methods):
         `gauss_map.GaussianImages`.
         """
         return self._pieces[0].spline if len(self._pieces) == 1 else None
+
+    @property
+    def _fitted(self) -> tuple[OnPatches, ...]:
+        """What is sampled by a density, each piece with its spline."""
+        return tuple(x.fitted for x in self._pieces)
+
+    def _with_fit(self, samples: Samples, reach: Cap | None = None) -> Samples:
+        """Return samples with their spline, and with a report that speaks of it, where it had none.
+
+        They are in a `reach`, if it is not None.
+        """
+        if len(self._pieces) != 1:
+            return samples
+        return self._pieces[0].within(reach).with_fit(samples)
 
     def __repr__(self) -> str:
         return f"GaussMap({getattr(self.surface, 'name', self.surface)})"
@@ -141,7 +157,8 @@ class GaussMap(Methods):
         Returns
         -------
         Samples
-            The same as ``sample(surface, normals=normals)``, which warns if there are none.
+            The same as ``sample(surface, normals=normals)``, which warns if there are none. Where
+            points are proved, the entries of the report on a spline are None: there is none.
 
         Raises
         ------
@@ -236,8 +253,8 @@ class GaussMap(Methods):
         signs[found.component != Component.REGULAR] = 0.0
         sums = np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
         for piece in self._pieces:
-            if isinstance(piece, OnSpline):
-                sums += tip_degrees(piece, directions)
+            if piece.has_tips and isinstance(geometry := piece.fitted, OnSpline):
+                sums += tip_degrees(geometry, directions)
         for place in found.report.undecided or ():
             sums[place.normal] += place.degree or 0
         return sums
@@ -266,7 +283,7 @@ class GaussMap(Methods):
             wanted = checked_fields(fields, True, True, part=True)
             return surface._samples_at(normals, wanted, number, threads, progress)
         on_surface = self._pieces[0].on == "surface"
-        proved = all(x.index is not None for x in self._pieces)
+        proved = all(isinstance(x, ProvedSurface) for x in self._pieces)
         wanted = checked_fields(fields, on_surface, proved, given=True)
         memory = {} if out is None else out.arrays()
         pieces = [x.used(number, threads, memory).within(reach) for x in self._pieces]
@@ -274,9 +291,7 @@ class GaussMap(Methods):
             return samples_at(pieces[0], normals, wanted, number, progress)
         assert isinstance(surface, Surface)
         known = in_reach(surface, reach) if on_surface else None
-        return samples_of_pieces(
-            surface.name, known, on_grids(pieces), normals, wanted, number, progress
-        )
+        return samples_of_pieces(surface.name, known, pieces, normals, wanted, number, progress)
 
 
 def check_part(cells: Sequence[int] | None, on: str | None) -> None:

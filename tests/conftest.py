@@ -126,12 +126,12 @@ def parts() -> ModuleType:
 def unproved(monkeypatch: pytest.MonkeyPatch) -> None:
     """All surfaces are those without bounds of derivatives: samples are moved from the spline."""
     import gaussmap as gm
-    from gaussmap.runtime.onto_surface import on_surface
+    from gaussmap.runtime.onto_surface import proved
     from gaussmap.tools.sampling import sample, stream
 
     def made(surface: gm.Surface, cells: tuple[int, int] | None, on: str | None) -> gm.GaussMap:
         return gm.GaussMap(surface, cells=cells, on=on)
 
-    monkeypatch.setattr(on_surface, "index_of", lambda surface: None)
+    monkeypatch.setattr(proved, "index_of", lambda surface: None)
     monkeypatch.setattr(sample, "kept_map", made)
     monkeypatch.setattr(stream, "kept_map", made)

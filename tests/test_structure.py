@@ -28,8 +28,8 @@ EXCEPTIONS = {
     "conftest.py": {
         "gaussmap.tools.commands.cli.main",  # the command line in this process
         "gaussmap.tools.cad.examples",  # parts, which else come from files only
-        "gaussmap.runtime.onto_surface.on_surface",
-        "gaussmap.runtime.onto_surface.on_surface.index_of",  # what is not proved
+        "gaussmap.runtime.onto_surface.proved",
+        "gaussmap.runtime.onto_surface.proved.index_of",  # what is not proved
         "gaussmap.tools.sampling.sample",
         "gaussmap.tools.sampling.sample.kept_map",
         "gaussmap.tools.sampling.stream",

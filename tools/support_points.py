@@ -191,7 +191,7 @@ def _farthest(gauss_map: GaussMap, normals: Array) -> SupportPoints:
 
 def _compare_with_splines(found: SupportPoints, gauss_map: GaussMap, normals: Array) -> None:
     """Bound the errors by the values of splines and their distances from the surface."""
-    on_splines = [(x, _farthest(kept_map(x.spline), normals)) for x in on_grids(gauss_map._pieces)]
+    on_splines = [(x, _farthest(kept_map(x.spline), normals)) for x in on_grids(gauss_map._fitted)]
     for piece, near in on_splines:
         points = piece.jets(*near.uv.T.copy())[:, 0]
         found.add(np.arange(len(normals)), normals, points, near.uv, -1, near.on_border)
@@ -368,7 +368,7 @@ def _curves_of(gauss_map: GaussMap) -> list[Curves]:
         return [kept(part, support, lambda: Curves.of(part._boundaries()))]
     return [
         kept(x.spline, ("support points", x.on), lambda x=x: Curves.of(list(_lines(x))))
-        for x in gauss_map._pieces
+        for x in gauss_map._fitted
     ]
 
 
@@ -513,6 +513,6 @@ def _surfaces(gauss_map: GaussMap) -> Iterator[tuple[HasJets, Domain, Trim | Non
     if isinstance(gauss_map.surface, Whole):
         for x in gauss_map.surface._space(None).pieces:
             yield x, x.domain, x.trim, x.face.index
-    for x in gauss_map._pieces:
+    for x in gauss_map._fitted:
         if isinstance(x, OnSpline):
             yield x, x.spline.domain, x.spline.trim, -1

@@ -14,15 +14,16 @@ from ..base.advice import about_value
 from ..base.errors import GaussmapWarning, InputError, SurfaceError, in_memory
 from ..base.evaluation import returned
 from ..base.progress import busy
-from ..domain.domain import Domain, cells_between, closes
+from ..domain.domain import Domain, cells_between
 from ..domain.trim import Trim, trimmed
 from ..spline.inner_coefficients import values_at
 from ..spline.misfit import Misfit
 from ..spline.missing import known_of_values
 from ..spline.nets import AnySpline, on_grid
-from ..spline.quasi_interpolant import apart, checked_cells, fit_grid, fit_values, not_too_large
+from ..spline.quasi_interpolant import checked_cells, fit_grid, fit_values, not_too_large
 from ..spline.spline import Spline, short_label
-from ..surface.collapsed import found_sides
+from ..surface.closing import close_seams
+from ..surface.collapsed import with_found_sides
 from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
 from ..surface.surfaces import named
@@ -42,8 +43,6 @@ FEWEST_CELLS = (8, 8)
 BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
 # A callable is called twice at AGAIN points: both answers agree up to SAME times their extent.
 AGAIN, SAME = 16, 1e-9
-# Points at the ends of a parameter are compared with those as many roundings of it away.
-ROUNDINGS = 2.0
 
 
 def patches_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) -> AnySpline:
@@ -63,12 +62,12 @@ def spline_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) -
     return on_grid(patches_of(surface, cells))
 
 
-def check_range(spline: AnySpline, dtype: DTypeLike) -> None:
-    """Raise SurfaceError if points of a spline are beyond the range of `dtype`."""
-    largest, limits = spline._largest, np.finfo(np.zeros(0, dtype).dtype)
+def check_range(name: str, largest: float, dtype: DTypeLike) -> None:
+    """Raise SurfaceError if the largest coordinate of a surface is beyond the range of `dtype`."""
+    limits = np.finfo(np.zeros(0, dtype).dtype)
     if not float(limits.tiny) <= largest <= float(limits.max) and largest > 0.0:
         raise SurfaceError(
-            f"the coordinates of {spline.name!r} are too {'large' if largest > 1.0 else 'small'} "
+            f"the coordinates of {name!r} are too {'large' if largest > 1.0 else 'small'} "
             f"for {limits.dtype}; choose another unit of length or dtype=numpy.float64."
         )
 
@@ -162,9 +161,7 @@ def fit(
             f"{about_value(surface)}."
         )
     _check_repeated(surface)
-    boundary, apexes = found_sides(surface)
-    trim = surface.trim and surface.trim.with_boundary(boundary)
-    surface = replace(surface, boundary=boundary, trim=trim)
+    surface, apexes = with_found_sides(surface)
     with busy(f"fitting {short_label(surface.name)}", progress):
         if surface.grid is not None:
             spline = _fit_data(surface, surface.grid, cells, asked)
@@ -286,31 +283,8 @@ def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
         return not_too_large(surface.evaluate(u, v), surface.name)
 
     values = values_at(evaluate, surface.domain, checked_cells(cells))
-    _close(surface, values.vertices)
+    close_seams(surface, values.vertices)
     return fit_values(values, surface.domain, surface.boundary, surface.name)
-
-
-def _by_rounding(
-    surface: Surface, axis: int, last: NDArray[np.float64], first: NDArray[np.float64]
-) -> str:
-    """Return a clause: how far both ends of a parameter differ, and if its rounding explains it."""
-    low, high = surface.domain[axis]
-    other = np.linspace(*surface.domain[1 - axis], len(last))
-    far = float(np.abs(last - first).max())
-    moved = 0.0
-    step = ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
-    for end, row in ((low + step, first), (high - step, last), (high + step, last)):
-        near = np.full(len(last), end)
-        places = (near, other) if axis == 0 else (other, near)
-        points = returned(surface.function, places, (3,), f"surface {surface.name!r}")
-        moved = max(moved, float(np.nanmax(np.abs(points - row))))
-    along = "uv"[axis]
-    if not moved >= 0.5 * far:
-        return f"; they differ by {far:.3g}"
-    return (
-        f"; they differ by {far:.3g}, as much as its rounding changes the points there: let the "
-        f"callable reduce {along} first, as by numpy.where({along} == {high!r}, {low!r}, {along})"
-    )
 
 
 def _check_repeated(surface: Surface) -> None:
@@ -334,27 +308,3 @@ def _check_repeated(surface: Surface) -> None:
             f"{label} must return the same points each time: at u = {u[k]}, v = {v[k]} they were "
             f"{first[k]}, then {second[k]}."
         )
-
-
-def _close(surface: Surface, vertices: NDArray[np.float64]) -> None:
-    """Make vertices (m + 1, n + 1, 3) on a seam equal, so that the spline closes exactly.
-
-    Raises SurfaceError if they differ beyond rounding, or if a pole is not one point.
-    """
-    for axis, (along, ends) in enumerate(zip("uv", surface.boundary, strict=True)):
-        rows = np.swapaxes(vertices, 0, axis)
-        if closes(ends):
-            first = rows[0] if ends[0] == "periodic" else rows[0, ::-1].copy()
-            if apart(rows[-1], first, vertices):
-                raise SurfaceError(
-                    f"surface {surface.name!r} does not close along {along}: its two ends must be "
-                    f"the same{'' if ends[0] == 'periodic' else ', mirrored'}"
-                    f"{_by_rounding(surface, axis, rows[-1], first)}."
-                )
-            rows[-1] = first
-        for end, place, row in zip(ends, surface.domain[axis], (0, -1), strict=True):
-            if end == "pole" and apart(rows[row], rows[row, :1], vertices):
-                raise SurfaceError(
-                    f"surface {surface.name!r} has no pole at {along} = {place}: this side "
-                    "of its domain is not one point."
-                )

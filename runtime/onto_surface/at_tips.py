@@ -12,13 +12,16 @@ from ..base.aliases import Array, Indices
 from ..samples.fields import COLUMNS, Component, dtype_of
 from ..samples.samples import Samples
 from .on_spline import Fields, OnPatches, OnSpline, in_turn
+from .proved import ProvedSurface
 from .tip_degrees import Tip, tips_on
 
 __all__ = ["samples_at", "samples_in_turn"]
 
+Geometry = OnPatches | ProvedSurface
+
 
 def samples_at(
-    geometry: OnPatches,
+    geometry: Geometry,
     normals: Array,
     fields: Sequence[str],
     dtype: DTypeLike,
@@ -30,20 +33,23 @@ def samples_at(
     A tip comes after the other points with a normal.
     """
     at_tips = _at_tips(geometry, normals)
-    if not at_tips or not isinstance(geometry, OnSpline):
+    if not at_tips:
         return geometry.samples_at(normals, fields, dtype, progress, density)
     wanted = list(dict.fromkeys([*fields, "normal_index"]))
     found = geometry.samples_at(normals, wanted, dtype, progress, density)
     parts = [found.arrays()]
-    parts += [_fields(geometry, tip, numbers, normals, wanted, dtype) for tip, numbers in at_tips]
+    parts += [_fields(*at_tip, normals, wanted, dtype) for at_tip in at_tips]
     index = np.concatenate([x["normal_index"] for x in parts])
     order = np.argsort(index, kind="stable")
     arrays = {x: np.concatenate([part[x] for part in parts])[order] for x in fields}
-    return geometry.samples(arrays, replace(found.report, samples=len(order)))
+    report = replace(found.report, samples=len(order))
+    return Samples(
+        **arrays, report=report, spline=found.spline, surface=found.surface, offset_of=None
+    )
 
 
 def samples_in_turn(
-    geometry: OnPatches,
+    geometry: Geometry,
     normals: Array,
     fields: Sequence[str],
     dtype: DTypeLike,
@@ -53,18 +59,20 @@ def samples_in_turn(
 ) -> Iterator[Samples]:
     """Yield at most `size` of the samples at a time; see `samples_at`."""
     if _at_tips(geometry, normals):
-        return in_turn(samples_at(geometry, normals, fields, dtype, progress, density), size)
+        found = samples_at(geometry, normals, fields, dtype, progress, density)
+        return in_turn(geometry.with_fit(found, density), size)
     return geometry.samples_in_turn(normals, fields, dtype, size, progress, density)
 
 
-def _at_tips(geometry: OnPatches, normals: Array) -> list[tuple[Tip, Indices]]:
+def _at_tips(geometry: Geometry, normals: Array) -> list[tuple[OnSpline, Tip, Indices]]:
     """Return the tips that have some of the normals (S, 3), with the numbers of these."""
-    if not isinstance(geometry, OnSpline):
+    fitted = geometry.fitted if geometry.has_tips else None
+    if not isinstance(fitted, OnSpline):
         return []
-    tips = [(x, x.degrees(normals) != 0) for x in tips_on(geometry.whole or geometry)]
-    if geometry.reach is not None:
-        tips = [(x, has & geometry.reach.contains(normals)) for x, has in tips]
-    return [(x, np.flatnonzero(has)) for x, has in tips if has.any()]
+    tips = [(x, x.degrees(normals) != 0) for x in tips_on(fitted.whole or fitted)]
+    if fitted.reach is not None:
+        tips = [(x, has & fitted.reach.contains(normals)) for x, has in tips]
+    return [(fitted, x, np.flatnonzero(has)) for x, has in tips if has.any()]
 
 
 def _fields(

@@ -99,7 +99,7 @@ def refine(surface: Surface, spline: Spline, target: Target, threads: int | None
     there. target.state is overwritten for all samples.
     """
     target.state[:] = NOT_FOUND
-    charts = pole_charts(surface, spline)
+    charts = pole_charts(surface, spline.cells)
     next_to_poles = _refine_away(surface, spline, charts, target, threads)
     for chart, rows in zip(charts, next_to_poles, strict=True):
         _refine_at_pole(chart, spline, target, rows, threads)
@@ -181,7 +181,7 @@ def evaluate_on_surface(
     count = len(uv)
     points, normals = np.empty((count, 3)), np.empty((count, 3))
     gaussian, mean = np.empty(count), np.empty(count)
-    charts = pole_charts(surface, spline)
+    charts = pole_charts(surface, spline.cells)
 
     def work(first: int, last: int) -> None:
         part = slice(first, last)
@@ -189,7 +189,7 @@ def evaluate_on_surface(
         points[part] = jets[:, 0]
         scales = np.array([spline.scale, *spline.frame[2:]])
         evaluate_jets(jets, scales, normals[part], gaussian[part], mean[part])
-        for rows, n, K, H in near_poles(charts, spline, uv[part]):
+        for rows, n, K, H in near_poles(charts, spline.scale, uv[part]):
             normals[first + rows], gaussian[first + rows], mean[first + rows] = n, K, H
 
     list(over_ranges(work, count, ROWS_AT_A_TIME, threads))
@@ -197,7 +197,7 @@ def evaluate_on_surface(
 
 
 def near_poles(
-    charts: list[PoleChart], spline: Spline, uv: Array
+    charts: list[PoleChart], scale: float, uv: Array
 ) -> Iterator[tuple[Indices, Array, Array, Array]]:
     """Yield the rows (k,) of parameters that need a chart, and unit normals, K and H there."""
     for chart in charts:
@@ -205,6 +205,6 @@ def near_poles(
         if len(rows):
             s, t = chart.places(uv[rows]).T.copy()
             n, K, H = np.empty((len(rows), 3)), np.empty(len(rows)), np.empty(len(rows))
-            scales = np.array([spline.scale, *[power_of_two(chart.cell)] * 2])
+            scales = np.array([scale, *[power_of_two(chart.cell)] * 2])
             evaluate_jets(chart.jets(s, t), scales, n, K, H)
             yield rows, n * chart.orientation, K, H * chart.orientation

@@ -24,7 +24,6 @@ from ..base.threads import over_ranges
 from ..directions.regions import Cap
 from ..domain.trim import samples_inside, with_uv
 from ..fitting.fit import check_range
-from ..proof.index import ProvedIndex
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field, regular
 from ..samples.report import SamplingReport, UndecidedNormal, sampling_report
 from ..samples.samples import Samples
@@ -35,6 +34,7 @@ from ..spline.developable import CellMeasure
 from ..spline.kernels.forms import forms_of_jets, jets_on_spline, patches_at
 from ..spline.nets import AnySpline, on_grid
 from ..spline.spline import Spline
+from ..spline.tips import tips_of
 from ..surface.surface import Surface
 from .reach import InReach, reached
 
@@ -82,8 +82,7 @@ class FieldsOfSamples(NamedTuple):
 class OnPatches:
     """A spline, on a grid of cells or of nets, whose own points at normals are the samples.
 
-    Samples at normals are written to the fields in `memory` that are large enough. With an `index`
-    of the surface, all points with prescribed normals are found there.
+    Samples at normals are written to the fields in `memory` that are large enough.
     """
 
     on: ClassVar[str] = "spline"
@@ -92,8 +91,22 @@ class OnPatches:
     threads: int | None = None
     surface: Surface | None = None
     memory: Mapping[str, NDArray[Any]] = field(default_factory=dict)
-    index: ProvedIndex | None = None
     reach: Cap | None = None
+
+    @property
+    def fitted(self) -> OnPatches:
+        """What is sampled by a density; see `ProvedSurface`."""
+        return self
+
+    def with_fit(self, samples: Samples, density: float | None = None) -> Samples:
+        """Return samples with their spline, which they have here; see `ProvedSurface`."""
+        del density
+        return samples
+
+    @property
+    def has_tips(self) -> bool:
+        """Whether there are patches at a tip."""
+        return tips_of(self.spline) is not None
 
     def within(self, reach: Cap | None) -> Self:
         """Return the same; InputError for nets with a `reach`, as they have no grid to cut."""
@@ -111,7 +124,7 @@ class OnPatches:
 
         Raises SurfaceError if points are beyond the range of `dtype`.
         """
-        check_range(self.spline, dtype)
+        check_range(self.spline.name, self.spline._largest, dtype)
         if threads == self.threads and not memory and not self.memory:
             return self
         return replace(self, threads=threads, memory=memory)
@@ -354,7 +367,10 @@ def in_turn(found: Samples, size: int) -> Iterator[Samples]:
     proved, undecided = report.proved and 0, report.undecided and ()
     report = replace(report, proved=proved, undecided=undecided)
     for first in range(size, len(found), size):
-        yield replace(found[first : first + size], report=report)
+        some = found[first : first + size]
+        yield Samples(
+            **some.arrays(), report=report, spline=some.spline, surface=some.surface, offset_of=None
+        )
 
 
 def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:

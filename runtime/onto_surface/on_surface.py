@@ -16,7 +16,6 @@ from ..domain.trim import samples_inside
 from ..fitting.fit import patches_of
 from ..samples.fields import FLAG_NAMES
 from ..samples.report import PLACES, UndecidedNormal
-from ..samples.samples import Samples
 from ..search.search import Hits
 from ..spline.developable import CellMeasure
 from ..spline.nets import AnySpline
@@ -26,9 +25,8 @@ from ..surface.surface import Surface
 from .kernels import nodes as kernels
 from .moved_samples import as_fields, moved_samples, part_of, unmoved
 from .newton import evaluate_on_surface
-from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline, count_of, in_turn
+from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline, count_of
 from .pole_charts import PoleChart, pole_charts
-from .proved import index_of, proved_samples
 from .repeats import kept_once
 
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
@@ -67,9 +65,9 @@ def checked_place(on: str | None) -> str | None:
 
 
 def geometry_of(
-    surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None, indexed: bool = False
+    surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None
 ) -> OnPatches:
-    """Return what is sampled, with an index of the surface if it is `indexed` and can be.
+    """Return what is sampled by a density: a spline, or the surface with its spline.
 
     Raises what `place_of_samples` and `spline_of` raise.
     """
@@ -80,8 +78,7 @@ def geometry_of(
     if place == "surface" and isinstance(surface, Surface):
         if surface.boundary != spline.boundary:  # poles that the fit has found
             surface = replace(surface, boundary=spline.boundary)
-        index = index_of(surface) if indexed else None
-        return OnSurface(spline, surface=surface, index=index)
+        return OnSurface(spline, surface=surface)
     return OnSpline(spline)
 
 
@@ -147,34 +144,6 @@ class OnSurface(OnSpline):
         return found
 
     # --- samples at normals -----------------------------------------------------------------------
-
-    def samples_at(
-        self,
-        normals: Array,
-        fields: Sequence[str],
-        dtype: DTypeLike,
-        progress: bool = False,
-        density: float | None = None,
-    ) -> Samples:
-        """Return all points that have one of the unit normals (S, 3): proved with an `index`."""
-        if self.index is None:
-            return super().samples_at(normals, fields, dtype, progress, density)
-        return proved_samples(self, self.index, normals, fields, dtype, density)
-
-    def samples_in_turn(
-        self,
-        normals: Array,
-        fields: Sequence[str],
-        dtype: DTypeLike,
-        size: int,
-        progress: bool,
-        density: float,
-    ) -> Iterator[Samples]:
-        """Yield at most `size` of the samples at a time; the proof is with the first ones."""
-        if self.index is None:
-            yield from super().samples_in_turn(normals, fields, dtype, size, progress, density)
-            return
-        yield from in_turn(self.samples_at(normals, fields, dtype, progress, density), size)
 
     def at_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
@@ -259,7 +228,7 @@ class OnSurface(OnSpline):
     @property
     def _charts(self) -> list[PoleChart]:
         assert self.surface is not None
-        return pole_charts(self.surface, self.spline)
+        return pole_charts(self.surface, self.spline.cells)
 
     # --- samples that fill gaps -------------------------------------------------------------------
 

@@ -13,7 +13,6 @@ from functools import cached_property
 import numpy as np
 
 from ..base.aliases import Array, Flags
-from ..spline.spline import Spline
 from ..surface.derivatives import differences, power_of_two
 from ..surface.surface import Surface
 from .kernels.refine import chart_jets, jet_of_pole
@@ -131,12 +130,12 @@ class PoleChart:
         return np.abs(uv[:, 1 - self.angle] - self.end)
 
 
-def pole_charts(surface: Surface, spline: Spline) -> list[PoleChart]:
-    """Return the charts at the poles of a surface, for its spline."""
+def pole_charts(surface: Surface, cells: tuple[int, int]) -> list[PoleChart]:
+    """Return the charts at the poles of a surface, whose spline has m × n cells."""
     charts = []
     for axis in (0, 1):
-        ends, cells = spline.domain[axis], spline.cells[axis]
+        ends = surface.domain[axis]
         for k in (0, 1):
-            if spline.boundary[axis][k] == "pole":
-                charts.append(PoleChart(surface, 1 - axis, ends[k], ends[1 - k], cells))
+            if surface.boundary[axis][k] == "pole":
+                charts.append(PoleChart(surface, 1 - axis, ends[k], ends[1 - k], cells[axis]))
     return charts

@@ -2,29 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import isnan
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from ..base.kept import kept
 from ..base.memory import check_memory
+from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
+from ..directions.regions import Cap
 from ..domain.trim import Trim, samples_inside, with_uv
+from ..fitting.fit import check_range
 from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
-from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places, order_by_patch
+from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places
 from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, regular, row_shape
-from ..samples.report import UndecidedNormal
+from ..samples.report import SamplingReport, UndecidedNormal, count_infinite
 from ..samples.samples import Samples
 from ..search.search import developable_patches
+from ..spline.spline import Spline
+from ..spline.tips import are_one
+from ..surface.closing import closed_points
+from ..surface.collapsed import with_found_sides
 from ..surface.derivatives import power_of_two
 from ..surface.surface import Surface
 from .newton import near_poles
-from .on_spline import Fields, OnSpline
+from .on_spline import Fields, count_of, in_turn
+from .on_surface import OnSurface, geometry_of
 from .pole_charts import pole_charts
 
-__all__ = ["Proof", "index_of", "proof_of", "proved_samples"]
+__all__ = ["Proof", "ProvedSurface", "index_of", "proof_of"]
 
 PLACES_AT_A_TIME = 1 << 14
 
@@ -46,71 +57,166 @@ def index_of(
     return index if index is not None and len(index.unbounded) == 0 else None
 
 
-def proved_samples(
-    geometry: OnSpline,
-    index: ProvedIndex,
-    normals: NDArray[np.float64],
-    fields: Sequence[str],
-    dtype: DTypeLike,
-    density: float | None,
-) -> Samples:
-    """Return all points that have unit normals (S, 3), and the proof.
+@dataclass(frozen=True, eq=False)
+class ProvedSurface:
+    """A surface whose points with given normals are all found, with a proof and without a spline.
 
-    They come in the order of normals, then of the patches of the spline, then of u and v.
+    The `surface` has the poles that were found at its sides. On the surface times `scale`,
+    neighbouring points of a grid are about 1 apart; `largest` is the largest of their coordinates.
+    `has_tips` says whether an open side is one point. The spline, which densities need, is fitted
+    when it is asked for; `cells` are for it.
     """
-    spline, threads = geometry.spline, geometry.threads
-    found = index.query(normals, threads)
-    order_by_patch(found.numbers, found.places, spline.frame, spline.cells)
-    check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
-    arrays = _arrays(geometry, index, normals, found, with_uv(spline.trim, fields))
-    arrays = samples_inside(spline.trim, arrays, fields)
-    kept = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
-    developable = developable_patches(spline, threads)
-    proof = proof_of(normals, found.undecided, spline.trim)._asdict()
-    report = geometry.report(len(normals), density, developable, kept, unrefined=0, **proof)
-    return geometry.samples(kept, report)
 
+    on: ClassVar[str] = "surface"
 
-def _arrays(
-    geometry: OnSpline,
-    index: ProvedIndex,
-    normals: NDArray[np.float64],
-    found: ProvedPlaces,
-    fields: Sequence[str],
-) -> Fields:
-    """Return the fields that are wanted."""
-    surface, spline = geometry.surface, geometry.spline
-    assert surface is not None
-    numbers, places = found.numbers, found.places
-    count = len(numbers)
-    rooms = SampleFields(
-        *(
-            np.empty((count if x in fields else 0, *row_shape(x)), dtype_of(x, np.float64))
-            for x in SampleFields._fields
+    surface: Surface
+    index: ProvedIndex
+    cells: tuple[int, int] | None
+    scale: float
+    largest: float
+    apexes: int
+    has_tips: bool
+    threads: int | None = None
+    reach: Cap | None = None
+
+    @classmethod
+    def of(cls, surface: Surface, cells: tuple[int, int] | None) -> ProvedSurface | None:
+        """Return a surface with its index; None if its derivatives have no bounds."""
+        surface, apexes = with_found_sides(surface)
+        index = index_of(surface)
+        if index is None:
+            return None
+        points = closed_points(surface, CELLS)
+        size = float(np.ptp(points, axis=(0, 1)).max())
+        has_tips = any(
+            surface.boundary[axis][end] == "open" and are_one(points.take(-end, axis), size)
+            for axis, end in np.ndindex(2, 2)
         )
-    )
-    K, H = rooms.gaussian_curvature, rooms.mean_curvature
-    frame, cells = spline.frame, spline.cells
-    # Powers of two: then curvatures do not depend on the number of cells by their rounding.
-    scales = np.array([spline.scale, power_of_two(frame[2]), power_of_two(frame[3])])
-    charts = pole_charts(surface, spline)
+        step = max(float(np.abs(np.diff(points, axis=axis)).max()) for axis in (0, 1))
+        largest = float(np.abs(points).max())
+        return cls(surface, index, cells, scale_to_one(step), largest, apexes, has_tips)
 
-    def work(first: int, last: int) -> None:
-        with index.room() as memory:
-            fill_places(
-                index.tape, memory.work, numbers, places, first, last, normals, scales, frame,
-                cells, np.empty(CURVATURES), rooms,
-            )  # fmt: skip
-        for rows, _, gaussian, mean in near_poles(charts, spline, places[first:last, :2]):
-            if len(K) > 0:
-                K[first + rows] = np.copysign(gaussian, places[first + rows, 4])
-            if len(H) > 0:
-                H[first + rows] = mean
+    @property
+    def fitted(self) -> OnSurface:
+        """The surface with its spline, for densities; fitted once."""
 
-    list(over_ranges(work, count, PLACES_AT_A_TIME, geometry.threads))
-    arrays = {name: x for name, x in rooms._asdict().items() if name in fields}
-    flags = {name: np.ones(count, dtype=np.bool_) for name in FLAG_NAMES}
-    return arrays | flags | {"normal_index": numbers} | regular(count, fields)
+        def fit() -> OnSurface:
+            found = geometry_of(self.surface, self.cells, self.on)
+            assert isinstance(found, OnSurface)
+            return found
+
+        geometry = kept(self.index, "surface with its spline", fit)
+        return replace(geometry, threads=self.threads).within(self.reach)
+
+    @property
+    def spline(self) -> Spline:
+        """The spline of the surface."""
+        return self.fitted.spline
+
+    def used(
+        self,
+        dtype: DTypeLike,
+        threads: int | None,
+        memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+    ) -> ProvedSurface:
+        """Return the same for one call; see `OnPatches.used`."""
+        del memory  # is for splines
+        check_range(self.surface.name, self.largest, dtype)
+        return self if threads == self.threads else replace(self, threads=threads)
+
+    def within(self, reach: Cap | None) -> ProvedSurface:
+        """Return the part whose normals are in a cap, or all of it."""
+        return self if reach is None else replace(self, reach=reach)
+
+    def samples_at(
+        self,
+        normals: NDArray[np.float64],
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        progress: bool = False,
+        density: float | None = None,
+    ) -> Samples:
+        """Return all points that have unit normals (S, 3), and the proof.
+
+        They come in the order of normals, then of u and v.
+        """
+        del progress, density  # a search takes no time to speak of; the report is without a fit
+        surface, found = self.surface, self.index.query(normals, self.threads)
+        if self.reach is not None:
+            surface, found = self.fitted.surface, found.only(self.reach.contains(normals))
+        check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
+        trim, georeference = self.surface.trim, self.surface.georeference
+        arrays = samples_inside(trim, self._arrays(normals, found, with_uv(trim, fields)), fields)
+        held = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
+        report = SamplingReport(
+            self.surface.name, len(normals), count_of(held), None, None, None,
+            infinite_curvatures=count_infinite(held), on=self.on, unrefined=0, apexes=self.apexes,
+            crs=None if georeference is None else georeference.crs,
+            origin=None if georeference is None else georeference.origin,
+            **proof_of(normals, found.undecided, trim)._asdict(),
+        )  # fmt: skip
+        return Samples(**held, report=report, spline=None, surface=surface, offset_of=None)
+
+    def samples_in_turn(
+        self,
+        normals: NDArray[np.float64],
+        fields: Sequence[str],
+        dtype: DTypeLike,
+        size: int,
+        progress: bool,
+        density: float,
+    ) -> Iterator[Samples]:
+        """Yield at most `size` of the samples at a time; the proof is with the first ones."""
+        found = self.with_fit(self.samples_at(normals, fields, dtype, progress), density)
+        return in_turn(found, size)
+
+    def with_fit(self, samples: Samples, density: float | None = None) -> Samples:
+        """Return samples with the spline, and with a report that speaks of it.
+
+        The report takes `density` for the normals per steradian, by default S / 4π.
+        """
+        geometry, known, arrays = self.fitted, samples.report, samples.arrays()
+        report = geometry.report(
+            known.normals or 0, density, developable_patches(geometry.spline, self.threads), arrays,
+            unrefined=0, proved=known.proved, undecided=known.undecided,
+        )  # fmt: skip
+        return geometry.samples(arrays, report)
+
+    def _arrays(
+        self, normals: NDArray[np.float64], found: ProvedPlaces, fields: Sequence[str]
+    ) -> Fields:
+        """Return the fields that are wanted."""
+        numbers, places = found.numbers, found.places
+        count = len(numbers)
+        rooms = SampleFields(
+            *(
+                np.empty((count if x in fields else 0, *row_shape(x)), dtype_of(x, np.float64))
+                for x in SampleFields._fields
+            )
+        )
+        K, H = rooms.gaussian_curvature, rooms.mean_curvature
+        steps = [
+            power_of_two((high - low) / count)
+            for (low, high), count in zip(self.surface.domain, CELLS, strict=True)
+        ]
+        scales, charts = np.array([self.scale, *steps]), pole_charts(self.surface, CELLS)
+
+        def work(first: int, last: int) -> None:
+            with self.index.room() as memory:
+                fill_places(
+                    self.index.tape, memory.work, numbers, places, first, last, normals, scales,
+                    np.empty(CURVATURES), rooms,
+                )  # fmt: skip
+            for rows, _, gaussian, mean in near_poles(charts, self.scale, places[first:last, :2]):
+                if len(K) > 0:
+                    K[first + rows] = np.copysign(gaussian, places[first + rows, 4])
+                if len(H) > 0:
+                    H[first + rows] = mean
+
+        list(over_ranges(work, count, PLACES_AT_A_TIME, self.threads))
+        arrays = {name: x for name, x in rooms._asdict().items() if name in fields}
+        flags = {name: np.ones(count, dtype=np.bool_) for name in FLAG_NAMES}
+        return arrays | flags | {"normal_index": numbers} | regular(count, fields)
 
 
 def proof_of(

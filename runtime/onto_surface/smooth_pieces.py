@@ -16,17 +16,20 @@ from ..base.errors import InputError, SurfaceError
 from ..samples.fields import FLAG_NAMES, dtype_of, new_field
 from ..samples.report import SamplingReport, count_unrefined, joined_proof
 from ..samples.samples import Samples
+from ..search.search import developable_patches
 from ..spline.nets import AnySpline
 from ..surface.surface import Surface
 from .at_tips import samples_at
-from .on_spline import OnPatches, OnSpline
+from .on_spline import OnPatches, OnSpline, on_grids
 from .on_surface import geometry_of, place_of_samples
+from .proved import ProvedSurface
 
 __all__ = [
     "LEAST_IMAGE",
     "cells_of_piece",
     "geometries_of",
     "pieces_to_sample",
+    "proved_or_fitted",
     "report_of",
     "samples_of_pieces",
     "with_area",
@@ -61,16 +64,32 @@ def pieces_to_sample(surface: object) -> tuple[Surface, ...]:
 
 
 def geometries_of(
-    surface: Surface | AnySpline,
-    cells: Sequence[int] | None,
-    on: str | None,
-    indexed: bool = False,
+    surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None
 ) -> tuple[OnPatches, ...]:
     """Return a geometry for each piece of a surface; see `geometry_of`."""
     place_of_samples(surface, on)
+    return tuple(geometry_of(x, y, on) for x, y in _with_cells(surface, cells))
+
+
+def proved_or_fitted(
+    surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None
+) -> tuple[OnPatches | ProvedSurface, ...]:
+    """Return the same, but for each piece that can be proved its index."""
+    if place_of_samples(surface, on) == "spline":
+        return geometries_of(surface, cells, on)
+    return tuple(
+        (ProvedSurface.of(x, y) if isinstance(x, Surface) else None) or geometry_of(x, y, on)
+        for x, y in _with_cells(surface, cells)
+    )
+
+
+def _with_cells(
+    surface: Surface | AnySpline, cells: Sequence[int] | None
+) -> list[tuple[Surface | AnySpline, tuple[int, int] | None]]:
+    """Return the pieces of a surface with their cells."""
     if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
-        return tuple(geometry_of(x, cells_of_piece(surface, x, cells), on, indexed) for x in pieces)
-    return (geometry_of(surface, cells, on, indexed),)
+        return [(x, cells_of_piece(surface, x, cells)) for x in pieces]
+    return [(surface, None if cells is None else pair_of_cells(cells))]
 
 
 def cells_of_piece(
@@ -121,7 +140,7 @@ def _size_of(geometry: OnSpline, is_one_of_many: bool) -> float:
 def samples_of_pieces(
     name: str,
     surface: Surface | None,
-    geometries: Sequence[OnSpline],
+    geometries: Sequence[OnPatches | ProvedSurface],
     normals: Array,
     fields: Sequence[str],
     dtype: np.dtype[np.floating],
@@ -130,24 +149,34 @@ def samples_of_pieces(
     """Return all points of a surface of several pieces that have one of the unit normals (S, 3).
 
     The report gets the `name`, and the samples the `surface`, None if they lie on splines. A piece
-    without an index has no samples if its Gaussian image has no area beyond rounding.
+    without a proof has no samples if its Gaussian image has no area beyond rounding.
     """
-    on_surface, kept = geometries[0].on == "surface", with_area(geometries)
+    fitted = on_grids([x.fitted for x in geometries])
+    searched: dict[OnSpline, OnPatches | ProvedSurface] = dict(zip(fitted, geometries, strict=True))
+    on_surface, kept = geometries[0].on == "surface", with_area(fitted)
     reports: list[SamplingReport] = []
     wanted = list(dict.fromkeys([*fields, *(FLAG_NAMES if on_surface else ())]))
     parts, developable = [{x: new_field(x, 0, dtype_of(x, dtype)) for x in wanted}], None
     for first, geometry in kept:
-        is_proved = geometry.index is not None
-        if is_proved or float(np.abs(geometry.measure[1]).sum()) > LEAST_IMAGE:
-            found = samples_at(geometry, normals, wanted, dtype, progress)
-            developable = (developable or 0) + (found.report.developable_patches or 0)
+        asked = searched[geometry]
+        if isinstance(asked, ProvedSurface):
+            own = [x for x in wanted if x != "patch_index"]
+            found = samples_at(asked, normals, own, dtype, progress)
+            parts.append({"patch_index": np.full(len(found), -1), **found.arrays()})
+            more = developable_patches(geometry.spline, geometry.threads)
+        elif float(np.abs(geometry.measure[1]).sum()) > LEAST_IMAGE:
+            found = samples_at(asked, normals, wanted, dtype, progress)
             parts.append(found.arrays())
-            reports.append(found.report)
             if "patch_index" in wanted:
                 parts[-1]["patch_index"] = parts[-1]["patch_index"] + first
+            more = found.report.developable_patches or 0
+        else:
+            continue
+        developable = (developable or 0) + more
+        reports.append(found.report)
     arrays: dict[str, Any] = {x: np.concatenate([part[x] for part in parts]) for x in wanted}
     report = report_of(name, [x for _, x in kept], len(normals), None, developable, arrays)
-    if all(geometry.index is not None for _, geometry in kept):
+    if all(isinstance(searched[x], ProvedSurface) for _, x in kept):
         report = replace(report, **joined_proof(len(normals), reports))
     elif on_surface:
         report = replace(report, undecided=tuple(y for x in reports for y in x.undecided or ()))

@@ -79,6 +79,12 @@ class ProvedPlaces(NamedTuple):
     places: NDArray[np.float64]
     undecided: Undecided
 
+    def only(self, normals: NDArray[np.bool_]) -> ProvedPlaces:
+        """Return the points of some of the normals, flags (S,)."""
+        rows, left = normals[self.numbers], normals[self.undecided.numbers]
+        undecided = Undecided._make(x[left] for x in self.undecided)
+        return ProvedPlaces(self.numbers[rows], self.places[rows], undecided)
+
     @property
     def uv(self) -> NDArray[np.float64]:
         """The parameters (k, 2)."""

@@ -216,7 +216,7 @@ def columns_of(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
 def checked_fields(
     fields: Sequence[str] | None,
     surface: bool = False,
-    proved: bool = False,
+    proved: bool | None = False,
     grid: bool = False,
     part: bool = False,
     edges: bool = False,
@@ -225,18 +225,19 @@ def checked_fields(
     """Return the requested fields, in the order of `COLUMNS`; None means all.
 
     With `surface` they are for samples on the surface, with `given` for those at prescribed
-    normals, with `proved` also of a proved search, with `grid` for those that may be on a grid,
-    with `part` for those of a CAD part, and with `edges` also on its sharp edges. Raises
-    UnknownNameError for an unknown name, and InputError for anything but a tuple of names, for no
-    names, for a repeated name, and for an attribute that is computed from fields.
+    normals, with `proved` also of a proved search (None: unknown), with `grid` for those that may
+    be on a grid, with `part` for those of a CAD part, and with `edges` also on its sharp edges.
+    Raises UnknownNameError for an unknown name, and InputError for anything but a tuple of names,
+    for no names, for a repeated name, and for an attribute that is computed from fields.
     """
     from ..base.checks import known_name, listed
 
     has = {
-        "": True, "surface": surface, "proved": proved, "given": given or proved, "grid": grid,
+        "": True, "surface": surface, "proved": proved is not False,
+        "given": given or proved is not False, "grid": grid,
         "part": part, "edges": edges,
     }  # fmt: skip
-    without = ("patch_index",) if part else ()
+    without = ("patch_index",) if part or proved else ()
     known = tuple(x for x in FIELDS if has[FIELDS[x].only] and x not in without)
     if fields is None:
         return known
@@ -261,6 +262,8 @@ def checked_fields(
             )
         if name in FIELDS and not has[FIELDS[name].only]:
             raise InputError(f"{name} is a field of samples {ONLY[FIELDS[name].only]}.")
+        if name in without:
+            raise InputError(f'{name} is a field of samples found on a spline; see on="spline".')
         known_name(name, known, "field")
     return tuple(name for name in known if name in names)
 

@@ -366,7 +366,7 @@ def _unseen(report: SamplingReport) -> list[str]:
             f"{100 * share:.0f} % of its area is flat or developable (K = 0), which no set "
             "of normals can sample"
         ]
-    if report.samples == 0 and report.developable_patches == report.patches:
+    if report.samples == 0 and None is not report.patches == report.developable_patches:
         return ["it is flat or developable up to the rounding of its coordinates"]
     if report.samples == 0 and report.undecided:
         return [

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 from ..base.errors import InputError
 from ..base.wording import plural
+from ..fitting.fit import fit
 from ..spline.nets import AnySpline, on_grid
 from ..spline.spline import Spline, short_label
+from ..surface.surface import Surface
 from .arrays import SampleArrays
 from .samples_methods import Methods
 from .summary import kinds_of_points, summary_of
@@ -53,7 +55,8 @@ class Samples(SampleArrays, Methods):
     normal_index : (N,) int64 array
         Rows of the prescribed normals; −1 for a sample that fills a gap.
     patch_index : (N,) int64 array
-        Patches of the spline in which the samples were found.
+        Patches of the spline in which the samples were found. Points that are proved to be all with
+        prescribed normals are found on the surface itself, and have none.
     on_surface : (N,) bool array or None
         Whether the sample is on the surface, with the normal of the surface up to 1e-9. False at
         singular points, and for a sample of a silhouette that could not be moved there from the
@@ -74,8 +77,9 @@ class Samples(SampleArrays, Methods):
     report : SamplingReport
         A report on the sampling.
     spline : Spline, NetSpline or None
-        The spline that was sampled; None if it is unknown, as for samples from a file, and for
-        samples of several pieces (see `Surface.pieces`), each of which has one.
+        The spline that was sampled; None if it is unknown, as for samples from a file, for proved
+        points of a `GaussMap`, which needs none, and for samples of several pieces (see
+        `Surface.pieces`), each of which has one.
     face_index, solid_index : (N,) int64 array or None
         For a CAD part: the indices of the sample's face and solid in `Part.faces` and
         `Part.solids`; −1 for a face that belongs to no solid. `uv` are those of the surface of the
@@ -171,8 +175,13 @@ class Samples(SampleArrays, Methods):
 
 
 def spline_or(samples: Samples, spline: AnySpline | None) -> Spline:
-    """Return the given spline, or that of the samples; InputError without one."""
-    spline = samples.spline if spline is None else spline
+    """Return the given spline, that of the samples, or one of their surface.
+
+    Raises InputError without one.
+    """
+    spline, surface = samples.spline if spline is None else spline, samples.surface
+    if spline is None and isinstance(surface, Surface) and len(surface.pieces()) == 1:
+        spline = fit(surface)
     if spline is None and isinstance(samples.surface, Whole):
         raise InputError(
             "this is for samples of one surface, and these are of a CAD part; sample "

@@ -17,7 +17,7 @@ from .joints import EDGES, merged_points
 from .nets import AnySpline, NetSpline
 from .spline import Spline
 
-__all__ = ["Tips", "collapsed_sides", "is_point", "tips_of"]
+__all__ = ["Tips", "are_one", "collapsed_sides", "is_point", "tips_of"]
 
 # Points within this distance, relative to the size of a surface, are one.
 SAME_POINT = 1e-9
@@ -43,8 +43,12 @@ class Tips(NamedTuple):
 
 def is_point(spline: Spline, axis: int, end: int) -> bool:
     """Return whether the lower (0) or upper (1) side of the domain along an axis is one point."""
-    points = _side(spline, axis, end)
-    return bool(np.ptp(points, axis=0).max() <= SAME_POINT * _size(spline))
+    return are_one(_side(spline, axis, end), _size(spline))
+
+
+def are_one(points: Array, size: float) -> bool:
+    """Return whether points (k, 3) of a surface of a size are one."""
+    return bool(np.ptp(points, axis=0).max() <= SAME_POINT * size)
 
 
 def collapsed_sides(spline: Spline) -> list[tuple[int, int]]:

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
-from typing import cast
+from dataclasses import dataclass, replace
+from typing import TypeVar, cast
 
 import numpy as np
 
@@ -23,8 +23,10 @@ from ..domain.domain import Assumed, Boundary
 from ..spline.quasi_interpolant import SAME_POINT
 from .surface_values import SurfaceValues
 
-__all__ = ["closed_grid", "found_sides"]
+__all__ = ["closed_grid", "with_found_sides"]
 
+
+Values = TypeVar("Values", bound=SurfaceValues)
 
 # The number of steps of a line along a side; it is even.
 STEPS = 16
@@ -38,18 +40,24 @@ KINK, KINK_OF_DATA = 1e-2, 0.3
 ROUNDING = 64.0
 
 
-def found_sides(surface: SurfaceValues) -> tuple[Boundary, int]:
-    """Return the boundary conditions of a surface, with poles, and the number of its apexes.
+def with_found_sides(surface: Values) -> tuple[Values, int]:
+    """Return a surface with the poles that are found at its sides, and the number of its apexes.
 
     A surface that cannot be evaluated next to its sides keeps its boundary conditions: if that is
     an error, the fit reports it.
     """
+    boundary, apexes = surface.boundary, 0
     if any(surface.assumed_open):
         with np.errstate(all="ignore"), suppress(SurfaceError):
             if surface.grid is None:
-                return _Sides.of_surface(surface).found()
-            return _Sides.of_grid(surface.grid, surface.boundary, surface.assumed_open).found()
-    return surface.boundary, 0
+                sides = _Sides.of_surface(surface)
+            else:
+                sides = _Sides.of_grid(surface.grid, surface.boundary, surface.assumed_open)
+            boundary, apexes = sides.found()
+    if boundary == surface.boundary:
+        return surface, apexes
+    trim = surface.trim and surface.trim.with_boundary(boundary)
+    return replace(surface, boundary=boundary, trim=trim), apexes
 
 
 def closed_grid(points: Array, boundary: Boundary, assumed: Assumed) -> tuple[Array, Boundary]:

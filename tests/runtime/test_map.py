@@ -63,7 +63,6 @@ def test_one_normal_at_a_time_gives_the_same_points(name):
         one, same = known.points(NORMALS[k : k + 1]), whole[whole.normal_index == k]
         assert (one.uv == same.uv).all()
         assert (one.points == same.points).all()
-        assert (one.patch_index == same.patch_index).all()
 
 
 def test_threads_may_share_a_map():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from ...runtime.domain.domain import Domain
 from ...runtime.onto_surface.proved import index_of
 from ...runtime.proof.ball import Ball
 from ...runtime.proof.index import KINDS, ProvedIndex, Undecided
-from ...runtime.surface.collapsed import found_sides
+from ...runtime.surface.collapsed import with_found_sides
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.kernels.points import Tape
 from ...runtime.tape.tapes import bounds_over_boxes
@@ -86,7 +86,7 @@ class SmoothPieces:
         for piece in surface.pieces():
             may_have_points = _has_corners_that_meet(piece)
             if may_have_points:
-                piece = replace(piece, boundary=found_sides(piece)[0])
+                piece = with_found_sides(piece)[0]
             index = index_of(piece, cells=CELLS)
             if index is None:
                 return None

@@ -66,8 +66,7 @@ class Chosen:
             found = geometry.samples_at_hits(normals, hits, fields, dtype, self.density)
         else:
             normals = self.part(0, len(self), geometry.threads)
-            searched = replace(geometry, index=None)  # nobody has asked for a proof
-            found = searched.samples_at(normals, fields, dtype, progress, self.density)
+            found = geometry.samples_at(normals, fields, dtype, progress, self.density)
         # Nobody has asked for these normals: others take the place of those without a point.
         report = replace(found.report, undecided=None)
         return geometry.samples(found.arrays(), report), normals

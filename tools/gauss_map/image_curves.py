@@ -146,7 +146,7 @@ def _geometries(gauss_map: GaussMap) -> Sequence[OnSpline]:
         raise InputError(
             "folds, borders and margins are for surfaces, not for parts; take a face.surface."
         )
-    return on_grids(gauss_map._pieces)
+    return on_grids(gauss_map._fitted)
 
 
 def _folds(geometry: OnSpline, tolerance: float) -> Iterator[Traced]:

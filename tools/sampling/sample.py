@@ -110,9 +110,9 @@ def sample(
     -------
     Samples
         The samples at normals, followed by those that fill gaps, of `kind` "filling", whose
-        `normal_index` is −1. Samples at normals are in the order of the normals, then of the
-        patches. The report has the angle and the coverage that were reached, if they were
-        requested.
+        `normal_index` is −1. Samples at normals are in the order of the normals, then of u and v
+        if they are proved, else of the patches. The report has the angle and the coverage that were
+        reached, if they were requested.
 
     Raises
     ------
@@ -303,12 +303,13 @@ def _at_normals(
 ) -> Samples:
     """Return all points with prescribed normals."""
     checked_fields(
-        given.fields, proved=True, surface=place_of_samples(surface, given.on) == "surface"
+        given.fields, proved=None, surface=place_of_samples(surface, given.on) == "surface"
     )
     known, reach = kept_map(surface, given.cells, given.on), given.request.reach
-    return known._points(
+    samples = known._points(
         normals, given.fields, given.dtype, given.threads, given.progress, reach=reach
     )
+    return known._with_fit(samples, reach)
 
 
 def _pieces(
@@ -322,7 +323,7 @@ def _pieces(
     if request.normals is None:
         pieces = geometries_of(surface, given.cells, given.on)
     else:
-        pieces = kept_map(surface, given.cells, given.on)._pieces
+        pieces = kept_map(surface, given.cells, given.on)._fitted
     return [x.used(given.dtype, given.threads).within(request.reach) for x in pieces], fields
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from ...runtime.map import kept_map
 from ...runtime.onto_surface.at_tips import samples_in_turn
 from ...runtime.onto_surface.on_spline import OnPatches
 from ...runtime.onto_surface.on_surface import place_of_samples
+from ...runtime.onto_surface.proved import ProvedSurface
 from ...runtime.onto_surface.smooth_pieces import geometries_of, pieces_to_sample
 from ...runtime.samples.fields import checked_dtype, checked_fields
 from ...runtime.samples.report import UndecidedNormal, count_infinite, warn_of
@@ -97,7 +99,7 @@ def sample_stream(
     surface, number = named(surface), checked_dtype(dtype)
     is_on_surface = place_of_samples(surface, on) == "surface"
     given = normals is not None
-    wanted = checked_fields(fields, is_on_surface, proved=is_on_surface, given=given)
+    checked_fields(fields, is_on_surface, proved=None, given=given)
     request = checked_request(normals, count, None, None, "gauss", threads)
     if pieces := pieces_to_sample(surface):
         raise InputError(
@@ -111,15 +113,15 @@ def sample_stream(
     else:
         pieces = kept_map(surface, cells, on)._pieces
     geometry = pieces[0].used(number, threads)
-    if geometry.index is None:
-        wanted = checked_fields(fields, is_on_surface, given=given)
+    proved = isinstance(geometry, ProvedSurface)
+    wanted = checked_fields(fields, is_on_surface, proved, given=given)
     shows = yes_or_no(progress, "progress")
     return _Stream(geometry, request, size, wanted, number, shows).chunks()
 
 
 @dataclass(frozen=True, eq=False)
 class _Stream:
-    geometry: OnPatches
+    geometry: OnPatches | ProvedSurface
     request: Request
     size: int
     fields: tuple[str, ...]
@@ -130,7 +132,7 @@ class _Stream:
     def _chosen(self) -> Chosen:
         """The normals: the prescribed ones, or those of a lattice for the count."""
         if self.request.count is not None:
-            return choose(self.geometry, self.request.count, self.progress)
+            return choose(self.geometry.fitted, self.request.count, self.progress)
         normals = self.request.directions
         return Chosen(normals, len(normals) / (4 * math.pi))
 
@@ -142,14 +144,12 @@ class _Stream:
         alone = len(starts) == 1
         came, unrefined, last, chunk = 0, 0, None, None
         left, listed = list[UndecidedNormal](), self.request.count is None
-        search = samples_in_turn if listed else type(geometry).samples_in_turn
+        search = partial(samples_in_turn, geometry) if listed else geometry.samples_in_turn
         for first in shown(iter(starts), len(starts), self.progress and not alone):
             end = min(first + NORMALS_AT_A_TIME, total)
             normals = chosen.part(first, end, geometry.threads)
             shows = self.progress and alone
-            for part in search(
-                geometry, normals, self.fields, self.dtype, self.size, shows, chosen.density
-            ):
+            for part in search(normals, self.fields, self.dtype, self.size, shows, chosen.density):
                 last, chunk = part.report, _chunk(part, first, total, listed)
                 came, unrefined = came + len(part), unrefined + (last.unrefined or 0)
                 more = chunk.report.undecided or ()

@@ -73,16 +73,17 @@ class SurfaceSource:
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
         """Return all points with these normals, by normal."""
-        found = self.map.points(normals)
+        found = self.map._with_fit(self.map.points(normals))  # its report is that of the warning
         assert found.on_surface is not None
         self.report, self.on_surface = found.report, found.on_surface
         order = np.argsort(found.normal_index, kind="stable")
         found, self.on_surface = found[order], found.on_surface[order]
         hessian = _hessians_on_surface(self.surface, normals[found.normal_index], found.uv)
         hessian[found.component == Component.TIP] = 0.0  # there the support function is linear
+        as_one_patch = np.zeros_like(found.normal_index)
         return Sheets(
             found.normal_index, found.points, hessian, found.gaussian_curvature,
-            found.mean_curvature, found.patch_index, found.uv,
+            found.mean_curvature, as_one_patch, found.uv,
         )  # fmt: skip
 
     def expression(self) -> None:

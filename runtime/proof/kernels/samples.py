@@ -13,10 +13,9 @@ from ....generated.vectors import Patch, Vector
 from ...directions.kernels.vectors import dot, row_vector, set_row
 from ...machine_code.jit import inline, jit, long_vectors, loop
 from ...spline.kernels.jets import is_regular
-from ...spline.kernels.spline import patch_at
 from ...tape.kernels.points import LANES, POINT, UU, UV, VV, U, V, evaluate_points
 
-__all__ = ["CURVATURES", "SampleFields", "fill_places", "order_by_patch"]
+__all__ = ["CURVATURES", "SampleFields", "fill_places"]
 
 # The size of a work array: Gaussian and mean curvatures of a tile.
 CURVATURES = 2 * LANES
@@ -32,7 +31,6 @@ class SampleFields(NamedTuple):
     support: NDArray[np.float64]
     gaussian_curvature: NDArray[np.float64]
     mean_curvature: NDArray[np.float64]
-    patch_index: NDArray[np.int64]
     uv_radius: NDArray[np.float64]
 
 
@@ -71,14 +69,12 @@ def curvatures_of_tile(registers, outputs, scales, count, curvatures):
 
 
 @jit
-def fill_places(
-    tape, work, numbers, places, first, last, normals, scales, frame, cells, curvatures, fields
-):
+def fill_places(tape, work, numbers, places, first, last, normals, scales, curvatures, fields):
     """Write the fields of the samples at the solutions first, …, last − 1 of a search.
 
     places (k, 6) are the solutions, numbers (k,) the indices of their unit normals (S, 3). `scales`
     are (size, du, dv): on the surface times `size`, a rectangle of parameters du × dv has about the
-    size 1. `frame` are u₀, v₀, du, dv of the spline, which has m × n `cells`.
+    size 1.
     """
     x, y, z = POINT * tape.outputs[0], POINT * tape.outputs[1], POINT * tape.outputs[2]
     curved = len(fields.gaussian_curvature) + len(fields.mean_curvature) > 0
@@ -112,42 +108,5 @@ def fill_places(
                 fields.gaussian_curvature[at] = math.copysign(curvatures[i], places[at, 4])
             if len(fields.mean_curvature) > 0:
                 fields.mean_curvature[at] = curvatures[i + MEAN]
-            if len(fields.patch_index) > 0:
-                fields.patch_index[at] = patch_number(work.u[k], work.v[k], frame, cells)
             if len(fields.uv_radius) > 0:
                 fields.uv_radius[at, 0], fields.uv_radius[at, 1] = places[at, 2], places[at, 3]
-
-
-@jit
-def order_by_patch(numbers, places, frame, cells):
-    """Sort the solutions for each normal, which are in the order of u and v, by patches.
-
-    They are in the order of rows of cells: only those of one row may have to be exchanged.
-    """
-    for first in range(1, numbers.size):
-        k = first
-        while (
-            k > 0
-            and numbers[k - 1] == numbers[k]
-            and is_in_patch_before(places, k, k - 1, frame, cells)
-        ):
-            for x in range(places.shape[1]):
-                places[k, x], places[k - 1, x] = places[k - 1, x], places[k, x]
-            k -= 1
-
-
-@loop
-def is_in_patch_before(places, i, k, frame, cells):
-    """Return whether the patch of solution i has a smaller number than that of solution k."""
-    return patch_number(places[i, 0], places[i, 1], frame, cells) < patch_number(
-        places[k, 0], places[k, 1], frame, cells
-    )
-
-
-@loop
-def patch_number(u, v, frame, cells):
-    """Return the number of the patch of parameters."""
-    row, column, turn, _, _ = patch_at(
-        (u - frame[0]) / frame[2], (v - frame[1]) / frame[3], cells[0], cells[1]
-    )
-    return 4 * (row * cells[1] + column) + turn

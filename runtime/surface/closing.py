@@ -1,0 +1,77 @@
+"""Seams and poles that are declared: whether a surface closes there."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.errors import SurfaceError
+from ..base.evaluation import returned
+from ..domain.domain import closes
+from ..spline.quasi_interpolant import apart, not_too_large
+from .surface_values import SurfaceValues
+
+__all__ = ["close_seams", "closed_points"]
+
+# Points at the ends of a parameter are compared with those as many roundings of it away.
+ROUNDINGS = 2.0
+
+
+def closed_points(surface: SurfaceValues, cells: tuple[int, int]) -> NDArray[np.float64]:
+    """Return points (m + 1, n + 1, 3) of a surface at the corners of m × n cells of its domain.
+
+    Raises SurfaceError as `close_seams`, and if points are too large to compute with.
+    """
+    u, v = (
+        np.linspace(*ends, count + 1) for ends, count in zip(surface.domain, cells, strict=True)
+    )
+    points = not_too_large(surface.evaluate(u[:, None], v), surface.name)
+    close_seams(surface, points)
+    return points
+
+
+def close_seams(surface: SurfaceValues, vertices: NDArray[np.float64]) -> None:
+    """Make vertices (m + 1, n + 1, 3) on a seam equal, so that the spline closes exactly.
+
+    Raises SurfaceError if they differ beyond rounding, or if a pole is not one point.
+    """
+    for axis, (along, ends) in enumerate(zip("uv", surface.boundary, strict=True)):
+        rows = np.swapaxes(vertices, 0, axis)
+        if closes(ends):
+            first = rows[0] if ends[0] == "periodic" else rows[0, ::-1].copy()
+            if apart(rows[-1], first, vertices):
+                raise SurfaceError(
+                    f"surface {surface.name!r} does not close along {along}: its two ends must be "
+                    f"the same{'' if ends[0] == 'periodic' else ', mirrored'}"
+                    f"{_by_rounding(surface, axis, rows[-1], first)}."
+                )
+            rows[-1] = first
+        for end, place, row in zip(ends, surface.domain[axis], (0, -1), strict=True):
+            if end == "pole" and apart(rows[row], rows[row, :1], vertices):
+                raise SurfaceError(
+                    f"surface {surface.name!r} has no pole at {along} = {place}: this side "
+                    "of its domain is not one point."
+                )
+
+
+def _by_rounding(
+    surface: SurfaceValues, axis: int, last: NDArray[np.float64], first: NDArray[np.float64]
+) -> str:
+    """Return a clause: how far both ends of a parameter differ, and if its rounding explains it."""
+    low, high = surface.domain[axis]
+    other = np.linspace(*surface.domain[1 - axis], len(last))
+    far = float(np.abs(last - first).max())
+    moved = 0.0
+    step = ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
+    for end, row in ((low + step, first), (high - step, last), (high + step, last)):
+        near = np.full(len(last), end)
+        places = (near, other) if axis == 0 else (other, near)
+        points = returned(surface.function, places, (3,), f"surface {surface.name!r}")
+        moved = max(moved, float(np.nanmax(np.abs(points - row))))
+    along = "uv"[axis]
+    if not moved >= 0.5 * far:
+        return f"; they differ by {far:.3g}"
+    return (
+        f"; they differ by {far:.3g}, as much as its rounding changes the points there: let the "
+        f"callable reduce {along} first, as by numpy.where({along} == {high!r}, {low!r}, {along})"
+    )
