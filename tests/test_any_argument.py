@@ -249,6 +249,7 @@ SPECIAL: dict[str, list[dict[str, Any]]] = {
     "Samples": [
         {x: Of("samples", x) for x in ("points", "normals", "report", "spline", "surface")}
     ],
+    "silhouette": [{"direction": (0.0, 0.0, 1.0)}],
     "Samples.view": [{"path": "new.html"}],
     "Samples.write": [{"path": "new.npz"}],
     "Samples[…]": [{"key": 0}],

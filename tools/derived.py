@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from ..runtime.spline.nets import AnySpline
     from ..runtime.surface.surface import Surface
     from .cad.part import Part
+    from .gauss_map.silhouette import Silhouette
     from .meshes.mesh import Mesh
     from .meshes.triangulated import Prefer
 
@@ -37,9 +38,14 @@ __all__ = [
     "plot",
     "unobstructed",
     "view",
+    "visible",
     "weights",
     "write",
 ]
+
+
+# The samples of a mesh that hides parts of an outline.
+OF_VIEW = 10_000
 
 
 def write(
@@ -446,6 +452,65 @@ def unobstructed(
         by = obstacle_of(cast("Part", by))
     points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
     return are_free(points, normals, far, by)
+
+
+def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
+    """Return which points of a silhouette are seen: no part of the surface is before them.
+
+    Along a direction, the eye is infinitely far away, and looks along the direction.
+
+    Parameters
+    ----------
+    by : Mesh, optional
+        A mesh of the surface, against which rays are tested; by default that of 10,000 samples.
+        Next to cusps of the outline, where rays pass the surface within about the distance of the
+        mesh from it, the result may be wrong.
+
+    Returns
+    -------
+    (N,) bool array
+        Whether a point is seen.
+
+    Raises
+    ------
+    InputError
+        For an object that is no mesh, and as `mesh`.
+    MissingFieldError
+        Unless the samples have the fields points and normals.
+    MissingExtraError
+        Without the extra `rays`.
+
+    See Also
+    --------
+    unobstructed : the same along normals.
+
+    Examples
+    --------
+    The contour of a torus has two curves; the torus hides a part of the inner one:
+
+    >>> import gaussmap as gm
+    >>> outline = gm.silhouette("torus", viewpoint=(4, 0, 2), count=200)
+    >>> seen = outline.visible(by=gm.sample("torus", 2_000).mesh())
+    >>> bool(seen[outline.elliptic].all()), 0.2 < float(seen[outline.hyperbolic].mean()) < 0.9
+    (True, True)
+
+    """
+    from .meshes.mesh import Mesh
+    from .meshes.rays import check_rays
+    from .meshes.rays import visible as are_seen
+    from .sampling.sample import sample
+
+    check_rays()
+    points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
+    if by is None:
+        given = self.surface if self.report.on == "surface" else self.spline
+        by = sample(cast("Surface", given), OF_VIEW).mesh()
+    if not isinstance(by, Mesh):
+        raise InputError(f"by must be a Mesh, not {type(by).__name__}.")
+    assert self.view is not None
+    size = np.ptp(by.vertices, axis=0).sum()
+    to_eye = -self.view.rays(points) * (2.0 * size if self.view.far else 1.0)
+    return are_seen(points, normals, to_eye, by)
 
 
 def plot(

@@ -1,24 +1,29 @@
-"""Polylines through samples of a contour generator, the curve with N·d = 0 on a spline.
+"""The contour generator of a spline, the curve with N·d = 0, and polylines through its samples.
 
-The signs of N·d on a grid locate the curves, which are closed or end at open sides. Zero counts as
-positive, so that a curve may follow sides of the grid, and cross a pole; along an open side it gets
-the sign opposite to the inside. Samples are sorted along these curves by their feet in the
-parameter plane; where a curve leaves the trim of the spline it is cut.
+d is a direction, or the ray x − p from a viewpoint p. The signs of N·d on a grid locate the curves,
+which are closed or end at open sides. Zero counts as positive, so that a curve may follow sides of
+the grid, and cross a pole; along an open side it gets the sign opposite to the inside. Samples are
+sorted along these curves by their feet in the parameter plane; where a curve leaves the trim of the
+spline it is cut.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.trees import tree_of
+from ...runtime.domain.domain import brought_inside
 from ...runtime.spline.spline import Spline
 from .sign_changes import sign_changes, with_borders
 
-__all__ = ["polylines_of"]
+__all__ = ["View", "places_along", "polylines_of"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 # A cell of the spline is divided into the largest of these numbers of parts along u and along v
 # that gives at most MOST_CELLS cells.
@@ -29,15 +34,57 @@ ROUNDING = 1e-14
 CANDIDATES = 8
 
 
-def polylines_of(spline: Spline, axis: Array, uv: Array) -> tuple[Indices, ...]:
-    """Return the indices of samples in their order along each curve with N·axis = 0.
+class View(NamedTuple):
+    """Where an eye is: at the point `at`, or, if it is `far`, looking along the direction `at`."""
+
+    at: Array
+    far: bool
+
+    def rays(self, points: Array) -> Array:
+        """Return the directions (k, 3) in which the eye sees points (k, 3), of any length."""
+        return np.broadcast_to(self.at, points.shape) if self.far else points - self.at
+
+
+def places_along(spline: Spline, view: View, count: int) -> tuple[Array, tuple[Indices, ...]]:
+    """Return about `count` parameters (k, 2) at equal steps along the contour generator in space.
+
+    Also return polylines, as `polylines_of` does.
+    """
+    ends, section, closed, outside = _segments(spline, view)
+    ends, section = ends[~outside], section[~outside]
+    uv = [_wrapped(spline, ends[:, k]) for k in (0, 1)]
+    steps = np.linalg.norm(spline.evaluate(*uv[1].T) - spline.evaluate(*uv[0].T), axis=1)
+    places, lines, first = [np.empty((0, 2))], list[Indices](), 0
+    for k in np.unique(section):
+        own = np.flatnonzero(section == k)
+        along = np.concatenate([[0.0], np.cumsum(steps[own])])
+        number = max(round(count * along[-1] / steps.sum()), 1) if along[-1] > 0.0 else 0
+        at = np.linspace(0.0, along[-1], number, endpoint=not closed[k])
+        before = np.clip(np.searchsorted(along, at, side="right") - 1, 0, len(own) - 1)
+        share = ((at - along[before]) / np.maximum(steps[own[before]], 1e-300))[:, None]
+        start, end = ends[own[before], 0], ends[own[before], 1]
+        places.append(_wrapped(spline, start + share * (end - start)))
+        rows = first + np.arange(number)
+        lines.append(np.append(rows, rows[:1]) if closed[k] else rows)
+        first += number
+    return np.concatenate(places), tuple(x for x in lines if len(x))
+
+
+def _wrapped(spline: Spline, cells: Array) -> Array:
+    """Return the parameters (k, 2) at places in cells, those beyond seams brought inside."""
+    u, v = (spline.frame[:2] + cells * spline.frame[2:]).T
+    return np.stack(brought_inside(u, v, spline.domain, spline.boundary), axis=1)
+
+
+def polylines_of(spline: Spline, view: View, uv: Array) -> tuple[Indices, ...]:
+    """Return the indices of samples in their order along each curve of the contour generator.
 
     `uv` are the parameters of the samples. A closed curve repeats its first sample at its end. Each
     sample is in one polyline.
     """
     if not len(uv):
         return ()
-    ends, section, closed = _segments(spline, axis)
+    ends, section, closed, _ = _segments(spline, view)
     if not len(ends):  # a curve in a corner of a cell, too small to be found
         return (np.arange(len(uv)),)
     copies, original = _with_copies(spline, ends)
@@ -51,14 +98,15 @@ def polylines_of(spline: Spline, axis: Array, uv: Array) -> tuple[Indices, ...]:
     )
 
 
-def _segments(spline: Spline, axis: Array) -> tuple[Array, Indices, list[bool]]:
+def _segments(spline: Spline, view: View) -> tuple[Array, Indices, list[bool], Flags]:
     """Return segments (k, 2, 2), in cells, in the order of curves, and the section (k,) of each.
 
     A curve is one section; where it leaves the trim another one begins. Also returns which sections
-    are closed.
+    are closed, and which segments are outside of the trim.
     """
     ends, sections, closed = [np.empty((0, 2, 2))], [np.empty(0, dtype=np.int64)], list[bool]()
-    for parts, is_closed in _lines(spline, axis):
+    left = [np.empty(0, dtype=np.bool_)]
+    for parts, is_closed in _lines(spline, view):
         own = np.concatenate([np.stack([x[:-1], x[1:]], axis=1) for x in parts])
         outside = np.zeros(len(own), dtype=bool)
         if spline.trim is not None:
@@ -66,9 +114,10 @@ def _segments(spline: Spline, axis: Array) -> tuple[Array, Indices, list[bool]]:
             outside = ~spline.trim.contains(middle)
         first = int(outside.argmax()) if is_closed else 0
         ends.append(np.roll(own, -first, axis=0))
+        left.append(np.roll(outside, -first))
         sections.append(len(closed) + np.cumsum(np.roll(outside, -first)))
         closed += [is_closed and not outside.any()] * (1 + np.count_nonzero(outside))
-    return np.concatenate(ends), np.concatenate(sections), closed
+    return np.concatenate(ends), np.concatenate(sections), closed, np.concatenate(left)
 
 
 def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
@@ -85,13 +134,17 @@ def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
     return near[rows, best], t[rows, best]
 
 
-def _lines(spline: Spline, axis: Array) -> list[tuple[list[Array], bool]]:
-    """Return the curves with N·axis = 0: parts (k, 2) in cells, and whether each is closed."""
+def _lines(spline: Spline, view: View) -> list[tuple[list[Array], bool]]:
+    """Return the contour generator: parts (k, 2) in cells of curves, and whether each is closed."""
     parts = next((x for x in PARTS if x * x * np.prod(spline.cells) <= MOST_CELLS), PARTS[-1])
     counts = np.array(spline.cells) * parts
     nodes = np.stack(np.meshgrid(*map(np.arange, counts + 1), indexing="ij"), axis=-1)
     normals = spline.normals_in_cells(nodes.reshape(-1, 2) / parts).reshape(*nodes.shape[:2], 3)
-    values, noise = normals @ axis, ROUNDING * np.linalg.norm(normals, axis=2)
+    values, noise = normals @ view.at, ROUNDING * np.linalg.norm(normals, axis=2)
+    if not view.far:
+        u, v = np.moveaxis(spline.frame[:2] + nodes / parts * spline.frame[2:], -1, 0)
+        rays = view.rays(spline.evaluate(u, v))
+        values, noise = (normals * rays).sum(axis=2), noise * np.linalg.norm(rays, axis=2)
     values[np.abs(values) <= noise] = 0.0
     kinds = spline.boundary[0][0], spline.boundary[1][0]
     for by, kind in enumerate(kinds):  # on both sides of a seam equal up to rounding

@@ -1,4 +1,8 @@
-"""`silhouette`: the contour generator of a surface, from normals on a great circle."""
+"""`silhouette`: the contour generator of a surface, seen along a direction or from a point.
+
+Along a direction, its points have normals on a great circle; from a viewpoint p they are points of
+the curve N·(x − p) = 0 on the spline, moved to the surface.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +16,16 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ...generated.jet import contour
-from ...runtime.base.checks import whole_number
+from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.checks import finite_array, whole_number
+from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import patch, python_function, vector
+from ...runtime.base.later import Later
 from ...runtime.base.threads import thread_count
 from ...runtime.base.tolerances import NORMAL_ERROR
 from ...runtime.directions.circle import circle
 from ...runtime.directions.unit import as_normals, perpendicular, unit_vector
+from ...runtime.domain.domain import brought_inside
 from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import geometry_of, place_of_samples
 from ...runtime.samples.fields import FLAG_NAMES, checked_dtype, checked_fields
@@ -25,11 +33,12 @@ from ...runtime.samples.report import warn_of
 from ...runtime.samples.samples import Samples
 from ...runtime.search.fill import fill
 from ...runtime.search.search import Hits, find
+from ...runtime.spline.kernels.jets import evaluate_jets
 from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ...runtime.surface.surfaces import named
 from ..density.chosen_normals import NEAR_ENOUGH, NORMALS_PER_SAMPLE
-from .contours import polylines_of
+from .contours import View, places_along, polylines_of
 
 __all__ = ["Silhouette", "great_circle", "silhouette"]
 
@@ -54,10 +63,15 @@ class Silhouette(Samples):
     ----------
     polylines : tuple of (k,) int64 arrays
         The rows along each curve; a closed one repeats its first row at its end.
+    view : View or None
+        The direction or the viewpoint.
 
     """
 
     polylines: tuple[NDArray[np.int64], ...] = field(default=(), kw_only=True)
+    view: View | None = field(default=None, kw_only=True)
+
+    visible = Later("gaussmap.tools.derived")
 
     def __getitem__(self, key: ArrayLike | slice) -> Samples:
         arrays: dict[str, Any] = self.arrays()
@@ -68,13 +82,14 @@ class Silhouette(Samples):
 
     def __reduce__(self) -> tuple[Any, ...]:
         make, nothing = Samples.__reduce__(self)
-        return partial(make, polylines=self.polylines), nothing
+        return partial(make, polylines=self.polylines, view=self.view), nothing
 
 
 def silhouette(
     surface: Surface | Spline | str,
-    direction: ArrayLike,
+    direction: ArrayLike | None = None,
     *,
+    viewpoint: ArrayLike | None = None,
     count: int = 1000,
     cells: Sequence[int] | None = None,
     on: str | None = None,
@@ -83,23 +98,27 @@ def silhouette(
     threads: int | None = None,
     progress: bool = False,
 ) -> Silhouette:
-    """Return points of a surface whose normals are perpendicular to a direction.
+    """Return points of a surface whose normals are perpendicular to the lines of sight.
 
-    They lie on the contour generator, whose parallel projection along `direction` is the outline,
-    hidden parts included. Where K < 0 the outline is concave. The points are found on the spline
-    that approximates the surface, and moved to the surface as samples are. Next to parabolic
-    points, where the surface may have no nearby point with the same normal, they are moved to the
-    contour generator of the surface, and their normal differs from that of their `normal_index`.
+    They lie on the contour generator, whose projection along `direction`, or from `viewpoint`, is
+    the outline, hidden parts included. Along a direction, the outline is concave where K < 0. The
+    points are found on the spline that approximates the surface, and moved to the surface as
+    samples are. Along a direction, next to parabolic points, where the surface may have no nearby
+    point with the same normal, they are moved to the contour generator of the surface, and their
+    normal differs from that of their `normal_index`.
 
     Parameters
     ----------
     surface : Surface, Spline or str
         The surface, or its name in the catalogue.
-    direction : (3,) array_like
-        The direction of the projection, of any length but 0.
+    direction : (3,) array_like, optional
+        The direction of a parallel projection, of any length but 0.
+    viewpoint : (3,) array_like, optional
+        In place of a direction, the point from which the surface is seen.
     count : int, default 1000
-        The approximate number of points. Their normals are uniform on a great circle, so that
-        points are dense where the outline is curved.
+        The approximate number of points. Along a direction, their normals are uniform on a great
+        circle, so that points are dense where the outline is curved. From a viewpoint, they are
+        about equally far apart, and `normal_index` is −1.
     cells, on, fields, dtype, threads, progress : optional
         As in `sample`.
 
@@ -115,7 +134,8 @@ def silhouette(
     Raises
     ------
     GaussmapError
-        As `sample`; InputError also for a direction that is zero, NaN or infinite.
+        As `sample`; InputError also for a direction that is zero, NaN or infinite, and unless
+        either a direction or a viewpoint is given.
 
     Warns
     -----
@@ -126,7 +146,9 @@ def silhouette(
     -----
     Parts of the contour generator along which the normal is constant, such as straight ones and the
     circle on top of a torus seen along its axis, give isolated points or none. A polyline crosses
-    them in one step. The visibility of the outline, its cusps and its T-junctions are not computed.
+    them in one step. From a viewpoint, curves smaller than an eighth of a cell of the spline may be
+    missed. `Silhouette.visible` says which points are seen; cusps and T-junctions of the outline
+    are not computed.
 
     Examples
     --------
@@ -138,29 +160,44 @@ def silhouette(
     [(101, True), (101, True)]
     >>> outline.points[outline.polylines[0]].shape  # a closed curve
     (101, 3)
+    >>> near = gm.silhouette("sphere", viewpoint=(2, 0, 0), count=200)
+    >>> abs(near.points[:, 0] - 0.5).max() < 1e-12
+    np.True_
 
     """
     surface, number = named(surface), checked_dtype(dtype)
     on_surface = place_of_samples(surface, on) == "surface"
     names, flags = checked_fields(fields, surface=on_surface), FLAG_NAMES if on_surface else ()
-    axis, asked = unit_vector(direction, "direction"), whole_number(count, "count")
+    asked, view = whole_number(count, "count"), _view(direction, viewpoint)
     thread_count(threads)
     (geometry,) = on_grids([geometry_of(surface, cells, on).used(number, threads)])
-    spline = geometry.spline
-    normals, hits = _by_count(geometry, axis, asked, progress)
-    found = geometry.near_hits(normals, hits, list(dict.fromkeys([*names, *KEYS, *flags])), number)
-    arrays = found.fields
-    places = _places_on_spline(spline, normals, hits, arrays)
-    unrefined = _move_others(geometry, axis, places, arrays)
-    lines = polylines_of(spline, axis, places)
+    spline, wanted = geometry.spline, list(dict.fromkeys([*names, *KEYS, *flags]))
+    if view.far:
+        normals, hits = _by_count(geometry, view.at, asked, progress)
+        asked_normals, developable = len(normals), hits.developable
+        arrays = geometry.near_hits(normals, hits, wanted, number).fields
+        places = _places_on_spline(spline, normals, hits, arrays)
+        unrefined = _move_others(geometry, view, places, arrays)
+        lines = polylines_of(spline, view, places)
+    else:
+        places, lines = places_along(spline, view, asked)
+        asked_normals, developable = 0, None
+        arrays = _fields_at(geometry, places, wanted, number)
+        found = _move_to_contour(geometry, view, places, arrays, np.arange(len(places)))
+        arrays, lines = {x: y[found] for x, y in arrays.items()}, _of_rows(lines, found)
+        unrefined = 0 if flags else None
     chosen: dict[str, Any] = {name: arrays[name] for name in names}
-    asked_normals = len(normals)
     density = asked_normals / (4 * math.pi)
-    report = geometry.report(asked_normals, density, hits.developable, chosen)
+    report = geometry.report(asked_normals, density, developable, chosen)
     report = replace(report, on=geometry.on, unrefined=unrefined)
     warn_of(report, asked, stacklevel=3)
     return Silhouette(
-        **chosen, report=report, spline=spline, surface=geometry.surface, polylines=lines
+        **chosen,
+        report=report,
+        spline=spline,
+        surface=geometry.surface,
+        polylines=lines,
+        view=view,
     )
 
 
@@ -172,45 +209,84 @@ def _places_on_spline(
     return uv[np.searchsorted(hits.keys, arrays["normal_index"] << 32 | arrays["patch_index"])]
 
 
+def _view(direction: ArrayLike | None, viewpoint: ArrayLike | None) -> View:
+    if (direction is None) == (viewpoint is None):
+        raise InputError("a silhouette needs either a direction or a viewpoint=(x, y, z).")
+    if viewpoint is not None:
+        return View(finite_array(viewpoint, (3,), "viewpoint"), far=False)
+    assert direction is not None
+    return View(unit_vector(direction, "direction"), far=True)
+
+
 def _move_others(
-    geometry: OnSpline,
-    axis: NDArray[np.float64],
-    places: NDArray[np.float64],
-    arrays: dict[str, NDArray[Any]],
+    geometry: OnSpline, view: View, places: Array, arrays: dict[str, NDArray[Any]]
 ) -> int | None:
     """Move samples that are not on the surface to its contour generator; return the number left.
 
-    Newton's method for N·axis = 0, along the gradient from the parameters (N, 2) on the spline,
-    also converges at parabolic points. The samples are overwritten.
+    The samples, which were found at parameters (N, 2) of the spline, are overwritten.
     """
     if FLAG_NAMES[0] not in arrays:
         return None
-    on_surface = arrays[FLAG_NAMES[0]]
-    rows = np.flatnonzero(~on_surface)
-    surface = geometry.surface
-    if len(rows) == 0 or surface is None:
+    rows = np.flatnonzero(~arrays[FLAG_NAMES[0]])
+    if len(rows) == 0 or geometry.surface is None:
         return len(rows)
+    _move_to_contour(geometry, view, places, arrays, rows)
+    return int(np.count_nonzero(~arrays[FLAG_NAMES[0]]))
+
+
+def _move_to_contour(
+    geometry: OnSpline, view: View, places: Array, arrays: dict[str, NDArray[Any]], rows: Indices
+) -> Flags:
+    """Move samples (k,) to the contour generator, and overwrite them; return which ones moved.
+
+    Newton's method for N·d = 0, along the gradient from the parameters (N, 2), also converges at
+    parabolic points.
+    """
     steps, start = geometry.spline.frame[2:], places[rows]
     uv, near = start.copy(), np.zeros(len(rows), dtype=bool)
     for _ in range(MOST_STEPS):
-        jets = surface.jets(*uv.T.copy())[:, SECOND_JET]
-        N, value, *slopes = python_function(contour)(patch(jets), vector(axis))
+        jets = geometry.jets(*uv.T.copy())
+        rays = view.rays(jets[:, 0])
+        N, value, *slopes = python_function(contour)(patch(jets[:, SECOND_JET]), vector(rays))
         gradient = steps * np.stack(slopes, axis=1)
-        near = np.abs(value) <= NORMAL_ERROR * np.linalg.norm(N, axis=0)
+        sizes = np.linalg.norm(N, axis=0) * np.linalg.norm(rays, axis=1)
+        near = (np.abs(value) <= NORMAL_ERROR * sizes) & (view.far | (sizes > 0.0))
         squares = np.square(gradient).sum(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             move = -steps * gradient * (value / squares)[:, None]
         uv = np.where(near[:, None] | ~np.isfinite(move), uv, uv + move)
         uv = np.clip(uv, start - FARTHEST * steps, start + FARTHEST * steps)
         uv = _inside(uv, geometry.spline)
-    done = rows[near]
+    done, (u, v) = rows[near], uv[near].T
+    uv = np.stack(brought_inside(u, v, geometry.spline.domain, geometry.spline.boundary), axis=1)
     fields = [x for x in arrays if x not in KEYS]
-    K = np.ones(len(done))
     dtype = arrays["points"].dtype if "points" in arrays else np.float64
-    moved = geometry.at_parameters(uv[near], np.tile(axis, (len(done), 1)), K, fields, dtype)
+    moved = _fields_at(geometry, uv, fields, dtype)
     for name in fields:
         arrays[name][done] = moved[name]
-    return int(np.count_nonzero(~arrays[FLAG_NAMES[0]]))
+    return near
+
+
+def _of_rows(lines: Sequence[Indices], rows: Flags) -> tuple[Indices, ...]:
+    """Return polylines of those rows that are kept."""
+    number, found = np.cumsum(rows) - 1, list[Indices]()
+    for line in lines:
+        is_closed = len(line) > 1 and line[0] == line[-1]
+        kept = line[: -1 if is_closed else None]
+        kept = number[kept[rows[kept]]]
+        if len(kept):
+            found.append(np.append(kept, kept[:1]) if is_closed else kept)
+    return tuple(found)
+
+
+def _fields_at(
+    geometry: OnSpline, uv: Array, fields: Sequence[str], dtype: DTypeLike
+) -> dict[str, NDArray[Any]]:
+    """Return fields of samples at parameters (k, 2)."""
+    normals, K, H = np.empty((len(uv), 3)), np.empty(len(uv)), np.empty(len(uv))
+    scales = np.array([geometry.spline.scale, *geometry.spline.frame[2:]])
+    evaluate_jets(geometry.jets(*uv.T.copy()), scales, normals, K, H)
+    return geometry.at_parameters(uv, normals, K, fields, dtype)
 
 
 def _inside(uv: NDArray[np.float64], spline: Spline) -> NDArray[np.float64]:

@@ -1,24 +1,27 @@
-"""Unobstructed samples: rays along normals, tested against a closed mesh."""
+"""Unobstructed and visible samples: rays that are tested against a mesh."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-from ...runtime.base.aliases import Array, Flags
+from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.errors import InputError
 from ...runtime.base.extras import check_extra, from_extra
 from ...runtime.base.scales import scale_to_one
 from .mesh import Mesh
 
-__all__ = ["check_rays", "unobstructed"]
+__all__ = ["check_rays", "unobstructed", "visible"]
 
 PURPOSE = "a test with rays"
 # Rays begin this far below the surface, relative to the obstacle's size, to hit an obstacle in
 # contact.
 BELOW = 1e-9
 RAYS = 4096  # traced at once
+# Rays to an eye begin this many times as far from the surface as points of it are from the mesh.
+TIMES_AWAY = 2.0
 
 
 def check_rays() -> None:
@@ -33,30 +36,57 @@ def unobstructed(points: Array, normals: Array, distance: float, obstacle: objec
     A ray may leave the obstacle: through the surface on which it begins, whose mesh has chords on
     either side of the surface.
     """
-    solid = _solid(obstacle)
-    # trimesh rounds coordinates to some decimals, and merges equal points: sizes are scaled to
-    # about 1.
-    middle, size = solid.bounds.mean(axis=0), float(solid.extents.max())
-    scale = scale_to_one(size)
-    solid.vertices = (solid.vertices - middle) * scale
+    solid, middle, scale = _solid(obstacle, closed=True)
     points, distance = (points - middle) * scale, distance * scale
-    step = BELOW * scale * size
+    step = BELOW * float(solid.extents.max())
     free = np.ones(len(points), dtype=np.bool_)
-    for first in range(0, len(points), RAYS):
-        along = normals[first : first + RAYS]
-        begins = points[first : first + RAYS] - step * along
-        triangles, rays, places = solid.ray.intersects_id(
-            begins, along, multiple_hits=True, return_locations=True
-        )
-        along = along[rays]
-        far = np.einsum("kx,kx->k", np.reshape(places, (-1, 3)) - begins[rays], along)
-        enters = np.einsum("kx,kx->k", solid.face_normals[triangles], along) < 0.0
-        free[first + rays[enters & (far <= distance + step)]] = False
+    begins = points - step * normals
+    for rays, triangles, far in _hits(solid, begins, normals):
+        enters = np.einsum("kx,kx->k", solid.face_normals[triangles], normals[rays]) < 0.0
+        free[rays[enters & (far <= distance + step)]] = False
     return free
 
 
-def _solid(obstacle: object) -> Any:  # noqa: ANN401
-    """Return a mesh of trimesh that traces rays in double precision; InputError if it is open."""
+def visible(points: Array, normals: Array, to_eye: Array, surface: Mesh) -> Flags:
+    """Return a mask (N,) of points of a silhouette that are seen, by a mesh of the surface.
+
+    `to_eye` (N, 3) are vectors to the eye, not shorter than the way out of the mesh. Rays begin on
+    either side of the surface, as far from it as the mesh is: a surface that does not hide the
+    point is on the other side of one of them.
+    """
+    trimesh = from_extra("trimesh", "rays", PURPOSE)
+    solid, middle, scale = _solid(surface, closed=False)
+    points, to_eye = (points - middle) * scale, to_eye * scale
+    distance = np.linalg.norm(to_eye, axis=1)
+    along = to_eye / distance[:, None]
+    away = TIMES_AWAY * trimesh.proximity.closest_point(solid, points)[1].max()
+    free = np.zeros(len(points), np.bool_)
+    for side in (1.0, -1.0):
+        seen = np.ones(len(points), np.bool_)
+        for rays, _, far in _hits(solid, points + side * away * normals, along):
+            seen[rays[far <= distance[rays]]] = False
+        free |= seen
+    return free
+
+
+def _hits(solid: Any, begins: Array, along: Array) -> Iterator[tuple[Indices, Indices, Array]]:  # noqa: ANN401
+    """Yield where rays meet a mesh: rays (k,), triangles (k,), and distances (k,)."""
+    for first in range(0, len(begins), RAYS):
+        part = slice(first, first + RAYS)
+        triangles, rays, places = solid.ray.intersects_id(
+            begins[part], along[part], multiple_hits=True, return_locations=True
+        )
+        rays = first + rays
+        ways = np.reshape(places, (-1, 3)) - begins[rays]
+        yield rays, triangles, np.einsum("kx,kx->k", ways, along[rays])
+
+
+def _solid(obstacle: object, closed: bool) -> tuple[Any, Array, float]:
+    """Return a mesh of trimesh that traces rays in double precision, its centre and its scale.
+
+    Raises InputError if it is open and should be closed. trimesh rounds coordinates to some
+    decimals, and merges equal points: it is moved to the origin and scaled to a size of about 1.
+    """
     trimesh = from_extra("trimesh", "rays", PURPOSE)
     corners: Any = obstacle
     if not isinstance(obstacle, Mesh | trimesh.Trimesh):
@@ -64,9 +94,11 @@ def _solid(obstacle: object) -> Any:  # noqa: ANN401
         raise InputError(f"by must be a part, a Mesh or a trimesh.Trimesh, not {kind}.")
     triangles = corners.triangles if isinstance(obstacle, Mesh) else corners.faces
     solid = trimesh.Trimesh(corners.vertices, triangles, process=False, use_embree=False)
-    if not (solid.is_watertight and solid.is_winding_consistent):
+    if closed and not (solid.is_watertight and solid.is_winding_consistent):
         raise InputError(
             "rays need a closed obstacle, whose triangles say which side is outside, and this one "
             "is open; give the whole part, or a closed mesh, as in unobstructed(5.0, by=part)."
         )
-    return solid
+    middle, scale = solid.bounds.mean(axis=0), scale_to_one(float(solid.extents.max()))
+    solid.vertices = (solid.vertices - middle) * scale
+    return solid, middle, scale

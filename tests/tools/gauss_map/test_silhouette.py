@@ -369,3 +369,88 @@ def test_it_lies_on_the_surface_and_has_its_count(name: str) -> None:
     on_spline = gm.silhouette(surface, axis, count=400, on="spline")
     assert on_spline.report.on == "spline"
     assert len(on_spline.polylines) == len(outline.polylines)
+
+
+# --- from a viewpoint -----------------------------------------------------------------------------
+
+VIEWPOINT = (3.0, 1.5, 1.6)
+SIGHTS: list[dict[str, Any]] = [{"viewpoint": VIEWPOINT}, {"direction": (-3.0, -1.5, -1.6)}]
+
+
+@compiled
+@covering(
+    name=["torus", "ellipsoid", "wavy_graph", "moebius_band", "catenoid"], on=["surface", "spline"]
+)
+def test_normals_are_perpendicular_to_lines_of_sight(name: str, on: str) -> None:
+    surface = gm.surfaces.surface(name)
+    outline = gm.silhouette(surface, viewpoint=VIEWPOINT, count=300, on=on)
+    rays = outline.points - VIEWPOINT
+    cosines = np.einsum("kx,kx->k", outline.normals, rays) / np.linalg.norm(rays, axis=1)
+    assert np.abs(cosines).max() < 1e-11
+    assert len(outline) == pytest.approx(300, rel=0.03)
+    for line in open_lines(outline):
+        steps = np.linalg.norm(np.diff(outline.points[line], axis=0), axis=1)
+        assert steps.max() <= 1.25 * np.median(steps)
+    own: Any = surface if on == "surface" else outline.spline
+    np.testing.assert_allclose(own.evaluate(*outline.uv.T), outline.points, atol=1e-12)
+
+
+@compiled
+def test_a_sphere_from_a_viewpoint() -> None:
+    """The circle x·p = r²."""
+    sphere, eye = gm.surfaces.sphere(radius=2.0), np.array(VIEWPOINT)
+    outline = gm.silhouette(sphere, viewpoint=eye, count=100)
+    np.testing.assert_allclose(outline.points @ eye, 4.0, atol=1e-10)
+    (line,) = outline.polylines
+    assert is_closed(line)
+    assert outline.report.unrefined == 0
+    assert (outline.normal_index == -1).all()
+
+
+@compiled
+def test_contours_are_complete_on_a_grid() -> None:
+    """Where N·(x − p) changes its sign along u, there is a point."""
+    outline = gm.silhouette(gm.surfaces.wavy_graph(), viewpoint=VIEWPOINT, count=2_000)
+    u, v = np.meshgrid(np.linspace(-1, 1, 100), np.linspace(-1, 1, 41)[1:-1], indexing="ij")
+    x, xu, xv = np.moveaxis(gm.surfaces.wavy_graph().jets(u.ravel(), v.ravel()), 1, 0)[:3]
+    values = np.einsum("kx,kx->k", np.cross(xu, xv), x - VIEWPOINT).reshape(u.shape)
+    i, j = np.nonzero(values[1:] * values[:-1] < 0.0)
+    middles = np.stack([(u[i, j] + u[i + 1, j]) / 2.0, v[i, j]], axis=1)
+    assert len(middles) > 20
+    assert np.linalg.norm(middles[:, None] - outline.uv, axis=2).min(axis=1).max() < 0.05
+
+
+@compiled
+def test_far_viewpoints_are_directions_and_trims_cut() -> None:
+    far = gm.silhouette(TORUS, viewpoint=1e8 * np.array(DIRECTIONS[-2]), count=200)
+    assert np.abs(far.normals @ unit(DIRECTIONS[-2])).max() < 1e-7
+    assert [is_closed(x) for x in far.polylines] == [True, True]
+    square = [[0.1, 0.2], [2.5, 0.2], [2.5, 6.0], [0.1, 6.0]]
+    part = gm.silhouette(TORUS.trimmed([square]), viewpoint=VIEWPOINT, count=200)
+    assert (part.uv >= np.array([0.1, 0.2]) - 0.01).all()
+    assert not any(map(is_closed, part.polylines))
+
+
+@compiled
+@pytest.mark.parametrize("sight", SIGHTS, ids=["viewpoint", "direction"])
+def test_visible_parts_of_a_torus(sight: dict[str, Any]) -> None:
+    """Rays to the eye, with the implicit equation; wrong at most next to cusps and junctions."""
+    pytest.importorskip("rtree")
+    outline = gm.silhouette(TORUS, count=400, **sight)
+    seen = outline.visible(by=gm.sample(TORUS, 4_000).mesh())
+    to_eye = VIEWPOINT - outline.points if "viewpoint" in sight else -np.array([sight["direction"]])
+    way = outline.points[:, None] + np.linspace(0.02, 1, 2_000)[:, None] * (to_eye + 0.0)[:, None]
+    x, y, z = np.moveaxis(way, 2, 0)
+    free = ((np.hypot(x, y) - MAJOR) ** 2 + z**2 > MINOR**2).all(axis=1)
+    assert 0.1 < free[outline.hyperbolic].mean() < 0.9
+    assert (seen != free).mean() < 0.04
+    again = pickle.loads(pickle.dumps(outline))
+    assert again.view is not None
+    assert again.view.far == ("direction" in sight)
+
+
+def test_refusals_of_views() -> None:
+    refused("either a direction or a viewpoint", gm.silhouette, TORUS)
+    refused("either", gm.silhouette, TORUS, (1, 2, 3), viewpoint=(1, 2, 3))
+    refused("viewpoint", gm.silhouette, TORUS, viewpoint=(1, 2))
+    refused("must be a Mesh", gm.silhouette(TORUS, (1, 2, 3), count=10).visible, by=TORUS)
