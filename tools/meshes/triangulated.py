@@ -43,7 +43,7 @@ LARGEST_DEVIATION = 30.0
 SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
 # A bound for which more than this share of the samples would be left out is not tried: where
-# normals of neighbours differ by 30° and more, no flip makes shapes better, and collapses go on.
+# distances of samples double from one to the next, no triangles are better, and collapses go on.
 MOST_LOST = 0.1
 # The arrays that flips and collapses change.
 CHANGED = ("triangles", "sides", "neighbours")

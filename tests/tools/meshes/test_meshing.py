@@ -137,6 +137,15 @@ def test_samples_anywhere(name, prefer):
 
 
 @compiled
+def figure_eight(width=1):
+    """Return a figure eight that is turned: it has four narrow bends."""
+    around = f"(2 + sin(v)/{width})"
+    return gm.Surface.from_sympy(
+        (f"{around}*cos(u)", f"{around}*sin(u)", "sin(2*v)/2"), ("u", "v"),
+        ((0, "2*pi"), (0, "2*pi")), (True, True),
+    )  # fmt: skip
+
+
 class TestTopology:
     @EACH
     @pytest.mark.parametrize("prefer", PREFER)
@@ -362,17 +371,15 @@ class TestShape:
         assert 0 < helicoid.left_out < 15
 
     @pytest.mark.parametrize(("width", "count"), [(1, 500), (1, 1000), (2, 1000)])
-    def test_no_more_than_a_tenth_is_left_out_where_normals_turn_far(self, width, count):
-        """A figure eight that is turned: normals of neighbours differ by 30° and more."""
-        around = f"(2 + sin(v)/{width})"
-        eight = gm.Surface.from_sympy(
-            (f"{around}*cos(u)", f"{around}*sin(u)", "sin(2*v)/2"), ("u", "v"),
-            ((0, "2*pi"), (0, "2*pi")), (True, True),
-        )  # fmt: skip
-        mesh = gm.sample(eight, count).mesh()
+    def test_no_more_than_a_tenth_is_left_out_where_distances_double(self, width, count):
+        mesh = gm.sample(figure_eight(width), count).mesh()
         assert 0 < mesh.left_out <= count / 10
         assert mesh.euler_characteristic == 0
         assert np.quantile(mesh.smallest_angles, 0.05) > 10.0
+
+    def test_none_is_left_out_where_more_samples_follow_the_bends(self):
+        """There, samples are 2.2 times as dense as between them, from one row to the next."""
+        assert gm.sample(figure_eight(), 2000).mesh().left_out == 0
 
     def test_triangles_of_a_one_sided_surface_keep_their_sides_where_samples_are_left_out(self):
         surface = gm.Surface.from_callable(klein, (TURN, (-np.pi, np.pi)), ("mirrored", True))
