@@ -1,19 +1,43 @@
-"""A clock on terminals for work whose number of steps is unknown."""
+"""A clock on terminals for work whose number of steps is unknown, with the step at hand."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
 from threading import Event, Thread
 from typing import Any
 
 from .compiling import NOTICE
 from .threads import seen
 
-__all__ = ["busy"]
+__all__ = ["busy", "tell"]
 
 # In seconds: the delay before the line appears, and the interval of its updates.
 PATIENCE, INTERVAL = 1.0, 0.5
+
+
+@dataclass
+class Step:
+    """What is done at the moment, and how much of it, from 0 to 1, if that is known."""
+
+    task: str
+    name: str = ""
+    share: Callable[[], float] | None = None
+
+    def __str__(self) -> str:
+        parts = [self.task, self.name, "" if self.share is None else f"{self.share():.0%}"]
+        return ", ".join(filter(None, parts))
+
+
+STEP: ContextVar[Step | None] = ContextVar("step", default=None)
+
+
+def tell(name: str, share: Callable[[], float] | None = None) -> None:
+    """Name the step at hand, if a terminal shows the task; `share` is called while it goes on."""
+    if (step := STEP.get()) is not None:
+        step.name, step.share = name, share
 
 
 @contextmanager
@@ -27,22 +51,24 @@ def busy(what: str, progress: bool) -> Iterator[None]:
     line = tqdm(
         desc=what, bar_format="{desc}: {elapsed}", delay=PATIENCE, leave=False, disable=None
     )
-    done = Event()
-    thread = Thread(target=_draw, args=(line, done), daemon=True)
+    done, step = Event(), Step(what)
+    before = STEP.set(step)
+    thread = Thread(target=_draw, args=(line, step, done), daemon=True)
     thread.start()
     try:
         yield
     finally:
+        STEP.reset(before)
         done.set()
         thread.join()
         line.close()
 
 
-def _draw(line: Any, done: Event) -> None:  # noqa: ANN401
+def _draw(line: Any, step: Step, done: Event) -> None:  # noqa: ANN401
     wait = PATIENCE
     while not done.wait(wait):
         wait = INTERVAL
         if not NOTICE.line:  # two lines would overwrite each other
-            line.refresh()
+            line.set_description_str(str(step))
     if wait is not PATIENCE:
         line.clear()

@@ -20,6 +20,7 @@ from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.errors import GaussmapWarning, InputError, SurfaceError
 from ...runtime.base.extras import check_extra
 from ...runtime.base.memory import check_memory
+from ...runtime.base.progress import tell
 from ...runtime.base.wording import plural
 from ...runtime.samples.samples import Samples
 from ..density.cells import Cells, by_piece
@@ -428,6 +429,7 @@ class Meshing:
         none = np.full(len(cells), -1)
         cover = Cover(space, grid=Grid(cells, none, none, (0, 0)))
         inside = self.count - len(sampled.points)
+        tell("placing vertices", lambda: cover.count / (len(cells) + inside))
         if inside:
             cover.spread(len(cells) + inside)
         return cover
@@ -448,6 +450,7 @@ class Meshing:
         )
         triangles, fixed = [], []
         for k, border in enumerate(borders):
+            tell("triangulating faces", lambda done=k: done / len(borders))
             tangents = known.vectors[starts[k] : starts[k + 1], 1:]
             places = spacing.plane(k, np.concatenate([border.uv, inner[k]]), tangents)
             try:
@@ -457,6 +460,7 @@ class Meshing:
                 raise
             triangles.append(starts[k] + found)
             fixed.append(starts[k] + segments)
+        tell("flipping edges")
         at = np.concatenate(
             [x for b, y in zip(borders, numbers, strict=True) for x in (b.numbers, y)]
         )

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.memory import check_memory
+from ...runtime.base.progress import tell
 from ...runtime.domain.domain import Boundary, BoundaryCondition
 from ...runtime.onto_surface.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
@@ -61,6 +62,7 @@ def _checked_angle(angle: object) -> float:
 def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -> Triangulated:
     """Triangulate samples; InputError if `must_be_whole` and the whole surface is not covered."""
     boundary = boundary_of(spline)
+    tell("triangulating")
     vertices = Vertices.of(samples, spline, boundary)
     if spline.trim is None:
         triangles, sides, adjacent = _triangles(vertices, spline, boundary, must_be_whole)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError, shown
+from ...runtime.base.progress import tell
 from ...runtime.base.threads import interruptible
 from ...runtime.base.tolerances import NO_AREA
 from ...runtime.domain.domain import Boundary, Domain
@@ -189,10 +190,12 @@ def flip_edges(mesh: Triangulated, prefer: Prefer, least: float = 1.0) -> int:
     For "shape" cosines between triangles and normals may fall, down to `least`.
     """
     by_shape = prefer == "shape"
+    waiting = np.ones(len(mesh.triangles), dtype=np.bool_)
     given = (
         *mesh.arrays(), by_shape, least if by_shape else 0.0,
-        np.arange(len(mesh.triangles)), np.ones(len(mesh.triangles), dtype=np.bool_),
+        np.arange(len(mesh.triangles)), waiting,
     )  # fmt: skip
+    tell("flipping edges", lambda: 1.0 - waiting.mean())
     return interruptible(partial(kernels.flip_edges, *given))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import io
+import re
 import select
 import sys
 import time
@@ -39,6 +40,28 @@ def test_what_takes_long_is_shown_and_erased(monkeypatch: pytest.MonkeyPatch) ->
     assert len(lines) > 1
     assert set(lines) == {"thinking: 00:00"}
     assert terminal.getvalue().endswith("\r")
+
+
+def test_the_step_at_hand_is_shown_with_its_share(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = terminal_of(monkeypatch)
+    progress.tell("of nothing")
+    with progress.busy("thinking", True):
+        progress.tell("hard", lambda: 0.25)
+        time.sleep(0.2)
+        progress.tell("twice")
+        time.sleep(0.1)
+    lines = {line.strip() for line in terminal.getvalue().split("\r") if line.strip()}
+    assert lines == {"thinking, hard, 25%: 00:00", "thinking, twice: 00:00"}
+
+
+def test_meshing_shows_its_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    samples = gm.sample("torus", 5000)
+    terminal = terminal_of(monkeypatch)
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    monkeypatch.setattr(progress, "INTERVAL", 0.001)
+    samples.mesh(progress=True)
+    assert "meshing, triangulating: 00:0" in terminal.getvalue()
+    assert re.search(r"meshing, flipping edges, \d+%: 00:0", terminal.getvalue())
 
 
 def test_what_is_quick_or_not_asked_for_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
