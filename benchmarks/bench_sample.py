@@ -15,7 +15,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.benchmarks.writing import Writers, new_arrays
-from gaussmap.runtime.search.fill import fill
+from gaussmap.runtime.search.hits import fill
 from gaussmap.runtime.search.search import find
 
 TORUS = gm.surfaces.torus()

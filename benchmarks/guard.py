@@ -20,7 +20,7 @@ from time import process_time
 
 import gaussmap as gm
 import numpy as np
-from gaussmap.runtime.search.fill import fill_hits
+from gaussmap.runtime.search.hits import fill_hits
 from gaussmap.runtime.search.search import find
 from llvmlite.binding import get_host_cpu_name
 

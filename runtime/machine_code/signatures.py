@@ -89,6 +89,6 @@ def as_types(kind: Any) -> Any:
 
 
 def named(name: str) -> Any:
-    """Return an object by its name, such as "gaussmap.runtime.search.kernels.fill.Target"."""
+    """Return an object by its name, such as "gaussmap.runtime.proof.kernels.cell_bounds.CellBounds"."""
     module, _, name = name.rpartition(".")
     return getattr(import_module(module), name)

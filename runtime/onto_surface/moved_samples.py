@@ -11,7 +11,7 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.memory import check_memory
 from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, regular
 from ..samples.report import UndecidedNormal
-from ..search.fill import fill
+from ..search.hits import fill
 from ..search.search import Hits
 from ..spline.spline import Spline
 from ..surface.surface import Surface

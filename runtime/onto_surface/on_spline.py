@@ -27,8 +27,8 @@ from ..fitting.fit import check_range
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field, regular
 from ..samples.report import SamplingReport, UndecidedNormal, sampling_report
 from ..samples.samples import Samples
-from ..search.fill import fill
-from ..search.kernels.tile import fill_known
+from ..search.hits import fill
+from ..search.kernels.hits import fill_known
 from ..search.search import Hits, find, find_in_turn
 from ..spline.developable import CellMeasure
 from ..spline.kernels.forms import forms_of_jets, jets_on_spline, patches_at

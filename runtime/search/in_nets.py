@@ -26,8 +26,16 @@ from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
 from ..spline.tips import tips_of
 from .exact import Decision
-from .integers import Integers, integers, integers_by_row, ratio, sign
-from .long_integers import displaced_forms, exact_forms, leading_sign
+from .long_integers import (
+    Integers,
+    displaced_forms,
+    exact_forms,
+    integers,
+    integers_by_row,
+    leading_sign,
+    ratio,
+    sign,
+)
 
 __all__ = ["decide_in_nets", "edge_signs", "errors_of", "fields_in_nets", "flat_nets"]
 

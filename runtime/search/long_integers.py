@@ -13,16 +13,23 @@ from ...generated.patch import forms
 from ...generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
 from ..base.formula_calls import patch, python_function, vector
 from ..spline.spline import Spline
-from .integers import Integers, integers, integers_by_row, ratio, sign
 
 __all__ = [
+    "Integers",
     "displaced_forms",
     "exact_forms",
     "forms_of_pairs",
+    "integers",
+    "integers_by_row",
     "leading_sign",
     "monomials_of_forms",
     "patch_vectors",
+    "ratio",
+    "sign",
 ]
+
+Integers = NDArray[np.object_]
+MANTISSA = 53
 
 
 def forms_of_pairs(
@@ -117,3 +124,34 @@ def _scaled(values: Integers, exponents: NDArray[np.int64]) -> NDArray[np.float6
     """Return values × 2^exponents as floats."""
     pairs = zip(values, exponents.tolist(), strict=True)
     return np.array([x << e if e >= 0 else x / (1 << -e) for x, e in pairs], dtype=np.float64)
+
+
+# --- floating-point numbers as integers times a power of two --------------------------------------
+
+
+def integers(values: NDArray[np.float64]) -> tuple[Integers, int]:
+    """Return integers and one exponent with values = integers × 2^exponent, exactly."""
+    mantissas, exponents = np.frexp(values)
+    whole = np.ldexp(mantissas, MANTISSA).astype(np.int64).astype(object)
+    lowest = int(exponents[mantissas != 0].min(initial=exponents.max()))
+    shifts = np.maximum(exponents - lowest, 0)
+    return np.left_shift(whole, shifts.astype(object)), lowest - MANTISSA
+
+
+def integers_by_row(vectors: NDArray[np.float64]) -> tuple[Integers, NDArray[np.int64]]:
+    """Return vectors (k, 3) as integers (3, k), with an exponent for each vector."""
+    mantissas, exponents = np.frexp(vectors)
+    whole = np.ldexp(mantissas, MANTISSA).astype(np.int64).astype(object)
+    lowest = np.where(mantissas != 0, exponents, 2**30).min(axis=1)
+    shifts = np.maximum(exponents - lowest[:, None], 0)
+    return (whole << shifts.astype(object)).T, lowest.astype(np.int64) - MANTISSA
+
+
+def sign(values: Integers) -> NDArray[np.int8]:
+    """Return the signs −1, 0, 1."""
+    return np.asarray(values > 0, dtype=np.int8) - np.asarray(values < 0, dtype=np.int8)
+
+
+def ratio(numerator: Integers, denominator: Integers) -> NDArray[np.float64]:
+    """Return quotients of integers, correctly rounded."""
+    return np.asarray(numerator / denominator, dtype=np.float64)

@@ -17,9 +17,17 @@ from ..spline.nets import AnySpline, NetSpline
 from ..spline.spline import Spline
 from ..spline.tips import tips_of
 from .in_nets import errors_of
-from .kernels.lists import FINEST, Lists, list_pieces, order_normals, place_members, write_caps
+from .kernels.lists import (
+    FINEST,
+    NUMBER,
+    Lists,
+    count_keys,
+    list_pieces,
+    order_normals,
+    place_keys,
+    write_caps,
+)
 from .kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
-from .kernels.sort import count_keys, place_keys
 
 __all__ = ["MOST_PATCHES", "Index", "index_of", "listed", "open_sides", "ordered", "sorted_keys"]
 
@@ -117,7 +125,7 @@ def _listed(spline: AnySpline, cones: Array, first: int) -> Lists:
         return listed(cones)
     kept = np.flatnonzero(~tips.collapsed[first : first + len(cones)])
     lists = listed(cones[kept])
-    return lists._replace(members=kept.astype(np.int32)[lists.members[: lists.starts[-1]]])
+    return lists._replace(members=kept.astype(np.int32)[lists.members])
 
 
 def listed(cones: Array) -> Lists:
@@ -134,12 +142,9 @@ def listed(cones: Array) -> Lists:
     while room > len(keys):
         keys = np.empty(room, np.int64)
         room = list_pieces(cones, caps, frame, faces, level, 1.0 / tangent, least, keys)
-    keys = keys[:room]
-    counts, members = np.zeros(len(caps) + 1, np.int32), np.empty(max(room, 1), np.int32)
-    count_keys(keys, 32, counts)
-    starts = np.cumsum(counts, dtype=np.int64)
-    place_members(keys, starts.copy(), members)
-    return Lists(frame, inverse, faces, level, starts, members)
+    keys = sorted_keys([keys[:room]], 32, len(caps))
+    starts = np.searchsorted(keys, np.arange(len(caps) + 1) << 32)
+    return Lists(frame, inverse, faces, level, starts, (keys & NUMBER).astype(np.int32))
 
 
 def _frame_of(cones: Array) -> tuple[Array, float]:

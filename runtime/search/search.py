@@ -17,17 +17,15 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.kept import kept
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
-from ..spline.kernels.developable import count_developable
+from ..spline.kernels.patch import count_developable
 from ..spline.nets import AnySpline, NetSpline
 from ..spline.spline import Spline
 from ..spline.tips import tips_of
 from .exact import decide
-from .fill import fill
-from .hits import Hits
+from .hits import Hits, fill
 from .in_nets import decide_in_nets, flat_nets
-from .kernels.lists import NUMBER
+from .kernels.lists import NUMBER, order_few
 from .kernels.search import PATCHES, Memory, Pairs, search
-from .kernels.sort import order_few
 from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
 __all__ = ["Hits", "developable_patches", "find", "find_in_turn", "on_border"]

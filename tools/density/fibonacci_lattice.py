@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...runtime.directions.regions import Cap
 from ...runtime.directions.sets import part_of_fibonacci, spiral_angle
 from ...runtime.directions.unit import in_pieces, perpendicular
-from ...runtime.search.kernels.cone import least_cosine
+from ...runtime.search.kernels.pieces import least_cosine
 from ...runtime.spline.nets import AnySpline, NetSpline
 
 __all__ = ["Lattice"]

@@ -15,7 +15,7 @@ from ...runtime.base.checks import real_array
 from ...runtime.base.errors import InputError, shown
 from ...runtime.directions.unit import as_normals
 from ...runtime.fitting.fit import patches_of
-from ...runtime.search.fill import fill
+from ...runtime.search.hits import fill
 from ...runtime.search.search import find
 from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface

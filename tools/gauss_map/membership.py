@@ -15,7 +15,7 @@ from ...generated.vectors import Patch, Vector
 from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.scales import scale_to_one
 from ...runtime.base.tolerances import ACCURATE, FORM_ERROR, NEAR_SINGULAR_POINT
-from ...runtime.search.integers import integers, integers_by_row, ratio, sign
+from ...runtime.search.long_integers import integers, integers_by_row, ratio, sign
 from .kernels import support as kernels
 
 __all__ = ["Members", "PatchNormals"]

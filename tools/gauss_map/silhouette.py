@@ -31,7 +31,7 @@ from ...runtime.onto_surface.on_surface import geometry_of, place_of_samples
 from ...runtime.samples.fields import FLAG_NAMES, checked_dtype, checked_fields
 from ...runtime.samples.report import warn_of
 from ...runtime.samples.samples import Samples
-from ...runtime.search.fill import fill
+from ...runtime.search.hits import fill
 from ...runtime.search.search import Hits, find
 from ...runtime.spline.kernels.jets import evaluate_jets
 from ...runtime.spline.spline import Spline

@@ -16,7 +16,7 @@ from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.map import GaussMap
 from ...runtime.samples.fields import Component
 from ...runtime.samples.report import SamplingReport
-from ...runtime.search.fill import fill
+from ...runtime.search.hits import fill
 from ...runtime.search.search import find
 from ...runtime.spline.nets import AnySpline, NetSpline
 from ...runtime.surface.surface import Surface

@@ -2,7 +2,8 @@
 
 Bins are squares on the faces of a cube around the sphere. If all cones lie in a cap, only the face
 +z has bins, and a linear map, the frame (3, 3), takes the cap to this face. On each face, bins are
-numbered along a Morton curve: the leading bits of a number are the bin of a coarser level.
+numbered along a Morton curve: the leading bits of a number are the bin of a coarser level. Keys are
+sorted by their leading bits, by counting; those with the same ones keep their order.
 """
 
 from __future__ import annotations
@@ -16,16 +17,17 @@ from numpy.typing import NDArray
 from ....generated.vectors import Vector
 from ...directions.kernels.vectors import row_vector, set_row
 from ...machine_code.jit import inline, jit, loop
-from .bins import bin_index, cube_face, mapped
 from .pieces import CHORD, SLAB, WIDTH
 
 __all__ = [
     "FINEST",
     "NUMBER",
     "Lists",
+    "count_keys",
     "list_pieces",
+    "order_few",
     "order_normals",
-    "place_members",
+    "place_keys",
     "write_caps",
 ]
 
@@ -50,6 +52,42 @@ class Lists(NamedTuple):
     level: int
     starts: NDArray[np.int64]
     members: NDArray[np.int32]
+
+
+@inline
+def cube_face(n):
+    """Return the face of the cube that a ray n meets, and its coordinates there (in −1 … 1).
+
+    The faces are +x, −x, +y, −y, +z, −z.
+    """
+    x, y, z = abs(n.x), abs(n.y), abs(n.z)
+    axis = 0 if x >= y and x >= z else 1 if y >= z else 2
+    height = n[axis]
+    size = abs(height)
+    face = 2 * axis if height > 0.0 else 2 * axis + 1
+    return face, n[(axis + 1) % 3] / size, n[(axis + 2) % 3] / size
+
+
+@loop
+def nearest_bin(position, grid):
+    """Return the bin at a position along an edge of the grid, the first or last beyond its ends."""
+    return min(max(int(position), 0), grid - 1)
+
+
+@inline
+def bin_index(s, grid):
+    """Return the row or column of a face coordinate; monotone, also in rounding."""
+    return nearest_bin((s + 1.0) * (0.5 * grid), grid)
+
+
+@loop
+def mapped(frame, n):
+    """Return the image of a vector under a linear map (3, 3)."""
+    return Vector(
+        frame[0, 0] * n.x + frame[0, 1] * n.y + frame[0, 2] * n.z,
+        frame[1, 0] * n.x + frame[1, 1] * n.y + frame[1, 2] * n.z,
+        frame[2, 0] * n.x + frame[2, 1] * n.y + frame[2, 2] * n.z,
+    )
 
 
 @inline
@@ -169,10 +207,31 @@ def list_pieces(cones, caps, frame, faces, level, stretch, least, keys):
     return count
 
 
+# --- keys sorted by their leading bits ------------------------------------------------------------
+
+
 @jit
-def place_members(keys, starts, members):
-    """Write the pieces of keys to the places of their bins; `starts` move on."""
-    for key in keys:
-        b = np.uint64(key >> 32)
-        members[np.uint64(starts[b])] = key & NUMBER
+def count_keys(keys, shift, starts):
+    """Add the number of keys with the leading bits b to starts[b + 1]."""
+    for k in range(keys.size):
+        starts[np.uint64((keys[k] >> shift) + 1)] += 1
+
+
+@jit
+def place_keys(keys, shift, starts, ordered):
+    """Write keys to their places; `starts` are those of their leading bits, and move on."""
+    for k in range(keys.size):
+        b = np.uint64(keys[k] >> shift)
+        ordered[np.uint64(starts[b])] = keys[k]
         starts[b] += 1
+
+
+@jit
+def order_few(keys):
+    """Sort keys of which few are not in order, and not far from their places."""
+    for k in range(1, keys.size):
+        key, at = keys[k], k
+        while at > 0 and keys[at - 1] > key:
+            keys[at] = keys[at - 1]
+            at -= 1
+        keys[at] = key

@@ -18,9 +18,9 @@ from ....generated.spline import triangle
 from ....generated.vectors import Patch, Vector
 from ...base.tolerances import ANGLE_ERROR, FORM_ERROR, SHORT_CONTROL_NORMAL
 from ...directions.kernels.vectors import dot, length, row_vector, set_row
+from ...domain.kernels.patch_numbers import place_of
 from ...machine_code.jit import inline, jit, loop
-from ...spline.kernels.patch import vector_at
-from .cone import tangent_bounds
+from ...spline.kernels.patch import patch_vectors, vector_at
 
 __all__ = [
     "BOUND",
@@ -34,6 +34,7 @@ __all__ = [
     "WIDTH",
     "Coefficients",
     "Pieces",
+    "least_cosine",
     "write_net_pieces",
     "write_pieces",
 ]
@@ -260,3 +261,48 @@ def thinnest(net, axis):
     c, s = math.sqrt(max(0.5 + 0.5 * share, 0.0)), math.sqrt(max(0.5 - 0.5 * share, 0.0))
     s = -s if xy > 0.0 else s
     return Vector(s * p.x + c * q.x, s * p.y + c * q.y, s * p.z + c * q.z)
+
+
+# --- cones of the normals of patches --------------------------------------------------------------
+
+
+@loop
+def write_control_normals(patch, net):
+    """Write the control normals (6, 3) of a patch."""
+    normals = control_normals(patch)
+    for k in range(6):
+        set_row(net, k, normals[k])
+
+
+@loop
+def tangent_bounds(patch):
+    """Return bounds of the moduli of the components of the tangent vectors of a patch."""
+    a, b, c, d, e, _ = patch
+    return Vector(
+        max(abs(a.x), abs(b.x), abs(c.x)) + max(abs(d.x), abs(e.x)),
+        max(abs(a.y), abs(b.y), abs(c.y)) + max(abs(d.y), abs(e.y)),
+        max(abs(a.z), abs(b.z), abs(c.z)) + max(abs(d.z), abs(e.z)),
+    )
+
+
+@jit
+def least_cosine(mu, scale, axis, net):
+    """Return the least cosine between a unit vector (3) and an oriented normal of the spline.
+
+    It is a lower bound, from the control normals. The search ends at the first negative cosine.
+    `net` (6, 3) is a work array.
+    """
+    columns = mu.shape[1] - 2
+    towards = Vector(axis[0], axis[1], axis[2])
+    least = 1.0
+    for number in range(4 * (mu.shape[0] - 2) * columns):
+        i, j, turn = place_of(number, columns)
+        write_control_normals(patch_vectors(mu, i + 1, j + 1, turn, scale), net)
+        for k in range(6):
+            normal = row_vector(net, k)
+            size = length(normal)
+            if size > 0.0:
+                least = min(least, dot(normal, towards) / size)
+        if least < 0.0:
+            break
+    return least

@@ -101,7 +101,7 @@ def test_what_a_file_has_is_not_compiled_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A longer list, and then those of usual calls."""
-    first = "gaussmap.runtime.search.kernels.sort.order_few"
+    first = "gaussmap.runtime.search.kernels.lists.order_few"
     second = "gaussmap.runtime.directions.kernels.unit.are_unit"
     listing = signatures.read()
     for names, entries_of in (((second,), 1), ((first, second), 2)):
@@ -135,7 +135,7 @@ def test_the_bytes_of_a_file_are_those_of_its_sources(
 ) -> None:
     """However many processes there are, and whichever of them compiles what."""
     names = (
-        "gaussmap.runtime.search.kernels.sort.order_few",
+        "gaussmap.runtime.search.kernels.lists.order_few",
         "gaussmap.runtime.directions.kernels.unit.are_unit",
     )
     listed = {name: signatures.read()[name] for name in names}

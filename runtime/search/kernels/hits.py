@@ -1,6 +1,7 @@
-"""A tile: a batch of samples in rows of an array, for vectorized loops.
+"""The fields of samples, from pairs of a normal and one of its patches.
 
-The rows contain the normal, the coefficients around the patch and its position, and the results.
+A tile is a batch of samples in rows of an array, for vectorized loops: the normal, the coefficients
+around the patch and its position, and the results.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from ....generated.patch import sample
 from ....generated.spline import CORNERS, NEIGHBOURS, SCALE, triangle
 from ....generated.vectors import Vector
-from ...directions.kernels.vectors import STEP, dot, row_vector, set_row, whole_vectors
+from ...directions.kernels.vectors import STEP, TILE, dot, row_vector, set_row, whole_vectors
 from ...domain.kernels.patch_numbers import place_of
 from ...machine_code.jit import jit, long_vectors, loop
 from ...spline.kernels.patch import (
@@ -26,7 +27,7 @@ from ...spline.kernels.patch import (
 )
 from .lists import NUMBER
 
-__all__ = ["NORMAL", "copy_patch", "fill_known", "fill_tile", "load_patch", "new_tile", "put"]
+__all__ = ["fill_known", "fill_samples", "new_tile"]
 
 # The number of rows, of STEP numbers, and the starts of the parts of a tile. The starts are typed,
 # since Numba compiles a function anew for each literal number in its arguments.
@@ -225,6 +226,35 @@ def write_numbers(tile, row, count, start, field):
     if len(field) > 0:
         for k in range(count):
             field[np.uint64(start + k)] = tile[np.uint64(row + k)]
+
+
+@jit
+def fill_samples(
+    mu, scale, normals, frame, keys, first, last, tile, indices,
+    points, directions, uv, support, gaussian, mean, normal_index, patch_index,
+):  # fmt: skip
+    """Fill the samples first, …, last − 1 of keys (N,), number of the normal << 32 | patch.
+
+    frame = (u0, v0, du, dv): the corner of the domain and the size of a cell in the parameters.
+    Absent ones of points (N, 3), directions (N, 3), uv (N, 2), support, gaussian, mean and the two
+    indices (N,) are empty. `tile` and `indices` are work arrays, see `new_tile`.
+    """
+    for begin in range(first, last, TILE):
+        count = min(TILE, last - begin)
+        for k in range(count):
+            key = keys[np.uint64(begin + k)]
+            number, patch = key >> 32, key & NUMBER
+            indices[k], indices[STEP + k] = number, patch
+            put(tile, NORMAL, k, row_vector(normals, np.uint64(number)))
+            # Neighbouring normals mostly have the same patches, often two.
+            if k > 1 and indices[STEP + k - 2] == patch:
+                copy_patch(tile, k, k - 2)
+            else:
+                load_patch(mu, patch, scale, tile, k)
+        fill_tile(
+            tile, indices, count, begin, scale, frame,
+            points, directions, uv, support, gaussian, mean, normal_index, patch_index,
+        )  # fmt: skip
 
 
 @jit
