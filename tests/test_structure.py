@@ -151,7 +151,7 @@ def test_public_names_are_used(path: Path) -> None:
 @pytest.mark.parametrize(
     ("source", "room"),
     [
-        ("import gaussmap.runtime.search.bins", "gaussmap.tools.sampling.stream"),
+        ("import gaussmap.runtime.search.hits", "gaussmap.tools.sampling.stream"),
         ("from gaussmap.runtime.base.errors import InputError", "gaussmap.runtime.search"),
         ("from gaussmap.runtime.base.errors import shown", None),
         ("from gaussmap.runtime import search", None),

@@ -1,4 +1,4 @@
-"""Powers of two that bring numbers to about 1."""
+"""The scale of coordinates: powers of two that bring it to about 1, its limits, its rounding."""
 
 from __future__ import annotations
 
@@ -7,10 +7,21 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["LARGEST_EXPONENT", "scale_to_one", "scales_to_one"]
+from .errors import SurfaceError
+
+__all__ = [
+    "LARGEST_EXPONENT",
+    "SAME_POINT",
+    "apart",
+    "not_too_large",
+    "scale_to_one",
+    "scales_to_one",
+]
 
 # Above this binary exponent, products with a few small integers may overflow.
 LARGEST_EXPONENT = 1000
+# Points that are declared to be one may be this far apart, relative to the size of the surface.
+SAME_POINT = 1e-6
 
 
 def scale_to_one(largest: float) -> float:
@@ -21,3 +32,23 @@ def scale_to_one(largest: float) -> float:
 def scales_to_one(largest: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return powers of two that bring numbers to about 1; 1 for zero, infinity and NaN."""
     return np.ldexp(1.0, np.minimum(-np.frexp(largest)[1], LARGEST_EXPONENT))
+
+
+def apart(
+    first: NDArray[np.float64], second: NDArray[np.float64], points: NDArray[np.float64]
+) -> bool:
+    """Return whether points that should be equal differ by more than rounding."""
+    high, low = (f.reduce(f.reduce(points)) for f in (np.fmax, np.fmin))  # fastest this way
+    size = float((high - low).max())
+    rounding = 64.0 * float(np.spacing(np.fmax(np.abs(low), np.abs(high)).max()))
+    return float(np.abs(first - second).max()) > SAME_POINT * size + rounding
+
+
+def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    """Return points; SurfaceError if they are so large that formulas would overflow."""
+    if np.abs(points).max() > 2.0**LARGEST_EXPONENT:
+        raise SurfaceError(
+            f"the coordinates of {name!r} are too large to compute with: choose another unit of "
+            "length, in which they are smaller than 1e301."
+        )
+    return points

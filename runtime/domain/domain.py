@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,8 @@ __all__ = [
     "closes",
     "domain_text",
     "less_periods",
+    "places_in",
+    "widened",
 ]
 
 # The boundary condition of a side: open, periodic, mirrored (periodic, with the other parameter
@@ -113,12 +115,34 @@ def cells_between(shape: Sequence[int], boundary: Boundary) -> tuple[int, int]:
     return m, n
 
 
+def widened(values: NDArray[Any], mode: Literal["edge", "wrap"] = "wrap") -> NDArray[Any]:
+    """Return the largest of the values (m, n) of each cell and its neighbours.
+
+    At the border that of the opposite side is a neighbour ("wrap"), or none ("edge").
+    """
+    for axis in (0, 1):
+        padded = np.pad(values, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], mode=mode)
+        parts = [np.take(padded, np.arange(k, k + values.shape[axis]), axis) for k in range(3)]
+        values = np.maximum.reduce(parts)
+    return values
+
+
 def less_periods(
     values: NDArray[np.float64], low: NDArray[np.float64] | float, high: NDArray[np.float64] | float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return values (k,) reduced modulo the period to the domain, and the numbers of periods."""
     periods = np.floor((values - low) / (high - low))
     return np.clip(values - periods * (high - low), low, high), periods
+
+
+def places_in(domain: Domain, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return u and v (count,) of points (i/√2, i/√3), modulo 1 of the domain."""
+    steps = np.arange(1, count + 1)
+    u, v = (
+        low + (high - low) * (np.sqrt(x) * steps % 1.0)
+        for x, (low, high) in zip((0.5, 1 / 3), domain, strict=True)
+    )
+    return u, v
 
 
 def brought_inside(

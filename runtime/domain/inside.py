@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags, Indices
 from ..base.errors import SurfaceError
+from .domain import widened
 from .kernels.trim import to_cells
 from .trim import Trim
 
-__all__ = ["FINEST", "Inside", "extremes_around", "subcentroids", "widened"]
+__all__ = ["FINEST", "Inside", "extremes_around", "subcentroids"]
 
 
 # A patch is tested at the centroids of the square of this number of triangles: COARSE for all
@@ -83,15 +82,3 @@ def _shares(trim: Trim, frame: Array, columns: int, patches: Indices, parts: int
 def extremes_around(values: Array) -> tuple[Array, Array]:
     """Return the extremes (m, n), (m, n) of the values (m, n, 4) of cells and their neighbours."""
     return -widened(-values.min(axis=2)), widened(values.max(axis=2))
-
-
-def widened(values: NDArray[Any], mode: Literal["edge", "wrap"] = "wrap") -> NDArray[Any]:
-    """Return the largest of the values (m, n) of each cell and its neighbours.
-
-    At the border that of the opposite side is a neighbour ("wrap"), or none ("edge").
-    """
-    for axis in (0, 1):
-        padded = np.pad(values, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], mode=mode)
-        parts = [np.take(padded, np.arange(k, k + values.shape[axis]), axis) for k in range(3)]
-        values = np.maximum.reduce(parts)
-    return values

@@ -1,27 +1,70 @@
-"""The misfit of a spline: its distance from the surface, or from the data, that it approximates."""
+"""The misfit of a spline: its distance from the surface, or from the data, that it approximates.
+
+A surface is compared at test points that are distinct from those of the fit, data at all points.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
-from ..base.aliases import Array
-from ..domain.domain import Boundary, cells_between
+from ..base.aliases import Array, Flags, Indices
+from ..domain.domain import Boundary, Domain, cells_between
 from ..spline.misfit import Misfit
 from ..spline.spline import Spline
+from ..surface.surface import Surface
 
-__all__ = [
-    "Comparison",
-    "angles_between",
-    "compare_with_data",
-    "evaluated",
-    "squared_lengths",
-]
-
+__all__ = ["Comparison", "Probe", "compare_with_data", "probe_of", "variation"]
 
 POINTS_AT_A_TIME = 1 << 16
+
+
+class Counts(NamedTuple):
+    """The numbers of test points on a line, of lines inside the domain, of scattered points."""
+
+    steps: int
+    lines: int
+    spread: int
+
+
+# Test points are on lines along u and along v, and scattered over the domain. A strip of 1 % of the
+# domain has three of each line that crosses it.
+MANY = Counts(steps=301, lines=4, spread=2048)
+# The same for a spline of fewer cells than FEW_CELLS: the surface is evaluated at most twice as
+# often as for the fit, and at most 8,000 times.
+FEW_CELLS, FEW = 2048, Counts(steps=202, lines=1, spread=512)
+# Further lines in both directions are this close to the sides: at poles and open sides the spline
+# is worst, in the first cell.
+NEAR_ENDS = (0.002, 0.015)
+# A side of the domain is collapsed if the line nearest to it is shorter than this part of the
+# diagonal; within this fraction of the domain from it, normals converge more slowly.
+COLLAPSED, NEXT_TO_POLE = 0.01, 1.0 / 16.0
+# Normals take four evaluations, points one: normals are compared at every third test point on
+# lines, and at every fourth of the scattered ones.
+EACH_ON_LINES, EACH_SPREAD = 3, 4
+# The multiples of irrational numbers are spread evenly, modulo 1: those of 1/g in one dimension, g
+# the golden ratio, those of 1/ρ and 1/ρ² in two, ρ³ = ρ + 1 (Roberts' R2 sequence). Parameters of
+# fits are rational.
+GOLDEN = 0.6180339887498949
+PLASTIC = 0.7548776662466927
+# Central differences of positions over ± this part of the domain: the error of a direction falls
+# with the square of it, and its rounding grows with its inverse. On surfaces that are far from the
+# origin, relative to their size, it is the cube root of the rounding.
+SHORTEST_STEP, LONGEST_STEP = 2.0**-17, 2.0**-11
+# Surface normals with a larger error than this (radians), near singular points, are left out.
+NORMAL_ERROR = 1e-4
+# Of the difference of two coordinates, relative to the largest: eight roundings.
+DIFFERENCE = 2.0**-49
+# The surface is evaluated again at AROUND points around each of the WORST test points, within a
+# cell, and its normal at every EACH_AROUND-th of these. The worst are in different ones of GROUPS
+# groups.
+AROUND, WORST, GROUPS, EACH_AROUND = 30, 16, 100, 4
+# The number of points on each line of a cross around a test point, within a cell on either side.
+CROSS = 17
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,3 +134,232 @@ def angles_between(vectors: Array, normals: Array) -> Array:
     sines = np.linalg.norm(np.cross(scaled, normals), axis=1)
     cosines = np.einsum("ij,ij->i", scaled, normals)
     return np.degrees(np.where(largest[:, 0] > 0.0, np.arctan2(sines, cosines), math.pi / 2))
+
+
+# --- a surface ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """Values of a surface: points (k, 3) at fractions (2, k) of the domain, and l unit normals.
+
+    `with_normals` (l,) are the indices of the points that have a normal (l, 3).
+    """
+
+    parts: Array
+    points: Array
+    with_normals: Indices
+    normals: Array
+
+    def errors(self, spline: Spline) -> tuple[Array, Array]:
+        """Return the squared distances (k,) of a spline, times its scale, and the angles (l,)."""
+        points, vectors = evaluated(spline, *self.parts)
+        squares = squared_lengths(points - self.points, spline.scale)
+        return squares, angles_between(vectors[self.with_normals], self.normals)
+
+
+@dataclass(frozen=True, eq=False)
+class Probe:
+    """Values of a surface at test points, with which splines of it are compared.
+
+    Attributes
+    ----------
+    surface : Surface
+        The surface.
+    known : Known
+        Its values at the test points.
+    spread : int
+        The number of scattered test points, which come last.
+    sides : tuple of (int, int)
+        The axis and the end of each collapsed side of the domain.
+    diagonal, extent, largest : float
+        The length of the diagonal of the bounding box of all points, of its longest side, and the
+        largest coordinate.
+
+    """
+
+    surface: Surface
+    known: Known
+    spread: int
+    sides: tuple[tuple[int, int], ...]
+    diagonal: float
+    extent: float
+    largest: float
+
+    def compare(self, spline: Spline) -> Comparison:
+        """Return the misfit of a spline of the surface.
+
+        The surface is evaluated again around the worst test points, lest narrow maxima be missed.
+        """
+        squares, angles = self.known.errors(spline)
+        rms = math.sqrt(float(squares[len(squares) - self.spread :].mean())) / spline.scale
+        worst = np.concatenate([worst_of(squares), self.known.with_normals[worst_of(angles)]])
+        near = self._around(self.known.parts[:, worst], spline.cells)
+        more = near.errors(spline)
+        parts = np.concatenate([self.known.parts, near.parts], axis=1)
+        numbers = [self.known.with_normals, near.with_normals + len(squares)]
+        squares, angles = (np.concatenate(x) for x in zip((squares, angles), more, strict=True))
+        angle = float(angles.max()) if len(angles) else None
+        misfit = Misfit(math.sqrt(float(squares.max())) / spline.scale, rms, angle)
+        farthest = parts[:, squares.argmax()]
+        of_angles = parts[:, np.concatenate(numbers)]
+        there = np.where(self._away(of_angles), angles, -1.0)
+        if there.max(initial=-1.0) < 0.0:
+            return Comparison(misfit, None, farthest, farthest)
+        return Comparison(misfit, float(there.max()), farthest, of_angles[:, there.argmax()])
+
+    def _around(self, places: Array, cells: tuple[int, int]) -> Known:
+        """Evaluate the surface around test points, within a cell on either side."""
+        half = 1.0 / np.array(cells)[:, None]
+        low = np.clip(places - half, LONGEST_STEP, 1.0 - LONGEST_STEP)
+        high = np.clip(places + half, LONGEST_STEP, 1.0 - LONGEST_STEP)
+        around = low[..., None] + (high - low)[..., None] * _even(AROUND)[:, None]
+        parts = np.concatenate([around.reshape(2, -1), places], axis=1)
+        parts = parts[:, _belonging(self.surface, parts)]
+        points = _points(self.surface, parts)
+        some = np.arange(0, len(points), EACH_AROUND)
+        return _known(self.surface, parts, points, some, (self.extent, self.largest))
+
+    def _away(self, parts: Array) -> Flags:
+        """Return which test points are away from collapsed sides of the domain."""
+        away = np.ones(parts.shape[1], dtype=np.bool_)
+        for axis, end in self.sides:
+            away &= (parts[axis] if end == 0 else 1.0 - parts[axis]) > NEXT_TO_POLE
+        return away
+
+
+def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
+    """Return the test points for splines of a surface with at least the given numbers of cells.
+
+    Raises SurfaceError if the surface cannot be evaluated there.
+    """
+    counts = FEW if cells[0] * cells[1] < FEW_CELLS else MANY
+    parts = _places(counts)
+    points = _points(surface, parts)
+    sizes = np.array([np.ptp(x) for x in points.T])
+    extent, largest = float(sizes.max()), float(np.abs(points).max())
+    first = len(points) - counts.spread
+    diagonal = float(np.hypot.reduce(sizes))
+    lines = points[:first].reshape(2, -1, counts.steps, 3)
+    sides = tuple(
+        (axis, end)
+        for axis, end in ((0, 0), (0, 1), (1, 0), (1, 1))
+        if np.hypot.reduce(np.ptp(lines[1 - axis, end], axis=0)) <= COLLAPSED * diagonal
+    )
+    numbers = _belonging(surface, parts)
+    on_line, spread = numbers < first, int((numbers >= first).sum())
+    each = np.where(on_line, numbers % EACH_ON_LINES, numbers % EACH_SPREAD)
+    some = np.flatnonzero(each == 0)
+    known = _known(surface, parts[:, numbers], points[numbers], some, (extent, largest))
+    return Probe(surface, known, spread or len(numbers), sides, diagonal, extent, largest)
+
+
+def variation(
+    surface: Surface, spline: Spline, comparison: Comparison, slopes: bool
+) -> tuple[float, float]:
+    """Return the variation of the error of a spline along u and along v where it is worst.
+
+    It varies between the middle of a cell and its ends along u if the cells are too long along u,
+    and less if they are too long along v only. With `slopes`, it is divided by the length of the
+    derivative of the surface: errors along the shorter tangent turn normals more.
+    """
+    found, place = [], comparison.steepest if slopes else comparison.farthest
+    for axis in (0, 1):
+        parts = np.repeat(place[:, None], CROSS, axis=1)
+        half = 0.5 / spline.cells[axis]
+        middle = min(max(place[axis], half), 1.0 - half)
+        parts[axis] = np.linspace(middle - half, middle + half, CROSS)
+        points = _points(surface, parts)
+        errors = (evaluated(spline, *parts)[0] - points) * spline.scale
+        ways = np.linalg.norm(np.diff(points * spline.scale, axis=0), axis=1)
+        way = float(ways.sum()) / half if slopes else 1.0
+        found.append(float(np.linalg.norm(np.ptp(errors, axis=0))) / (way or 1.0))
+    return found[0], found[1]
+
+
+# --- test points ----------------------------------------------------------------------------------
+
+
+@cache
+def _places(counts: Counts) -> Array:
+    """Return test points (2, k) as fractions of the domain: on lines along u and v, and scattered.
+
+    The first two lines along u, and along v, are the nearest to the sides. The number of steps is
+    one more than a multiple of EACH_ON_LINES, so that the points with normals differ from line to
+    line.
+    """
+    along = (np.arange(counts.steps, dtype=np.float64) + GOLDEN) / counts.steps
+    numbers = np.arange(1, counts.lines + 1, dtype=np.float64)
+    ends, inside = np.array(NEAR_ENDS), numbers * GOLDEN % 1.0
+    across = np.concatenate([np.stack([ends, 1.0 - ends], axis=1).ravel(), inside])
+    y, x = (array.ravel() for array in np.meshgrid(across, along, indexing="ij"))
+    even = _even(counts.spread)
+    return np.concatenate([np.stack([x, y]), np.stack([y, x]), even], axis=1)
+
+
+def _even(count: int) -> Array:
+    """Return points (2, k) of a low-discrepancy sequence in the unit square."""
+    k = np.arange(1, count + 1, dtype=np.float64)
+    return np.stack([k * PLASTIC % 1.0, k * PLASTIC**2 % 1.0])
+
+
+def worst_of(errors: Array) -> Indices:
+    """Return the indices of WORST of the largest errors, at most one in each of GROUPS groups."""
+    length = max(-(-len(errors) // GROUPS), 1)
+    starts = range(0, len(errors), length)
+    largest = np.array([k + int(errors[k : k + length].argmax()) for k in starts], dtype=np.int64)
+    return largest[np.argsort(errors[largest])[-WORST:]]
+
+
+# --- the surface ----------------------------------------------------------------------------------
+
+
+def _points(surface: Surface, parts: Array) -> Array:
+    """Return the points of a surface at fractions (2, …) of its domain."""
+    return surface.evaluate(*_in_domain(parts, surface.domain))
+
+
+def _belonging(surface: Surface, parts: Array) -> Indices:
+    """Return the indices of the test points inside the trim; of all, if none is."""
+    if surface.trim is None:
+        return np.arange(parts.shape[1])
+    inside = surface.trim.contains(np.stack(_in_domain(parts, surface.domain), axis=1))
+    return np.flatnonzero(inside if inside.any() else ~inside)
+
+
+def _known(
+    surface: Surface,
+    parts: Array,
+    points: Array,
+    some: Indices,
+    size: tuple[float, float],
+) -> Known:
+    """Evaluate a surface at test points, with normals at some of them; see `_normals`."""
+    normals = _normals(surface, parts[:, some], *size)
+    regular = np.isfinite(normals[:, 0])
+    return Known(parts, points, some[regular], normals[regular])
+
+
+def _in_domain(parts: Array, domain: Domain) -> list[Array]:
+    """Return parameters u, v from fractions (2, …) of the domain."""
+    return [low + (high - low) * part for part, (low, high) in zip(parts, domain, strict=True)]
+
+
+def _normals(surface: Surface, parts: Array, extent: float, largest: float) -> Array:
+    """Return unit normals of a surface by central differences; NaN where they are inaccurate.
+
+    `extent` is the size of the surface, `largest` its largest coordinate.
+    """
+    rounding = DIFFERENCE * largest
+    step = np.cbrt(rounding / extent) if extent > 0.0 else LONGEST_STEP
+    step = min(max(float(step), SHORTEST_STEP), LONGEST_STEP)
+    around = np.array([[1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -1.0]])
+    places = parts[:, None] + step * around[..., None]
+    points = _points(surface, places)
+    with np.errstate(all="ignore"):
+        x_u, x_v = (points[k] - points[k + 1] for k in (0, 2))
+        size_u, size_v = (np.abs(x).max(axis=1) for x in (x_u, x_v))
+        normals = np.cross(x_u / size_u[:, None], x_v / size_v[:, None])
+        lengths = np.linalg.norm(normals, axis=1)
+        accurate = rounding / size_u + rounding / size_v < NORMAL_ERROR * lengths
+        return np.where(accurate[:, None], normals / lengths[:, None], np.nan)

@@ -14,21 +14,20 @@ from ..base.advice import about_value
 from ..base.errors import GaussmapWarning, InputError, SurfaceError, in_memory
 from ..base.evaluation import returned
 from ..base.progress import busy
-from ..domain.domain import Domain, cells_between
+from ..base.scales import not_too_large
+from ..domain.domain import Domain, cells_between, places_in
 from ..domain.trim import Trim, trimmed
-from ..spline.inner_coefficients import values_at
 from ..spline.misfit import Misfit
 from ..spline.missing import known_of_values
 from ..spline.nets import AnySpline, on_grid
-from ..spline.quasi_interpolant import checked_cells, fit_grid, fit_values, not_too_large
+from ..spline.quasi_interpolant import checked_cells, fit_grid, fit_values, values_at
 from ..spline.spline import Spline, short_label
 from ..surface.closing import close_seams
 from ..surface.collapsed import with_found_sides
 from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
 from ..surface.surfaces import named
-from .comparison import Comparison, compare_with_data
-from .probe import probe_of, variation
+from .comparison import Comparison, compare_with_data, probe_of, variation
 from .tolerance import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
 
 __all__ = ["DEFAULT_CELLS", "check_range", "fit", "spline_of"]
@@ -291,11 +290,7 @@ def _check_repeated(surface: Surface) -> None:
     """Raise SurfaceError if a user's callable returns other points when it is called again."""
     if surface.grid is not None or isinstance(surface.function, Differentiable):
         return
-    steps = np.arange(1, AGAIN + 1)
-    u, v = (
-        low + (high - low) * (steps * np.sqrt(x) % 1.0)
-        for x, (low, high) in zip((0.5, 1 / 3), surface.domain, strict=True)
-    )
+    u, v = places_in(surface.domain, AGAIN)
     label = f"the callable of surface {surface.name!r}"
     first, second = (returned(surface.function, (u, v), (3,), label) for _ in range(2))
     known = first[np.isfinite(first).all(axis=1)]

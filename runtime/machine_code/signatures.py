@@ -89,6 +89,6 @@ def as_types(kind: Any) -> Any:
 
 
 def named(name: str) -> Any:
-    """Return an object by its name, such as "gaussmap.runtime.proof.kernels.cell_bounds.CellBounds"."""
+    """Return an object by its name, such as "gaussmap.runtime.tape.kernels.points.Tape"."""
     module, _, name = name.rpartition(".")
     return getattr(import_module(module), name)

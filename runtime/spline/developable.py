@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ..base.aliases import Array, Flags
-from ..domain.inside import widened
+from ..domain.domain import widened
 
 __all__ = ["CellMeasure"]
 

@@ -10,7 +10,7 @@ from ...generated import spline as formulas
 from ..base.aliases import Array
 from ..base.formula_calls import python_function
 from ..domain.domain import Boundary, BoundaryPair, closes
-from .planar_ring import ring_around
+from .poles import close_pole
 
 __all__ = ["Border", "Sides", "coefficients_with_ring", "vertices_with_ring"]
 
@@ -58,7 +58,7 @@ def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> 
     At open sides they follow from the boundary, at periodic ones they are copies. At a pole they
     are the first inner coefficients mirrored in their mean, so that this side of the spline is
     exactly one point; the inner ones are moved to one plane, so that the pole has one normal
-    (planar_ring.py).
+    (poles.py).
     """
     result = np.pad(inner, [(1, 1), (1, 1), (0, 0)])
     turned = np.swapaxes(result, 0, 1)
@@ -91,17 +91,11 @@ def _close(result: Array, turned: Array, boundary: Boundary) -> None:
     for rows, end in directions:
         for kind, outside, first in zip(end, (0, -1), (1, -2), strict=True):
             if kind == "pole":
-                _close_pole(rows, outside, first)
+                close_pole(rows, outside, first)
     for rows, end in directions:
         if closes(end):
             step = 1 if end[0] == "periodic" else -1
             rows[0], rows[-1] = rows[-2, ::step].copy(), rows[1, ::step].copy()
-
-
-def _close_pole(rows: Array, outside: int, first: int) -> None:
-    ring, pole = ring_around(rows[first, 1:-1])
-    rows[first, 1:-1] = ring
-    rows[outside, 1:-1] = python_function(formulas.beyond_edge)(pole, ring)
 
 
 # --- vertices -------------------------------------------------------------------------------------

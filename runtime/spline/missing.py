@@ -14,18 +14,17 @@ from numpy.typing import NDArray
 from ..base.aliases import Array, Flags
 from ..base.checks import as_float
 from ..base.errors import GaussmapWarning, InputError, shown
-from ..domain.domain import Boundary, BoundaryPair, Domain
+from ..domain.domain import Boundary, Domain
 from ..domain.inside import extremes_around
 from .ghosts import Border, coefficients_with_ring
-from .inner_coefficients import from_grid, from_values, values_at
 from .kernels import spline as kernels
 from .kernels.forms import patches_at
-from .nodata_blocks import suspicious_block
+from .poles import spread_missing, without_poles
+from .quasi_interpolant import from_grid, from_values, values_at
 
 __all__ = [
     "Known",
     "checked_nodata",
-    "filled",
     "known_of_grid",
     "known_of_values",
     "without_nodata",
@@ -38,6 +37,11 @@ USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)
 # If the given `nodata` differs from the lowest or the highest value by at most this part of itself,
 # it may be that value, printed with six digits.
 NEAR = 1e-5
+# The least number of heights of a block, and its least part of all heights.
+FEWEST, SMALLEST = 16, 1e-3
+# Shores are about as steep as the land. A block is missing data if the median step at its boundary
+# exceeds this multiple of the QUANTILE of the steps elsewhere.
+STEEPER, QUANTILE = 3.0, 0.99
 # The rows of points next to a pole that all patches around it depend on.
 ROWS_AT_POLE = 3
 
@@ -110,7 +114,7 @@ def _warn_of_nodata(points: Array, name: str, given: float | None = None) -> Non
                 f"means that there is no data; if so, say nodata={value:.9g}{instead}."
             )
             return
-    block = suspicious_block(points) if points.ndim == 2 else None
+    block = _suspicious_block(points) if points.ndim == 2 else None
     if block is not None:
         _warn(
             f"{name} holds a block of {block[1]:,} heights of {block[0]:.9g}, where the others end "
@@ -122,17 +126,53 @@ def _warn(text: str) -> None:
     warnings.warn(text, GaussmapWarning, stacklevel=5)
 
 
-def filled(points: Array) -> Array:
-    """Return points (m, n, 3) with the nearest points in place of missing ones."""
-    bad = np.isnan(points)
-    if not bad.any():
-        return points
-    from scipy.ndimage import distance_transform_edt
+def _suspicious_block(heights: Array) -> tuple[float, int] | None:
+    """Return the height of a block of missing data in heights (m, n), and its size; or None.
 
-    touched = bad.any(axis=2)
-    nearest: NDArray[np.int32] = np.empty((2, *touched.shape), dtype=np.int32)
-    distance_transform_edt(touched, return_distances=False, return_indices=True, indices=nearest)
-    return np.where(bad, points[nearest[0], nearest[1]], points)
+    The block is a connected area of the lowest or the highest value, which is 0 unless the area
+    reaches the boundary of the grid. Heights jump at its boundary, unlike at a lake or the sea.
+    """
+    known = ~np.isnan(heights)
+    if not known.any():
+        return None
+    for value in (float(np.nanmin(heights)), float(np.nanmax(heights))):
+        block = _largest_block(heights == value)
+        size = int(block.sum())
+        if size < max(FEWEST, SMALLEST * heights.size) or size == int(known.sum()):
+            continue
+        at_border = any(block[x].any() for x in (0, -1)) or block[:, [0, -1]].any()
+        if (value == 0.0 or at_border) and _jumps(heights, block):
+            return value, size
+    return None
+
+
+def _largest_block(same: Flags) -> Flags:
+    """Return the largest connected part of flags (m, n)."""
+    if same.sum() < FEWEST:
+        return np.zeros_like(same)
+    from scipy.ndimage import label
+
+    numbers = np.asarray(label(same)[0])  # pyright: ignore[reportIndexIssue]
+    return numbers == 1 + int(np.argmax(np.bincount(numbers.ravel())[1:]))
+
+
+def _jumps(heights: Array, block: Flags) -> bool:
+    """Return whether steps at the boundary of a block are much higher than those elsewhere."""
+    across, elsewhere = [], []
+    for axis in (0, 1):
+        steps, inside = np.abs(np.diff(heights, axis=axis)), np.diff(block, axis=axis)
+        low = np.take(block, np.arange(block.shape[axis] - 1), axis)
+        known = ~np.isnan(steps)
+        across.append(steps[inside & known])
+        elsewhere.append(steps[~inside & ~low & known])
+    border, others = np.concatenate(across), np.concatenate(elsewhere)
+    if len(border) == 0 or len(others) == 0:
+        return False
+    usual = float(np.quantile(others, QUANTILE))
+    return usual > 0.0 and float(np.median(border)) > STEEPER * usual
+
+
+# --- patches that do not depend on missing points -------------------------------------------------
 
 
 def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) -> Known | None:
@@ -140,17 +180,13 @@ def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) 
 
     Raises InputError if no patch is left.
     """
-    bad = np.isnan(points).any(axis=2)
+    bad: Flags = np.any(np.isnan(points), axis=2)
     if not bad.any():
         return None
-    for axis, ends in enumerate(boundary):
-        for end, rows in ((ends[0], slice(ROWS_AT_POLE)), (ends[1], slice(-ROWS_AT_POLE, None))):
-            turned = np.swapaxes(bad, 0, axis)
-            if end == "pole" and turned[rows].any():
-                turned[rows] = True
+    spread_missing(bad, boundary, ROWS_AT_POLE)
     zeros = np.zeros((*bad.shape, 3))
     zeros[bad] = np.nan
-    known = _known(*from_grid(zeros, _without_poles(boundary)), domain, boundary)
+    known = _known(*from_grid(zeros, without_poles(boundary)), domain, boundary)
     if not known.patches.any():
         raise InputError(
             f"{int(bad.sum()):,} of the {bad.size:,} points of {name} are missing, and every part "
@@ -177,22 +213,11 @@ def known_of_values(
 
 def _known(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> Known:
     """Return the patches without NaN in their control nets, from coefficients (m, n, 3)."""
-    for axis, ends in enumerate(boundary):
-        rows = np.swapaxes(inner, 0, axis)
-        for end, first in zip(ends, (0, -1), strict=True):
-            if end == "pole" and np.isnan(rows[first]).any():
-                rows[first] = np.nan  # the coefficients around a pole depend on one another
-    coefficients = coefficients_with_ring(inner, border, _without_poles(boundary))
+    bad: Flags = np.any(np.isnan(inner), axis=2)
+    spread_missing(bad, boundary, 1)  # the coefficients around a pole depend on one another
+    inner[bad] = np.nan
+    coefficients = coefficients_with_ring(inner, border, without_poles(boundary))
     m, n = inner.shape[:2]
     nets = np.empty((4 * m * n, 6, 3))
     kernels.control_nets(coefficients, nets)
     return Known(domain, (m, n), np.asarray(~np.isnan(nets).any(axis=(1, 2))))
-
-
-def _without_poles(boundary: Boundary) -> Boundary:
-    """Return boundary conditions with open sides in place of poles, which refuse NaN."""
-
-    def pair(ends: BoundaryPair) -> BoundaryPair:
-        return ("open", "open") if "pole" in ends else ends
-
-    return pair(boundary[0]), pair(boundary[1])

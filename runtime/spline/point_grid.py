@@ -11,8 +11,8 @@ from ..base.advice import NO_CLOUDS
 from ..base.checks import as_float
 from ..base.errors import InputError, shown
 from ..domain.domain import Boundary, Domain, cells_between, closes
-from .missing import filled
-from .quasi_interpolant import apart, fit_grid
+from .poles import broken_poles
+from .quasi_interpolant import fit_grid
 from .spline import Spline
 
 __all__ = ["checked_spacing", "points_of_elevations", "spline_of_points"]
@@ -103,17 +103,15 @@ def _check_closed(points: NDArray[np.float64], boundary: Boundary, name: str) ->
             f"{name} cannot be mirrored along both axes: one of its corners would be missing; use "
             "a callable."
         )
-    for axis, (low, high) in enumerate(boundary):
+    for axis, ends in enumerate(boundary):
         rows = np.swapaxes(points, 0, axis)
-        if closes((low, high)):
-            first = rows[0] if low == "periodic" else rows[0, ::-1]
+        if closes(ends):
+            first = rows[0] if ends[0] == "periodic" else rows[0, ::-1]
             if _farthest(rows[-1], first) < REPEATED * _farthest(rows[1], rows[0]):
                 raise InputError(
                     f"{name} repeats its first points at the end of axis {axis}, which is "
                     "periodic; leave them out."
                 )
-        for end, row in ((low, 0), (high, -1)):
-            at_pole = rows[row][~np.isnan(rows[row]).any(axis=1)]
-            if end == "pole" and len(at_pole) and apart(at_pole, at_pole[:1], filled(points)):
-                place = f"points[{row}]" if axis == 0 else f"points[:, {row}]"
-                raise InputError(f"{name} has no pole at {place}: they are not one point.")
+        for end in broken_poles(points, boundary, axis):
+            place = f"points[{-end}]" if axis == 0 else f"points[:, {-end}]"
+            raise InputError(f"{name} has no pole at {place}: they are not one point.")

@@ -2,26 +2,80 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..base.aliases import Array
 from ..base.checks import pair_of_cells
 from ..base.errors import InputError, SurfaceError
 from ..base.limits import MOST
 from ..base.memory import check_memory
-from ..base.scales import LARGEST_EXPONENT
+from ..base.scales import LARGEST_EXPONENT, not_too_large
 from ..domain.domain import Boundary, Domain, cells_between
-from .ghosts import Border, coefficients_with_ring
-from .inner_coefficients import Values, from_grid, from_values
-from .missing import filled
+from .ghosts import Border, Sides, coefficients_with_ring, vertices_with_ring
+from .kernels import spline as kernels
 from .spline import Spline
 
-__all__ = ["apart", "checked_cells", "fit_grid", "fit_values", "not_too_large"]
+__all__ = [
+    "Values",
+    "checked_cells",
+    "filled",
+    "fit_grid",
+    "fit_values",
+    "from_grid",
+    "from_values",
+    "values_at",
+]
 
-# Points that are declared to be one may be this far apart, relative to the size of the surface.
-SAME_POINT = 1e-6
+
+class Values(NamedTuple):
+    """Values at the centres (m, n, 3) and vertices (m + 1, n + 1, 3) of cells.
+
+    `middles` are those at the midpoints of the edges on the boundary of the domain.
+    """
+
+    centres: Array
+    vertices: Array
+    middles: Sides
+
+
+def values_at(
+    function: Callable[[Array, Array], Array], domain: Domain, cells: tuple[int, int]
+) -> Values:
+    """Return the values of function(u, v) → (..., 3); InputError if the domain is too narrow."""
+    lines = []
+    for along, (low, high), count in zip("uv", domain, cells, strict=True):
+        line = low + (high - low) * (np.arange(2 * count + 1) / (2 * count))
+        if not (np.diff(line) > 0.0).all():
+            raise InputError(
+                f"the domain of {along} is too narrow for {count} cells: ({low}, {high})."
+            )
+        lines.append(line)
+    u, v = lines[0][:, None], lines[1]
+    centres, vertices = function(u[1::2], v[1::2]), function(u[::2], v[::2])
+    at_v, at_u = function(u[1::2], v[[0, -1]]), function(u[[0, -1]], v[1::2])
+    return Values(centres, vertices, (at_v[:, 0], at_v[:, 1], at_u[0], at_u[1]))
+
+
+def from_values(values: Values) -> tuple[Array, Border]:
+    """Return the coefficients (m, n, 3) and the boundary from values at centres and vertices."""
+    inner = np.empty_like(values.centres)
+    kernels.fit_centres_and_vertices(values.centres, values.vertices, inner)
+    return inner, Border.of_values(values.middles, values.vertices)
+
+
+def from_grid(points: Array, boundary: Boundary) -> tuple[Array, Border]:
+    """Return the coefficients and the boundary from values at the vertices only."""
+    ringed = vertices_with_ring(points, boundary)
+    inner = np.empty((ringed.shape[0] - 3, ringed.shape[1] - 3, 3))
+    kernels.fit_vertices(ringed, inner)
+    return inner, Border.of_vertices(ringed)
+
+
+# --- the spline -----------------------------------------------------------------------------------
 
 
 def fit_values(values: Values, domain: Domain, boundary: Boundary, name: str) -> Spline:
@@ -29,7 +83,7 @@ def fit_values(values: Values, domain: Domain, boundary: Boundary, name: str) ->
     return _spline(*from_values(values), domain, boundary, name)
 
 
-def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, name: str) -> Spline:
+def fit_grid(points: Array, domain: Domain, boundary: Boundary, name: str) -> Spline:
     """Return the spline with one cell between any four neighbouring points (m, n, 3) of a grid.
 
     Missing points are replaced by the nearest ones.
@@ -39,9 +93,7 @@ def fit_grid(points: NDArray[np.float64], domain: Domain, boundary: Boundary, na
     return _spline(inner, border, domain, boundary, name)
 
 
-def _spline(
-    inner: NDArray[np.float64], border: Border, domain: Domain, boundary: Boundary, name: str
-) -> Spline:
+def _spline(inner: Array, border: Border, domain: Domain, boundary: Boundary, name: str) -> Spline:
     """Return a spline; SurfaceError if its coefficients are subnormal numbers."""
     coefficients = coefficients_with_ring(inner, border, boundary)
     if 0.0 < float(np.abs(coefficients).max()) < 2.0**-LARGEST_EXPONENT:
@@ -52,24 +104,17 @@ def _spline(
     return Spline(coefficients, domain, boundary, name)
 
 
-def apart(
-    first: NDArray[np.float64], second: NDArray[np.float64], points: NDArray[np.float64]
-) -> bool:
-    """Return whether points that should be equal differ by more than rounding."""
-    extent = points.max(axis=0).max(axis=0) - points.min(axis=0).min(axis=0)  # fastest this way
-    size = float(extent.max())
-    rounding = 64.0 * float(np.spacing(np.abs(points).max()))
-    return float(np.abs(first - second).max()) > SAME_POINT * size + rounding
+def filled(points: Array) -> Array:
+    """Return points (m, n, 3) with the nearest points in place of missing ones."""
+    bad = np.isnan(points)
+    if not bad.any():
+        return points
+    from scipy.ndimage import distance_transform_edt
 
-
-def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]:
-    """Return points; SurfaceError if they are so large that formulas would overflow."""
-    if np.abs(points).max() > 2.0**LARGEST_EXPONENT:
-        raise SurfaceError(
-            f"the coordinates of {name!r} are too large to compute with: choose another unit of "
-            "length, in which they are smaller than 1e301."
-        )
-    return points
+    touched = bad.any(axis=2)
+    nearest: NDArray[np.int32] = np.empty((2, *touched.shape), dtype=np.int32)
+    distance_transform_edt(touched, return_distances=False, return_indices=True, indices=nearest)
+    return np.where(bad, points[nearest[0], nearest[1]], points)
 
 
 def checked_cells(cells: Sequence[int]) -> tuple[int, int]:

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from ..base.errors import SurfaceError
 from ..base.evaluation import returned
+from ..base.scales import apart, not_too_large
 from ..domain.domain import closes
-from ..spline.quasi_interpolant import apart, not_too_large
+from ..spline.poles import broken_poles
 from .surface_values import SurfaceValues
 
 __all__ = ["close_seams", "closed_points"]
@@ -46,12 +47,11 @@ def close_seams(surface: SurfaceValues, vertices: NDArray[np.float64]) -> None:
                     f"{_by_rounding(surface, axis, rows[-1], first)}."
                 )
             rows[-1] = first
-        for end, place, row in zip(ends, surface.domain[axis], (0, -1), strict=True):
-            if end == "pole" and apart(rows[row], rows[row, :1], vertices):
-                raise SurfaceError(
-                    f"surface {surface.name!r} has no pole at {along} = {place}: this side "
-                    "of its domain is not one point."
-                )
+        for end in broken_poles(vertices, surface.boundary, axis):
+            raise SurfaceError(
+                f"surface {surface.name!r} has no pole at {along} = {surface.domain[axis][end]}: "
+                "this side of its domain is not one point."
+            )
 
 
 def _by_rounding(

@@ -19,8 +19,8 @@ from ...generated import spline as formulas
 from ..base.aliases import Array
 from ..base.errors import SurfaceError
 from ..base.formula_calls import python_function
+from ..base.scales import SAME_POINT
 from ..domain.domain import Assumed, Boundary
-from ..spline.quasi_interpolant import SAME_POINT
 from .surface_values import SurfaceValues
 
 __all__ = ["closed_grid", "with_found_sides"]

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.aliases import Array
+from ..base.scales import SAME_POINT, apart
 from ..directions.regions import angles_between
-from ..spline.quasi_interpolant import SAME_POINT, apart
 from .nurbs import Nurbs
 
 __all__ = ["CREASE_ANGLE", "creases", "smoothly_closed"]

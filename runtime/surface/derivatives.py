@@ -1,4 +1,4 @@
-"""Derivatives of surfaces: the interface of functions that have them, and high-order differences.
+"""Derivatives of surfaces: formulas, those of a user, or high-order differences.
 
 The differences are of nine points along u, along v and along one diagonal of the parameters. Steps
 are between 1/512 and 1/256 of the domain, and smaller if differences of seven points show that the
@@ -8,17 +8,21 @@ surface varies faster.
 from __future__ import annotations
 
 import math
+import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ...generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
-from ..base.aliases import Array, Indices
+from ..base.aliases import Array, Flags, Indices
+from ..base.errors import SurfaceError
+from ..base.evaluation import returned
 from ..base.scales import scale_to_one
-from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside
+from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside, places_in
 from ..tape.kernels.points import Tape
 
 __all__ = [
@@ -28,6 +32,7 @@ __all__ = [
     "Differentiable",
     "Function",
     "differences",
+    "jet_function",
     "nodes_between",
     "normals_of_jets",
     "shifts_inside",
@@ -35,6 +40,7 @@ __all__ = [
 ]
 
 Function = Callable[[Array, Array], Array]
+Evaluation = Callable[[Array, Array], ArrayLike]
 Bounds = tuple[tuple[float, float], tuple[float, float]]
 Lines = tuple[tuple[float, ...], tuple[float, ...]]
 
@@ -53,6 +59,12 @@ CHUNK = 4096  # number of rows that are evaluated at a time
 SAME, LARGE = 1e-10, 1e-3
 FINER, LEVELS = 4.0, 5
 ROUNDING = 2.0**-46  # of values: smaller differences are rounding errors
+# Given derivatives are compared with numerical ones at some places.
+PLACES = 48
+# They may differ by TOLERANCE, relative to the largest derivative of the same order, plus DOUBT
+# times the change of the numerical ones when their steps are doubled.
+TOLERANCE = 1e-5
+DOUBT = 10.0
 
 
 class Differentiable(ABC):
@@ -264,3 +276,77 @@ def nodes_between(
 def weighted(weights: Array, shifts: Indices, values: Array) -> Array:
     """Return the sums (k, 3) of values (9, k, 3) with the weights of their shifts."""
     return np.einsum("kj,jkc->kc", weights[shifts + HALF], values)
+
+
+# --- the source of derivatives --------------------------------------------------------------------
+
+
+def jet_function(
+    function: Evaluation,
+    derivatives: Evaluation | None,
+    domain: Domain,
+    boundary: Boundary,
+    name: str,
+) -> Function:
+    """Return the function of u (k,) and v (k,) that gives the 2-jets (k, 6, 3) of a surface."""
+    own = function if isinstance(function, Differentiable) and function.differentiable else None
+    if derivatives is None and own is not None and not own.has_gaps:
+        return own.jets
+    label = f"surface {name!r}"
+    numerical = Differences(guarded(function, (3,), f"the callable of {label}"), domain, boundary)
+    if derivatives is not None:
+        given = guarded(derivatives, (len(NAMES), 3), f"derivatives of {label}")
+        compare(given, numerical, label)
+        return given
+    return numerical.jets if own is None else filled(own, numerical)
+
+
+def guarded(function: Evaluation, shape: tuple[int, ...], label: str) -> Function:
+    """Return a user's callable with checked results, which only one thread calls at a time.
+
+    It raises SurfaceError unless the callable returns an array of `shape` for each parameter pair.
+    """
+    lock = threading.RLock()
+
+    def call(u: Array, v: Array) -> Array:
+        with lock:
+            return returned(function, (u, v), shape, label)
+
+    return call
+
+
+def filled(function: Differentiable, numerical: Differences) -> Function:
+    """Return the derivatives of a formula, with numerical ones where they are not finite."""
+
+    def jets(u: Array, v: Array) -> Array:
+        found = function.jets(u, v)
+        bad = ~np.isfinite(found).all(axis=(1, 2))
+        if bad.any():
+            found[bad] = numerical.jets(u[bad], v[bad])
+        return found
+
+    return jets
+
+
+def compare(derivatives: Function, numerical: Differences, label: str) -> None:
+    """Raise SurfaceError if derivatives are not finite, or not those of the function.
+
+    The message has the derivative, the parameters, and the difference.
+    """
+    u, v = places_in(numerical.domain, PLACES)
+    coarser = replace(numerical, step=2.0 * numerical.step)
+    given, found, coarse = derivatives(u, v), numerical.jets(u, v), coarser.jets(u, v)
+    known = np.logical_and.reduce(np.isfinite(found) & np.isfinite(coarse), axis=-1)
+    sizes = np.abs(np.where(known[..., None], found, 0.0)).max(axis=(0, 2))
+    with np.errstate(invalid="ignore"):
+        error: Array = np.abs(given - found).max(axis=-1)
+        allowed = TOLERANCE * sizes + DOUBT * np.abs(found - coarse).max(axis=-1)
+        wrong: Flags = known & ~(error <= allowed)
+    if wrong.any():
+        order = int(np.argmax(wrong.any(axis=0)))  # the first wrong one explains the others
+        place = int(np.argmax(np.where(wrong, error, -1.0)[:, order]))
+        raise SurfaceError(
+            f"derivatives of {label} contradict it: {NAMES[order]} at u = {float(u[place])}, v = "
+            f"{float(v[place])} is given as {given[place, order]}, and differences of points give "
+            f"{found[place, order]}, {error[place, order]:.2g} away."
+        )

@@ -23,9 +23,10 @@ from ..domain.domain import (
 )
 from ..domain.trim import Trim, trimmed_by
 from ..spline.quasi_interpolant import fit_grid
+from .derivatives import Evaluation
 from .moved import IDENTITY, AffineMap, Moved, affine_map, moved_grid
 from .names import label
-from .surface_values import Evaluation, SurfaceValues
+from .surface_values import SurfaceValues
 from .traced import traced_condition
 
 if TYPE_CHECKING:

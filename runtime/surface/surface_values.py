@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,13 +19,10 @@ from ..domain.domain import Assumed, Boundary, Domain, checked_boundary, checked
 from ..domain.trim import Trim
 from ..spline.spline import short_label
 from ..tape.kernels.points import Tape
-from .derivatives import NAMES, Differences, Differentiable, Function
-from .jet_functions import jet_function
+from .derivatives import NAMES, Differences, Differentiable, Evaluation, Function, jet_function
 from .traced import traced_tape
 
-__all__ = ["Evaluation", "SurfaceValues"]
-
-Evaluation = Callable[[NDArray[np.float64], NDArray[np.float64]], ArrayLike]
+__all__ = ["SurfaceValues"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ..base.aliases import Array
-from ..domain.domain import Domain
+from ..domain.domain import Domain, places_in
 from ..tape.kernels.points import Tape
 from ..tape.tapes import TapeWriter, bounds_over_boxes, values_of
 
@@ -25,8 +25,8 @@ __all__ = ["traced_condition", "traced_tape"]
 Sides = NDArray[np.int8]
 Function = Callable[..., Any]  # of u and v: arrays, or traced numbers
 
-# The callable and the tape are compared at points (i/√2, i/√3) modulo 1 of the domain. Both have
-# rounding errors; that of the tape is bounded, that of the callable may be larger.
+# The callable and the tape are compared at some places. Both have rounding errors; that of the
+# tape is bounded, that of the callable may be larger.
 PLACES = 48
 ROUNDING = 64.0
 
@@ -96,7 +96,7 @@ def traced_condition(function: Function, domain: Domain) -> Condition | None:
         found = function(*(Traced(writer, writer.write(x)) for x in "uv"))
         if not isinstance(found, Condition):
             return None
-        u, v = _places(domain)
+        u, v = places_in(domain, PLACES)
         own, sides = function(u, v), found.sides(np.stack([u, u, v, v], axis=1))
         return found if ((sides == 0) | (own == (sides > 0))).all() else None
     except Exception:  # any exception of a user's callable for objects
@@ -115,7 +115,7 @@ def _tape_of(function: Function) -> Tape | None:
 
 def _agree(function: Function, tape: Tape, domain: Domain) -> bool:
     """Return whether the callable has the values of a tape, up to rounding."""
-    u, v = _places(domain)
+    u, v = places_in(domain, PLACES)
     values, errors = values_of(tape, u, v)
     with np.errstate(all="ignore"):
         own = np.asarray(function(u, v))
@@ -126,15 +126,6 @@ def _agree(function: Function, tape: Tape, domain: Domain) -> bool:
         and known.any(axis=0).all()
         and (np.abs(own - values) <= ROUNDING * errors)[known].all()
     )
-
-
-def _places(domain: Domain) -> list[Array]:
-    """Return u and v (k,) of the points at which a callable and its trace are compared."""
-    steps = np.arange(1, PLACES + 1)
-    return [
-        low + (high - low) * (np.sqrt(x) * steps % 1.0)
-        for x, (low, high) in zip((0.5, 1 / 3), domain, strict=True)
-    ]
 
 
 def row_of(writer: TapeWriter, value: object) -> int:

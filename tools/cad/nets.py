@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError
+from ...runtime.base.scales import apart
 from ...runtime.domain.domain import Interval
-from ...runtime.spline.quasi_interpolant import apart
 from ...runtime.surface.creases import creases, smoothly_closed
 from ...runtime.surface.nurbs import Nurbs
 from ...runtime.surface.nurbs_input import nurbs_of

@@ -9,8 +9,8 @@ from ...generated import curve as formulas
 from ...generated import spline as edge_formulas
 from ...runtime.base.errors import InputError
 from ...runtime.base.formula_calls import python_function
+from ...runtime.base.scales import not_too_large
 from ...runtime.domain.domain import Interval
-from ...runtime.spline.quasi_interpolant import not_too_large
 from .curve_spline import CurveSpline
 
 __all__ = ["checked_points", "spline_of_points", "spline_of_values"]

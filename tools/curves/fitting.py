@@ -6,7 +6,7 @@ import numpy as np
 
 from ...runtime.base.checks import whole_number
 from ...runtime.base.errors import InputError, SurfaceError, in_memory
-from ...runtime.spline.quasi_interpolant import apart, not_too_large
+from ...runtime.base.scales import apart, not_too_large
 from .curve import Curve
 from .curve_quasi_interpolant import spline_of_points, spline_of_values
 from .curve_spline import CurveSpline

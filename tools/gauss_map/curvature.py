@@ -11,10 +11,9 @@ import numpy as np
 from ...generated import gaussian_image as formulas
 from ...runtime.base.aliases import Array
 from ...runtime.base.formula_calls import python_function, vector
-from ...runtime.base.scales import scale_to_one
+from ...runtime.base.scales import not_too_large, scale_to_one
 from ...runtime.base.tolerances import DERIVATIVE_ERROR
 from ...runtime.domain.domain import brought_inside
-from ...runtime.spline.quasi_interpolant import not_too_large
 from ...runtime.surface.derivatives import Function, differences
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.tapes import jets_of

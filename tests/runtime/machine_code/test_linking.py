@@ -87,7 +87,7 @@ def test_long_parts_are_called(kernel: Any, monkeypatch: pytest.MonkeyPatch) -> 
 def test_copies_are_listed() -> None:
     """Kernels that are compiled here, one of each family that calls the most parts."""
     copies: set[str] = set()
-    names = ("decide.decide_exactly", "fill.fill_samples", "search.search")
+    names = ("decide.decide_exactly", "hits.fill_samples", "search.search")
     pairs = "proof.kernels.evaluated_pairs.evaluate_pairs"
     for name in [*(f"search.kernels.{x}" for x in names), pairs]:
         full = f"gaussmap.runtime.{name}"

@@ -7,7 +7,8 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.search import exact, fill, patch_index, search
+from gaussmap.runtime.search import exact, patch_index, search
+from gaussmap.runtime.search import hits as fill
 from gaussmap.runtime.search.search import find
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.

@@ -1,6 +1,7 @@
-"""The coefficients around a pole, exactly in one plane, so that the pole has one normal.
+"""Poles of splines: sides that are one point, around which the surface is smooth.
 
-The patches next to a pole have an edge that is collapsed to a point p. With the first ring of
+The coefficients around a pole are exactly in one plane, so that the pole has one normal. The
+patches next to a pole have an edge that is collapsed to a point p. With the first ring of
 coefficients at p + d and the ghosts at p − d, the normal there is along the cross product of two
 sums of neighbouring d: the same for all patches if all d lie in one plane, and the Gaussian images
 close around it without a gap. On a smooth surface the distances from such a plane are of third
@@ -14,9 +15,13 @@ import math
 
 import numpy as np
 
-from ..base.aliases import Array
+from ...generated.spline import beyond_edge
+from ..base.aliases import Array, Flags
+from ..base.formula_calls import python_function
+from ..base.scales import apart
+from ..domain.domain import Boundary, BoundaryPair
 
-__all__ = ["ring_around"]
+__all__ = ["broken_poles", "close_pole", "ring_around", "spread_missing", "without_poles"]
 
 
 # The number of pairs a, b among whose planes the closest one is chosen.
@@ -24,6 +29,40 @@ CANDIDATES = 4096
 # The length of a and b is the root of this times the distance of neighbours in the ring: the plane
 # of longer vectors is closer to that of the ring, multiples of shorter ones to its coefficients.
 BALANCE = 1.0 / 32.0
+
+
+def broken_poles(points: Array, boundary: Boundary, axis: int) -> list[int]:
+    """Return the ends, 0 or 1, of an axis that are poles, but not one of the points (m, n, 3)."""
+    rows, found = np.swapaxes(points, 0, axis), list[int]()
+    for end in (0, 1):
+        row = rows[-end][~np.isnan(rows[-end]).any(axis=1)]
+        if boundary[axis][end] == "pole" and len(row) and apart(row, row[:1], points):
+            found.append(end)
+    return found
+
+
+def spread_missing(bad: Flags, boundary: Boundary, rows: int) -> None:
+    """Mark all of the `rows` next to a pole as missing (m, n) if one of their points is."""
+    for axis, end in np.ndindex(2, 2):
+        near = np.swapaxes(bad, 0, axis)[-rows:] if end else np.swapaxes(bad, 0, axis)[:rows]
+        if boundary[axis][end] == "pole" and near.any():
+            near[:] = True
+
+
+def without_poles(boundary: Boundary) -> Boundary:
+    """Return boundary conditions with open sides in place of poles, which refuse NaN."""
+
+    def pair(ends: BoundaryPair) -> BoundaryPair:
+        return ("open", "open") if "pole" in ends else ends
+
+    return pair(boundary[0]), pair(boundary[1])
+
+
+def close_pole(rows: Array, outside: int, first: int) -> None:
+    """Write the row outside a pole, and the first one inside, in one plane; see `ring_around`."""
+    ring, pole = ring_around(rows[first, 1:-1])
+    rows[first, 1:-1] = ring
+    rows[outside, 1:-1] = python_function(beyond_edge)(pole, ring)
 
 
 def ring_around(ring: Array) -> tuple[Array, Array]:

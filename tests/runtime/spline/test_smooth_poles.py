@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from gaussmap.runtime.spline.planar_ring import ring_around
+from gaussmap.runtime.spline.poles import ring_around
 
 
 @pytest.mark.parametrize(("count", "error"), [(8, 1.6e-9), (64, 1.6e-9), (512, 4e-9)])
