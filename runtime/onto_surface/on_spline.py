@@ -31,7 +31,8 @@ from ..search.hits import fill
 from ..search.kernels.hits import fill_known
 from ..search.search import Hits, find, find_in_turn
 from ..spline.developable import CellMeasure
-from ..spline.kernels.forms import forms_of_jets, jets_on_spline, patches_at
+from ..spline.kernels.jets import forms_of_jets
+from ..spline.kernels.spline import jets_on_spline, patches_at
 from ..spline.nets import AnySpline, on_grid
 from ..spline.spline import Spline
 from ..spline.tips import tips_of

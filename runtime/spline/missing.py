@@ -17,8 +17,7 @@ from ..base.errors import GaussmapWarning, InputError, shown
 from ..domain.domain import Boundary, Domain
 from ..domain.inside import extremes_around
 from .ghosts import Border, coefficients_with_ring
-from .kernels import spline as kernels
-from .kernels.forms import patches_at
+from .kernels.spline import control_nets, patches_at
 from .poles import spread_missing, without_poles
 from .quasi_interpolant import from_grid, from_values, values_at
 
@@ -219,5 +218,5 @@ def _known(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> 
     coefficients = coefficients_with_ring(inner, border, without_poles(boundary))
     m, n = inner.shape[:2]
     nets = np.empty((4 * m * n, 6, 3))
-    kernels.control_nets(coefficients, nets)
+    control_nets(coefficients, nets)
     return Known(domain, (m, n), np.asarray(~np.isnan(nets).any(axis=(1, 2))))

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...generated import spline as grid
 from ...runtime.base.aliases import Array, Indices
-from ...runtime.spline.kernels.forms import patches_at
+from ...runtime.spline.kernels.spline import patches_at
 from ...runtime.spline.spline import Spline
 from .chains import joined
 from .classes import PatchClass, classes_of

@@ -1,16 +1,16 @@
-"""The patch that osculates a surface at a point, from its 2-jet; normals and curvatures there."""
+"""The patch that osculates a surface at a point, from its 2-jet: normals, curvatures and forms."""
 
 from __future__ import annotations
 
 import math
 
-from ....generated.jet import at_jet
+from ....generated.jet import at_jet, forms_at_jet
 from ....generated.vectors import Patch, Vector
 from ...base.tolerances import VANISHING
 from ...directions.kernels.vectors import dot, set_row
 from ...machine_code.jit import inline, jit
 
-__all__ = ["evaluate_jets", "is_regular", "jet_vector", "patch_of_jet"]
+__all__ = ["evaluate_jets", "forms_of_jets", "is_regular", "jet_vector", "patch_of_jet"]
 
 
 @inline
@@ -55,3 +55,23 @@ def evaluate_jets(jets, scales, normals, gaussian, mean):
         set_row(normals, k, n if regular else Vector(0.0, 0.0, 0.0))
         gaussian[k] = K * size * size if regular else 0.0
         mean[k] = H * size if regular else 0.0
+
+
+@jit
+def forms_of_jets(jets, scales, forms):
+    """Write E, F, G, e, f, g and D (k, 7) of 2-jets (k, 6, 3), see `forms_at_jet`.
+
+    The forms are those of `size` times the surface, by u and v in cells; `scales` = (size, du, dv).
+    The third form and the sign of K are 0 at singular points.
+    """
+    size, du, dv = scales
+    for k in range(jets.shape[0]):
+        E, F, G, e, f, g, D = forms_at_jet(patch_of_jet(jets, k, size, du, dv))
+        regular = math.isfinite(e) and math.isfinite(f) and math.isfinite(g)
+        forms[k, 0] = E
+        forms[k, 1] = F
+        forms[k, 2] = G
+        forms[k, 3] = max(e, 0.0) if regular else 0.0
+        forms[k, 4] = f if regular else 0.0
+        forms[k, 5] = max(g, 0.0) if regular else 0.0
+        forms[k, 6] = D if regular else 0.0

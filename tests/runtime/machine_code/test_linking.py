@@ -13,8 +13,8 @@ pytestmark = pytest.mark.compiled
 # Parts that one kernel has for several types, and why.
 COPIES = {
     "decide.unit_of": "the limbs of patches and of normals",
-    "tile.evaluate_tile": "with curvatures and without, at compile time",
-    "tile.write_numbers": "numbers, indices, and columns of tables",
+    "hits.evaluate_tile": "with curvatures and without, at compile time",
+    "hits.write_numbers": "numbers, indices, and columns of tables",
 }
 
 
