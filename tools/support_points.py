@@ -26,7 +26,7 @@ from ..runtime.samples.report import UndecidedNormal
 from ..runtime.samples.whole import Whole
 from ..runtime.search.search import developable_patches
 from ..runtime.spline.joints import EDGES
-from ..runtime.spline.kernels.developable import count_developable
+from ..runtime.spline.kernels.patch import count_developable
 from ..runtime.spline.nets import NetSpline
 from ..runtime.spline.spline import Spline
 from ..runtime.spline.tips import tips_of
