@@ -21,7 +21,7 @@ from ..base.aliases import Array
 from ..base.threads import over_ranges
 from ..domain.domain import Boundary, Domain
 from ..search.kernels.lists import NUMBER, Lists
-from ..search.kernels.pieces import CHORD, CONE, EVERYTHING, REST_S, REST_T, WIDTH, Pieces
+from ..search.kernels.pieces import CHORD, CONE, EVERYTHING, WIDTH, Pieces
 from ..search.kernels.search import CELLS as KIND
 from ..search.kernels.search import Memory, Pairs, search
 from ..search.patch_index import listed, ordered
@@ -48,11 +48,9 @@ from .kernels.sorting import Sorted, count_places, order_places, put_places, sta
 __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
 
-# How often irregular cells are cut into four; those without a narrow cone of normals are cut into
-# two or four in further rounds, until there are MOST cells for each one of the grid.
+# How often irregular cells are cut into four; those without a narrow cone of normals are cut in
+# further rounds, as long as these add at most MOST cells for each one of the grid.
 LEVELS, ROUNDS, MOST = 2, 3, 8
-# A cell is cut into two if the change of tangents along the other parameter is smaller by this.
-SLENDER = 4.0
 CELLS = (64, 64)
 # The number of cells of which a part is looked at first, whether there are normals; its size.
 PROBES, SMALL = 16, 2.0**-5
@@ -461,7 +459,7 @@ def _narrowed(tape: Tape, cells: CellBounds, most: int, threads: int | None) -> 
     done = list[CellBounds]()
     for _ in range(ROUNDS):
         wide = cells.cone[:, 3] >= WIDE
-        parts = _parts_of(CellBounds(*(x[wide] for x in cells)))
+        parts = _quarters(cells.place[wide])
         most -= len(cells.place) - wide.sum()
         if not 0 < len(parts) <= most:
             break
@@ -470,19 +468,11 @@ def _narrowed(tape: Tape, cells: CellBounds, most: int, threads: int | None) -> 
     return _joined([*done, cells])
 
 
-def _parts_of(cells: CellBounds) -> Array:
-    """Return the places of parts of cells, which are cut along the parameters that change them."""
-    places, hot = cells.place, cells.hot
-    a, _, c, d, e = (np.linalg.norm(hot[:, k : k + 3], axis=1) for k in range(0, REST_S, 3))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        changes = np.stack([(a + hot[:, REST_S]) / d, (c + hot[:, REST_T]) / e], axis=1)
-    cut = ~(SLENDER * changes < changes[:, ::-1])
-    half = places[:, 2:] * np.where(cut, 0.5, 1.0)
-    parts = [
-        np.hstack([places[:, :2] + cut * side * half, half])[((side < 0) | cut).all(axis=1)]
-        for side in np.array([(-1, -1), (-1, 1), (1, -1), (1, 1)])
-    ]
-    return np.concatenate(parts)
+def _quarters(places: Array) -> Array:
+    """Return the places of the quarters of cells at places (k, 4)."""
+    half = 0.5 * places[:, 2:]
+    sides = np.array([(-1, -1), (-1, 1), (1, -1), (1, 1)])
+    return np.concatenate([np.hstack([places[:, :2] + x * half, half]) for x in sides])
 
 
 def _joined(parts: list[CellBounds]) -> CellBounds:
