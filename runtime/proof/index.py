@@ -26,15 +26,13 @@ from ..search.kernels.search import CELLS as KIND
 from ..search.kernels.search import Memory, Pairs, search
 from ..search.patch_index import listed, ordered
 from ..tape.kernels.points import LANES, Tape
-from .caps import Cap, cap_of
 from .components import Undecided, components_of, with_kinds
-from .discs import PoleDisc, pole_disc
+from .discs import PoleDisc
 from .grid_lines import joints_of, lines_of
 from .kernels.answers import (
     BORDER,
     BOX,
     KINDS,
-    OPEN_BOX,
     Answers,
     merge_places,
 )
@@ -44,6 +42,7 @@ from .kernels.discs import decide_discs
 from .kernels.evaluated_pairs import Index, Joints, Outcome, Tiles, evaluate_pairs
 from .kernels.places import Boxes, decide_normals
 from .kernels.sorting import Sorted, count_places, order_places, put_places, start_normals
+from .poles import Cap, poles_of
 
 __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
@@ -58,7 +57,7 @@ PROBES, SMALL = 16, 2.0**-5
 CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
 # The first lengths of arrays: of cells, of pairs of a normal and a cell, and of answers.
 CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
-# CellBounds without a cone of normals are in all bins: they are this part of the domain at most.
+# Cells without a cone of normals are in all bins: they are this part of the domain at most.
 MOST_OPEN = 0.25
 NO_PAIRS = np.empty((0, 2), np.int64)
 
@@ -178,8 +177,8 @@ class ProvedIndex:
             for (low, high), ends in zip(domain, boundary, strict=True)
         )
         box = np.array([*domain[0], *domain[1], *periods])
-        discs, caps, inside, poles = _poles(tape, domain, boundary, cells)
-        lines = [lines_of(tape, k, inside[k], cells[k]) for k in (0, 1)]
+        poles = poles_of(tape, domain, boundary, cells)
+        lines = [lines_of(tape, k, poles.inside[k], cells[k]) for k in (0, 1)]
         grid = _grid(*lines)
         if _has_no_normals(tape, grid):
             return None
@@ -187,16 +186,20 @@ class ProvedIndex:
         cut = _narrowed(tape, cut, len(cut.place) + MOST * len(grid), threads)
         blind = cut.noise[:, REACH] == 0.0
         u, v, h_u, h_v = cut.place[blind].T
-        unbounded = np.vstack([poles, np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])])
+        unbounded = np.vstack(
+            [poles.unknown, np.column_stack([u - h_u, u + h_u, v - h_v, v + h_v])]
+        )
         cut = CellBounds(*(x[~blind] for x in cut))
         sizes = cut.place[:, 2] * cut.place[:, 3]
         if sizes[cut.cone[:, 3] >= OPEN].sum() > MOST_OPEN * sizes.sum():
             return None
-        both = CellBounds(*map(np.concatenate, zip(cut, *(x.cell for x in discs), strict=True)))
+        of_discs = (x.cell for x in poles.discs)
+        both = CellBounds(*map(np.concatenate, zip(cut, *of_discs, strict=True)))
         joints = Joints(*(joints_of(tape, k, domain, boundary) for k in (0, 1)))
         index = Index(both, len(cut.place), joints)
         pieces = _pieces_of(index)
-        return cls(tape, box, index, pieces, listed(pieces.cones), discs, caps, unbounded)
+        lists = listed(pieces.cones)
+        return cls(tape, box, index, pieces, lists, poles.discs, poles.caps, unbounded)
 
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
         """Return all points with unit normals (S, 3).
@@ -211,7 +214,7 @@ class ProvedIndex:
             slow, unknown = self._merged(answers, parts, len(normals))
             parts.append(slow)
             answers.extend(unknown)
-        answers += [_in_cap(cap, normals) for cap in self.caps]
+        answers += [cap.answers(normals) for cap in self.caps]
         places = _sorted(parts, len(normals))
         open_ = components_of(answers, self.domain)
         if len(open_.numbers) > 0:
@@ -383,41 +386,6 @@ class ProvedIndex:
         self._rooms.append(rooms)
 
 
-def _poles(
-    tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]
-) -> tuple[tuple[PoleDisc, ...], tuple[Cap, ...], Array, Array]:
-    """Return discs and caps around poles, the domain without them (2, 2), and the poles left open.
-
-    A pole without a disc has a cap, if its normals are bounded. The poles with neither are boxes
-    (k, 4). Open ends of the domain that are a smooth pole have discs, too.
-    """
-    discs, caps, unknown = list[PoleDisc](), list[Cap](), list[list[float]]()
-    inside = np.array(domain, dtype=np.float64)
-    for axis, ends in enumerate(boundary):
-        low, high = domain[axis]
-        row = (high - low) / cells[axis]
-        for k, end in enumerate(ends):
-            if end not in ("pole", "open") or boundary[1 - axis][0] != "periodic":
-                continue
-            at, size = domain[axis][k], 0.0
-            disc = pole_disc(tape, domain, 1 - axis, at, row)
-            cap = (
-                cap_of(tape, domain, 1 - axis, at, row) if disc is None and end == "pole" else None
-            )
-            if disc is not None:
-                discs.append(disc)
-                size = disc.radius
-            elif cap is not None:
-                caps.append(cap)
-                size = cap.size
-            elif end == "pole":
-                sides = [list(x) for x in domain]
-                sides[axis] = [at] * 2
-                unknown.append([*sides[0], *sides[1]])
-            inside[axis, k] += size if k == 0 else -size
-    return tuple(discs), tuple(caps), inside, np.array(unknown).reshape(-1, 4)
-
-
 def _has_no_normals(tape: Tape, grid: Array) -> bool:
     """Return whether a few small cells have no cones of normals, as on a surface that is a curve.
 
@@ -488,14 +456,6 @@ def _pieces_of(index: Index) -> Pieces:
     cones[cells.cone[:, CHORD] >= WIDE, WIDTH] = EVERYTHING
     cones[index.discs :, WIDTH] = EVERYTHING
     return Pieces(cones, cells.hot)
-
-
-def _in_cap(cap: Cap, normals: NDArray[np.float64]) -> Answers:
-    """Return a cap as an undecided box for the normals that it may have."""
-    numbers = cap.holds(normals)
-    row = np.array([*cap.box, 0.0, *cap.box.reshape(2, 2).mean(axis=1)])
-    boxes, kinds = np.tile(row, (len(numbers), 1)), np.full(len(numbers), OPEN_BOX)
-    return Answers.new(0)._replace(open_boxes=boxes, kinds=kinds, open_numbers=numbers)
 
 
 def _taken(room: Answers) -> Answers:

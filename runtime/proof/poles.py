@@ -1,0 +1,141 @@
+"""The poles of a surface: each has a disc, or a cap, or is left open.
+
+In a disc the surface is a graph over its tangent plane (`discs.py`). A cap is a strip of parameters
+around a pole without a disc, where nothing but normals is known. At a pole r = 0 the derivative
+around it vanishes: x_u (u, r) = r x_ur (u, ρ) with some ρ between 0 and r for each coordinate. So
+the normals lie in the cone of the vectors x_ur × x_r over the strip.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.aliases import Array
+from ..domain.domain import Boundary, Domain
+from ..tape.kernels.points import Tape
+from ..tape.tapes import bounds_over_boxes
+from .ball import Ball
+from .discs import NARROW, SECTORS, PoleDisc, pole_disc
+from .kernels.answers import OPEN_BOX, Answers
+
+__all__ = ["Cap", "Poles", "poles_of"]
+
+# A cap has at most this half angle, in radians, and at least this part of a given size.
+WIDEST, SMALLEST = 0.05, 2.0**-8
+# The positions of Taylor coefficients.
+U1, V1, U1V1 = 1, 2, 4
+ROUNDING = 2.0**-40
+
+
+class Cap(NamedTuple):
+    """A box of parameters u₀, u₁, v₀, v₁ around a pole; its size; and a cone of its normals."""
+
+    box: Array
+    size: float
+    axis: Array
+    angle: float
+
+    def answers(self, normals: Array) -> Answers:
+        """Return the cap as an undecided box for those unit normals (S, 3) that it may have."""
+        away = np.linalg.norm(normals - self.axis, axis=1)
+        numbers = np.flatnonzero(away <= 2.0 * np.sin(0.5 * self.angle) + ROUNDING)
+        row = np.array([*self.box, 0.0, *self.box.reshape(2, 2).mean(axis=1)])
+        boxes, kinds = np.tile(row, (len(numbers), 1)), np.full(len(numbers), OPEN_BOX)
+        return Answers.new(0)._replace(open_boxes=boxes, kinds=kinds, open_numbers=numbers)
+
+
+class Poles(NamedTuple):
+    """The discs and caps around poles; what is `inside` of them, the rest of the domain (2, 2).
+
+    Poles with neither are the boxes `unknown` (k, 4).
+    """
+
+    discs: tuple[PoleDisc, ...]
+    caps: tuple[Cap, ...]
+    inside: Array
+    unknown: Array
+
+
+def poles_of(tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]) -> Poles:
+    """Return the discs and caps around the poles of a surface whose domain has so many cells.
+
+    Open ends of the domain that are a smooth pole have discs, too.
+    """
+    discs, caps, unknown = list[PoleDisc](), list[Cap](), list[list[float]]()
+    inside = np.array(domain, dtype=np.float64)
+    for axis, ends in enumerate(boundary):
+        low, high = domain[axis]
+        row = (high - low) / cells[axis]
+        for k, end in enumerate(ends):
+            if end not in ("pole", "open") or boundary[1 - axis][0] != "periodic":
+                continue
+            at, size = domain[axis][k], 0.0
+            disc = pole_disc(tape, domain, 1 - axis, at, row)
+            cap = (
+                _cap_of(tape, domain, 1 - axis, at, row) if disc is None and end == "pole" else None
+            )
+            if disc is not None:
+                discs.append(disc)
+                size = disc.radius
+            elif cap is not None:
+                caps.append(cap)
+                size = cap.size
+            elif end == "pole":
+                sides = [list(x) for x in domain]
+                sides[axis] = [at] * 2
+                unknown.append([*sides[0], *sides[1]])
+            inside[axis, k] += size if k == 0 else -size
+    return Poles(tuple(discs), tuple(caps), inside, np.array(unknown).reshape(-1, 4))
+
+
+def _cap_of(tape: Tape, domain: Domain, angle: int, end: float, size: float) -> Cap | None:
+    """Return the cap around a pole of at most some size; None if its normals are not bounded.
+
+    Parameter `angle` (0 or 1) runs around the pole, the other one is `end` there.
+    """
+    inward = 1.0 if end == domain[1 - angle][0] else -1.0
+    smallest = SMALLEST * size
+    while size >= smallest:
+        cone = _cone(tape, domain, angle, (end, inward), size)
+        if cone is not None and cone[1] <= WIDEST:
+            sides = [list(x) for x in domain]
+            sides[1 - angle] = sorted((end, end + inward * size))
+            return Cap(np.array([*sides[0], *sides[1]]), size, *cone)
+        size *= 0.5
+    return None
+
+
+def _cone(
+    tape: Tape, domain: Domain, angle: int, side: tuple[float, float], size: float
+) -> tuple[Array, float] | None:
+    """Return axis and half angle of a cone of the normals of a strip; None if there is none."""
+    (low, high), (end, inward), count = domain[angle], side, NARROW * SECTORS
+    half = np.array([0.5 * (high - low) / count, 0.5 * size])
+    around = low + half[0] * (2.0 * np.arange(count) + 1.0)
+    centres = np.column_stack([around, np.full(count, end + inward * half[1])])
+    widths = np.broadcast_to(half * (1.0 + ROUNDING), centres.shape)
+    if angle == 1:
+        centres, widths = centres[:, ::-1], widths[:, ::-1]
+    bounds = bounds_over_boxes(tape, np.ascontiguousarray(centres), np.array(widths), 3)
+    across, mixed = (
+        [Ball(bounds[:, 0, k, x], bounds[:, 1, k, x]) for x in range(3)]
+        for k in (V1 if angle == 0 else U1, U1V1)
+    )
+    first, second = (mixed, across) if angle == 0 else (across, mixed)
+    normal = [
+        first[(k + 1) % 3] * second[(k + 2) % 3] - first[(k + 2) % 3] * second[(k + 1) % 3]
+        for k in range(3)
+    ]
+    middle = inward * np.stack([x.middle for x in normal], axis=1)
+    radius = np.linalg.norm([x.radius for x in normal], axis=0)
+    lengths = np.linalg.norm(middle, axis=1)
+    if not (radius < lengths).all():
+        return None
+    directions = middle / lengths[:, None]
+    axis = directions.sum(axis=0)
+    axis /= np.linalg.norm(axis)
+    chords = np.minimum(np.linalg.norm(directions - axis, axis=1), 2.0)
+    angles = 2.0 * np.arcsin(0.5 * chords) + np.arcsin(radius / lengths)
+    return axis, float(angles.max()) + ROUNDING
