@@ -11,8 +11,10 @@ from .errors import SurfaceError
 
 __all__ = [
     "LARGEST_EXPONENT",
+    "ROUNDING",
     "SAME_POINT",
     "apart",
+    "extent_of",
     "not_too_large",
     "scale_to_one",
     "scales_to_one",
@@ -22,6 +24,8 @@ __all__ = [
 LARGEST_EXPONENT = 1000
 # Points that are declared to be one may be this far apart, relative to the size of the surface.
 SAME_POINT = 1e-6
+# Rounding of coordinates, in units of the last place: they come from several operations each.
+ROUNDING = 64.0
 
 
 def scale_to_one(largest: float) -> float:
@@ -38,10 +42,18 @@ def apart(
     first: NDArray[np.float64], second: NDArray[np.float64], points: NDArray[np.float64]
 ) -> bool:
     """Return whether points that should be equal differ by more than rounding."""
+    size, last_place = extent_of(points)
+    return float(np.abs(first - second).max()) > SAME_POINT * size + ROUNDING * last_place
+
+
+def extent_of(points: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the size of points (m, n, 3), and the unit in the last place of their coordinates.
+
+    Missing points, NaN, are left out.
+    """
     high, low = (f.reduce(f.reduce(points)) for f in (np.fmax, np.fmin))  # fastest this way
-    size = float((high - low).max())
-    rounding = 64.0 * float(np.spacing(np.fmax(np.abs(low), np.abs(high)).max()))
-    return float(np.abs(first - second).max()) > SAME_POINT * size + rounding
+    largest = np.maximum(np.abs(low), np.abs(high)).max()
+    return float((high - low).max()), float(np.spacing(largest))
 
 
 def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]:

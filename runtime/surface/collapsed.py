@@ -19,7 +19,7 @@ from ...generated import spline as formulas
 from ..base.aliases import Array
 from ..base.errors import SurfaceError
 from ..base.formula_calls import python_function
-from ..base.scales import SAME_POINT
+from ..base.scales import ROUNDING, SAME_POINT, extent_of
 from ..domain.domain import Assumed, Boundary
 from .surface_values import SurfaceValues
 
@@ -36,8 +36,6 @@ LEAST_STEP, MOST_STEP = 1e-4, 1e-2
 # A line is continued smoothly if three points predict the next one up to this part of the step. The
 # error is of second order in the step; for data, the step is that of the grid.
 KINK, KINK_OF_DATA = 1e-2, 0.3
-# Rounding of coordinates, in units of the last place: they come from several operations each.
-ROUNDING = 64.0
 
 
 def with_found_sides(surface: Values) -> tuple[Values, int]:
@@ -97,7 +95,7 @@ class _Sides:
     def of_surface(cls, surface: SurfaceValues) -> _Sides:
         """Return the sides of a surface, which is evaluated on demand."""
         parts = [low + (high - low) * np.linspace(0.0, 1.0, 5) for low, high in surface.domain]
-        size, last_place = _extent(surface.evaluate(parts[0][:, None], parts[1]))
+        size, last_place = extent_of(surface.evaluate(parts[0][:, None], parts[1]))
         part = np.clip(np.cbrt(last_place / (size or 1.0)), LEAST_STEP, MOST_STEP)
 
         def lines(axis: int, end: int) -> Array:
@@ -119,7 +117,7 @@ class _Sides:
             rows = np.swapaxes(points, 0, axis)
             return rows[:3] if end == 0 else rows[:-4:-1]
 
-        size, last_place = _extent(points)
+        size, last_place = extent_of(points)
         same, rounding = SAME_POINT * size + ROUNDING * last_place, ROUNDING * last_place
         return cls(lines, boundary, assumed, False, KINK_OF_DATA, same, rounding)
 
@@ -168,10 +166,3 @@ class _Sides:
         step = float(np.abs(near[1] - near[0]).max())
         predicted = python_function(formulas.extrapolation)(*near)
         return bool(np.abs(predicted - beyond).max() <= self.kink * step + self.rounding)
-
-
-def _extent(points: Array) -> tuple[float, float]:
-    """Return the size of points (m, n, 3), and the unit in the last place of their coordinates."""
-    low, high = (f.reduce(points, axis=(0, 1)) for f in (np.fmin, np.fmax))  # without NaN
-    largest = np.maximum(np.abs(low), np.abs(high)).max()
-    return float((high - low).max()), float(np.spacing(largest))
