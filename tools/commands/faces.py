@@ -23,8 +23,6 @@ __all__ = ["run"]
 def run(options: SimpleNamespace) -> None:
     """Print a line for each face of a part, or the properties of all faces as a JSON object."""
     part = read_part_file(replace(Named.of(options), surface=options.part))
-    if options.kind or options.name:
-        part = part.select(kind=options.kind or None, name=options.name)
     if options.json:
         say(json.dumps(_as_json(part)))
         return

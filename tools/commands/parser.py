@@ -313,8 +313,6 @@ def _faces() -> Command:
         "loops, name, and why it failed if it cannot be used. PART is a STEP, IGES or BREP file, "
         "or an .npz file of a part that gaussmap saved.",
         click.Argument(["part"], type=FILE),
-        Option("--kind KIND", "Only faces of a kind; may be repeated.", multiple=True),
-        Option("--name NAME", 'Only faces of a name, or of a pattern such as "slot*".'),
         Option("--json", "Print a JSON object, with axes and radii, instead of lines."),
         *cad_options(),
     )

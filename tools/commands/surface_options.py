@@ -10,7 +10,7 @@ from .options import Option, number, setting, whole
 
 __all__ = ["cad_options", "made_options", "surface_argument", "surface_options"]
 
-GROUP, FILES = "the surface", "reading CAD files"
+GROUP, FILES, FACES = "the surface", "reading CAD files", "faces of CAD parts"
 
 
 def surface_argument() -> click.Argument:
@@ -32,7 +32,7 @@ def _checked_source(ctx: click.Context, _: click.Parameter, surface: str | None)
 
 def surface_options() -> list[Option]:
     """Return the options of all commands that take a surface."""
-    return [*made_options(), *_limits()]
+    return [*made_options(), *_limits(), *_of_faces()]
 
 
 def made_options(several: bool = False) -> list[Option]:
@@ -97,7 +97,17 @@ def _terrain_options() -> list[Option]:
 
 def cad_options() -> list[Option]:
     """Return the options of commands that read STEP, IGES and BREP files."""
-    return [_unit(), *_limits()]
+    return [_unit(), *_limits(), *_of_faces()]
+
+
+def _of_faces() -> list[Option]:
+    name = 'Only faces of a name, or of a pattern such as "slot*".'
+    indices = "Only faces with these indices, which `gaussmap faces` lists."
+    return [
+        Option("--kind KIND", "Only faces of a kind; may be repeated.", group=FACES, multiple=True),
+        Option("--name NAME", name, group=FACES),
+        Option("--faces INDEX,INDEX", indices, group=FACES),
+    ]
 
 
 def _unit() -> Option:

@@ -38,6 +38,9 @@ class Named:
     crs: str | None = None
     source_crs: str | None = None
     origin: tuple[float, float] | None = None
+    kind: tuple[str, ...] = ()
+    name: str | None = None
+    faces: str | None = None
     unit: str | None = None
     time_limit: float | None = None
     memory_limit: float | None = None

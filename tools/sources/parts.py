@@ -5,19 +5,37 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...runtime.base.advice import CAD_SUFFIXES
-from ...runtime.base.errors import InputError
+from ...runtime.base.errors import InputError, shown
 from ..cad.inspection import is_part_file
 from ..cad.part import Part, read_part
 from .named import Named
 
-__all__ = ["LIMITS", "read_part_file"]
+__all__ = ["LIMITS", "OF_FACES", "read_part_file"]
 
 # The options of `read_cad`.
 LIMITS = ("unit", "time_limit", "memory_limit")
+# Those of `Part.select`.
+OF_FACES = ("kind", "name", "faces")
 
 
 def read_part_file(named: Named) -> Part:
-    """Read a part. Raises the errors of `read_cad` and `read_part`, InputError for other files."""
+    """Read a part, and select its faces.
+
+    Raises the errors of `read_cad`, `read_part` and `Part.select`, InputError for other files.
+    """
+    part = _read(named)
+    if not {*OF_FACES} & {*named.given()}:
+        return part
+    try:
+        index = None if named.faces is None else [int(x) for x in named.faces.split(",")]
+    except ValueError:
+        raise InputError(
+            f"--faces takes indices of faces, as in --faces 3,7, not {shown(named.faces)}."
+        ) from None
+    return part.select(kind=named.kind or None, name=named.name, index=index)
+
+
+def _read(named: Named) -> Part:
     source = named.surface or ""
     if Path(source).suffix.lower() == ".npz":
         named.refuse(LIMITS, "is for STEP, IGES and BREP files, and {} is none.")

@@ -16,7 +16,7 @@ from ..cad.part import Part
 from ..files.numpy_files import array_file, is_array_file, read_array
 from .elevations import OF_TERRAIN, has_place, is_raster_file, read_raster_file, terrain_of_array
 from .named import Named
-from .parts import LIMITS, read_part_file
+from .parts import LIMITS, OF_FACES, read_part_file
 
 __all__ = ["surface_of", "with_tolerance"]
 
@@ -33,6 +33,7 @@ def surface_of(named: Named) -> Surface | Part:
     if is_part_file(named.surface):
         named.refuse(NOT_OF_PARTS, "is for surfaces, and {} is a CAD part.")
         return read_part_file(named)
+    named.refuse(OF_FACES, "is for CAD parts, and {} is none.")
     named.refuse(LIMITS, "is for CAD files, and {} is none.")
     source = named.surface
     if source is not None and (is_array_file(source) or is_raster_file(source)):

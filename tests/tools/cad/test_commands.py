@@ -59,6 +59,8 @@ def test_sample(saved, capsys, main):
         (["sample", "torus", "--edges", "-o", "o.ply"], "--edges is for CAD parts"),
         (["faces", "part.npz", "--name", "slot*"], "no face"),
         (["faces", "part.npz", "--kind", "hole"], "'hole'"),
+        (["sample", "part.npz", "--faces", "1;2", "-o", "o.ply"], "--faces takes indices"),
+        (["sample", "torus", "--faces", "1", "-o", "o.ply"], "--faces is for CAD parts"),
         (["faces", "none.npz"], "'none.npz' cannot be read"),
         (["faces", "part.txt"], "is no STEP, IGES or BREP file"),
     ],
