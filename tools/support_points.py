@@ -69,7 +69,8 @@ class SupportPoints(NamedTuple):
     face_index : (S,) int64 array
         For a part: the indices of the faces. −1 for other surfaces.
     on_border : (S,) bool array
-        Whether the point is on a boundary of the surface, of a face or of a net.
+        Whether the point was found on a boundary of the surface, of a face or of a net. A tip may
+        be found as a sample (`gm.Component`).
 
     Examples
     --------

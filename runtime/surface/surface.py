@@ -54,9 +54,10 @@ class Surface(SurfaceValues):
         The rectangle of the parameters.
     boundary : pair of pairs of str
         For u and for v, the boundary conditions at the lower and the upper bound: "open" (an edge),
-        "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius band)
-        or "pole" (the side is one point and the opposite meridian continues the surface). The
-        spline may have poles in place of open sides, see `assumed_open`.
+        "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius band:
+        normals are opposite on both sides of the seam, and `Part` refuses it) or "pole" (the side
+        is one point and the opposite meridian continues the surface). The spline may have poles in
+        place of open sides, see `assumed_open`.
     grid : (m, n, 3) float64 array or None
         The points of a surface that was given by points; NaN where they are missing.
     derivative_function : callable or None

@@ -318,3 +318,23 @@ def test_corners_of_the_border_come_once() -> None:
     for cells in ((3, 3), (8, 8), (5, 9)):
         samples = gm.sample(bowl, normals=corners, cells=cells, on="spline")
         assert sorted(samples.normal_index.tolist()) == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize("name", ["klein", "moebius"])
+def test_points_of_a_mirrored_seam(name: str) -> None:
+    """A point there has the normals n and −n: a spline counts one, a surface one or both."""
+    surface = klein_bottle() if name == "klein" else gm.surfaces.moebius_band()
+    v = np.linspace(*surface.domain[1], 23)[1:-1] + 0.01
+    for on, times in (("spline", {1}), ("surface", {1, 2})):
+        known = gm.GaussMap(surface, on=on)
+        own = known.spline if on == "spline" else surface
+        assert isinstance(own, gm.Spline | gm.Surface)
+        N = own.normals(0.0 * v, v) if isinstance(own, gm.Spline) else np.cross(
+            *np.moveaxis(own.jets(0.0 * v, v)[:, 1:3], 1, 0)
+        )  # fmt: skip
+        points, found = own.evaluate(0.0 * v, v), np.zeros(len(v), np.int64)
+        for sign in (1.0, -1.0):
+            samples = known.points(sign * N)
+            here = np.linalg.norm(samples.points - points[samples.normal_index], axis=1) < 1e-9
+            found += np.bincount(samples.normal_index[here], minlength=len(v))
+        assert {*found.tolist()} <= times
