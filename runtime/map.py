@@ -135,7 +135,8 @@ class GaussMap(Methods):
     ) -> Samples:
         """Return every point whose normal is one of `normals`, each exactly once.
 
-        A tip is a point with the normals in its normal cone.
+        A tip is a point with the normals in its normal cone. Curves of points with one normal have
+        one sample each, see `Component`.
 
         Parameters
         ----------
@@ -183,7 +184,7 @@ class GaussMap(Methods):
         return self._points(directions, fields, dtype, threads, progress, out)
 
     def count(self, normals: ArrayLike, *, threads: int | None = None) -> NDArray[np.int64]:
-        """Return the number of points with each of the normals.
+        """Return the number of points, or curves of points, with each of the normals.
 
         Parameters
         ----------
@@ -195,7 +196,7 @@ class GaussMap(Methods):
         Returns
         -------
         (S,) int64 array
-            The numbers of points.
+            The numbers of components, see `Component`.
 
         Raises
         ------
@@ -218,7 +219,7 @@ class GaussMap(Methods):
         On a closed surface it is χ/2 for every normal, χ being the Euler characteristic. If the
         surface ends in tips, their degrees are added: 1 for normals in the normal cone of a convex
         tip, and in general the signed number of times that the normals at the tip cover a normal.
-        Where the report lists an undecided box with a degree, this is added.
+        Isolated points with K = 0 count with their index, and undecided boxes with their degree.
 
         Parameters
         ----------
@@ -250,11 +251,15 @@ class GaussMap(Methods):
         )
         found = self.points(directions, fields=fields, threads=threads)
         asked, signs = found.report.normals or 0, np.copysign(1.0, found.gaussian_curvature)
-        signs[found.component != Component.REGULAR] = 0.0
+        special = found.component != Component.REGULAR
+        signs[special] = 0.0
         sums = np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
+        which = np.unique(found.normal_index[special])
         for piece in self._pieces:
             if piece.has_tips and isinstance(geometry := piece.fitted, OnSpline):
                 sums += tip_degrees(geometry, directions)
+            if isinstance(piece, ProvedSurface):
+                sums[which] += piece.component_degrees(directions[which])
         for place in found.report.undecided or ():
             sums[place.normal] += place.degree or 0
         return sums

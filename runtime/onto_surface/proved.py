@@ -20,7 +20,7 @@ from ..domain.trim import Trim, samples_inside, with_uv
 from ..fitting.fit import check_range
 from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
 from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places
-from ..samples.fields import FLAG_NAMES, bytes_of, dtype_of, regular, row_shape
+from ..samples.fields import FLAG_NAMES, Component, bytes_of, dtype_of, regular, row_shape
 from ..samples.report import SamplingReport, UndecidedNormal, count_infinite
 from ..samples.samples import Samples
 from ..search.search import developable_patches
@@ -35,9 +35,12 @@ from .on_spline import Fields, count_of, in_turn
 from .on_surface import OnSurface, geometry_of
 from .pole_charts import pole_charts
 
-__all__ = ["Proof", "ProvedSurface", "index_of", "proof_of"]
+__all__ = ["Proof", "ProvedSurface", "index_of", "not_outside", "proof_of"]
 
 PLACES_AT_A_TIME = 1 << 14
+# The column of solutions with the code of the component, if there are others than regular points.
+CODE = 6
+OPEN_BOX, CURVE = KINDS.index("open"), KINDS.index("curve")
 
 
 class Proof(NamedTuple):
@@ -138,14 +141,18 @@ class ProvedSurface:
     ) -> Samples:
         """Return all points that have unit normals (S, 3), and the proof.
 
-        They come in the order of normals, then of u and v.
+        They come in the order of normals, then of u and v. Each component has one.
         """
         del progress, density  # a search takes no time to speak of; the report is without a fit
         surface, found = self.surface, self.index.query(normals, self.threads)
         if self.reach is not None:
             surface, found = self.fitted.surface, found.only(self.reach.contains(normals))
-        check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
         trim, georeference = self.surface.trim, self.surface.georeference
+        left = found.undecided
+        if len(left.numbers) > 0:
+            components, left = _components_in(trim, left, normals)
+            found = _with_rows(found, components)
+        check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
         arrays = samples_inside(trim, self._arrays(normals, found, with_uv(trim, fields)), fields)
         held = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
         report = SamplingReport(
@@ -153,7 +160,7 @@ class ProvedSurface:
             infinite_curvatures=count_infinite(held), on=self.on, unrefined=0, apexes=self.apexes,
             crs=None if georeference is None else georeference.crs,
             origin=None if georeference is None else georeference.origin,
-            **proof_of(normals, found.undecided, trim)._asdict(),
+            **proof_of(normals, left)._asdict(),
         )  # fmt: skip
         return Samples(**held, report=report, spline=None, surface=surface, offset_of=None)
 
@@ -215,17 +222,43 @@ class ProvedSurface:
 
         list(over_ranges(work, count, PLACES_AT_A_TIME, self.threads))
         arrays = {name: x for name, x in rooms._asdict().items() if name in fields}
-        flags = {name: np.ones(count, dtype=np.bool_) for name in FLAG_NAMES}
-        return arrays | flags | {"normal_index": numbers} | regular(count, fields)
+        arrays |= {name: np.ones(count, dtype=np.bool_) for name in FLAG_NAMES}
+        arrays |= {"normal_index": numbers} | regular(count, fields)
+        if places.shape[1] > CODE:
+            special = np.flatnonzero(places[:, CODE] != Component.REGULAR)
+            if len(K) > 0:
+                K[special] = np.copysign(0.0, places[special, 4])
+            if "component" in arrays:
+                arrays["component"][:] = places[:, CODE]
+        return arrays
+
+    def component_degrees(self, normals: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Return the sums of the degrees of components with a sample, but for regular points."""
+        found = self.index.query(normals, self.threads)
+        components, _ = _components_in(self.surface.trim, found.undecided, normals)
+        degrees = np.nan_to_num(components.degree)
+        return np.bincount(components.numbers, degrees, len(normals)).astype(np.int64)
 
 
-def proof_of(
-    normals: NDArray[np.float64], open_: Undecided, trim: Trim | None, face: int | None = None
-) -> Proof:
+def _with_rows(found: ProvedPlaces, components: Undecided) -> ProvedPlaces:
+    """Return solutions with those that stand for components, and a column of their codes."""
+    sides, uv = components.boxes.reshape(-1, 2, 2), components.uv
+    rows = np.zeros((len(uv), CODE + 1))
+    rows[:, :2], rows[:, 2:4] = uv, np.abs(sides - uv[:, :, None]).max(axis=2)
+    rows[:, 4] = np.where(np.isnan(components.degree), 1.0, components.degree)
+    rows[:, 5] = components.border
+    rows[:, CODE] = np.where(components.kinds == CURVE, Component.CURVE, Component.ISOLATED)
+    regular_rows = np.pad(found.places, ((0, 0), (0, 1)))  # a column of zeros: Component.REGULAR
+    places = np.concatenate([regular_rows, rows])
+    numbers = np.concatenate([found.numbers, components.numbers])
+    order = np.lexsort((places[:, 1], places[:, 0], numbers))
+    return found._replace(numbers=numbers[order], places=places[order])
+
+
+def proof_of(normals: NDArray[np.float64], open_: Undecided, face: int | None = None) -> Proof:
     """Return the proof for unit normals (S, 3), of which some are open; on a face of a part."""
     if len(open_.numbers) == 0:
         return Proof(len(normals), ())
-    open_ = _not_outside(trim, open_, normals)
     undecided = tuple(
         UndecidedNormal(
             number, tuple(box), KINDS[kind], border, face, None if isnan(degree) else int(degree)
@@ -235,10 +268,24 @@ def proof_of(
     return Proof(len(normals) - len(np.unique(open_.numbers)), undecided)
 
 
-def _not_outside(trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]) -> Undecided:
-    """Return the boxes that may have points inside a trim; they may meet its border, too."""
-    if trim is None:
-        return open_
+def not_outside(
+    trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]
+) -> tuple[Undecided, NDArray[np.bool_]]:
+    """Return the boxes that may have points inside a trim, and which have no others.
+
+    The others may meet the border of the trim.
+    """
+    if trim is None or len(open_.numbers) == 0:
+        return open_, np.ones(len(open_.numbers), np.bool_)
     sides = trim.sides(open_.boxes, normals[open_.numbers])
     open_ = open_._replace(border=open_.border | (sides == 0))
-    return Undecided._make(x[sides >= 0] for x in open_)
+    return Undecided._make(x[sides >= 0] for x in open_), sides[sides >= 0] > 0
+
+
+def _components_in(
+    trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]
+) -> tuple[Undecided, Undecided]:
+    """Return the components that are known and inside a trim, and what is left open."""
+    open_, inside = not_outside(trim, open_, normals)
+    known = inside & (open_.kinds != OPEN_BOX)
+    return Undecided._make(x[known] for x in open_), Undecided._make(x[~known] for x in open_)

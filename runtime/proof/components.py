@@ -41,14 +41,24 @@ class Undecided(NamedTuple):
     uv: Array
 
 
+NO_NUMBERS, NO_FLAGS = np.empty(0, np.int64), np.empty(0, np.bool_)
+NOTHING = Undecided(
+    NO_NUMBERS, np.empty((0, 4)), NO_NUMBERS, NO_FLAGS, np.empty(0), np.empty((0, 2))
+)
+
+
 def components_of(answers: Sequence[Answers], domain: Array) -> Undecided:
     """Return the open boxes of answers, joined where they touch, in the order of their normals.
 
-    `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v or 0. The degrees are unknown.
+    `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v or 0. Degrees are unknown.
     """
-    numbers = np.concatenate([np.empty(0, np.int64), *(x.open_numbers for x in answers)])
-    rows = np.concatenate([np.empty((0, WHERE + 2)), *(x.open_boxes for x in answers)])
-    kinds = np.concatenate([np.empty(0, np.int64), *(x.kinds for x in answers)])
+    answers = [x for x in answers if len(x.open_numbers) > 0]
+    if not answers:
+        return NOTHING
+    numbers, rows, kinds = (
+        np.concatenate(x)
+        for x in zip(*((y.open_numbers, y.open_boxes, y.kinds) for y in answers), strict=True)
+    )
     order = np.lexsort((rows[:, 2], rows[:, 0], numbers))
     rows, kinds, numbers = rows[order], kinds[order], numbers[order]
     keep = np.ones(len(numbers), np.bool_)
@@ -61,10 +71,10 @@ def components_of(answers: Sequence[Answers], domain: Array) -> Undecided:
     around = (rows[:, 1:4:2] - rows[:, 0:4:2] >= high - low) & (domain[4:] > 0.0)
     rows[:, 0:4:2] = np.where(around, low, rows[:, 0:4:2])
     rows[:, 1:4:2] = np.where(around, high, rows[:, 1:4:2])
-    uv = rows[:, WHERE:]
-    uv -= np.where(domain[4:] > 0.0, domain[4:] * np.floor((uv - low) / (high - low)), 0.0)
     degree = np.full(len(numbers), np.nan)
-    return Undecided(numbers, rows[:, :4].copy(), kinds, rows[:, 4] > 0.0, degree, uv)
+    return Undecided(
+        numbers, rows[:, :4].copy(), kinds, rows[:, 4] > 0.0, degree, rows[:, WHERE:].copy()
+    )
 
 
 def _join(rows: Array, kinds: Indices, keep: NDArray[np.bool_], domain: Array) -> None:
@@ -83,8 +93,8 @@ def _join(rows: Array, kinds: Indices, keep: NDArray[np.bool_], domain: Array) -
         touch[k] = True
         rows[k, 0:4:2], rows[k, 1:4:2] = low[touch].min(axis=0), high[touch].max(axis=0)
         rows[k, 4] = rows[touch, 4].max()
-        if kinds[k] != CURVE or (kinds[touch] != CURVE).any():
-            kinds[k], rows[k, WHERE:] = OPEN_BOX, 0.5 * (rows[k, 0:4:2] + rows[k, 1:4:2])
+        if (kinds[touch] != CURVE).any():
+            kinds[k] = OPEN_BOX
         touch[k] = False
         keep[touch] = False
         k = 0
@@ -96,7 +106,7 @@ def _shift(x: Array, towards: Array, periods: Array) -> Array:
 
 
 def with_kinds(open_: Undecided, around: Array, places: Sorted, domain: Array) -> Undecided:
-    """Return components with degrees and kinds.
+    """Return components with degrees and kinds, and a point of each in the domain.
 
     `around` (k, 5) are winding numbers and the boxes of their paths, `places` the regular points.
     """
@@ -107,7 +117,12 @@ def with_kinds(open_: Undecided, around: Array, places: Sorted, domain: Array) -
     sizes = (open_.boxes[:, 1::2] - open_.boxes[:, 0::2]) / (domain[1:4:2] - domain[0:4:2])
     small = np.where(np.nan_to_num(degree) != 0.0, ISOLATED, OPEN_BOX)
     kinds = np.where(sizes.max(axis=1, initial=0.0) <= LARGEST, small, open_.kinds)
-    return open_._replace(degree=degree, kinds=kinds)
+    low, high = domain[0:4:2], domain[1:4:2]
+    middles = 0.5 * (open_.boxes[:, 0::2] + open_.boxes[:, 1::2])
+    uv = np.where(kinds[:, None] == CURVE, open_.uv, middles)
+    turned = uv - domain[4:] * np.floor((uv - low) / (high - low))
+    uv = np.where(domain[4:] > 0.0, turned, np.clip(uv, low, high))
+    return open_._replace(degree=degree, kinds=kinds, uv=uv)
 
 
 def _others(number: int, path: Array, boxes: Array, places: Sorted, periods: Array) -> float:

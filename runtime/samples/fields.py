@@ -53,9 +53,10 @@ class Component(IntEnum):
     REGULAR
         A point with K ≠ 0: the only one with this normal nearby.
     ISOLATED
-        A point with K = 0 that is the only one with this normal nearby.
+        A point with K = 0 that is the only one with this normal nearby, or several that cannot be
+        told apart.
     CURVE
-        A curve of points with one normal; the sample is one of these.
+        A curve or a region of points with one normal; the sample is one of these.
     TIP
         A tip of the surface, such as that of a cone, whose normal cone contains the normal.
     CREASE

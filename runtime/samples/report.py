@@ -94,7 +94,9 @@ class UndecidedNormal(NamedTuple):
         "isolated": a point where K is 0, or several that cannot be told apart. "curve": a curve or
         a region with this normal, such as a ruling of a cylinder. "open": it is not known whether
         there is a point, as next to a fold, up to rounding, or where x_u × x_v may vanish.
-        "unmoved": points of the spline could not be moved to the surface.
+        "unmoved": points of the spline could not be moved to the surface. The first two are
+        components that have no sample: the boundary of a trim may meet them, or they are on a CAD
+        part.
     border : bool
         Whether the box reaches an open side of the domain, or may meet the boundary of the trim.
     face : int or None
@@ -106,9 +108,10 @@ class UndecidedNormal(NamedTuple):
     Examples
     --------
     >>> import gaussmap as gm
-    >>> place = gm.sample("torus", normals=[[0, 0, 1]]).report.undecided[0]
+    >>> part_of_torus = gm.surfaces.torus().trimmed(within=lambda u, v: u < 3)
+    >>> place = gm.GaussMap(part_of_torus).points([[0, 0, 1]]).report.undecided[0]
     >>> place.normal, place.kind, place.border, len(place.box), place.face
-    (0, 'curve', False, 4, None)
+    (0, 'curve', True, 4, None)
 
     """
 
@@ -181,9 +184,10 @@ class SamplingReport:
         With ``on="surface"``, the number of samples that are not on it (`Samples.on_surface` is
         False): at singular points, and those of a silhouette that could not be moved there.
     proved : int or None
-        The number of prescribed normals whose points are proved to be all; the others are
-        `undecided`. None if nothing is proved: on splines, on surfaces whose derivatives have no
-        bounds, and on parts with `estimated_faces`.
+        The number of prescribed normals whose samples are proved to stand for all points; the
+        others are `undecided`. That all of a curve has the normal is known up to rounding. None if
+        nothing is proved: on splines, on surfaces whose derivatives have no bounds, and on parts
+        with `estimated_faces`.
     undecided : tuple of UndecidedNormal, or None
         The boxes that may contain further points: entries (normal, box, kind, border, face). On
         surfaces without a proof, those around points of the spline that could not be moved to the

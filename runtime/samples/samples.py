@@ -64,7 +64,8 @@ class Samples(SampleArrays, Methods):
         may be entirely different, even the sign of K. None with ``on="spline"``, or if it was not
         requested.
     uv_radius : (N, 2) float64 array or None
-        For points that are proved to be all with prescribed normals: bounds of the errors of `uv`;
+        For points that are proved to be all with prescribed normals: bounds of the errors of `uv`,
+        and for samples of other components how far points of these may be from `uv`;
         NaN on faces of parts where points are estimated. None for others.
     component : (N,) uint8 array or None
         For samples at prescribed normals: what the points near a sample with its normal are, see

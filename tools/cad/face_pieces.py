@@ -21,7 +21,7 @@ from ...runtime.directions.regions import Cap
 from ...runtime.domain.domain import Domain
 from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import geometry_of
-from ...runtime.onto_surface.proved import proof_of
+from ...runtime.onto_surface.proved import not_outside, proof_of
 from ...runtime.onto_surface.reach import in_reach
 from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, GIVEN_NAMES, bytes_of, dtype_of, regular
 from ...runtime.samples.report import SamplingReport
@@ -170,7 +170,8 @@ class FacePiece(Piece):
             for name, values in self.fields_at(beside, beside, CURVATURES, np.float64).items():
                 fields[name][lost] = values
         fields["gaussian_curvature"] = np.copysign(fields["gaussian_curvature"], found.sign[inside])
-        proof = proof_of(normals, found.undecided, self.trim, self.face.index)
+        open_, _ = not_outside(self.trim, found.undecided, normals)
+        proof = proof_of(normals, open_, self.face.index)
         report = SamplingReport(
             self.label, len(normals), len(uv), None, None, None, **proof._asdict()
         )

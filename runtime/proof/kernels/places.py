@@ -79,7 +79,7 @@ SLENDER, SHRUNK = 4.0, 2.0**-5
 # A cluster is a curve of solutions if SETTLING steps from the middles of its boxes, of up to
 # CHECKED ones, lead to solutions no farther away than BESIDE half widths. A Hessian whose
 # determinant is less than RANK times the square of its larger eigenvalue has the rank 1.
-SETTLING, CHECKED, BESIDE, RANK = 32, 256, 4.0, 1e-4
+SETTLING, CHECKED, BESIDE, RANK = 32, 64, 4.0, 1e-4
 # From this level on, rounding explains open boxes more than twice as many as on the level before.
 FINE = 10
 
@@ -302,19 +302,20 @@ def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
 def is_curve(tape, work, cells, boxes, rows, count, owner, n):
     """Return whether there are solutions beside all boxes of a cluster, up to rounding.
 
-    Up to CHECKED boxes are checked. The solution of the first one is written to `ends`.
+    Up to CHECKED boxes are checked. The solution of one in their middle is written to `ends`.
     """
     own = 0
     for k in range(count):
         own += 1 if boxes.owner[k] == owner else 0
-    step, own = (own + CHECKED - 1) // CHECKED, 0
+    step = (own + CHECKED - 1) // CHECKED
+    middle, own = own // (2 * step), 0
     for k in range(count):
         if boxes.owner[k] != owner:
             continue
         if own % step == 0:
             if not settles(tape, work, cells, rows[k], n):
                 return False
-            if own == 0:
+            if own == middle * step:
                 boxes.ends[0, 0], boxes.ends[1, 0] = work.u[0], work.v[0]
         own += 1
     return True

@@ -107,11 +107,19 @@ def test_points_of_surfaces_are_exact() -> None:
 
 @pytest.mark.compiled
 def test_what_is_not_proved_is_listed() -> None:
-    """The normals ±z of a torus are those of circles."""
-    report = gm.convolve("torus", BODY, np.concatenate([NORMALS, AXES])).samples.report
+    """The normals ±z of a torus are those of circles, which a trim cuts."""
+    normals = np.concatenate([NORMALS, AXES])
+    part = gm.surfaces.torus().trimmed(within=lambda u, v: u < 3)
+    report = gm.convolve(part, BODY, normals).samples.report
     assert report.undecided is not None
     assert {x.normal for x in report.undecided} == {402, 405}
     assert report.proved == 404
+    whole = gm.convolve("torus", BODY, normals).samples
+    assert whole.report.proved == 406
+    np.testing.assert_array_equal(np.bincount(whole.normal_index)[[402, 405]], 1)
+    np.testing.assert_allclose(
+        whole.support, (whole.points * whole.normals).sum(axis=1), rtol=0.0, atol=1e-12
+    )
 
 
 @pytest.mark.compiled
@@ -281,7 +289,7 @@ def test_a_convolution_is_written_and_picked(tmp_path: Any) -> None:
 def test_what_normals_cannot_see_is_said(cells: Any) -> None:
     for name in ("plane", "cylinder"):
         with pytest.warns(gm.GaussmapWarning, match=f"'{name}': 100 % of its area is flat") as said:
-            sums = gm.convolve(ELLIPSOID, gm.surfaces.surface(name), gm.icosphere(4), cells=cells)
+            sums = gm.convolve(ELLIPSOID, gm.surfaces.surface(name), gm.fibonacci(100), cells=cells)
         assert said[0].filename == __file__
         assert len(sums) == 0
         assert sums.first_uv.shape == (0, 2)

@@ -1,0 +1,167 @@
+"""Normals of flat points, circles and rulings: one sample for each component, with its index."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
+
+import gaussmap as gm
+import numpy as np
+import pytest
+import sympy as sp
+
+from ...products import covering
+
+REGULAR, ISOLATED, CURVE = gm.Component.REGULAR, gm.Component.ISOLATED, gm.Component.CURVE
+Z, X = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
+
+
+class Case(NamedTuple):
+    """A surface, a normal, its components in any order, its degree, and what is 0 on them.
+
+    The functions are those of coordinates of samples on curves. Isolated points are at the origin.
+    """
+
+    surface: Callable[[], gm.Surface]
+    normal: tuple[float, float, float]
+    components: list[int]
+    degree: int
+    zero: Callable[[Any, Any, Any], Any] = lambda x, y, z: 0.0 * z
+    within: float = 0.0
+
+
+def graph(height: str) -> gm.Surface:
+    return gm.Surface.from_sympy(("u", "v", height), ("u", "v"), ((-0.9, 1.1), (-1.1, 0.9)))
+
+
+def enneper(order: int) -> gm.Surface:
+    """Return the minimal surface whose Gauss map is the power z**order."""
+    u, v = sp.symbols("u v", real=True)
+    z = u + sp.I * v
+    power = z ** (2 * order + 1) / (2 * order + 1)
+    parts = z - power, sp.I * (z + power), 2 * z ** (order + 1) / (order + 1)
+    position = [str(sp.expand(sp.re(sp.expand(x)))) for x in parts]
+    return gm.Surface.from_sympy(position, ("u", "v"), ((-1.03, 1.0), (-1.0, 1.07)))
+
+
+def nurbs_torus() -> gm.Surface:
+    """Return a torus whose circles of z = ±0.4 are knot lines."""
+    ring = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+    weights = [1.0, math.sqrt(0.5)] * 4 + [1.0]
+    knots = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
+    net = [[((1 + 0.4 * a) * x, (1 + 0.4 * a) * y, 0.4 * b) for a, b in ring] for x, y in ring]
+    return gm.Surface.from_nurbs((2, 2), (knots, knots), net, np.outer(weights, weights))
+
+
+def on_top(x: Any, y: Any, z: Any) -> Any:
+    return np.hypot(np.hypot(x, y) - 1.0, z - 0.4)
+
+
+CASES = {
+    "torus": Case(partial(gm.surfaces.torus, 1.0, 0.4), Z, [CURVE], 0, on_top, 1e-12),
+    "NURBS torus": Case(nurbs_torus, Z, [CURVE], 0, on_top, 1e-12),
+    "torus, sides": Case(partial(gm.surfaces.torus, 1.0, 0.4), X, [REGULAR, REGULAR], 0),
+    "monkey saddle": Case(gm.surfaces.monkey_saddle, Z, [ISOLATED], -2),
+    "Enneper 2": Case(partial(enneper, 2), (0.0, 0.0, -1.0), [ISOLATED], -2),
+    "Enneper 3": Case(partial(enneper, 3), (0.0, 0.0, -1.0), [ISOLATED], -3),
+    "Enneper, none": Case(partial(enneper, 2), Z, [], 0),
+    "cusp": Case(partial(graph, "u**4/4 + u**2*v/2 + v**2/3"), Z, [ISOLATED], 1),
+    "minimum": Case(partial(graph, "u**4 + v**4"), Z, [ISOLATED], 1),
+    "flat minimum": Case(partial(graph, "u**8 + v**8"), Z, [ISOLATED], 1),
+    # A circle around the point at which the height has a maximum.
+    "crater": Case(
+        partial(graph, "(u**2 + v**2 - 1/4)**2"), Z, [CURVE, REGULAR], 1,
+        lambda x, y, z: np.hypot(np.hypot(x, y) - 0.5, z), 1e-9,
+    ),
+    "cylinder": Case(
+        gm.surfaces.cylinder, (0.6, 0.8, 0.0), [CURVE], 0,
+        lambda x, y, z: np.hypot(x - 0.6, y - 0.8), 1e-12,
+    ),
+    "ruled": Case(
+        partial(graph, "u**2*(2 + v)"), Z, [CURVE], 0, lambda x, y, z: np.hypot(x, z), 1e-9
+    ),
+    "plane": Case(gm.surfaces.plane, Z, [CURVE], 0, lambda x, y, z: z, 1e-15),
+}  # fmt: skip
+COSINE, SINE = math.cos(0.7), math.sin(0.7)
+TURN = np.array([[COSINE, -SINE, 0], [SINE, COSINE, 0], [0, 0, 1]]) @ np.array(
+    [[1, 0, 0], [0, COSINE, -SINE], [0, SINE, COSINE]]
+)
+# Matrices of motions, translations, and how much larger rounding errors are.
+MOVES: dict[str, tuple[Any, float, float]] = {
+    "as it is": (np.eye(3), 0.0, 1.0),
+    "turned": (TURN, 0.0, 1.0),
+    "large": (1e9 * np.eye(3), 0.0, 1.0),
+    "small": (1e-9 * np.eye(3), 0.0, 1.0),
+    "mirrored": (np.diag([1.0, -1.0, 1.0]), 0.0, 1.0),
+    "far away": (np.eye(3), 1e6, 1e6),
+}
+
+
+@covering(name=CASES, move=MOVES)
+def test_each_component_has_one_sample(name: str, move: str) -> None:
+    case, (matrix, away, rougher) = CASES[name], MOVES[move]
+    whole = np.eye(4)
+    whole[:3, :3], whole[:3, 3] = matrix, away
+    surface = case.surface().transformed(whole)
+    normal = np.linalg.inv(matrix).T @ case.normal
+    known = gm.GaussMap(surface)
+    samples = known.points([normal])
+    assert samples.component is not None
+    assert samples.uv_radius is not None
+    assert sorted(samples.component) == sorted(case.components)
+    assert (samples.report.proved, samples.report.undecided) == (1, ())
+    np.testing.assert_array_equal(known.count([normal]), len(case.components))
+    np.testing.assert_array_equal(known.degree([normal]), case.degree)
+    special = samples[samples.component != REGULAR]
+    np.testing.assert_array_equal(special.gaussian_curvature, 0.0)
+    isolated = special[special.component == ISOLATED]
+    assert isolated.uv_radius is not None
+    assert (isolated.uv_radius <= 0.02).all()  # 1 % of the domain
+    # x_u and x_v are unit vectors there, and change by at most a tenth within the radius.
+    at = np.linalg.norm(np.linalg.solve(matrix, (isolated.points - away).T), axis=0)
+    assert (at <= 1.1 * isolated.uv_radius.sum(axis=1) + rougher * 1e-15).all()
+    on_curve = special[special.component == CURVE]
+    points = np.linalg.solve(matrix, (on_curve.points - away).T)
+    assert (np.abs(case.zero(*points)) <= rougher * case.within).all()
+    _, x_u, x_v, *_ = np.moveaxis(surface.jets(*on_curve.uv.T.copy()), 1, 0)
+    own = np.cross(x_u, x_v)
+    own /= np.linalg.norm(own, axis=1, keepdims=True)
+    # Translations leave derivatives as they are, but for what the search takes for rounding. At
+    # joints, normals are those of both sides, up to 1e-9.
+    tolerance = 1e-9 if name == "NURBS torus" else rougher * 1e-14
+    np.testing.assert_allclose(own - normal / np.linalg.norm(normal), 0.0, atol=tolerance)
+
+
+def test_components_at_the_border_of_a_trim_are_listed() -> None:
+    """The circle of a torus with the normal z is inside, outside, or cut."""
+    torus = gm.surfaces.torus()
+    for within, samples, kinds in (
+        (lambda u, v: v < 3.0, 1, []),
+        (lambda u, v: v > 3.0, 0, []),
+        (lambda u, v: u < 3.0, 0, ["curve"]),
+    ):
+        found = gm.GaussMap(torus.trimmed(within=within)).points([Z])
+        assert (len(found), [x.kind for x in found.report.undecided or ()]) == (samples, kinds)
+        assert all(x.border for x in found.report.undecided or ())
+        assert found.report.proved == 1 - len(kinds)
+
+
+def test_summaries_name_what_samples_stand_for() -> None:
+    known = gm.GaussMap(gm.surfaces.torus())
+    assert "2 on curves with one normal" in known.points([Z, (0.0, 0.0, -1.0), X]).summary()
+    assert "curve" not in known.points([X]).summary()
+    saddle = gm.GaussMap(gm.surfaces.monkey_saddle()).points([Z])
+    assert "1 isolated with K = 0" in saddle.summary()
+
+
+@pytest.mark.parametrize("name", ["torus", "ellipsoid", "dupin_cyclide"])
+def test_the_sum_of_indices_is_half_the_euler_characteristic(name: str) -> None:
+    """Also for normals of circles."""
+    surface = gm.surfaces.surface(name)
+    euler = 2 if name == "ellipsoid" else 0
+    normals = np.concatenate([np.eye(3), -np.eye(3), gm.icosphere(3)])
+    known = gm.GaussMap(surface)
+    assert known.points(normals).report.undecided == ()
+    np.testing.assert_array_equal(known.degree(normals), euler // 2)
