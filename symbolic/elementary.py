@@ -63,6 +63,8 @@ FUNCTIONS = {
     "atan": Function(
         sp.atan(x), {1 + x**2: 1 / w}, {"w": 1 / (1 + x**2)}, cancelling=sp.Rational(5, 3)
     ),
+    # Rounding x² adds x² units to w: the sums of moduli, times 1 + x², are at most 2/√π.
+    "erf": Function(sp.erf(x), {sp.exp(-(x**2)): w}, cancelling=sp.Rational(8, 7)),
 }
 # The codes of the operations of tapes.
 # A spline writes four rows, its own and those of three coordinates after it.
@@ -112,9 +114,11 @@ def _critical(function: Function) -> tuple[float, list[float]]:
     """
     if function.of.has(sp.sin, sp.cos):
         return float(sp.pi / 2), []
-    domain = sp.calculus.util.continuous_domain(function.of, x, sp.S.Reals).interior
+    # SymPy does not know that the integral of exp(-x²) is continuous wherever that is.
+    of = sp.diff(function.of, x) if function.of.has(sp.erf) else function.of
+    domain = sp.calculus.util.continuous_domain(of, x, sp.S.Reals).interior
     slopes = [sp.diff(f, x) for f in function.coefficients]
-    singular: Any = sp.calculus.singularities(function.of, x)
+    singular: Any = sp.calculus.singularities(of, x)
     found = [singular, *(_zeros(f, domain) for f in slopes if f.free_symbols)]
     return 0.0, sorted({float(place) for places in found for place in places})
 

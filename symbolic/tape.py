@@ -36,6 +36,7 @@ REWRITTEN: Mapping[Any, Callable[[Any], sp.Expr]] = {
     sp.asinh: lambda x: sp.log(x + sp.sqrt(x**2 + 1)),
     sp.acosh: lambda x: sp.log(x + sp.sqrt(x**2 - 1)),
     sp.atanh: lambda x: sp.log((1 + x) / (1 - x)) / 2,
+    sp.erfc: lambda x: 1 - sp.erf(x),
 }
 
 

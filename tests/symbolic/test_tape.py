@@ -58,6 +58,7 @@ def test_steps_of_the_catalogue_compute_positions(name):
         sp.sec(u), sp.csc(u), sp.coth(u), sp.sech(u), sp.csch(u), sp.acos(u), sp.acot(u),
         sp.asinh(u), sp.acosh(u + 2), sp.atanh(u), sp.log(u, 3), sp.sqrt(2) * u / sp.pi,
         sp.Integer(3),
+        sp.erf(u) + sp.erfc(u * v),
     ],
 )  # fmt: skip
 def test_steps_compute_expressions(expression):
@@ -69,7 +70,7 @@ def test_steps_compute_expressions(expression):
 @pytest.mark.parametrize(
     "expression",
     [
-        sp.Abs(u), sp.sign(u), sp.floor(u), sp.Mod(u, 2), sp.Max(u, v), sp.Heaviside(u), sp.erf(u),
+        sp.Abs(u), sp.sign(u), sp.floor(u), sp.Mod(u, 2), sp.Max(u, v), sp.Heaviside(u), sp.sinc(u),
         sp.Piecewise((u, u < v), (v, True)), sp.atan2(u, v), sp.I * u, sp.zoo, sp.nan,
         sp.Sum(sp.Symbol("k") * u, (sp.Symbol("k"), 0, 3)), u + sp.Symbol("unknown"),
     ],

@@ -88,6 +88,9 @@ def coefficients(code, x):
     if code == elementary.ASIN:
         f1, f2, f3 = elementary.asin_taylor(x)
         return math.asin(x), f1, f2, f3
+    if code == elementary.ERF:
+        f1, f2, f3 = elementary.erf_taylor(x, math.exp(-x * x))
+        return math.erf(x), f1, f2, f3
     f1, f2, f3 = elementary.atan_taylor(x)
     return math.atan(x), f1, f2, f3
 

@@ -189,7 +189,7 @@ leaves = st.one_of(
     st.sampled_from([sp.pi, sp.sqrt(2), sp.Float(0.1)]),
 )
 FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.exp, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.log, sp.sqrt,
-             sp.asin, sp.acos, lambda x: 1 / x)  # fmt: skip
+             sp.asin, sp.acos, sp.erf, lambda x: 1 / x)  # fmt: skip
 
 
 def larger(parts: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
