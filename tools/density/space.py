@@ -178,10 +178,12 @@ class Space:
         corners, places = cells.boxes[chosen, :2], cells.places[chosen]
         others = places + BESIDE * (corners - places)
         chosen = chosen[self._is_flat(self.at(cells.pieces[chosen], others, keep=True))]
-        weights = cells.numbers[:, AREA]
+        # Cells whose place is an apex have the area 0. If all of a piece have, they count alike.
+        tiny = np.finfo(np.float64).tiny
+        weights = np.maximum(cells.numbers[:, AREA], tiny)
         flat = np.bincount(cells.pieces[chosen], weights[chosen], count)
         # Areas of cells at boundaries are approximate, those of pieces are not.
-        known = np.maximum(np.bincount(cells.pieces, weights, count), np.finfo(np.float64).tiny)
+        known = np.maximum(np.bincount(cells.pieces, weights, count), tiny)
         return float(np.sum(flat / known * self.areas) / self.area)
 
     def _is_flat(self, cells: Cells) -> Flags:

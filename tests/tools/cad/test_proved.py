@@ -216,7 +216,7 @@ def test_rulings_outside_of_a_trim_are_known():
 def test_both_sides_of_an_apex():
     cone = part([face("cone", 0.0, 0.5, v=(-1.0, 1.0), area=3.0)])
     normals = [[math.cos(0.5), 0.0, s * math.sin(0.5)] for s in (-1.0, 1.0)]
-    with pytest.warns(gm.GaussmapWarning, match="is flat"):
+    with pytest.warns(gm.GaussmapWarning, match="100 % of its area is flat"):
         found = gm.sample(cone, normals=normals).report.undecided
     middles = sorted((x.normal, round((x.box[0] + x.box[1]) / 2, 6) % 6.283185) for x in found)
     # Below the apex ρ < 0, and x_u × x_v points to the axis: at the angle π from n.
