@@ -67,7 +67,7 @@ def exact_root(value: Fraction) -> Fraction:
     return root
 
 
-PI = Fraction(22, 7)  # stands for π
+PI = Fraction(256, 81)  # stands for π, and has a rational root
 TYPES = {name: getattr(vectors, name) for name, _ in emit.KINDS.values()}
 TYPES |= {x.__name__: x for x in (vectors.Arc, vectors.Hessian, vectors.Patch)}
 EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root, pi=PI), **TYPES}
@@ -107,8 +107,8 @@ def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
     if formula.name == "asin_taylor":  # 1 − x² is a square
         q = abs(inputs["x"])
         return inputs | {"x": (1 - q**2) / (1 + q**2)}
-    if formula is mesh.BORDER_SPACING:  # ρ = 2 k/(π r²) = (7/r)²
-        return inputs | {"k": Fraction(77)}
+    if formula is mesh.BORDER_SPACING:  # ρ = 2 k/(π r²) = (63/(8 r))²
+        return inputs | {"k": Fraction(98)}
     if formula is proved.FOLD_EXTREME:
         return inputs | with_rational_root(formula, inputs)
     return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs

@@ -30,12 +30,19 @@ def test_some_samples_are_decided_exactly():
 
 
 @pytest.mark.parametrize("normals", [NORMALS, NORMALS[::-1].copy()])
-@pytest.mark.parametrize("on", ["spline", "surface"])
-def test_samples_are_in_the_order_of_normals_and_patches(normals, on):
+def test_samples_are_in_the_order_of_normals_and_patches(normals):
     """Also those that are decided exactly, among others of their normal."""
-    samples = gm.sample("torus", normals=normals, cells=(4, 4), on=on)
+    samples = gm.sample("torus", normals=normals, cells=(4, 4), on="spline")
     pairs = list(zip(samples.normal_index.tolist(), samples.patch_index.tolist(), strict=True))
     assert pairs == sorted(pairs)
+
+
+def test_proved_samples_are_in_the_order_of_normals_and_of_u_and_v():
+    samples = gm.sample("torus", normals=NORMALS)
+    keys = [
+        (k, *x) for k, x in zip(samples.normal_index.tolist(), samples.uv.tolist(), strict=True)
+    ]
+    assert keys == sorted(keys)
 
 
 def test_nothing_is_filled_that_is_not_wanted(monkeypatch):

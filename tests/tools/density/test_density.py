@@ -115,8 +115,8 @@ def test_what_has_no_area_is_refused():
 def test_all_samples_of_the_normals_are_kept(name):
     spline = gm.fit(gm.surfaces.surface(name), (16, 16))
     for normals in (gm.icosphere(8), gm.fibonacci(500)):
-        plain = gm.sample(spline, normals=normals)
         samples = gm.sample(spline, normals=normals, density="balanced")
+        plain = gm.sample(spline, normals=normals, fields=samples.fields)
         same(samples[: len(plain)], plain)
         assert len(samples) > len(plain)
         assert (samples.kind[: len(plain)] == "normal").all()

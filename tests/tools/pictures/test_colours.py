@@ -12,7 +12,9 @@ pytest.importorskip("matplotlib")
 
 def colours(curvatures: np.ndarray) -> Colours:
     """The colours of samples of given Gaussian curvatures."""
-    samples = gm.sample("torus", normals=gm.icosphere(4), cells=(8, 8))[: len(curvatures)]
+    samples = gm.sample("torus", normals=gm.icosphere(4), cells=(8, 8), on="spline")[
+        : len(curvatures)
+    ]
     return colours_of(replace(samples, gaussian_curvature=curvatures), "gaussian_curvature")
 
 
