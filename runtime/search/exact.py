@@ -5,10 +5,11 @@ they give the exact sign of every form. Exact zeros (a normal on the common boun
 images, or of a parabolic line) are decided by Simulation of Simplicity (Edelsbrunner and Mücke,
 https://doi.org/10.1145/77635.77639): the normal is displaced by an infinitesimal vector, the same
 for all patches. The displaced normal lies on no boundary, so that exactly one of the patches has
-it. Integers of fixed length decide nearly all: with those of any length alone, splines take 2 to 15
-times as long where normals are symmetric (26 November 2026, five surfaces of the catalogue, one
-thread). There is a tolerance only at the open border of the domain: a normal whose point lies
-outside the domain by at most the error of the data is a hit.
+it. A pole is one point: where several of its patches have the displaced normal, hits of opposite
+signs cancel. Integers of fixed length decide nearly all: with those of any length alone, splines
+take 2 to 15 times as long where normals are symmetric (26 November 2026, five surfaces of the
+catalogue, one thread). There is a tolerance only at the open border of the domain: a normal whose
+point lies outside the domain by at most the error of the data is a hit.
 """
 
 from __future__ import annotations
@@ -26,13 +27,14 @@ from ..spline.spline import Spline
 from .kernels.decide import Decided, decide_exactly
 from .long_integers import forms_of_pairs
 
-__all__ = ["Decision", "decide", "decided_forms"]
+__all__ = ["Decision", "decide", "decided_forms", "uncancelled"]
 
 PAIRS_AT_A_TIME = 1 << 10
 # Fewer at a time on Python integers: a pair has many of them, of about a hundred bytes each.
 LONG_PAIRS_AT_A_TIME = 1 << 14
-# Two hits of one normal at the open border are the same if they are closer than this, in cells: far
-# more than rounding, which is below 1e-14, and far less than a cell.
+# Two hits of one normal at the open border are the same if they are closer than this, in cells, and
+# a hit this close to a pole is the pole: far more than rounding, which is below 1e-14, and far less
+# than a cell.
 SAME_PLACE = 1e-6
 
 
@@ -74,9 +76,11 @@ def decide(
     regular, directions = _regular_places(spline, patches[which], local[which])
     towards = np.einsum("kx,kx->k", directions, normals[which]) > 0.0
     which, regular = which[towards], regular[towards]
-    place, number = local[which], numbers[which]
-    keep = _first_of_each_place(spline, patches[which], number, place, near[which])
-    at = np.column_stack([place, signs[which, :1].astype(np.float64), regular])
+    number, sign = numbers[which], signs[which, 0]
+    place = _in_cells(spline, patches[which], local[which])
+    keep = _first_of_each_place(spline, number, place, near[which])
+    keep[keep] = uncancelled(number[keep], _poles_at(spline, place[keep]), sign[keep])
+    at = np.column_stack([local[which], sign.astype(np.float64), regular])
     return Decision(which[keep], at[keep])
 
 
@@ -127,25 +131,66 @@ def _regular_places(
     return places, normals(places)
 
 
+def _in_cells(
+    spline: Spline, patches: NDArray[np.int64], local: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the places (k, 2) of hits in cells from the corner of the domain."""
+    cell, turn = np.divmod(patches, 4)
+    centre = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + 0.5
+    return centre + np.einsum("kc,kcx->kx", local, CORNERS[turn])
+
+
+# --- poles ----------------------------------------------------------------------------------------
+
+
+def uncancelled(
+    numbers: NDArray[np.int64], poles: NDArray[np.int64], signs: NDArray[np.int8]
+) -> NDArray[np.bool_]:
+    """Return which hits of normals (k,) to keep: at a pole, those of opposite signs cancel.
+
+    `poles` (k,) are the numbers of poles, −1 for hits elsewhere. Around a pole the Gaussian image
+    of a spline has folds, by rounding or where the curvatures of the surface differ there. As many
+    hits remain as it winds around the normal: one, at a regular point of the surface. All remain if
+    it does not.
+    """
+    keep = np.ones(len(numbers), dtype=bool)
+    at = np.flatnonzero(poles >= 0)
+    if len(at) == 0:
+        return keep
+    keys = np.stack([numbers[at], poles[at]], axis=1)
+    found, group = np.unique(keys, axis=0, return_inverse=True)
+    group, sign = group.ravel(), signs[at].astype(np.int64)
+    total = np.zeros(len(found), np.int64)
+    np.add.at(total, group, sign)
+    order = np.lexsort((sign != np.sign(total[group]), group))
+    rank = np.arange(len(at)) - np.searchsorted(group[order], group[order])
+    keep[at[order]] = (rank < np.abs(total[group[order]])) | (total[group[order]] == 0)
+    return keep
+
+
+def _poles_at(spline: Spline, places: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the number of the pole at places (k, 2) in cells, −1 for none."""
+    poles = np.full(len(places), -1)
+    for axis, end in np.ndindex(2, 2):
+        if spline.boundary[axis][end] == "pole":
+            away = np.abs(places[:, axis] - end * spline.cells[axis])
+            poles[away < SAME_PLACE] = 2 * axis + end
+    return poles
+
+
 # --- the open border ------------------------------------------------------------------------------
 
 
 def _first_of_each_place(
     spline: Spline,
-    patches: NDArray[np.int64],
     numbers: NDArray[np.int64],
-    local: NDArray[np.float64],
+    place: NDArray[np.float64],
     near: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
     """Return which hits to keep: near the border, those that coincide with no other hit."""
-    keep = np.ones(len(patches), dtype=bool)
+    keep = np.ones(len(place), dtype=bool)
     if not near.any():
         return keep
-    cell, turn = np.divmod(patches, 4)
-    corners = CORNERS[turn]
-    place = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + np.einsum(
-        "kc,kcx->kx", local, corners
-    )
     order = np.argsort(numbers, kind="stable")
     first, last = (np.searchsorted(numbers[order], numbers, side) for side in ("left", "right"))
     for k in np.flatnonzero(near):

@@ -338,3 +338,18 @@ def test_points_of_a_mirrored_seam(name: str) -> None:
             here = np.linalg.norm(samples.points - points[samples.normal_index], axis=1) < 1e-9
             found += np.bincount(samples.normal_index[here], minlength=len(v))
         assert {*found.tolist()} <= times
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_pole_is_one_point_with_its_normal(sign: int) -> None:
+    """Curvatures differ around it, so that Gaussian images of patches overlap there."""
+
+    def bowl(u: Array, v: Array) -> Array:
+        height = np.cos(2.0 * u) + (2.0 if sign > 0 else 0.0)
+        return np.stack([v * np.cos(u), v * np.sin(u), height * v * v], -1)
+
+    surface = gm.Surface.from_callable(bowl, ((0.0, 2.0 * np.pi), (0.0, 1.0)), (True, False))
+    samples = gm.sample(gm.fit(surface, (12, 8)), normals=[[0, 0, -1], [0, 0, 1]])
+    assert samples.normal_index.tolist() == [0]
+    assert np.abs(samples.points[0, :2]).max() < 1e-12
+    assert np.sign(samples.gaussian_curvature[0]) == sign
