@@ -26,6 +26,7 @@ from ..search.kernels.search import CELLS as KIND
 from ..search.kernels.search import Memory, Pairs, search
 from ..search.patch_index import listed, ordered
 from ..tape.kernels.points import LANES, Tape
+from .apexes import Apex, apexes_of
 from .components import Undecided, components_of, with_kinds
 from .discs import PoleDisc
 from .grid_lines import joints_of, lines_of
@@ -138,6 +139,7 @@ class ProvedIndex:
     lists: Lists
     discs: tuple[PoleDisc, ...]
     caps: tuple[Cap, ...]
+    apexes: tuple[Apex, ...]
     unbounded: NDArray[np.float64]
     _rooms: deque[Rooms] = field(default_factory=deque, repr=False)
 
@@ -199,7 +201,8 @@ class ProvedIndex:
         index = Index(both, len(cut.place), joints)
         pieces = _pieces_of(index)
         lists = listed(pieces.cones)
-        return cls(tape, box, index, pieces, lists, poles.discs, poles.caps, unbounded)
+        apexes = apexes_of(tape, domain)
+        return cls(tape, box, index, pieces, lists, poles.discs, poles.caps, apexes, unbounded)
 
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
         """Return all points with unit normals (S, 3).
@@ -217,6 +220,8 @@ class ProvedIndex:
         answers += [cap.answers(normals) for cap in self.caps]
         places = _sorted(parts, len(normals))
         open_ = components_of(answers, self.domain)
+        for apex in self.apexes:
+            open_ = apex.decided(open_, normals)
         if len(open_.numbers) > 0:
             open_ = with_kinds(open_, self._around(open_, normals), places, self.domain)
         return ProvedPlaces(*places, open_)

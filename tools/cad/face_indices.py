@@ -19,7 +19,6 @@ from ...runtime.surface.collapsed import with_found_sides
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.kernels.points import Tape
 from ...runtime.tape.tapes import bounds_over_boxes
-from .apexes import Apex, apexes_of
 from .face_places import FaceIndex, FacePlaces, joined, undecided
 from .faces import face_surface, simplest
 from .records import Geometry
@@ -57,46 +56,31 @@ def face_index(
 
 
 @dataclass(frozen=True, eq=False)
-class SmoothPiece:
-    """The index of a smooth piece of a surface, and the sides of its domain that are one point."""
-
-    index: ProvedIndex
-    apexes: Sequence[Apex]
-
-    def query(self, normals: Array, threads: int | None) -> FacePlaces:
-        """Return all points with unit normals (S, 3)."""
-        found = self.index.query(normals, threads)
-        open_ = found.undecided
-        for apex in self.apexes:
-            open_ = apex.decided(open_, normals)
-        sign = found.sign.astype(np.float64)
-        return FacePlaces(found.numbers, found.uv, found.radius, sign, open_)
-
-
-@dataclass(frozen=True, eq=False)
 class SmoothPieces:
     """The indices of the smooth pieces of a surface."""
 
-    pieces: Sequence[SmoothPiece]
+    pieces: Sequence[ProvedIndex]
 
     @classmethod
     def of(cls, surface: Surface) -> SmoothPieces | None:
         """Return the indices of a surface; None if one of its pieces has none."""
         found = []
         for piece in surface.pieces():
-            may_have_points = _has_corners_that_meet(piece)
-            if may_have_points:
+            if _has_corners_that_meet(piece):
                 piece = with_found_sides(piece)[0]
             index = index_of(piece, cells=CELLS)
             if index is None:
                 return None
-            apexes = apexes_of(piece, index.tape) if may_have_points else []
-            found.append(SmoothPiece(index, apexes))
+            found.append(index)
         return cls(found)
 
     def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
         """Return all points with unit normals (S, 3)."""
-        return joined([x.query(normals, threads) for x in self.pieces])
+        found = [x.query(normals, threads) for x in self.pieces]
+        return joined([
+            FacePlaces(x.numbers, x.uv, x.radius, x.sign.astype(np.float64), x.undecided)
+            for x in found
+        ])  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)

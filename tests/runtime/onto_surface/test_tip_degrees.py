@@ -43,6 +43,7 @@ def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, alo
     n = directions()
     np.testing.assert_array_equal(image.degree(n), 1)
     points = image.points(n)
+    assert points.report.proved == (len(n) if on == "surface" else None)
     regular = points[points.component == gm.Component.REGULAR]
     tips = points[points.component == gm.Component.TIP]
     assert len(regular) + len(tips) == len(points)

@@ -185,9 +185,7 @@ PLACES: dict[str, Callable[[], Places]] = {
     "knots of a smooth spline": partial(on_knots, 3, 1),
     "valley": in_a_valley,
     "root": lambda: Places.on("root", [0.5, 0.02], [0.3, 0.7], cells=(8, 8)),
-    "horn": lambda: Places.on(
-        "horn", [0.3, 2.0, 4.0], [0.5, 0.1, 0.9], 1, 1.0, OPEN, cells=(16, 8)
-    ),
+    "horn": lambda: Places.on("horn", [0.3, 2.0, 4.0], [0.5, 0.1, 0.9], cells=(16, 8)),
     **{
         f"tip {x}": partial(beside_a_tip, *x) for x in ((0.02, 1.5), (0.02, 1.0 + 1e-6), (0.5, 1.0))
     },
@@ -509,16 +507,17 @@ def test_other_normals_of_developables_have_no_points() -> None:
         assert len(found.numbers) == len(found.undecided.numbers) == 0
 
 
-def test_places_without_a_normal_are_open() -> None:
-    horn = surface_of("horn")
-    normals = normals_at(horn, np.array([0.3, 2.0, 4.0]), np.array([0.5, 0.1, 0.9]))
-    found = new_index(horn, cells=(16, 8)).query(normals)
-    np.testing.assert_array_equal(counts(found, normals), 1)
-    # x_v is perpendicular to the normal there on two of the lines that end in the apex.
+def test_an_apex_is_open_for_normals_of_its_own_only() -> None:
+    """x_v is perpendicular to any normal of a point on two of the lines that end in the apex."""
+    horn, u = new_index(surface_of("horn"), cells=(16, 8)), np.linspace(0.0, 6.0, 40)
+    own = np.stack([np.cos(u), np.sin(u), np.full(40, -1.0)], axis=1)
+    normals = np.concatenate([own, own + np.array([0.0, 0.0, 1e-6])])
+    found = horn.query(normals / np.linalg.norm(normals, axis=1)[:, None])
+    np.testing.assert_array_equal(found.undecided.numbers, np.arange(40))
     assert kinds(found) == {"open"}
-    np.testing.assert_array_equal(np.bincount(found.undecided.numbers), 2)
-    assert (found.undecided.boxes[:, 3] < 1e-9).all()
-    assert found.undecided.border.all()
+    low, high, v_low, v_high = found.undecided.boxes.T
+    assert ((low <= u) & (u <= high) & (v_low < 1e-8) & (v_high < 1e-8)).all()
+    np.testing.assert_array_equal(found.numbers, np.arange(40, 80))
 
 
 def test_where_derivatives_have_no_bounds_is_said() -> None:

@@ -75,6 +75,5 @@ def test_a_flat_region() -> None:
 def test_a_singular_point() -> None:
     slope = 1.25  # of the meridian at v = 1/2, where it has the angle 1
     found = query("horn", [(slope * np.cos(1.0), slope * np.sin(1.0), -1.0)], (8, 4))
-    assert kinds(found) == {"open"}
-    assert (found.undecided.boxes[:, 3] < 1e-6).all()
+    assert kinds(found) == set()
     np.testing.assert_allclose(found.uv, [[1.0, 0.5]], rtol=0.0, atol=1e-12)
