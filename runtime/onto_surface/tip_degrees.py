@@ -4,11 +4,15 @@ Near a tip the surface is a cone over a closed curve of rays. On a small ring ro
 function n·x has 1 − changes/2 as its index (Banchoff), where changes counts changes of the sign
 of n·ray; this is the sum of the degrees at n and at −n. Their difference is the winding number of
 the normals of the cone round n.
+
+A cone through some rays has other signs than the surface at normals that nearly touch it between
+two of them: n·ray has an extreme value near 0 there. Rays near such a value are moved to it.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -21,8 +25,11 @@ from .on_spline import OnSpline
 
 __all__ = ["Tip", "tip_degrees", "tips_on"]
 
-# On a surface, the rays of a tip are at least as many: normals are 1e-6 off between them.
+# On a surface, the rays of a tip are at least as many.
 RAYS = 1 << 11
+# An extreme value is looked for in so many parts, so many times: the last ones are 5e-8 rad long,
+# and the value is within the square of that.
+PARTS, TIMES = 32, 4
 PRODUCTS_AT_A_TIME = 1 << 20
 ROUNDING = 1e-9
 
@@ -30,13 +37,16 @@ ROUNDING = 1e-9
 class Tip(NamedTuple):
     """A tip of a surface: its point (3,), one of its parameter pairs (2,), and its rays (k, 3).
 
-    The rays are anticlockwise around it. The degree is `outside` at all normals n with n·axis <
-    cosine.
+    The rays are anticlockwise around it; `bends` (k,) are the sizes of their second differences,
+    and `ray_at` returns those at fractional numbers (m,). The degree is `outside` at all normals n
+    with n·axis < cosine.
     """
 
     point: Array
     uv: Array
     rays: Array
+    bends: Array
+    ray_at: Callable[[Array], Array]
     axis: Array
     cosine: float
     outside: int
@@ -48,12 +58,42 @@ class Tip(NamedTuple):
         size = max(PRODUCTS_AT_A_TIME // len(self.rays), 1)
         for first in range(0, len(near), size):
             some = near[first : first + size]
-            # Normals below which the whole cone lies have one degree.
-            is_below = (self.rays @ normals[some].T < 0.0).all(axis=0)
-            below, rest = some[is_below], some[~is_below]
-            found[rest] = _degrees(self.rays, normals[rest])
-            found[below] = _degrees(self.rays, normals[below[:1]])
+            given = normals[some]
+            heights = self.rays @ given.T
+            found[some] = self._degrees(self.rays, heights, given)
+            small = np.abs(heights).min(axis=0) <= self.bends.max()
+            for k in np.flatnonzero(small):
+                rays = self._with_extremes(given[k], heights[:, k])
+                found[some[k]] = self._degrees(rays, (rays @ given[k])[:, None], given[[k]])[0]
         return found
+
+    def _degrees(self, rays: Array, heights: Array, normals: Array) -> NDArray[np.int64]:
+        """Return the degrees of a cone at normals (S, 3), with heights (k, S) of its rays."""
+        # Normals below which the whole cone lies have one degree.
+        is_below, found = (heights < 0.0).all(axis=0), np.empty(len(normals), np.int64)
+        found[~is_below] = _degrees(rays, normals[~is_below])
+        if is_below.any():
+            is_axis = (rays @ self.axis < 0.0).all()
+            found[is_below] = _degrees(rays, self.axis[None] if is_axis else normals[is_below][:1])
+        return found
+
+    def _with_extremes(self, normal: Array, heights: Array) -> Array:
+        """Return the rays; those near extreme values of n·ray, if these may be 0, are moved there.
+
+        The heights (k,) are n·ray.
+        """
+        rays, signs = self.rays.copy(), np.sign(heights)
+        before, here, after = (signs * np.roll(heights, x) for x in (1, 0, -1))
+        near = (here < before) & (here <= after) & (here <= self.bends)
+        for k in np.flatnonzero(near):
+            middle, half = float(k), 1.0
+            for _ in range(TIMES):
+                places = middle + half * np.linspace(-1.0, 1.0, PARTS + 1)
+                beside = self.ray_at(places)
+                least = int((signs[k] * (beside @ normal)).argmin())
+                middle, half = places[least], 2.0 * half / PARTS
+                rays[k] = beside[least]
+        return rays
 
 
 def tip_degrees(geometry: OnSpline, normals: Array) -> NDArray[np.int64]:
@@ -85,23 +125,34 @@ def _tip(geometry: OnSpline, axis: int, end: int) -> Tip | None:
     parts = spline.cells[1 - axis]
     if geometry.on == "surface":
         parts *= math.ceil(RAYS / parts)
-    along = np.linspace(*spline.domain[1 - axis], parts, endpoint=False)
-    place = np.full(parts, spline.domain[axis][end])
-    uv = np.stack((place, along) if axis == 0 else (along, place), axis=1)
-    jets = geometry.jets(*uv.T.copy())
-    rays = _unit(jets[:, 1 + axis] * (1.0, -1.0)[end])
+    (low, high), place = spline.domain[1 - axis], spline.domain[axis][end]
+
+    def uv_at(numbers: Array) -> Array:
+        """Return parameters. The one around the tip runs anticlockwise, or clockwise."""
+        turns = (numbers if axis == end else parts - 1.0 - numbers) / parts
+        along = low + (high - low) * (turns % 1.0)
+        fixed = np.full_like(along, place)
+        return np.stack((fixed, along) if axis == 0 else (along, fixed), axis=1)
+
+    def ray_at(numbers: Array) -> Array:
+        jets = geometry.jets(*uv_at(numbers).T.copy())
+        return _unit(jets[:, 1 + axis] * (1.0, -1.0)[end])
+
+    rays = ray_at(np.arange(parts, dtype=np.float64))
     if not rays.any(axis=1).all():
         return None
-    # The other parameter runs anticlockwise round the tip, or clockwise.
-    rays = rays if axis == end else rays[::-1]
+    second = np.roll(rays, 1, axis=0) - 2.0 * rays + np.roll(rays, -1, axis=0)
+    bends = np.linalg.norm(second, axis=1)
     normals = _unit(np.cross(rays, np.roll(rays, -1, axis=0)))
     normals = normals[normals.any(axis=1)]
     mean = _unit(normals.sum(axis=0)[None])
-    cosine = float((normals @ mean[0]).min(initial=1.0)) - ROUNDING
+    cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
     # A cap below a half-sphere holds all normals at the tip, and the arcs between them.
     cosine = cosine if cosine > 0.0 else -math.inf
     outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
-    return Tip(jets[0, 0], uv[0], rays, mean[0], cosine, outside)
+    uv = uv_at(np.zeros(1) if axis == end else np.full(1, parts - 1.0))
+    point = geometry.jets(*uv.T.copy())[0, 0]
+    return Tip(point, uv[0], rays, bends, ray_at, mean[0], cosine, outside)
 
 
 def _unit(vectors: Array) -> Array:

@@ -62,6 +62,21 @@ def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, alo
 
 
 @pytest.mark.compiled
+@pytest.mark.parametrize("name", ["round", "star"])
+def test_normals_beside_those_of_a_tip(name: str) -> None:
+    """They are nearer to its cone than that through some rays: π²/2048² / 2 is 1.2e-6."""
+    surface, u = lemon(name, False), np.linspace(0.0, 6.0, 100)
+    image = gm.GaussMap(surface)
+    n = surface.normals(u, np.full(100, np.pi / 3 - 2e-7))
+    points = image.points(n)
+    listed = {x.normal for x in points.report.undecided or ()}
+    assert len(listed) <= (0 if name == "round" else 2)
+    assert set(np.flatnonzero(image.degree(n) != 1).tolist()) <= listed
+    if name == "round":
+        np.testing.assert_array_equal(points.component, gm.Component.REGULAR)
+
+
+@pytest.mark.compiled
 @pytest.mark.parametrize("on", ["spline", "surface"])
 def test_tips_are_samples_and_no_area(on: str) -> None:
     """They are in streams, in reach and in sums; meshes and weights are those without them."""
