@@ -4,7 +4,8 @@ Of a pair of a patch and a normal, the signs of U, V, W decide (Sect. 3.2). A si
 leaves open, or the difference of the two patches of a joint, is that of the boundary cone of the
 joint: one form for both patches, on integers. The cones of all edges at a corner pass through one
 normal exactly, and ties are broken by an infinitesimal displacement of the normal, the same for all
-patches. So the images of the patches are a decomposition without gaps or overlaps.
+patches. So the images of the patches are a decomposition without gaps or overlaps. At a pole they
+are wedges; that of a patch with a collapsed edge is a curve, and has no normals.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from ...generated.vectors import Vector
 from ..base.aliases import Array, Flags, Indices
 from ..base.formula_calls import patch, python_function, vector
 from ..base.kept import kept
-from ..base.tolerances import DATA_ERROR, FORM_ERROR
+from ..base.tolerances import DATA_ERROR, FORM_ERROR, SINGULAR_POINT
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
 from ..spline.tips import tips_of
@@ -45,6 +46,9 @@ TURNED = tuple(
 )
 # The least cosine of a normal and that of the patch at its point, or next to it.
 SAME_NORMAL = 0.999
+# Normals this close to that of a pole are decided by wedges: far more than rounding of forms makes
+# ambiguous, which was 1e-14, and far less than Gaussian images of patches.
+NEAR_POLE = 1e-9
 
 
 def errors_of(spline: NetSpline) -> Array:
@@ -83,9 +87,12 @@ def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decis
     values, errors = np.stack(forms, axis=1), errors_of(spline)[patches, None]
     signs = np.where(np.abs(values) > errors, np.sign(values), 0.0).astype(np.int8)
     inside, local = _decided(spline, patches, normals, signs)
+    _decide_at_poles(spline, patches, normals, inside, local)
     which = np.flatnonzero(inside)
     local = local[which]
-    return Decision(which, np.concatenate([local, local[:, :2]], axis=1))
+    _, singular = spline.normals_in_patches(patches[which], local[:, :2])
+    towards = np.where(singular[:, None], SINGULAR_POINT, 0.0) * (1.0 / 3.0 - local[:, :2])
+    return Decision(which, np.concatenate([local, local[:, :2] + towards], axis=1))
 
 
 def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
@@ -118,6 +125,7 @@ def _decided(
     low, high = signs.min(axis=1), signs.max(axis=1)
     inside = (low >= 0) & (high > 0) | (high <= 0) & (low < 0)
     inside &= ~((signs == 0) & ~topology.on_border.reshape(-1, 3)[patches]).any(axis=1)
+    inside &= ~topology.is_point.reshape(-1, 3)[patches].any(axis=1)
     local = np.zeros((len(patches), 3))
     some = np.flatnonzero(inside)
     if len(some) == 0:
@@ -126,6 +134,42 @@ def _decided(
     local[some, 2] = np.where(high[some] > 0, 1.0, -1.0)
     inside[some] = _agree(spline, patches[some], normals[some], local[some, :2])
     return inside, local
+
+
+def _decide_at_poles(
+    spline: NetSpline, patches: Indices, normals: Array, inside: Flags, local: Array
+) -> None:
+    """Decide pairs next to poles, in place.
+
+    The Gaussian images of the patches around a pole meet there in wedges between planes, through
+    the normals at the ends of their edges. A wedge has the displaced normal or has it not; the
+    forms of the patches are rounding errors there.
+    """
+    topology = spline.topology
+    shared, fan = topology.corners
+    corner = topology.pole_corner[patches]
+    some = np.flatnonzero(corner >= 0)
+    N = shared[fan[patches[some], corner[some]]]
+    some = some[np.linalg.norm(N - normals[some], axis=1) < NEAR_POLE]
+    if len(some) == 0:
+        return
+    at = (corner[some, None] + np.arange(3)) % 3
+    whole, _ = integers(shared[fan[patches[some, None], at]])
+    N, first, second = np.moveaxis(whole, 1, 0)
+    planes = [_cross(N, first), _cross(second, N)]
+    turns = sign((planes[0] * second).sum(axis=1))
+    found = turns != 0
+    for plane in planes:
+        found &= _plane_signs(plane, normals[some]) == turns
+    inside[some] = found
+    local[some, :2] = np.eye(3)[at[:, 0], :2]
+    local[some, 2] = turns
+
+
+def _cross(x: Integers, y: Integers) -> Integers:
+    """Return the cross products (k, 3) of integers."""
+    (a, b, c), (d, e, f) = x.T, y.T
+    return np.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=1)
 
 
 def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
@@ -147,11 +191,11 @@ def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.i
 
     An edge j of patch p has the row 3 p + j. Its form is V of the patch turned so that the edge is
     v = 0, with the tangents at its ends projected onto the planes perpendicular to the normals that
-    all patches share there. The form of the other patch of a joint is its negative. They are 0 on
-    edges that are one point only.
+    all patches share there. The form of the other patch of a joint is its negative. An edge
+    with an end at a pole has a form of its own, see `_polar_signs`.
     """
     topology = spline.topology
-    owner, side = (x[rows] for x in topology.owner)
+    owner, side = topology.owner[0][rows], topology.owner[1][rows]
     patches, edge = np.divmod(owner, 3)
     nets, _ = integers(spline.control_nets[patches])
     turned = nets[np.arange(len(rows))[:, None], np.array(TURNED)[edge]]
@@ -171,7 +215,52 @@ def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.i
     tied = signs == 0
     if tied.any():
         signs[tied] = displaced_forms(vectors[..., tied], n[:, tied])[1][1]
+    polar = np.flatnonzero(topology.polar[0][owner] >= 0)
+    if len(polar) > 0:
+        signs[polar] = _polar_signs(spline, owner[polar], normals[polar])
     return signs * side
+
+
+def _polar_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
+    """Return the signs (k,) of V at edges with an end at a pole.
+
+    One of the tangents is a multiple of the other there, and V is a product of linear forms: of the
+    plane of the normals at both ends, in which those along the edge are, and of the tangent.
+    """
+    topology = spline.topology
+    shared, fan = topology.corners
+    end, tangent = (x[rows] for x in topology.polar)
+    patches, edge = np.divmod(rows, 3)
+    corners = [(edge + 1 + k) % 3 for k in (end, 1 - end)]
+    whole, _ = integers(np.stack([shared[fan[patches, x]] for x in corners]))
+    plane = _cross(whole[0], whole[1])
+    T, X = _tangents_at(spline, rows, end)
+    far_T, far_X = _tangents_at(spline, rows, 1 - end)
+    share = (X * T).sum(axis=1) / (T * T).sum(axis=1)
+    beside = far_X.astype(np.float64) - share[:, None].astype(np.float64) * far_T.astype(np.float64)
+    towards = np.sign((beside * plane.astype(np.float64)).sum(axis=1)).astype(np.int8)
+    along, _ = _tangents_at(spline, tangent, topology.polar[0][tangent])
+    outwards = np.where(topology.polar[0][tangent] == 0, 1, -1).astype(np.int8)
+    along = np.stack(_tangential(vector(along), whole[0]), axis=1)
+    return towards * outwards * _plane_signs(plane, normals) * _plane_signs(along, normals)
+
+
+def _tangents_at(spline: NetSpline, rows: Indices, end: Indices) -> tuple[Integers, Integers]:
+    """Return the tangents along and across edges (k, 3), as integers, at their ends 0 or 1."""
+    patches, edge = np.divmod(rows, 3)
+    nets, _ = integers(spline.control_nets[patches])
+    turned = nets[np.arange(len(rows))[:, None], np.array(TURNED)[edge]]
+    vectors = np.asarray(vectors_of_nets(np.asarray(turned, dtype=object)), dtype=object)
+    found = python_function(formulas.tangents)(patch(vectors), end.astype(object), 0)
+    return np.stack(found[0], axis=1), np.stack(found[1], axis=1)
+
+
+def _plane_signs(planes: Integers, normals: Array) -> NDArray[np.int8]:
+    """Return the signs (k,) of linear forms (k, 3) at displaced normals."""
+    n, _ = integers_by_row(normals)
+    forms = [(planes.T * n).sum(axis=0), *(leading_sign(n) * planes.T)]
+    signs = sign(np.array(forms, dtype=object))
+    return signs[(signs != 0).argmax(axis=0), np.arange(len(planes))]
 
 
 def _tangential(x: Vector, normals: Integers) -> Vector:
@@ -202,7 +291,11 @@ def fields_in_nets(
         u[exact], v[exact] = local[:, 0], local[:, 1]
         uv = np.stack([u, v], axis=1)
         points = spline.points_in_patches(patches, uv)
-        K, H = python_function(formulas.curvature_at)(patch, vector(n), u, v)
+        u[exact], v[exact] = local[:, 3], local[:, 4]
+        N, _ = spline.normals_in_patches(patches[exact], local[:, 3:])
+        at = n.copy()
+        at[exact] = N / np.linalg.norm(N, axis=1, keepdims=True)
+        K, H = python_function(formulas.curvature_at)(patch, vector(at), u, v)
         K, H = K * spline.scale**2, H * spline.scale
     K[exact] = np.copysign(K[exact], local[:, 2])
     arrays = {

@@ -182,7 +182,8 @@ class Topology:
     def owner(self) -> tuple[Indices, NDArray[np.int8]]:
         """For each edge (3 T,) the one whose boundary cone decides, and the sign of its form."""
         owner, side = np.arange(3 * len(self.nets)), np.ones(3 * len(self.nets), np.int8)
-        one, other = np.concatenate([self.smooth_pairs, self.smooth_pairs[:, ::-1]]).T
+        pairs = self.pairs[self.joints.smooth]
+        one, other = np.concatenate([pairs, pairs[:, ::-1]]).T
         while (later := owner[one] < owner[other]).any():
             source, target = one[later], other[later]
             owner[target], side[target] = owner[source], -side[source]
@@ -209,10 +210,56 @@ class Topology:
         other = np.concatenate([end[:, 1], start[:, 1]])
         number, fan = linked(3 * len(self.nets), one, other)
         own = _unit(self.normals[:, CORNER_NORMALS].reshape(-1, 3))
+        rows = np.flatnonzero(self.is_point)
+        own[3 * (rows // 3) + (rows + 1) % 3] = self._normals_at_points(rows)
         shared = np.zeros((number, 3))
         known = np.flatnonzero(own.any(axis=1))[::-1]
         shared[fan[known]] = own[known]
         return shared, fan.reshape(-1, 3)
+
+    @cached_property
+    def pole_corner(self) -> Indices:
+        """The singular corner (T,) of each patch at a smooth pole, −1 for none.
+
+        Patches with a collapsed edge have none: their Gaussian images are curves.
+        """
+        shared, fan = self.corners
+        own = _unit(self.normals[:, CORNER_NORMALS].reshape(-1, 3)).reshape(-1, 3, 3)
+        singular = ~own.any(axis=-1) & shared[fan].any(axis=-1)
+        singular &= ~self.is_point.reshape(-1, 3).any(axis=-1, keepdims=True)
+        return np.where(singular.any(axis=-1), singular.argmax(axis=1), -1)
+
+    @cached_property
+    def polar(self) -> tuple[Indices, Indices]:
+        """The end, 0 or 1, of each edge (3 T,) that is a smooth pole, and an edge with its tangent.
+
+        The end is −1 if none or both are poles. Edges of one tangent at a pole are those of patches
+        that have a singular corner there.
+        """
+        shared, fan = self.corners
+        row = np.arange(3 * len(self.nets))
+        patch, edge = np.divmod(row, 3)
+        ends = np.stack([fan[patch, (edge + k) % 3] for k in (1, 2)], axis=1)
+        poles = np.isin(ends, ends[self.is_point]) & shared[ends].any(axis=-1)
+        known = shared[ends].any(axis=-1).all(axis=-1) & (poles.sum(axis=1) == 1)
+        found = np.where(known, poles.argmax(axis=1), -1)
+        joined = self.pairs[self.joints.smooth]
+        corner = self.pole_corner
+        at = np.flatnonzero(corner >= 0)
+        beside = np.stack([3 * at + (corner[at] + k) % 3 for k in (1, 2)], axis=1)
+        one, other = np.concatenate([joined[found[joined[:, 0]] >= 0], beside]).T
+        _, group = linked(len(row), one, other)
+        first = np.unique(group, return_index=True)[1]
+        return found, first[group]
+
+    def _normals_at_points(self, rows: Indices) -> Array:
+        """Return the unit normals (k, 3) of patches at their collapsed edges, in rows 3 k + j."""
+        patch, edge = np.divmod(rows, 3)
+        beside = np.array([[x.start, x.start_beside, x.end_beside] for x in EDGES])[edge]
+        start, first, second = np.moveaxis(self.nets[patch[:, None], beside], 1, 0)
+        first, second = first - start, second - start
+        size = np.abs([first, second]).max(axis=(0, 2), initial=0.0)[:, None]
+        return _unit(np.cross(second, first) / np.where(size > 0.0, size, 1.0) ** 2)
 
     @cached_property
     def angles(self) -> Array:
