@@ -7,12 +7,11 @@ triangles at their common edge if its vertices followed its own curvature only.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.trees import tree_of
@@ -61,13 +60,11 @@ class GradedSpace(PartSpace):
 
     sources: Mapping[int, Sources] = field(default_factory=dict)
 
-    def _evaluated(
-        self, cells: Cells, others: NDArray[Any], kernel: Callable[..., object], keep: bool
-    ) -> tuple[Cells, NDArray[Any]]:
-        """Return the value of `Space._evaluated`, graded."""
-        found, others = super()._evaluated(cells, others, kernel, keep)
+    def known(self, cells: Cells, *, keep: bool = False) -> Cells:
+        """Return the value of `Space.known`, graded."""
+        found = super().known(cells, keep=keep)
         self.grade(found.pieces, found.rows)
-        return found, others
+        return found
 
     def grade(self, pieces: Indices, rows: Array, *, far: bool = False) -> Array:
         """Raise densities in rows (M, 8) of pieces (M,); return bounds (M,) of the size.
