@@ -38,7 +38,7 @@ __all__ = ["Segments", "SupportPoints", "bounds_of", "support"]
 
 # Sides of the domain are cut into this number of segments for each cell.
 STEPS_A_CELL = 2
-# Segments are looked at in blocks of this number, with all directions, so many products at a time.
+# Segments are bounded in blocks of BLOCK, for at most PRODUCTS_AT_A_TIME pairs with a direction.
 BLOCK, PRODUCTS_AT_A_TIME = 8, 1 << 21
 # Steps of Newton's method, and of bisection where the boundary of a trim crosses a side.
 STEPS, BISECTIONS = 6, 50

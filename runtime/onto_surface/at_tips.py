@@ -35,17 +35,7 @@ def samples_at(
     at_tips = _at_tips(geometry, normals)
     if not at_tips:
         return geometry.samples_at(normals, fields, dtype, progress, density)
-    wanted = list(dict.fromkeys([*fields, "normal_index"]))
-    found = geometry.samples_at(normals, wanted, dtype, progress, density)
-    parts = [found.arrays()]
-    parts += [_fields(*at_tip, normals, wanted, dtype) for at_tip in at_tips]
-    index = np.concatenate([x["normal_index"] for x in parts])
-    order = np.argsort(index, kind="stable")
-    arrays = {x: np.concatenate([part[x] for part in parts])[order] for x in fields}
-    report = replace(found.report, samples=len(order))
-    return Samples(
-        **arrays, report=report, spline=found.spline, surface=found.surface, offset_of=None
-    )
+    return _with_tips(geometry, at_tips, normals, fields, dtype, progress, density)
 
 
 def samples_in_turn(
@@ -58,10 +48,29 @@ def samples_in_turn(
     density: float,
 ) -> Iterator[Samples]:
     """Yield at most `size` of the samples at a time; see `samples_at`."""
-    if _at_tips(geometry, normals):
-        found = samples_at(geometry, normals, fields, dtype, progress, density)
-        return in_turn(geometry.with_fit(found, density), size)
-    return geometry.samples_in_turn(normals, fields, dtype, size, progress, density)
+    at_tips = _at_tips(geometry, normals)
+    if not at_tips:
+        return geometry.samples_in_turn(normals, fields, dtype, size, progress, density)
+    found = _with_tips(geometry, at_tips, normals, fields, dtype, progress, density)
+    return in_turn(geometry.with_fit(found, density), size)
+
+
+def _with_tips(
+    geometry: Geometry, at_tips: Sequence[tuple[OnSpline, Tip, Indices]], normals: Array,
+    fields: Sequence[str], dtype: DTypeLike, progress: bool, density: float | None,
+) -> Samples:  # fmt: skip
+    """Return all points that have one of the unit normals (S, 3), and the samples at these tips."""
+    wanted = list(dict.fromkeys([*fields, "normal_index"]))
+    found = geometry.samples_at(normals, wanted, dtype, progress, density)
+    parts = [found.arrays()]
+    parts += [_fields(*at_tip, normals, wanted, dtype) for at_tip in at_tips]
+    index = np.concatenate([x["normal_index"] for x in parts])
+    order = np.argsort(index, kind="stable")
+    arrays = {x: np.concatenate([part[x] for part in parts])[order] for x in fields}
+    report = replace(found.report, samples=len(order))
+    return Samples(
+        **arrays, report=report, spline=found.spline, surface=found.surface, offset_of=None
+    )
 
 
 def _at_tips(geometry: Geometry, normals: Array) -> list[tuple[OnSpline, Tip, Indices]]:

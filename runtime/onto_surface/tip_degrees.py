@@ -27,8 +27,8 @@ __all__ = ["Tip", "tip_degrees", "tips_on"]
 
 # On a surface, the rays of a tip are at least as many.
 RAYS = 1 << 11
-# An extreme value is looked for in so many parts, so many times: the last ones are 5e-8 rad long,
-# and the value is within the square of that.
+# An extreme value is searched by cutting an interval into PARTS, TIMES times over: the last ones
+# are 5e-8 rad long, and the error of the value is of the order of the square of that.
 PARTS, TIMES = 32, 4
 PRODUCTS_AT_A_TIME = 1 << 20
 ROUNDING = 1e-9

@@ -1,8 +1,8 @@
-"""Sides of the domain that are one point: no point beside them has a certain normal.
+"""Apexes: sides of the domain that are one point, and the normals that no point near them has.
 
-If u = u₁ is such a side, x_v is 0 on it. So, for each n, n·x_v = (u − u₁) n·x_uv with x_uv at some
-position between, and a point beside the side with normal n has n·x_u = 0, and n·x_uv = 0 somewhere
-between it and the side.
+On such a side u = u₁, x_v = 0. By the mean value theorem n·x_v(u, v) = (u − u₁) n·x_uv(ξ, v) with ξ
+between u₁ and u. So a point near the side, but not on it, that has the normal n fulfils n·x_u = 0
+there and n·x_uv = 0 at some ξ.
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ class Poles(NamedTuple):
 
 
 def poles_of(tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]) -> Poles:
-    """Return the discs and caps around the poles of a surface whose domain has so many cells.
+    """Return the discs and caps around the poles of a surface whose domain has m × n cells.
 
     Open ends of the domain that are a smooth pole have discs, too.
     """
