@@ -1,8 +1,8 @@
-"""Apexes: sides of the domain that are one point, and the normals that no point near them has.
+"""Apexes: sides of the domain that are one point, and normals that no point near them has.
 
 On such a side u = u₁, x_v = 0. By the mean value theorem n·x_v(u, v) = (u − u₁) n·x_uv(ξ, v) with ξ
-between u₁ and u. So a point near the side, but not on it, that has the normal n fulfils n·x_u = 0
-there and n·x_uv = 0 at some ξ.
+between u₁ and u. So a point with the normal n near the side, but not on it, has n·x_u = 0, and
+n·x_uv = 0 at some ξ.
 """
 
 from __future__ import annotations
@@ -19,10 +19,9 @@ from .components import Undecided
 
 __all__ = ["Apex", "apexes_of"]
 
-# A side of the domain is mapped to one point if the points at PLACES parameters along it differ
-# by at most ROUNDINGS units in the last place of the largest coordinate of all sides. The
-# coordinates of the point itself are no measure: near the origin they are small, but their rounding
-# errors are not.
+# A side of the domain is mapped to one point if PLACES points along it agree up to ROUNDINGS units
+# in the last place of the largest coordinate of all sides. The coordinates of the point itself do
+# not serve as a scale: near the origin they are small, but their rounding errors are not.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the index of the coefficient of u v in Taylor polynomials; those of u and v are 1 and 2
 BOXES_AT_A_TIME = 1 << 14  # 8 MB of bounds
@@ -32,7 +31,7 @@ BOXES_AT_A_TIME = 1 << 14  # 8 MB of bounds
 class Apex:
     """A side of a domain that is one point of the surface: there u (axis 0) or v (axis 1) is `end`.
 
-    The tape of the surface gives bounds over boxes beside it.
+    `tape` is the tape of the surface, from which bounds over boxes near the side come.
     """
 
     tape: Tape
@@ -40,9 +39,9 @@ class Apex:
     end: float
 
     def decided(self, open_: Undecided, normals: Array) -> Undecided:
-        """Return undecided boxes without those at the side that have no point with their normal.
+        """Return undecided boxes, except those at the side without a point with their normal.
 
-        The normals (S, 3) are those of the search, to which the numbers of boxes belong.
+        `numbers` of boxes are rows of `normals` (S, 3).
         """
         low, high = 2 * self.axis, 2 * self.axis + 1
         keep = (open_.boxes[:, low] > self.end) | (open_.boxes[:, high] < self.end)

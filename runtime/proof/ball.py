@@ -60,7 +60,7 @@ class Ball:
     def __mul__(self, other: Ball | Array | float) -> Ball:
         y = Ball.of(other)
         middle = self.middle * y.middle
-        with np.errstate(invalid="ignore"):  # 0 times what is unknown is unknown
+        with np.errstate(invalid="ignore"):  # 0 times an unknown number is unknown
             radius = np.abs(self.middle) * y.radius + self.radius * y.largest
         radius = np.where(np.isnan(radius), np.inf, radius)
         return Ball(middle, (radius + UNIT * np.abs(middle)) * WIDER + TINY)

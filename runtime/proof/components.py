@@ -1,8 +1,8 @@
 """Components of the points with one normal, other than regular points: one box for each.
 
-Boxes that bisection leaves open are joined where they touch. The winding number of the height's
-gradient around a small one, less the indices of regular points there, is the component's index; if
-it is not 0, there is a point. Boxes along curves are known from the search.
+Boxes that bisection leaves undecided are joined where they touch. A box contains a point if its
+index is not 0. The index is the winding number of the gradient of the height along a path around
+the box, minus the indices of regular points inside the path. The search marks boxes along curves.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from .kernels.sorting import Sorted
 
 __all__ = ["Undecided", "components_of", "with_kinds"]
 
-# Boxes touch if they are nearer than the widths of both, or than this part of the domain.
+# Boxes touch if their distance is below both widths, or below this part of the domain.
 NEAR = 3e-6
 
 
 class Undecided(NamedTuple):
-    """Boxes of parameters with points that are not regular, or where points are not known.
+    """Boxes of parameters whose points are not regular, or not known.
 
-    numbers (k,) int64 are those of normals; boxes (k, 4) are u₀, u₁, v₀, v₁; kinds (k,) int64 are
-    positions in `KINDS`; border (k,) bool says whether a box touches an open side of the domain;
-    degree (k,) is that of the Gauss map around what is in the box, the sum of the signs of K of
-    points there with any normal nearby, NaN if it is unknown; uv (k, 2) is a point in the box.
+    numbers (k,) int64 are indices of normals; boxes (k, 4) are u₀, u₁, v₀, v₁; kinds (k,) int64 are
+    positions in `KINDS`; border (k,) bool is True for boxes that touch an open side of the domain;
+    degree (k,) is the degree of the Gauss map on the box: the sum of sign K over its points with a
+    nearby generic normal, NaN if unknown; uv (k, 2) is a point in the box.
     """
 
     numbers: Indices
@@ -48,7 +48,7 @@ NOTHING = Undecided(
 
 
 def components_of(answers: Sequence[Answers], domain: Array) -> Undecided:
-    """Return the open boxes of answers, joined where they touch, in the order of their normals.
+    """Return the undecided boxes of answers, joined where they touch, in the order of normals.
 
     `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v or 0. Degrees are unknown.
     """
@@ -78,7 +78,7 @@ def components_of(answers: Sequence[Answers], domain: Array) -> Undecided:
 
 
 def _join(rows: Array, kinds: Indices, keep: NDArray[np.bool_], domain: Array) -> None:
-    """Join the boxes of one normal that touch: the first one of each component is kept."""
+    """Join the boxes of one normal that touch; mark the first box of each component in `keep`."""
     k, slack, periods = 0, NEAR * (domain[1:4:2] - domain[0:4:2]), domain[4:]
     while k < len(rows):
         low, high = rows[:, 0:4:2], rows[:, 1:4:2]
@@ -126,9 +126,9 @@ def with_kinds(open_: Undecided, around: Array, places: Sorted, domain: Array) -
 
 
 def _others(number: int, path: Array, boxes: Array, places: Sorted, periods: Array) -> float:
-    """Return the sum of the indices of regular points of a normal inside of a path's box.
+    """Return the sum of the indices of the regular points of a normal inside a path's box.
 
-    It is NaN if the path goes around one of the boxes (k, 4), or meets it, other than its own.
+    It is NaN if the path's box meets two of the boxes (k, 4) or more.
     """
     low, high = path[0::2], path[1::2]
 

@@ -1,10 +1,10 @@
-"""The discs around the poles of a surface: bounds of it as a graph over its tangent plane.
+"""Discs around the poles of a surface: bounds of the surface as a graph over its tangent plane.
 
-The parameters at a pole p are u around it and r, which is 0 at it. The surface has a tangent plane
-there, with coordinates q1 and q2 in which x_r (u, 0) is as near to a circle as it can be; h is the
-height over it. By Taylor's theorem the quotients of `generated.jet.graph_at_pole` are derivatives
-at some r between 0 and the r of a place: those of x, and of x_u, or of the spline (x − p) / r.
-That h_r (u, 0) = 0, and that the surface has no creases, is checked at some places only.
+At a pole p, u is the parameter around it, and r = 0. The tangent plane has coordinates q1 and q2 in
+which the curve x_r (u, 0) is as close to a circle as possible; h is the height over it. By Taylor's
+theorem the quotients of `generated.jet.graph_at_pole` at r are derivatives at some r between 0 and
+r: of x and of x_u, or of the spline (x − p) / r. That h_r (u, 0) = 0, and that the surface has no
+creases, is checked at sampled points only.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ __all__ = ["PoleDisc", "pole_disc"]
 
 
 SECTORS = 512
-# Bounds may need narrower sectors, and those of quotients of splines do: there is a power of u in
-# them for each knot span. Their values at the pole are exact, so that smaller rings are not needed.
+# Bounds may need narrower sectors. For quotients of splines they do, since these have a power of u
+# in each knot span. Their values at the pole are exact, so that they need no smaller rings.
 NARROW, RINGS, RINGS_OF_QUOTIENTS = 4, 8, 2
 # Bounds hold up to this distance, relative to the radius of the disc.
 WHOLE = 2.0
-# Discs that are this many times smaller than a row of cells are tried.
+# Discs down to this fraction of a row of cells are tried.
 SMALLEST = 2.0**-8
 # The Hessian may change by this part of it in a disc.
 CHANGE = 0.4
-# Bounds have to go on beyond a disc by this factor.
+# Bounds have to hold this much farther than the disc, as a factor.
 BEYOND = 1.25
 # Creases are looked for at these parts of the radius.
 PARTS = (0.25, 0.5, 1.0)
@@ -57,7 +57,7 @@ ONE, U1, R1, U2, U1R1, R2, _, U2R1, U1R2, _ = range(10)
 
 @dataclass(frozen=True, eq=False)
 class PoleDisc:
-    """The disc around a pole: its radius, its tape by u and r, bounds, and its cell."""
+    """The disc around a pole: its radius, its tape by u and r, its bounds, and its cell."""
 
     radius: float
     tape: Tape
@@ -68,7 +68,7 @@ class PoleDisc:
 class Bounds(NamedTuple):
     """Bounds over the sectors of a disc, for r up to some radius.
 
-    hessian: the three entries of the Hessian of h by q1 and q2, each with a row for each sector.
+    hessian: the three entries of the Hessian of h by q1 and q2, each (sectors,).
     q: the least and the largest length of (q1, q2) / r.
     slope: the largest length of the gradient of h by q1 and q2.
     by_q: the largest lengths of two gradients by q1 and q2: of u, times r, and of r.
@@ -82,17 +82,18 @@ class Bounds(NamedTuple):
     along: tuple[float, float]
 
     def changes(self, middle: Array) -> Array:
-        """Return how far the Hessian may be from another one (3,)."""
+        """Return bounds of the distance of the Hessian from a given one (3,)."""
         pairs = zip(self.hessian, middle.tolist(), strict=True)
         return np.array([(np.abs(x.middle - y) + x.radius).max() for x, y in pairs])
 
 
 @dataclass(frozen=True, eq=False)
 class Pole:
-    """A pole: its tapes, whose coordinates are q1, q2 and h, and what u is around it.
+    """A pole: its tapes, with the coordinates q1, q2 and h, and the interval of u around it.
 
     The columns of `basis` are the derivatives of x by q1, q2 and h. `tilt` is the largest
-    derivative of h at the pole, or its jump on lines where the surface may have creases.
+    derivative of h at the pole, or its largest jump across lines where the surface may have
+    creases.
     """
 
     tapes: PolarTapes
@@ -129,7 +130,7 @@ class Pole:
         return replace(pole, tilt=float(tilt)) if is_smooth else None
 
     def _jump(self, radius: float) -> float:
-        """Return by how much derivatives of h differ on both sides of lines, up to a radius."""
+        """Return the largest jump of derivatives of h across lines, up to a radius."""
         low, high = self.around
         inner = jumps_of(self.tapes.tape, 0, low, high)
         step = 4.0 * np.spacing(max(abs(low), abs(high)))
@@ -152,7 +153,7 @@ class Pole:
         return np.stack(values[4:], axis=1)
 
     def bounds(self, reach: float, count: int) -> Bounds:
-        """Return bounds for r up to `reach`, in a number of sectors."""
+        """Return bounds for r up to `reach`, in `count` sectors."""
         lines = lines_of(self.tapes.tape, 0, np.array(self.around), count)
         middles, half = 0.5 * (lines[1:] + lines[:-1]), 0.5 * np.diff(lines)
         centres = np.column_stack([middles, np.full_like(middles, 0.5 * reach)])
@@ -197,7 +198,7 @@ class Pole:
         )
         by_u, by_r = bounds.by_q
         condition = by_u * bounds.along[0] + by_r * bounds.along[1]
-        # Of x, x_u and x_r: the errors of h, and those of q1 and q2 times the slope.
+        # Errors of x, x_u and x_r: those of h, and those of q1 and q2 times the slope.
         of_q = np.linalg.norm(found[0, :3, :2], axis=1)
         value, around, away = (found[0, :3, 2] + bounds.slope * of_q).tolist()
         plane = self.basis[:, :2]
@@ -216,7 +217,7 @@ class _Coefficients:
 
     @classmethod
     def of(cls, tape: Tape, centres: Array, widths: Array) -> _Coefficients:
-        """Return those of a tape."""
+        """Return the bounds of a tape."""
         return cls(bounds_over_boxes(tape, centres, widths, 3))
 
     def __getitem__(self, k: int) -> list[Ball]:
@@ -298,7 +299,7 @@ def _middles(around: tuple[float, float]) -> Array:
 
 
 def _is_point(tape: Tape, domain: Domain, angle: int, end: float) -> bool:
-    """Say whether a side is one point, at some places."""
+    """Return whether a side is one point, tested at some parameters."""
     u = _middles(domain[angle])[:: SECTORS // 16]
     places = u, np.full_like(u, end)
     jets = jets_of(tape, *(places if angle == 0 else places[::-1]))
@@ -309,7 +310,8 @@ def _is_point(tape: Tape, domain: Domain, angle: int, end: float) -> bool:
 def _frame(rows: Array, turned: float) -> Array | None:
     """Return the rows of q1, q2 and h for the directions x_r (k, 3) around a pole.
 
-    The first two make them as near to unit vectors as they can be. None if there are no such rows.
+    In the first two rows, these directions are as close to unit vectors as possible. None if there
+    are no such rows.
     """
     normal = turned * np.cross(np.roll(rows, -1, axis=0), rows).sum(axis=0)
     size = np.linalg.norm(normal)
@@ -343,7 +345,7 @@ def _length(x: Ball, y: Ball) -> float:
 
 
 def _is_steady(bounds: Bounds, middle: Array) -> bool:
-    """Say whether the Hessian is near another one (3,), which is not singular."""
+    """Return whether the Hessian is close to a regular one (3,)."""
     y11, y12, y22 = middle.tolist()
     hessian = np.array([[y11, y12], [y12, y22]])
     if not np.isfinite(hessian).all() or np.linalg.det(hessian) == 0.0:

@@ -1,4 +1,4 @@
-"""The lines of a grid of parameters, among them those where second derivatives of a spline jump."""
+"""Lines of a grid of parameters, including those where second derivatives of a spline jump."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .kernels.cell_bounds import SMOOTH
 
 __all__ = ["joints_of", "jumps_of", "lines_of"]
 
-# Normals on both sides of a line are compared at about this number of places.
+# Normals on both sides of a line are compared at about this number of points.
 PLACES = 64
 
 
 def jumps_of(tape: Tape, axis: int, low: float, high: float) -> Array:
-    """Return the u (axis 0) or v between two others where second derivatives of a spline jump."""
+    """Return the u (axis 0) or v in an interval where second derivatives of a spline jump."""
     x = tape.spline
     breaks, smooth = ((x.breaks_u, x.smooth_u), (x.breaks_v, x.smooth_v))[axis]
     jumps = breaks[smooth < 2]
@@ -31,7 +31,7 @@ def jumps_of(tape: Tape, axis: int, low: float, high: float) -> Array:
 
 
 def lines_of(tape: Tape, axis: int, ends: Array, count: int) -> Array:
-    """Return the lines of a grid between the two ends of u or v, about `count`, and jumps."""
+    """Return about `count` lines of a grid between both ends of u or v, and the lines of jumps."""
     low, high = ends.tolist()
     pieces = np.unique([low, high, *jumps_of(tape, axis, low, high)])
     counts = np.maximum(1, np.round(count * np.diff(pieces) / (high - low))).astype(int)
@@ -43,9 +43,9 @@ def lines_of(tape: Tape, axis: int, ends: Array, count: int) -> Array:
 
 
 def joints_of(tape: Tape, axis: int, domain: Domain, boundary: Boundary) -> Array:
-    """Return the u (axis 0) or v of lines where derivatives may jump, but not the tangent plane.
+    """Return the u (axis 0) or v where derivatives may jump, but the tangent plane does not.
 
-    The seam of a period is one of them. Normals of both sides are compared at some places.
+    The seam of a period is one of them. Normals of both sides are compared at sampled points.
     """
     low, high = domain[axis]
     lines = [(x, x) for x in jumps_of(tape, axis, low, high).tolist()]
@@ -58,7 +58,7 @@ def joints_of(tape: Tape, axis: int, domain: Domain, boundary: Boundary) -> Arra
 
 
 def _turning(tape: Tape, axis: int, domain: Domain, below: float, above: float) -> float:
-    """Return the largest angle of the normals below and above a line, at some places of it."""
+    """Return the largest angle between the normals on both sides of a line, at sampled points."""
     other = lines_of(tape, 1 - axis, np.array(domain[1 - axis]), PLACES)
     along = (0.5 * (other[1:] + other[:-1])).ravel()
     step = 4.0 * np.spacing(max(map(abs, domain[axis])))

@@ -1,9 +1,9 @@
 """All points of a surface with given normals, each exactly once, with a proof.
 
-A surface whose coordinates are a tape (`runtime.tape.kernels.points`) has bounds of its
-derivatives over boxes of its parameters. An index cuts its domain into cells with a cone of normals
-each. For a normal, cells are excluded by bounds, or have one point by a contraction, or are cut.
-What stays open lies in small boxes, which are listed.
+If the coordinates of a surface are a tape (`runtime.tape.kernels.points`), its derivatives have
+bounds over boxes of parameters. An index cuts the domain into cells, each with a cone of normals.
+For a normal, a cell is excluded by bounds, has one point by a contraction, or is cut. What remains
+undecided lies in small boxes, which are listed.
 """
 
 from __future__ import annotations
@@ -48,17 +48,17 @@ from .poles import Cap, poles_of
 __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
 
-# How often irregular cells are cut into four; those without a narrow cone of normals are cut in
-# further rounds, as long as these add at most MOST cells for each one of the grid.
+# Irregular cells are cut into four this many times. Cells without a narrow cone of normals are cut
+# further while this adds at most MOST cells per cell of the grid.
 LEVELS, ROUNDS, MOST = 2, 3, 8
 CELLS = (64, 64)
-# The number of cells of which a part is looked at first, whether there are normals; its size.
+# Whether a surface has normals at all is tested on this number of cells, of this size.
 PROBES, SMALL = 16, 2.0**-5
-# Base cells, normals and hard normals that are worked on at a time.
+# The numbers of base cells, of normals and of hard normals in one batch.
 CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
-# The first lengths of arrays: of cells, of pairs of a normal and a cell, and of answers.
+# The initial lengths of arrays: of cells, of pairs of a normal and a cell, and of answers.
 CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
-# Cells without a cone of normals are in all bins: they are this part of the domain at most.
+# Cells without a cone of normals, which are in all bins, are at most this part of the domain.
 MOST_OPEN = 0.25
 NO_PAIRS = np.empty((0, 2), np.int64)
 
@@ -66,11 +66,10 @@ NO_PAIRS = np.empty((0, 2), np.int64)
 class ProvedPlaces(NamedTuple):
     """The points with given normals, in the order of the normals, then of u and v.
 
-    numbers (k,) int64 are those of normals. A row of places (k, 6) holds u, v, how far the exact
-    ones may be from them, each, a number with the sign of the Gaussian curvature, and 1 if the
-    exact parameters may be outside of the domain, by at most the radius, else 0. All other points
-    with these normals are in the boxes of `undecided`, or in the boxes of the index that are
-    `unbounded`.
+    numbers (k,) int64 are indices of normals. A row of places (k, 6) holds u, v, the error bound of
+    each, a number with the sign of the Gaussian curvature, and 1 if the exact parameters may be
+    outside of the domain, by at most the error bound, else 0. All other points with these normals
+    are in the boxes of `undecided`, or in the boxes of the index that are `unbounded`.
     """
 
     numbers: NDArray[np.int64]
@@ -90,7 +89,7 @@ class ProvedPlaces(NamedTuple):
 
     @property
     def radius(self) -> NDArray[np.float64]:
-        """How far the exact parameters may be from them (k, 2)."""
+        """Error bounds (k, 2) of the parameters."""
         return self.places[:, 2:4]
 
     @property
@@ -105,7 +104,7 @@ class ProvedPlaces(NamedTuple):
 
 
 class Places(NamedTuple):
-    """Places in no order: rows (k, 6), and the numbers (k,) of their normals."""
+    """Places in no order: rows (k, 6), and the indices (k,) of their normals."""
 
     rows: NDArray[np.float64]
     numbers: NDArray[np.int64]
@@ -128,8 +127,8 @@ class ProvedIndex:
     """The index of a surface: immutable, and shared by threads.
 
     `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v, 0 if there is none. A mirrored
-    parameter has no period here: normals change their sides at its ends. Boxes (m, 4) of parameters
-    in `unbounded`, u₀, u₁, v₀, v₁, are where nothing is known: derivatives have no bounds there.
+    parameter has no period here: normals change their sides at its ends. Nothing is known in the
+    boxes `unbounded` (m, 4) of parameters, u₀, u₁, v₀, v₁: derivatives have no bounds there.
     """
 
     tape: Tape
@@ -163,8 +162,8 @@ class ProvedIndex:
         boundary : pair of pairs of str
             The boundary conditions of u and of v, as those of `Surface`.
         cells : (int, int), default (64, 64)
-            How many cells there are along u and v before they are cut; the answers do not depend
-            on it, but for what is undecided.
+            The numbers of cells along u and v before cuts; they only influence which normals are
+            undecided.
         threads : int, optional
             The number of threads. By default one for each core.
 
@@ -207,7 +206,7 @@ class ProvedIndex:
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
         """Return all points with unit normals (S, 3).
 
-        The answer for a normal depends neither on the other ones nor on the number of threads.
+        The answer for a normal does not depend on the other ones, or on the number of threads.
         """
         normals = np.ascontiguousarray(normals, np.float64)
         parts, hard = self._search(normals, threads)
@@ -239,7 +238,7 @@ class ProvedIndex:
     def _search(
         self, normals: NDArray[np.float64], threads: int | None
     ) -> tuple[list[Places], NDArray[np.int64]]:
-        """Return what is found at once, and hard pairs (k, 2) of normals and cells."""
+        """Return the places that are found at once, and hard pairs (k, 2) of normals and cells."""
         order = ordered(normals, self.lists, threads)
 
         def work(first: int, last: int) -> list[tuple[Places, NDArray[np.int64]]]:
@@ -292,7 +291,7 @@ class ProvedIndex:
     def _decide(
         self, normals: NDArray[np.float64], hard: NDArray[np.int64], threads: int | None
     ) -> list[Answers]:
-        """Return what is found in hard pairs of normals and cells."""
+        """Return the answers of bisection for hard pairs of normals and cells."""
         hard = hard[np.lexsort((hard[:, 1], hard[:, 0]))]
         in_discs = hard[hard[:, 1] >= self.index.discs]
         hard = hard[hard[:, 1] < self.index.discs]
@@ -327,9 +326,9 @@ class ProvedIndex:
         parts: list[Places],
         count: int,
     ) -> tuple[Places, list[Answers]]:
-        """Return the places of answers, each once, and boxes that may have two.
+        """Return each place of the answers once, and answers with boxes that may contain two.
 
-        `parts` are those that were found at once; there are `count` normals.
+        `parts` are the places that were found at once; there are `count` normals.
         """
         slow = np.concatenate([x.places for x in answers])
         of_slow = np.concatenate([x.numbers for x in answers])
@@ -358,7 +357,10 @@ class ProvedIndex:
     def _answered(
         self, step: Callable[[Answers, Rooms, int, int], np.int64], count: int, threads: int | None
     ) -> list[Answers]:
-        """Return the answers of a step that takes a range, and returns how far it had room."""
+        """Return the answers of `step` for all of [0, count).
+
+        `step` works on a range [first, last), and returns where its room ended.
+        """
 
         def work(first: int, last: int) -> list[Answers]:
             answers = []
@@ -392,9 +394,9 @@ class ProvedIndex:
 
 
 def _has_no_normals(tape: Tape, grid: Array) -> bool:
-    """Return whether a few small cells have no cones of normals, as on a surface that is a curve.
+    """Return whether a few small cells have no cones of normals, as if the surface were a curve.
 
-    All cells of such a surface would be cut as often as can be, which takes seconds.
+    All cells of such a surface would be cut as often as allowed, which takes seconds.
     """
     few = grid[np.linspace(0, len(grid) - 1, PROBES).round().astype(int)]
     few[:, 2:] *= SMALL
@@ -464,7 +466,7 @@ def _pieces_of(index: Index) -> Pieces:
 
 
 def _taken(room: Answers) -> Answers:
-    """Return a copy of the answers in a room."""
+    """Return a copy of the answers without unused rows."""
     places, boxes = room.counts
     return Answers(
         room.places[:places].copy(), room.numbers[:places].copy(), room.open_boxes[:boxes].copy(),

@@ -1,6 +1,6 @@
 """Tapes of surfaces in polar coordinates at a pole, and of quotients that are finite there.
 
-The parameters are u around the pole, a parameter of the surface, and the distance r of the other
+The parameters are u around the pole, a parameter of the surface, and r, the distance of the other
 parameter from its value at the pole. All points with r = 0 are one point p.
 """
 
@@ -27,7 +27,7 @@ Slope = Traced | float  # the number 0.0 if a row does not depend on the angle
 
 @dataclass(frozen=True)
 class PolarTapes:
-    """The tape of x(u, r), and that of x_u; or that of (x − p) / r, and None.
+    """The tapes of x(u, r) and x_u; or the tape of (x − p) / r, and None.
 
     Bounds hold up to r = `most`.
     """
@@ -38,7 +38,7 @@ class PolarTapes:
 
 
 def polar_tapes(tape: Tape, angle: int, end: float, inward: float) -> PolarTapes | None:
-    """Return the tapes at a pole; None if they do not exist, as with infinite numbers.
+    """Return the tapes at a pole; None if they do not exist, as for infinite numbers.
 
     Parameter `angle` (0 or 1) runs around it; the other one is end + inward r, where `inward` is 1
     or −1.
@@ -88,7 +88,7 @@ def _with_slopes(
 
 
 def _applied(writer: TapeWriter, name: str, x: Traced, slope: Slope) -> tuple[Traced, Slope]:
-    """Return a function of a row, and its derivative by the chain rule."""
+    """Return a function of a row and its derivative, by the chain rule."""
     value = Traced(writer, writer.write(name, x.row))
     if isinstance(slope, float):
         return value, 0.0

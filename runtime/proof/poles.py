@@ -1,9 +1,9 @@
-"""The poles of a surface: each has a disc, or a cap, or is left open.
+"""The poles of a surface: each has a disc or a cap, or is left open.
 
 In a disc the surface is a graph over its tangent plane (`discs.py`). A cap is a strip of parameters
-around a pole without a disc, where nothing but normals is known. At a pole r = 0 the derivative
-around it vanishes: x_u (u, r) = r x_ur (u, ρ) with some ρ between 0 and r for each coordinate. So
-the normals lie in the cone of the vectors x_ur × x_r over the strip.
+around a pole without a disc, where only normals have bounds. At a pole r = 0 the derivative around
+it vanishes: each coordinate of x_u (u, r) is r x_ur (u, ρ) with some ρ between 0 and r. So the
+normals lie in the cone of the vectors x_ur × x_r over the strip.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .kernels.answers import OPEN_BOX, Answers
 
 __all__ = ["Cap", "Poles", "poles_of"]
 
-# A cap has at most this half angle, in radians, and at least this part of a given size.
+# The largest half angle of a cap, in radians; its least size, relative to the given one.
 WIDEST, SMALLEST = 0.05, 2.0**-8
 # The positions of Taylor coefficients.
 U1, V1, U1V1 = 1, 2, 4
@@ -30,7 +30,7 @@ ROUNDING = 2.0**-40
 
 
 class Cap(NamedTuple):
-    """A box of parameters u₀, u₁, v₀, v₁ around a pole; its size; and a cone of its normals."""
+    """A box u₀, u₁, v₀, v₁ of parameters around a pole, its size, and the cone of its normals."""
 
     box: Array
     size: float
@@ -38,7 +38,7 @@ class Cap(NamedTuple):
     angle: float
 
     def answers(self, normals: Array) -> Answers:
-        """Return the cap as an undecided box for those unit normals (S, 3) that it may have."""
+        """Return the cap as an undecided box for each of the unit normals (S, 3) in its cone."""
         away = np.linalg.norm(normals - self.axis, axis=1)
         numbers = np.flatnonzero(away <= 2.0 * np.sin(0.5 * self.angle) + ROUNDING)
         row = np.array([*self.box, 0.0, *self.box.reshape(2, 2).mean(axis=1)])
@@ -47,9 +47,9 @@ class Cap(NamedTuple):
 
 
 class Poles(NamedTuple):
-    """The discs and caps around poles; what is `inside` of them, the rest of the domain (2, 2).
+    """The discs and caps around poles; `inside` (2, 2) is the rest of the domain.
 
-    Poles with neither are the boxes `unknown` (k, 4).
+    The boxes `unknown` (k, 4) are the poles with neither.
     """
 
     discs: tuple[PoleDisc, ...]
@@ -61,7 +61,7 @@ class Poles(NamedTuple):
 def poles_of(tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]) -> Poles:
     """Return the discs and caps around the poles of a surface whose domain has m × n cells.
 
-    Open ends of the domain that are a smooth pole have discs, too.
+    Open sides of the domain that are a smooth pole have discs, too.
     """
     discs, caps, unknown = list[PoleDisc](), list[Cap](), list[list[float]]()
     inside = np.array(domain, dtype=np.float64)

@@ -1,8 +1,8 @@
 """The quotient (x − p) / r of a spline x at a side r = 0 of its domain that is the point p.
 
-On the spans next to the side the numerators of x − p are polynomials in r without a constant term,
-so that those of (x − p) / r are polynomials as well. The operations of a tape on the coordinates of
-a spline are linear: division by the weight, rotation, and translation.
+On the spans next to the side the numerators of x − p are polynomials in r without a constant term;
+divided by r, they are polynomials as well. The operations of a tape on the coordinates of a spline
+are linear: division by the weight, rotation, and translation.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def spline_quotient(tape: Tape, angle: int, end: float, inward: float) -> tuple[
 def _quotients(
     spline: Polynomials, axis: int, end: float, inward: float, is_rational: bool
 ) -> tuple[Polynomials, float] | None:
-    """Return the polynomials for r in place of a parameter, and the length of their span in r."""
+    """Return the polynomials by r instead of a parameter, and the length of their span in r."""
     breaks, frames = (spline.breaks_u, spline.breaks_v)[axis], (spline.frames_u, spline.frames_v)
     at = 0 if inward > 0.0 else -1
     if not abs(breaks[at] - end) <= SLACK * np.abs(breaks[[0, -1]]).sum():
@@ -93,7 +93,7 @@ def _expanded(
 ) -> tuple[Array, Array]:
     """Return the coefficients of powers of inward (s − `place`), with bounds of their errors.
 
-    The last axis but one is that of the powers of s; `place` has an error bound.
+    The last axis but one is that of the powers of s; `place` has an error bound `off`.
     """
     degree = table.shape[2] - 1
     shift, sizes, slopes = np.zeros((3, degree + 1, degree + 1))
@@ -113,7 +113,7 @@ def _expanded(
 def _as_polynomials(
     spline: Polynomials, axis: int, tables: tuple[Array, Array], scale: float, length: float
 ) -> Polynomials:
-    """Return coefficients and errors as those of a spline of the other parameter and of r."""
+    """Return coefficients and errors as a spline of the other parameter and of r."""
     table, errors = (np.ascontiguousarray(x[:, None]) for x in tables)
     if axis == 1:
         breaks, smooth, frames = spline.breaks_u, spline.smooth_u, spline.frames_u
@@ -127,9 +127,9 @@ def _as_polynomials(
 
 
 def _replayed(writer: TapeWriter, tape: Tape, first: int, is_rational: bool) -> list[int] | None:
-    """Write a tape for other coordinates of its spline, without the constants added to these.
+    """Write a tape for other coordinates of its spline, without the constants added to them.
 
-    Return None if the outputs are not linear in them.
+    Return None if the outputs are not linear in the coordinates.
     """
     rows: list[int] = []
     linear: list[bool] = []
