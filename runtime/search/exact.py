@@ -6,9 +6,9 @@ images, or of a parabolic line) are decided by Simulation of Simplicity (Edelsbr
 https://doi.org/10.1145/77635.77639): the normal is displaced by an infinitesimal vector, the same
 for all patches. The displaced normal lies on no boundary, so that exactly one of the patches has
 it. A pole is one point: where several of its patches have the displaced normal, hits of opposite
-signs cancel. Integers of fixed length decide nearly all: with those of any length alone, splines
-take 2 to 15 times as long where normals are symmetric (26 November 2026, five surfaces of the
-catalogue, one thread). There is a tolerance only at the open border of the domain: a normal whose
+signs cancel. Integers of fixed length decide nearly all pairs: with integers of any length alone,
+splines take 2 to 15 times as long where normals are symmetric (26 November 2026, five surfaces of
+the catalogue, one thread). The only tolerance is at the open boundary of the domain: a normal whose
 point lies outside the domain by at most the error of the data is a hit.
 """
 
@@ -30,11 +30,11 @@ from .long_integers import forms_of_pairs
 __all__ = ["Decision", "decide", "decided_forms", "uncancelled"]
 
 PAIRS_AT_A_TIME = 1 << 10
-# Fewer at a time on Python integers: a pair has many of them, of about a hundred bytes each.
+# Batches of Python integers are smaller: a pair has many of them, each of about a hundred bytes.
 LONG_PAIRS_AT_A_TIME = 1 << 14
-# Two hits of one normal at the open border are the same if they are closer than this, in cells, and
-# a hit this close to a pole is the pole: far more than rounding, which is below 1e-14, and far less
-# than a cell.
+# Two hits of one normal at the open boundary are the same if they are closer than this, in cells; a
+# hit this close to a pole is at the pole. This is far more than rounding, which is below 1e-14, and
+# far less than a cell.
 SAME_PLACE = 1e-6
 
 
@@ -60,9 +60,9 @@ def decide(
 ) -> Decision:
     """Decide which of the pairs (patches[k], normals[k]) are hits.
 
-    `numbers[k]` is the number of the normal: equal normals with different numbers are all kept.
-    `forgiven[k]` is the tolerance of W at the open border of the domain, in units of the scaled
-    spline, and 0 for a patch that does not touch the border.
+    `numbers[k]` is the index of the normal: equal normals with different indices are all kept.
+    `forgiven[k]` is the tolerance of W at the open boundary of the domain, in units of the scaled
+    spline, and 0 for a patch that does not touch the boundary.
     """
     local, size, signs = decided_forms(spline, patches, normals, threads)
     inside = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (signs[:, 1] == signs[:, 2])
@@ -115,8 +115,8 @@ def _regular_places(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return regular points (k, 2) and the normals there (k, 3), not of unit length.
 
-    A point is singular if p_u × p_v is negligible relative to that at the centre of the patch; it
-    is then moved slightly towards the centre.
+    A point is singular if p_u × p_v is negligible relative to that at the centre of the patch; such
+    a point is moved slightly towards the centre.
     """
 
     def normals(places: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -134,7 +134,7 @@ def _regular_places(
 def _in_cells(
     spline: Spline, patches: NDArray[np.int64], local: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the places (k, 2) of hits in cells from the corner of the domain."""
+    """Return the positions (k, 2) of hits, in cells from the corner of the domain."""
     cell, turn = np.divmod(patches, 4)
     centre = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + 0.5
     return centre + np.einsum("kc,kcx->kx", local, CORNERS[turn])
@@ -146,12 +146,12 @@ def _in_cells(
 def uncancelled(
     numbers: NDArray[np.int64], poles: NDArray[np.int64], signs: NDArray[np.int8]
 ) -> NDArray[np.bool_]:
-    """Return which hits of normals (k,) to keep: at a pole, those of opposite signs cancel.
+    """Return which of the hits (k,) to keep: at a pole, hits of opposite signs cancel.
 
-    `poles` (k,) are the numbers of poles, −1 for hits elsewhere. Around a pole the Gaussian image
-    of a spline has folds, by rounding or where the curvatures of the surface differ there. As many
-    hits remain as it winds around the normal: one, at a regular point of the surface. All remain if
-    it does not.
+    `poles` (k,) are the indices of poles, −1 for hits elsewhere. Around a pole the Gaussian image
+    of a spline has folds, due to rounding, or where the curvatures of the surface differ there. The
+    remaining hits are as many as the image winds around the normal: one, at a regular point of the
+    surface. If it does not wind around it, all hits remain.
     """
     keep = np.ones(len(numbers), dtype=bool)
     at = np.flatnonzero(poles >= 0)
@@ -169,7 +169,7 @@ def uncancelled(
 
 
 def _poles_at(spline: Spline, places: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the number of the pole at places (k, 2) in cells, −1 for none."""
+    """Return the index of the pole at positions (k, 2) in cells, −1 for none."""
     poles = np.full(len(places), -1)
     for axis, end in np.ndindex(2, 2):
         if spline.boundary[axis][end] == "pole":
@@ -178,7 +178,7 @@ def _poles_at(spline: Spline, places: NDArray[np.float64]) -> NDArray[np.int64]:
     return poles
 
 
-# --- the open border ------------------------------------------------------------------------------
+# --- the open boundary ----------------------------------------------------------------------------
 
 
 def _first_of_each_place(
@@ -187,7 +187,7 @@ def _first_of_each_place(
     place: NDArray[np.float64],
     near: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
-    """Return which hits to keep: near the border, those that coincide with no other hit."""
+    """Return which hits to keep: near the boundary, those that coincide with no earlier hit."""
     keep = np.ones(len(place), dtype=bool)
     if not near.any():
         return keep

@@ -1,4 +1,4 @@
-"""The hits of a search, a normal and one of its patches each, and the fields of samples at them."""
+"""The hits of a search, pairs of a normal and a patch, and the fields of samples at them."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ SAMPLES_AT_A_TIME = 1 << 16
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """The hits, a normal and one of its patches each, sorted by normal and then by patch.
+    """Pairs of a normal and a patch that has it, sorted by normal and then by patch.
 
-    `keys` (N,) are number of the normal << 32 | patch. `exact` (k,) are the numbers of the hits
-    that were decided exactly, `local` (k, 5) that of `Decision`. `developable` is the number of
+    `keys` (N,) are index of the normal << 32 | patch. `exact` (k,) are the indices of the hits that
+    were decided exactly, with `local` (k, 5) as in `Decision`. `developable` is the number of
     patches that are developable up to the rounding of their coordinates.
     """
 
@@ -68,7 +68,7 @@ class Hits:
 
     @cached_property
     def normal_index(self) -> Indices:
-        """The number of the normal of each hit."""
+        """The index of the normal of each hit."""
         return self.keys >> 32
 
     def __getitem__(self, key: slice) -> Hits:
@@ -79,14 +79,14 @@ class Hits:
         return Hits(self.keys[first:last], exact, self.local[low:high], self.developable)
 
     def rows(self, rows: Indices) -> Hits:
-        """Return the hits with increasing indices."""
+        """Return the hits with the given increasing indices."""
         place = np.searchsorted(rows, self.exact)
         kept = np.flatnonzero(place < len(rows))
         kept = kept[rows[place[kept]] == self.exact[kept]]
         return Hits(self.keys[rows], place[kept], self.local[kept], self.developable)
 
     def whole_normals(self, size: int) -> Iterator[Hits]:
-        """Yield the hits in groups, at least one, of at most `size` hits or of one normal."""
+        """Yield one or more groups of hits, each of at most `size`, or of one normal."""
         first = 0
         while True:
             last = len(self)
@@ -110,7 +110,7 @@ def fill(
 ) -> dict[str, NDArray[Any]]:
     """Return fields of samples at hits of normals (S, 3), see `Samples`; floats become `dtype`.
 
-    They are written to the fields in `memory` that are large enough.
+    They are written to those fields in `memory` that are large enough.
     """
     if isinstance(spline, NetSpline):
         known = {"normal_index": hits.normal_index, "patch_index": hits.patch_index}
@@ -141,7 +141,7 @@ def fill_hits(
     last: int,
     arrays: Sequence[NDArray[Any]],
 ) -> None:
-    """Fill the rows first, …, last − 1 of arrays with the samples of keys, see `Hits`.
+    """Fill the rows [first, last) of arrays with the samples of keys, see `Hits`.
 
     The arrays are in the order of FLOAT_NAMES and INDEX_NAMES; absent fields are empty.
     """

@@ -1,11 +1,11 @@
 """Exact decisions on undecided hits of a spline of nets, and the fields of its samples.
 
-Of a pair of a patch and a normal, the signs of U, V, W decide (Sect. 3.2). A sign that rounding
-leaves open, or the difference of the two patches of a joint, is that of the boundary cone of the
-joint: one form for both patches, on integers. The cones of all edges at a corner pass through one
-normal exactly, and ties are broken by an infinitesimal displacement of the normal, the same for all
-patches. So the images of the patches are a decomposition without gaps or overlaps. At a pole they
-are wedges; that of a patch with a collapsed edge is a curve, and has no normals.
+The signs of U, V, W decide whether a patch has a normal (Sect. 3.2). If rounding leaves a sign
+open, or the two patches of a joint disagree, the sign is that of the boundary cone of the joint:
+one form for both patches, on integers. The cones of all edges at a corner pass through one normal
+exactly, and ties are broken by an infinitesimal displacement of the normal, the same for all
+patches. So the images of the patches are a decomposition without gaps or overlaps. At a pole the
+images are wedges; that of a patch with a collapsed edge is a curve, and has no normals.
 """
 
 from __future__ import annotations
@@ -40,19 +40,19 @@ from .long_integers import (
 
 __all__ = ["decide_in_nets", "edge_signs", "errors_of", "fields_in_nets", "flat_nets"]
 
-# The rows of nets, turned so that the edges u = 0, v = 0, w = 0 become v = 0, from start to end.
+# Permutations of a net that turn the edges u = 0, v = 0, w = 0 to v = 0, from start to end.
 TURNED = tuple(
     (x.end, k, x.start, x.end_beside, x.middle, x.start_beside) for k, x in enumerate(EDGES)
 )
-# The least cosine of a normal and that of the patch at its point, or next to it.
+# The least cosine between a normal and the normal of the patch at its point, or next to it.
 SAME_NORMAL = 0.999
-# Normals this close to that of a pole are decided by wedges: far more than rounding of forms makes
-# ambiguous, which was 1e-14, and far less than Gaussian images of patches.
+# Wedges decide normals this close to that of a pole. This is far more than rounding of forms makes
+# ambiguous (1e-14), and far less than Gaussian images of patches.
 NEAR_POLE = 1e-9
 
 
 def errors_of(spline: NetSpline) -> Array:
-    """Return the errors of U, V, W (T,) of the patches."""
+    """Return bounds of the errors of U, V, W (T,) of the patches."""
     largest = _largest(spline)
     return 8.0 * largest * (_rounding(spline) + 2.0 * largest * spline.topology.angles)
 
@@ -81,7 +81,7 @@ def _rounding(spline: NetSpline) -> Array:
 def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decision:
     """Decide which of the pairs (patches[k], normals[k]) are hits, by the cones of edges.
 
-    At an edge on the border, a normal within the error is inside.
+    At an edge on the boundary, a normal within the error is inside.
     """
     _, *forms = python_function(formulas.forms)(spline.patch(patches), vector(normals))
     values, errors = np.stack(forms, axis=1), errors_of(spline)[patches, None]
@@ -96,10 +96,10 @@ def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decis
 
 
 def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
-    """Return whether normals are those of patches at places (k, 2), or near singular ones.
+    """Return whether normals are those of patches at points (k, 2), or near singular ones.
 
-    At a singular point the tangents are perpendicular to a whole circle of directions. A tip has no
-    normal with which tangents of patches there could be made to agree.
+    At a singular point the tangents are perpendicular to a whole circle of directions. At a tip no
+    normal agrees with the tangents of the patches.
     """
     N, singular = spline.normals_in_patches(patches, places)
     tips = tips_of(spline)
@@ -112,7 +112,7 @@ def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -
 def _decided(
     spline: NetSpline, patches: Indices, normals: Array, signs: NDArray[np.int8]
 ) -> tuple[Flags, Array]:
-    """Return which pairs are hits, and u, v, sign of K (k, 3); `signs` (k, 3) are known ones."""
+    """Return which pairs are hits, and u, v, sign of K (k, 3), from known `signs` (k, 3)."""
     topology = spline.topology
     signs = signs.copy()
     pairs, edges = np.nonzero(signs == 0)
@@ -141,9 +141,9 @@ def _decide_at_poles(
 ) -> None:
     """Decide pairs next to poles, in place.
 
-    The Gaussian images of the patches around a pole meet there in wedges between planes, through
-    the normals at the ends of their edges. A wedge has the displaced normal or has it not; the
-    forms of the patches are rounding errors there.
+    Around a pole the Gaussian images of the patches are wedges between planes, through the normals
+    at the ends of their edges. Whether a wedge has the displaced normal is exact; the forms of the
+    patches are rounding errors there.
     """
     topology = spline.topology
     shared, fan = topology.corners
@@ -173,7 +173,7 @@ def _cross(x: Integers, y: Integers) -> Integers:
 
 
 def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
-    """Return u, v (k, 2) of the nearest place in the triangle, of exact quotients."""
+    """Return u, v (k, 2) of the nearest point of the triangle, from exact quotients."""
     nets, _ = integers(spline.control_nets[patches])
     vectors = np.asarray(vectors_of_nets(np.asarray(nets, dtype=object)), dtype=object)
     n, _ = integers_by_row(normals)
@@ -187,12 +187,12 @@ def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
 
 
 def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
-    """Return the signs (k,) of U, V or W, on the side of edges, at normals (k, 3).
+    """Return the signs (k,) of U, V or W, the form of an edge each, at normals (k, 3).
 
-    An edge j of patch p has the row 3 p + j. Its form is V of the patch turned so that the edge is
-    v = 0, with the tangents at its ends projected onto the planes perpendicular to the normals that
-    all patches share there. The form of the other patch of a joint is its negative. An edge
-    with an end at a pole has a form of its own, see `_polar_signs`.
+    Edge j of patch p has the row 3 p + j. Its form is V of the patch turned so that the edge is v =
+    0, with the tangents at its ends projected onto the planes perpendicular to the normals that all
+    patches share there. The form of the other patch of a joint is its negative. An edge with an end
+    at a pole has a form of its own, see `_polar_signs`.
     """
     topology = spline.topology
     owner, side = topology.owner[0][rows], topology.owner[1][rows]
@@ -224,8 +224,9 @@ def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.i
 def _polar_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
     """Return the signs (k,) of V at edges with an end at a pole.
 
-    One of the tangents is a multiple of the other there, and V is a product of linear forms: of the
-    plane of the normals at both ends, in which those along the edge are, and of the tangent.
+    One of the tangents is a multiple of the other there, and V is a product of two linear forms:
+    the plane through the normals at both ends, which contains the normals along the edge, and the
+    tangent.
     """
     topology = spline.topology
     shared, fan = topology.corners
@@ -264,7 +265,7 @@ def _plane_signs(planes: Integers, normals: Array) -> NDArray[np.int8]:
 
 
 def _tangential(x: Vector, normals: Integers) -> Vector:
-    """Return the part of x perpendicular to normals (k, 3), times their squares; x for 0."""
+    """Return |n|² times the part of x perpendicular to normals n (k, 3); x where n is 0."""
     found = python_function(gaussian_image.tangential)(x, vector(normals))
     none = np.asarray((normals == 0).all(axis=1, keepdims=True), dtype=bool)
     return vector(np.where(none, np.stack(x, axis=1), np.stack(found, axis=1)))
@@ -281,8 +282,8 @@ def fields_in_nets(
 ) -> dict[str, NDArray[Any]]:
     """Return fields of samples of patches (k,) at normals (k, 3), see `Samples`.
 
-    Those with the numbers `exact` were decided exactly: `local` is that of `Decision`. Floats are
-    stored as `dtype`.
+    `exact` are the indices of samples that were decided exactly, with `local` as in `Decision`.
+    Floats are stored as `dtype`.
     """
     patch, n = spline.patch(patches), normals
     D, U, V, _ = python_function(formulas.forms)(patch, vector(n))

@@ -1,4 +1,4 @@
-"""The forms of patches and normals on integers of any length, beyond those of kernels.
+"""The forms of patches and normals on integers of any length, for pairs that kernels cannot decide.
 
 Coefficients and normals are binary fractions, and the formulas need only +, − and ×: run on Python
 integers they give the exact sign of every form.
@@ -37,8 +37,8 @@ def forms_of_pairs(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
     """Return U/D and V/D (k, 2), |D| (k,) and the signs of U, V, W (k, 3) of pairs.
 
-    Where a zero among U, V, W leaves undecided whether the patch has the normal, the values are
-    those of a normal that is displaced by an infinitesimal vector.
+    If a zero among U, V, W leaves undecided whether the patch has the normal, the values are those
+    of a normal displaced by an infinitesimal vector.
     """
     vectors, exponent = patch_vectors(spline, patches)
     n, exponents = integers_by_row(normals)
@@ -76,7 +76,7 @@ def exact_forms(vectors: Integers, n: Integers) -> Integers:
 
 
 def displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:
-    """Return D, U, V, W and the signs of U, V, W at n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁².
+    """Return D, U, V, W and signs of U, V, W at n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁².
 
     A quadratic form F is then a sum of ten monomials in n, ε₁, ε₂, ε₃, each infinitesimal relative
     to the one before. The first nonzero one gives the sign. For quotients by D, the coefficients of
@@ -90,9 +90,9 @@ def displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[n
 
 
 def monomials_of_forms(vectors: Integers, n: Integers) -> Integers:
-    """Return the coefficients (10, 4, k) of the monomials in D, U, V, W.
+    """Return the coefficients (10, 4, k) of the quadratic forms D, U, V, W.
 
-    They follow from F(x + y) − F(x) − F(y).
+    Mixed ones are F(x + y) − F(x) − F(y), for two of n and the axes.
     """
     axes = [
         n,

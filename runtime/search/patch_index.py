@@ -31,28 +31,28 @@ from .kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces
 
 __all__ = ["MOST_PATCHES", "Index", "index_of", "listed", "open_sides", "ordered", "sorted_keys"]
 
-# The largest number of patches of one index, which is kept with the spline: it takes 230 bytes for
-# each. Larger splines have an index for each range of patches, made for each search.
+# The largest number of patches of one index, which is kept with the spline and takes 230 bytes a
+# patch. A larger spline has an index for each range of patches, made anew for each search.
 MOST_PATCHES = 1 << 20
 PIECES_AT_A_TIME, NORMALS_AT_A_TIME = 1 << 12, 1 << 16
-# Bins are so small that a piece is in about this many.
+# The average number of bins of a piece determines the size of bins.
 BINS_PER_PIECE = 7.0
-# Room for them in the beginning.
+# Initial room for keys.
 KEYS_PER_PIECE = 16
-# Normals are sorted by bins that have as many of them on average.
+# Normals are sorted by bins with at least this many normals on average.
 NORMALS_PER_BIN = 4
-# The pieces that are looked at for that.
+# The number of pieces from which the size of bins is estimated.
 LOOKED_AT = 1 << 10
-# Directions that fill a cap are spread over a face of the cube if its tangent is below this; it
-# counts as this at least.
+# Bins cover only a cap if the tangent of half its opening angle is below the first of these;
+# tangents are at least the second one.
 WIDEST_CAP, NARROWEST_CAP = 0.5, 2.0**-30
 
 
 @dataclass(frozen=True, eq=False)
 class Index:
-    """Pieces and the lists of those that may have the normals of bins; shared by threads.
+    """Pieces, and for each bin the pieces that may have its normals; shared by threads.
 
-    `first` is the number of the first piece, `most` the largest number of pieces in a bin.
+    `first` is the index of the first piece, `most` the largest number of pieces in a bin.
     """
 
     pieces: Pieces
@@ -62,14 +62,14 @@ class Index:
 
     @property
     def bounds(self) -> Array:
-        """The errors of U, V, W (K,) of the pieces."""
+        """Bounds of the errors of U, V, W (K,) of the pieces."""
         return self.pieces.patches[:, BOUND]
 
 
 def index_of(spline: AnySpline, threads: int | None, first: int = 0) -> Index:
-    """Return the index of the patches first, …, first + MOST_PATCHES − 1 of a spline.
+    """Return the index of the patches [first, first + MOST_PATCHES) of a spline.
 
-    It is kept with the spline if these are all patches.
+    An index of all patches is kept with the spline.
     """
 
     def make() -> Index:
@@ -91,12 +91,12 @@ def open_sides(spline: Spline) -> NDArray[np.bool_]:
 
 
 def coefficients_of(spline: Spline) -> Coefficients:
-    """Return the coefficients of a spline in the form that kernels take."""
+    """Return the coefficients of a spline in the form that kernels use."""
     return Coefficients(spline.coefficients, spline.scale, spline.noise, open_sides(spline))
 
 
 def _of_grid(spline: Spline, first: int, last: int, threads: int | None) -> Pieces:
-    """Return the pieces of whole cells."""
+    """Return the pieces of the cells [first, last)."""
     pieces, coefficients, start = Pieces.new(last - first), coefficients_of(spline), first // 4
 
     def work(low: int, high: int) -> None:
@@ -119,7 +119,7 @@ def _of_nets(spline: NetSpline, first: int, last: int) -> Pieces:
 
 
 def _listed(spline: AnySpline, cones: Array, first: int) -> Lists:
-    """Return the lists of patches from `first` on, without those at tips."""
+    """Return the lists of patches from `first` on, without patches at tips."""
     tips = tips_of(spline)
     if tips is None:
         return listed(cones)
@@ -135,7 +135,7 @@ def listed(cones: Array) -> Lists:
     level = _level_of(cones, faces, tangent)
     caps = np.empty((faces << 2 * level, 4))
     write_caps(inverse, faces, level, caps)
-    # Heights of directions on their face are at least this.
+    # The least height of a direction on its face.
     least = (1.0 - 1e-12) / math.sqrt(1.0 + 2.0 * tangent**2)
     keys = np.empty(0, np.int64)
     room = KEYS_PER_PIECE * len(cones)
@@ -148,9 +148,9 @@ def listed(cones: Array) -> Lists:
 
 
 def _frame_of(cones: Array) -> tuple[Array, float]:
-    """Return the linear map (3, 3) of a cap with all cones to a face, and its tangent; else 1, 1.
+    """Return the linear map (3, 3) of a cap with all cones to a face, and the cap's tangent.
 
-    The cap is spread over the face: its tangent is that of half its opening angle.
+    The tangent is that of half the opening angle. Without such a cap, return the identity and 1.
     """
     axes, chords = cones[:, :3], cones[:, CHORD]
     mean = axes.mean(axis=0)
@@ -163,7 +163,8 @@ def _frame_of(cones: Array) -> tuple[Array, float]:
     x, y, height = directions @ axes.T
     if not (height - chords > 0.5).all():
         return everything
-    # As far as directions are from the axes of their cones, relative to their least height.
+    # The tangent of the largest angle between a direction and the mean axis, with a bound for
+    # cones.
     far = (np.hypot(x, y) / height + chords / (height * (height - chords))).max()
     tangent = max(float(far) * (1.0 + 1e-9), NARROWEST_CAP)
     if tangent > WIDEST_CAP:
@@ -172,9 +173,9 @@ def _frame_of(cones: Array) -> tuple[Array, float]:
 
 
 def _level_of(cones: Array, faces: int, tangent: float) -> int:
-    """Return how often faces are halved: a piece is in BINS_PER_PIECE bins on average.
+    """Return how often faces are halved, so that a piece is in BINS_PER_PIECE bins on average.
 
-    There are not more bins than pieces.
+    There are at most as many bins as pieces.
     """
     chords = cones[:: max(len(cones) // LOOKED_AT, 1), CHORD] / tangent
     level = 0
@@ -187,9 +188,9 @@ def _level_of(cones: Array, faces: int, tangent: float) -> int:
 
 
 def ordered(normals: Array, lists: Lists, threads: int | None) -> Indices:
-    """Return keys bin << 32 | number of the normals (S, 3) that may be in bins, about in order.
+    """Return keys bin << 32 | index of the normals (S, 3) that may be in bins, roughly in order.
 
-    They are in that of bins with at least NORMALS_PER_BIN normals on average.
+    They are sorted by bins with at least NORMALS_PER_BIN normals on average.
     """
     keys = np.empty(len(normals), np.int64)
 

@@ -1,8 +1,8 @@
 """The search for all points of a spline with given normals, each found exactly once.
 
 An index lists the patches by bins of the sphere. For normals sorted by bins, the signs of U, V, W
-and D decide which patches of their bin have them; pairs that rounding leaves undecided are decided
-by exact arithmetic.
+and D decide which patches of their bin have them. Exact arithmetic decides pairs that rounding
+leaves undecided.
 """
 
 from __future__ import annotations
@@ -30,10 +30,9 @@ from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sor
 
 __all__ = ["Hits", "developable_patches", "find", "find_in_turn", "on_border"]
 
-# Normals whose hits are found, sorted and decided together, at most; fewer if they have more hits
-# than this.
+# The largest numbers of normals, and of hits, that are found, sorted and decided together.
 NORMALS_AT_A_TIME, MOST_HITS = 1 << 20, 1 << 23
-# Normals of a range, which one thread searches, and the initial room for keys.
+# The number of normals in the range of a thread, and the initial room for keys.
 RANGE, ROOM = 1 << 13, 1 << 15
 PATCHES_AT_A_TIME = 1 << 14
 
@@ -41,7 +40,7 @@ PATCHES_AT_A_TIME = 1 << 14
 def find(
     spline: AnySpline, normals: Array, threads: int | None = None, progress: bool = False
 ) -> Hits:
-    """Return all hits: which patch of a spline has which of the unit normals (S, 3)."""
+    """Return all hits: the pairs of a patch of a spline and a unit normal (S, 3) that it has."""
     check_memory("search", len(normals))
     return Hits.joined(list(find_in_turn(spline, normals, threads, progress)))
 
@@ -49,7 +48,7 @@ def find(
 def find_in_turn(
     spline: AnySpline, normals: Array, threads: int | None = None, progress: bool = False
 ) -> Iterator[Hits]:
-    """Yield the hits of consecutive ranges of normals, at least one; their memory is bounded."""
+    """Yield the hits of consecutive ranges of normals, at least one range, in bounded memory."""
     developable = developable_patches(spline, threads)
     tips = tips_of(spline)
     nothing = developable == spline.patches or (tips is not None and tips.collapsed.all())
@@ -70,9 +69,9 @@ def find_in_turn(
 def _keys(
     spline: AnySpline, normals: Array, threads: int | None, progress: bool
 ) -> tuple[list[Indices], Indices, Array] | None:
-    """Return keys of hits, certain and undecided ones, and the errors of the forms of the latter.
+    """Return keys of hits, certain and undecided, and the errors of the forms of undecided ones.
 
-    Nothing is returned if there are several normals and more hits than MOST_HITS.
+    None if there are several normals and more hits than MOST_HITS.
     """
     certain, undecided, bounds, total = [], [], [], 0
     for first in range(0, spline.patches, MOST_PATCHES):
@@ -92,7 +91,7 @@ def _keys(
 def _ranges(
     index: Index, normals: Array, threads: int | None, progress: bool
 ) -> Generator[list[tuple[Indices, Indices]], None, None]:
-    """Yield the keys of hits of ranges of sorted normals, certain and undecided ones, in parts."""
+    """Yield the keys of certain and undecided hits of ranges of sorted normals, in parts."""
     order = ordered(normals, index.lists, threads)
 
     def work(first: int, last: int) -> list[tuple[Indices, Indices]]:
@@ -114,7 +113,7 @@ def _decided(
     spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
     bounds: Array, first: int, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
-    """Return the hits, those among the undecided ones included; normals count from `first` on."""
+    """Return the hits, including those of undecided keys; normals count from `first` on."""
     exact, local = np.empty(0, np.int64), np.empty((0, 5))
     if len(undecided) > 0:
         # Patches with several normals are decided faster one after the other.
@@ -129,7 +128,7 @@ def _decided(
         decided = undecided[order][decision.which]
         order = np.argsort(decided)
         exact, local = decided[order], decision.local[order]
-    # Those of a normal come in the order of patches, but for what is decided exactly.
+    # Hits of a normal come in the order of patches, except those that were decided exactly.
     keys = sorted_keys([*certain, exact], 32, len(normals))
     if len(exact) > 0:
         order_few(keys)
@@ -141,7 +140,7 @@ def _decided(
 
 
 def _without_tips(spline: AnySpline, normals: Array, hits: Hits) -> Hits:
-    """Return the hits but those at a tip, where the surface has no normal."""
+    """Return the hits without those at a tip, where the surface has no normal."""
     tips = tips_of(spline)
     if tips is None:
         return hits
@@ -154,7 +153,7 @@ def _without_tips(spline: AnySpline, normals: Array, hits: Hits) -> Hits:
 
 
 def developable_patches(spline: AnySpline, threads: int | None) -> int:
-    """Return how many patches are developable, up to the rounding of their coordinates."""
+    """Return the number of patches that are developable up to the rounding of their coordinates."""
     if isinstance(spline, NetSpline):
         return int(np.count_nonzero(flat_nets(spline)))
 
@@ -168,7 +167,7 @@ def developable_patches(spline: AnySpline, threads: int | None) -> int:
 
 
 def on_border(spline: Spline, patches: NDArray[np.int64]) -> Flags:
-    """Return which patches have their outer edge on the open border of the domain."""
+    """Return which patches have their outer edge on the open boundary of the domain."""
     cell, turn = np.divmod(patches, 4)
     i, j = np.divmod(cell, spline.cells[1])
     outermost = np.stack([j == 0, i == spline.cells[0] - 1, j == spline.cells[1] - 1, i == 0])
