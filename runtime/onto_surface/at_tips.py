@@ -59,7 +59,7 @@ def _with_tips(
     geometry: Geometry, at_tips: Sequence[tuple[OnSpline, Tip, Indices]], normals: Array,
     fields: Sequence[str], dtype: DTypeLike, progress: bool, density: float | None,
 ) -> Samples:  # fmt: skip
-    """Return all points that have one of the unit normals (S, 3), and the samples at these tips."""
+    """Return the samples at unit normals (S, 3), including those at the given tips."""
     wanted = list(dict.fromkeys([*fields, "normal_index"]))
     found = geometry.samples_at(normals, wanted, dtype, progress, density)
     parts = [found.arrays()]
@@ -74,7 +74,7 @@ def _with_tips(
 
 
 def _at_tips(geometry: Geometry, normals: Array) -> list[tuple[OnSpline, Tip, Indices]]:
-    """Return the tips that have some of the normals (S, 3), with the numbers of these."""
+    """Return the tips that have some of the normals (S, 3), with the indices of these."""
     fitted = geometry.fitted if geometry.has_tips else None
     if not isinstance(fitted, OnSpline):
         return []
@@ -88,7 +88,7 @@ def _fields(
     geometry: OnSpline, tip: Tip, numbers: Indices, normals: Array, fields: Sequence[str],
     dtype: DTypeLike,
 ) -> Fields:  # fmt: skip
-    """Return fields of the samples at a tip, for the normals with some numbers."""
+    """Return fields of the samples at a tip, for the normals with the given indices."""
     given, zero = normals[numbers], np.zeros(1)
     there = geometry.at_parameters(tip.uv[None], given[:1], zero, ("patch_index",), dtype)
     known = there | {

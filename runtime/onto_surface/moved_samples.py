@@ -21,7 +21,7 @@ from .on_spline import Fields, FieldsOfSamples
 
 __all__ = ["as_fields", "moved_samples", "part_of", "unmoved"]
 
-# The fields of samples that are moved; other fields follow from them.
+# The fields of samples that are moved; the other fields follow from them.
 NEEDED = (
     *("points", "normals", "uv", "gaussian_curvature", "mean_curvature"),
     *("normal_index", "patch_index"),
@@ -48,10 +48,10 @@ def moved_samples(
 
 
 def unmoved(spline: Spline, numbers: Indices, uv: Array) -> tuple[UndecidedNormal, ...]:
-    """Return the boxes of points of a spline that could not be moved, one for each normal.
+    """Return a box of parameters for each normal with points of a spline that could not be moved.
 
-    The points have normals with increasing numbers (k,) and parameters (k, 2). A box holds the
-    cells around them.
+    uv (k, 2) are the parameters of the points, numbers (k,) the increasing indices of their
+    normals. A box holds the cells around its points.
     """
     if len(numbers) == 0:
         return ()
@@ -68,12 +68,12 @@ def unmoved(spline: Spline, numbers: Indices, uv: Array) -> tuple[UndecidedNorma
 
 
 def part_of(arrays: Fields, kept: NDArray[np.bool_]) -> Fields:
-    """Return some of the samples."""
+    """Return the selected samples."""
     return arrays if kept.all() else {name: array[kept] for name, array in arrays.items()}
 
 
 def as_fields(arrays: Fields, fields: Sequence[str], dtype: DTypeLike) -> FieldsOfSamples:
-    """Return the requested fields of samples that have all fields but the support."""
+    """Return the requested fields, of samples with all fields except the support."""
     unrefined = int(np.count_nonzero(~arrays[FLAG_NAMES[0]]))
     if "support" in fields:
         support = np.einsum("ij,ij->i", arrays["points"], arrays["normals"])

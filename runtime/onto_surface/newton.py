@@ -37,17 +37,17 @@ __all__ = ["FOUND", "Target", "evaluate_on_surface", "near_poles", "refine"]
 Jets = Callable[[Array, Array], Array]
 
 ROWS_AT_A_TIME = 4096
-# When this part of a batch of rows is left, which need more steps than the others, they are
-# postponed and solved together with those of other batches.
+# Rows that need more steps than most are postponed when they are this part of a batch, and solved
+# together with those of other batches.
 FEW = 1 / 32
 MOST_STEPS = 32
 
 
 @dataclass(frozen=True, eq=False)
 class Parameters:
-    """Two parameters of a surface: its 2-jets, and the behaviour at the ends of the parameters.
+    """Two parameters of a surface: its 2-jets by them, and their behaviour at the ends.
 
-    `size` times the surface has cells of about the size 1. Rounding may keep the angle between
+    The surface times `size` has cells of about the size 1. Rounding may keep the angle between
     normals from falling below `noise`.
     """
 
@@ -69,14 +69,14 @@ class Parameters:
 
     @classmethod
     def of_chart(cls, chart: PoleChart, spline: Spline) -> Parameters:
-        """Return s and t of a chart at a pole: without ends, with the rounding of u and v."""
+        """Return s and t in a chart at a pole: without ends, with the rounding of u and v."""
         largest = max(abs(chart.end), abs(chart.other))
         ends = (-largest, largest, -largest, largest)
         box = Box(ends, (FREE, FREE), (chart.cell, chart.cell))
         return cls(chart.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
 
     def solve(self, target: Target, numbers: Indices, few: int) -> Indices:
-        """Solve for rows, from target.uv on; return the unfinished ones, at most `few`."""
+        """Solve for rows, starting at target.uv; return the unfinished ones, at most `few`."""
         count, rows = len(numbers), Rows.new(numbers)
         begin(target.uv, count, rows, self.box)
         for _ in range(MOST_STEPS):
@@ -95,7 +95,7 @@ def refine(surface: Surface, spline: Spline, target: Target, threads: int | None
     Overwrites the parameters, points and curvatures where the normal of the surface agrees with the
     prescribed one, up to NORMAL_ERROR, and K has the sign of target.signs. Elsewhere they stay
     those of the spline: at parabolic and singular points, and if the solution is outside the domain
-    or more than three cells away. Next to a pole K may change its sign, since the spline has folds
+    or more than three cells away. Next to a pole K may have any sign, since the spline has folds
     there. target.state is overwritten for all samples.
     """
     target.state[:] = NOT_FOUND
@@ -112,7 +112,7 @@ def _refine_away(
     target: Target,
     threads: int | None,
 ) -> list[Indices]:
-    """Move the samples that are not next to poles; return the others for each chart."""
+    """Move the samples away from poles; return the other samples for each chart."""
     domain = Parameters.of_domain(surface, spline)
 
     def work(first: int, last: int) -> tuple[Indices, list[Indices]]:
@@ -135,7 +135,7 @@ def _refine_away(
 def _on_rows(
     target: Target, numbers: Indices, solve: Callable[[Target], object], threads: int | None
 ) -> None:
-    """Call `solve` with copies of some rows; write the results into the arrays of all samples."""
+    """Call `solve` with copies of some rows; write the results to the arrays of all samples."""
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]
@@ -161,7 +161,7 @@ def _refine_at_pole(
         part.uv[:] = chart.places(part.uv)
         parameters.solve(part, np.arange(len(part.uv)), 0)
         part.uv[:] = chart.parameters(part.uv)
-        # Not those of the chart: its finite differences have rounding errors.
+        # Not the rounding of the chart: its finite differences have larger errors.
         found = part.state == FOUND
         points, _, gaussian, mean = evaluate_on_surface(
             chart.surface, spline, part.uv[found], threads=1
@@ -176,7 +176,7 @@ def evaluate_on_surface(
 ) -> tuple[Array, Array, Array, Array]:
     """Return points (k, 3), unit normals (k, 3), K (k,) and H (k,) at parameters (k, 2).
 
-    Normals and curvatures are 0 at singular points that are no poles.
+    Normals and curvatures are 0 at singular points, except at poles.
     """
     count = len(uv)
     points, normals = np.empty((count, 3)), np.empty((count, 3))

@@ -1,8 +1,8 @@
-"""What samples lie on: a spline, or the surface that it approximates.
+"""The geometry that samples lie on: a spline, or the surface that it approximates.
 
-Samples are searched on the spline. Those of the surface are then moved to it: at a prescribed
-normal to the point that has this normal, elsewhere to the point with the same parameters. Sizing
-functions and solid angles take the curvature of the surface from the Gauss points of the cells.
+Points with prescribed normals are searched on the spline. On a surface, such a sample is then moved
+to the point with its normal; other samples are evaluated at their parameters. Sizing functions and
+solid angles take the curvature of the surface from the Gauss points of the cells.
 """
 
 from __future__ import annotations
@@ -53,17 +53,17 @@ __all__ = [
 Fields = dict[str, NDArray[Any]]
 
 AT_A_TIME = 1 << 12
-# Normals of a spline at a pole are taken this part of the domain away from it.
+# At a pole, normals of a spline are evaluated at this distance from it, relative to the domain.
 BESIDE_POLE = 1e-6
 
 
 def count_of(arrays: Fields) -> int:
-    """Return the number of samples that have these fields."""
+    """Return the number of samples from their fields."""
     return len(next(iter(arrays.values())))
 
 
 class FieldsOfSamples(NamedTuple):
-    """Fields of samples, and how many of these are not on the surface.
+    """Fields of samples, how many are not on the surface, and for which normals.
 
     `undecided` lists normals with points of the spline that could not be moved to the surface; None
     for samples of the spline.
@@ -81,9 +81,9 @@ class FieldsOfSamples(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class OnPatches:
-    """A spline, on a grid of cells or of nets, whose own points at normals are the samples.
+    """A spline, on a grid of cells or of nets, whose own points are the samples.
 
-    Samples at normals are written to the fields in `memory` that are large enough.
+    Samples at normals are written to those fields in `memory` that are large enough.
     """
 
     on: ClassVar[str] = "spline"
@@ -96,11 +96,11 @@ class OnPatches:
 
     @property
     def fitted(self) -> OnPatches:
-        """What is sampled by a density; see `ProvedSurface`."""
+        """The geometry that densities use; see `ProvedSurface`."""
         return self
 
     def with_fit(self, samples: Samples, density: float | None = None) -> Samples:
-        """Return samples with their spline, which they have here; see `ProvedSurface`."""
+        """Return samples with their spline, which these already have; see `ProvedSurface`."""
         del density
         return samples
 
@@ -110,7 +110,7 @@ class OnPatches:
         return tips_of(self.spline) is not None
 
     def within(self, reach: Cap | None) -> Self:
-        """Return the same; InputError for nets with a `reach`, as they have no grid to cut."""
+        """Return self; InputError for nets with a `reach`, as they have no grid to cut."""
         if reach is not None:
             on_grid(self.spline)
         return self
@@ -121,7 +121,7 @@ class OnPatches:
         threads: int | None,
         memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
     ) -> Self:
-        """Return the same for one call: a number of threads, and memory for the samples.
+        """Return the geometry for one call, with a number of threads and memory for the samples.
 
         Raises SurfaceError if points are beyond the range of `dtype`.
         """
@@ -137,12 +137,12 @@ class OnPatches:
 
     @property
     def cell_measure(self) -> CellMeasure:
-        """The same of the cells."""
+        """Areas and signed solid angles of the cells."""
         return self.spline._cell_measure
 
     @property
     def distance(self) -> float:
-        """How far the points of what is sampled are from those of the spline, at most."""
+        """The largest distance between the sampled points and those of the spline."""
         return 0.0
 
     # --- samples at normals -----------------------------------------------------------------------
@@ -206,17 +206,17 @@ class OnPatches:
     def near_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits, also those of the spline that could not be moved."""
+        """Return the samples at hits, including samples of the spline that could not be moved."""
         return self.at_hits(normals, hits, fields, dtype)
 
     def share_at(self, normals: Array, hits: Hits) -> float:
-        """Return the share of hits with a sample, estimated from some of them."""
+        """Return the share of hits that become samples, estimated from some of them."""
         return 1.0
 
     def at_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits, with the fields that are requested."""
+        """Return the requested fields of the samples at hits."""
         wanted = with_uv(self.spline.trim, fields)
         check_memory("stored", len(hits), bytes_of(set(wanted) - set(self.memory), dtype))
         arrays = fill(self.spline, normals, hits, self.threads, wanted, dtype, self.memory)
@@ -231,7 +231,7 @@ class OnPatches:
         dtype: DTypeLike,
         size: int,
     ) -> Iterator[FieldsOfSamples]:
-        """Yield at most `size` samples at a time, those at `parts` of all hits of these normals."""
+        """Yield at most `size` samples at a time; the hits of the normals come in `parts`."""
         for hits in grouped(parts, size):
             yield self.at_hits(normals, hits, fields, dtype)
 
@@ -261,14 +261,14 @@ class OnPatches:
 class OnSpline(OnPatches):
     """A spline on a grid of cells, which is sampled; `OnSurface` samples its `surface` instead.
 
-    With a `reach`, the trim excludes all points of the `whole` whose normals are outside of it.
+    With a `reach`, the trim excludes all points of the `whole` whose normals are outside it.
     """
 
     spline: Spline
     whole: OnSpline | None = None
 
     def within(self, reach: Cap | None) -> Self:
-        """Return the part whose normals are in a cap, or all of it."""
+        """Return the part whose normals are in a cap; all of it for None."""
         if reach is None:
             return self
         spline = reached(self.spline, InReach(self.normals, reach))
@@ -287,7 +287,7 @@ class OnSpline(OnPatches):
 
     @cached_property
     def size(self) -> float:
-        """The root of the area inside the trim, in L; 0 if it is rounding error."""
+        """The root of the area inside the trim, in L; 0 if the area is rounding error."""
         spline = self.spline
         extents = np.ptp(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * spline.scale, axis=0)
         diagonal, area = float(np.linalg.norm(extents)), float(spline.measure[0].sum())
@@ -297,11 +297,11 @@ class OnSpline(OnPatches):
 
     @property
     def knows_jets(self) -> bool:
-        """Whether the derivatives of what is sampled are known, and not differences."""
+        """Whether derivatives are exact, and not finite differences."""
         return True
 
     def jets(self, u: Array, v: Array) -> Array:
-        """Return the 2-jets (k, 6, 3) of what is sampled, see `Surface.jets`."""
+        """Return the 2-jets (k, 6, 3) of the sampled surface or spline, see `Surface.jets`."""
         return self.jets_of_spline(u, v)
 
     def jets_of_spline(self, u: Array, v: Array) -> Array:
@@ -328,7 +328,7 @@ class OnSpline(OnPatches):
         return filled | {x: y for x, y in indices.items() if x in fields}
 
     def forms(self, cells: Array) -> Array:
-        """Return the fundamental forms (k, 7) at places (k, 2) in cells; see `forms_of_jets`."""
+        """Return the fundamental forms (k, 7) at positions (k, 2) in cells; see `forms_of_jets`."""
         found, frame = np.empty((len(cells), 7)), self.spline.frame
         scales = np.array([self._size, *frame[2:]])
         u, v = (frame[:2] + frame[2:] * cells).T.copy()
@@ -341,7 +341,7 @@ class OnSpline(OnPatches):
 
     @property
     def _size(self) -> float:
-        """The scaled length of a length 1."""
+        """The factor from lengths to scaled ones."""
         return SCALE * self.spline.scale
 
     def _in_parts(self, work: Callable[[int, int], None], count: int) -> None:
@@ -355,14 +355,14 @@ class OnSpline(OnPatches):
 
 
 def on_grids(geometries: Sequence[OnPatches]) -> list[OnSpline]:
-    """Return geometries with grids of cells unchanged; InputError for one of nets."""
+    """Return the geometries, which must have grids of cells; InputError if one has nets."""
     for geometry in geometries:
         on_grid(geometry.spline)
     return [x for x in geometries if isinstance(x, OnSpline)]
 
 
 def in_turn(found: Samples, size: int) -> Iterator[Samples]:
-    """Yield at most `size` of the samples at a time; what is undecided is with the first ones."""
+    """Yield at most `size` of the samples at a time; the first ones report undecided normals."""
     yield found[:size]
     report = found.report
     proved, undecided = report.proved and 0, report.undecided and ()

@@ -1,4 +1,4 @@
-"""A surface as what is sampled: samples are moved to it from its spline."""
+"""A surface as a geometry to sample: samples are moved to it from its spline."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ from .repeats import kept_once
 
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
 
-# Samples in turn are looked at in groups of about this number, whether they repeat others.
+# Samples in turn are tested for repeats in groups of about this number.
 TOGETHER = 1 << 17
-# About as many hits are moved to estimate the share of those that can be.
+# About this many hits are moved to estimate the share of hits that can be.
 TRIED = 1 << 12
 
 
 def place_of_samples(surface: object, on: str | None) -> str:
     """Return "surface" or "spline": where samples of a surface are to lie.
 
-    Raises UnknownNameError for another place, InputError if it is the surface and cannot be.
+    Raises UnknownNameError for another word, InputError if samples cannot lie on the surface.
     """
     known = isinstance(surface, Surface) and surface.evaluable
     if checked_place(on) is None:
@@ -67,7 +67,7 @@ def checked_place(on: str | None) -> str | None:
 def geometry_of(
     surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None
 ) -> OnPatches:
-    """Return what is sampled by a density: a spline, or the surface with its spline.
+    """Return the geometry of a surface: a spline, or the surface with its spline.
 
     Raises what `place_of_samples` and `spline_of` raise.
     """
@@ -84,13 +84,13 @@ def geometry_of(
 
 @dataclass(frozen=True, eq=False)
 class OnSurface(OnSpline):
-    """A surface as what is sampled, and its spline, on which samples are searched."""
+    """A surface to sample, with the spline on which samples are searched."""
 
     on: ClassVar[str] = "surface"
 
     @property
     def distance(self) -> float:
-        """How far the points of the surface are from those of the spline, at most: measured."""
+        """The largest measured distance between the surface and its spline."""
         misfit = self.spline.misfit
         return 0.0 if misfit is None else misfit.distance
 
@@ -103,9 +103,9 @@ class OnSurface(OnSpline):
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`.
 
-        The solid angle is that of the cell, in equal parts: K at its Gauss points. A function whose
-        derivatives are differences of many evaluations has that of its spline. They are kept with
-        the spline, which is that of one surface.
+        Each patch has an equal part of the solid angle of its cell, from K at the Gauss points. If
+        derivatives are differences of many evaluations, the solid angles are those of the spline.
+        They are kept with the spline, which belongs to one surface.
         """
         return kept(self.spline, "measure of the surface", self._measured)
 
@@ -118,7 +118,7 @@ class OnSurface(OnSpline):
 
     @property
     def cell_measure(self) -> CellMeasure:
-        """The same of the cells."""
+        """Areas and signed solid angles of the cells."""
 
         def of_cells() -> CellMeasure:
             return CellMeasure.of(self.measure, self.spline.cells)
@@ -127,7 +127,7 @@ class OnSurface(OnSpline):
 
     @property
     def _at_gauss_points(self) -> Array:
-        """K times the area of the cell (4 cells,) at its Gauss points; 0 at singular points."""
+        """K times the area of a cell (4 cells,) at the Gauss points; 0 at singular points."""
         found, columns = np.empty(self.spline.patches), self.spline.cells[1]
         ends = 0.5 + kernels.GAUSS * np.array([-0.5, 0.5])
         u0, v0, du, dv = self.spline.frame
@@ -148,9 +148,9 @@ class OnSurface(OnSpline):
     def at_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits, with the fields that are requested.
+        """Return the requested fields of the samples at hits.
 
-        Those that meet are one. Those that cannot be moved to the surface are none.
+        Coincident samples become one. Hits that cannot be moved to the surface become none.
         """
         arrays, left = self._found(normals, hits)
         return as_fields(arrays, fields, dtype)._replace(undecided=left)
@@ -158,11 +158,11 @@ class OnSurface(OnSpline):
     def near_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits, also those of the spline that could not be moved."""
+        """Return the samples at hits, including samples of the spline that could not be moved."""
         return as_fields(self._moved_once(normals, hits), fields, dtype)
 
     def share_at(self, normals: Array, hits: Hits) -> float:
-        """Return the share of hits with a sample, estimated from some of them."""
+        """Return the share of hits that become samples, estimated from some of them."""
         some = hits.normal_index % max(len(hits) // TRIED, 1) == 0
         moved = self._moved(normals, hits.rows(np.flatnonzero(some)))
         found = moved[FLAG_NAMES[0]] & self._kept_once(moved)
@@ -176,7 +176,7 @@ class OnSurface(OnSpline):
         dtype: DTypeLike,
         size: int,
     ) -> Iterator[FieldsOfSamples]:
-        """Yield at most `size` samples at a time, those at `parts` of all hits of these normals.
+        """Yield at most `size` samples at a time; the hits of the normals come in `parts`.
 
         Samples that meet have the same normal, so that whole normals are looked at together.
         """
@@ -199,19 +199,19 @@ class OnSurface(OnSpline):
             yield as_fields(arrays, fields, dtype)._replace(undecided=left)
 
     def _found(self, normals: Array, hits: Hits) -> tuple[Fields, tuple[UndecidedNormal, ...]]:
-        """Return the samples on the surface, and the normals of those that are not."""
+        """Return the samples on the surface, and boxes for the normals of the others."""
         arrays = self._moved_once(normals, hits)
         left = np.flatnonzero(~arrays[FLAG_NAMES[0]])
         numbers, uv = arrays["normal_index"][left], arrays["uv"][left]
         return part_of(arrays, arrays[FLAG_NAMES[0]]), unmoved(self.spline, numbers, uv)
 
     def _moved_once(self, normals: Array, hits: Hits) -> Fields:
-        """Return all fields but the support of the samples at hits, those that meet as one."""
+        """Return the samples at hits without repeats, with all fields but the support."""
         arrays = self._moved(normals, hits)
         return part_of(arrays, self._kept_once(arrays))
 
     def _moved(self, normals: Array, hits: Hits) -> Fields:
-        """Return all fields but the support of the samples at hits, those inside the trim."""
+        """Return the samples at hits inside the trim, with all fields but the support."""
         assert self.surface is not None
         arrays = moved_samples(self.surface, self.spline, normals, hits, self.threads)
         return samples_inside(self.spline.trim, arrays, tuple(arrays))
@@ -234,7 +234,7 @@ class OnSurface(OnSpline):
 
     @property
     def knows_jets(self) -> bool:
-        """Whether the surface knows its derivatives: not if it is a function of a user."""
+        """Whether derivatives are exact: they are not for a function of a user."""
         function = None if self.surface is None else self.surface.function
         return isinstance(function, Differentiable) and function.differentiable
 
@@ -248,7 +248,7 @@ class OnSurface(OnSpline):
     ) -> Fields:
         """Return fields of samples at parameters (k, 2); at singular points, those of the spline.
 
-        There the normals and the signs of K are those given.
+        At singular points the given normals and signs of K are used.
         """
         assert self.surface is not None
         points, directions, gaussian, mean = evaluate_on_surface(
@@ -277,5 +277,5 @@ def _joined(parts: Sequence[Fields]) -> Fields:
 
 
 def _rows(arrays: Fields, first: int, last: int | None) -> Fields:
-    """Return some of the samples."""
+    """Return the samples [first, last)."""
     return {name: x[first:last] for name, x in arrays.items()}

@@ -20,11 +20,11 @@ from .kernels.refine import chart_jets, jet_of_pole
 __all__ = ["PoleChart", "pole_charts"]
 
 
-# The spline is inaccurate, and may have folds, within four cells of a pole; its samples are up to a
-# cell away from those of the surface. With one cell samples are lost; with more than three only
+# Within four cells of a pole the spline is inaccurate and may have folds; its samples are up to a
+# cell away from those of the surface. With one cell samples are lost; from three to four only
 # rounding errors change.
 POLE_CELLS = 6
-# Within this part r of the domain from a pole, its 2-jet is continued. The error of that is of
+# Closer to a pole than this part r of the domain, the 2-jet of the pole is used. Its error is of
 # order r; derivatives by the angle have errors of up to ε/r² by cancellation.
 NEAR = 2.0**-20
 
@@ -45,7 +45,7 @@ class PoleChart:
 
     @property
     def inward(self) -> float:
-        """The sign with which the other parameter grows with the distance from the pole."""
+        """1 or −1: whether the other parameter increases or decreases away from the pole."""
         return math.copysign(1.0, self.other - self.end)
 
     @property
@@ -72,7 +72,7 @@ class PoleChart:
     def next_to(self, uv: Array) -> Flags:
         """Return which parameters (k, 2) are so close to the pole that they need the chart.
 
-        Differences along a small circle around a pole are inaccurate, relative to its radius.
+        Differences have large relative errors on small circles around a pole.
         """
         if self.surface.differences is not None:
             return self.near(uv)

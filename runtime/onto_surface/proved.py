@@ -38,13 +38,13 @@ from .pole_charts import pole_charts
 __all__ = ["Proof", "ProvedSurface", "index_of", "not_outside", "proof_of"]
 
 PLACES_AT_A_TIME = 1 << 14
-# The column of solutions with the code of the component, if there are others than regular points.
+# The column of solutions that holds the code of the component, if not all are regular points.
 CODE = 6
 OPEN_BOX, CURVE = KINDS.index("open"), KINDS.index("curve")
 
 
 class Proof(NamedTuple):
-    """For how many normals all points are known, and where other normals may have further ones."""
+    """The number of normals whose points are all known, and where other normals may have more."""
 
     proved: int
     undecided: tuple[UndecidedNormal, ...]
@@ -53,7 +53,7 @@ class Proof(NamedTuple):
 def index_of(
     surface: Surface, threads: int | None = None, cells: tuple[int, int] = CELLS
 ) -> ProvedIndex | None:
-    """Return the index of a surface; None if its derivatives have no bounds, next to poles, too."""
+    """Return the index of a surface; None unless derivatives have bounds, also next to poles."""
     if surface.tape is None:
         return None
     index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, cells, threads)
@@ -62,12 +62,12 @@ def index_of(
 
 @dataclass(frozen=True, eq=False)
 class ProvedSurface:
-    """A surface whose points with given normals are all found, with a proof and without a spline.
+    """A surface that gives all points with given normals, with a proof and without a spline.
 
     The `surface` has the poles that were found at its sides. On the surface times `scale`,
     neighbouring points of a grid are about 1 apart; `largest` is the largest of their coordinates.
     `has_tips` says whether an open side is one point. The spline, which densities need, is fitted
-    when it is asked for; `cells` are for it.
+    with `cells` at first access.
     """
 
     on: ClassVar[str] = "surface"
@@ -122,13 +122,13 @@ class ProvedSurface:
         threads: int | None,
         memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
     ) -> ProvedSurface:
-        """Return the same for one call; see `OnPatches.used`."""
+        """Return the geometry for one call; see `OnPatches.used`."""
         del memory  # is for splines
         check_range(self.surface.name, self.largest, dtype)
         return self if threads == self.threads else replace(self, threads=threads)
 
     def within(self, reach: Cap | None) -> ProvedSurface:
-        """Return the part whose normals are in a cap, or all of it."""
+        """Return the part whose normals are in a cap; all of it for None."""
         return self if reach is None else replace(self, reach=reach)
 
     def samples_at(
@@ -141,7 +141,7 @@ class ProvedSurface:
     ) -> Samples:
         """Return all points that have unit normals (S, 3), and the proof.
 
-        They come in the order of normals, then of u and v. Each component has one.
+        They come in the order of normals, then of u and v. Each component has one sample.
         """
         del progress, density  # a search takes no time to speak of; the report is without a fit
         surface, found = self.surface, self.index.query(normals, self.threads)
@@ -178,7 +178,7 @@ class ProvedSurface:
         return in_turn(found, size)
 
     def with_fit(self, samples: Samples, density: float | None = None) -> Samples:
-        """Return samples with the spline, and with a report that speaks of it.
+        """Return samples with the spline, and with the entries on it in their report.
 
         The report takes `density` for the normals per steradian, by default S / 4π.
         """
@@ -192,7 +192,7 @@ class ProvedSurface:
     def _arrays(
         self, normals: NDArray[np.float64], found: ProvedPlaces, fields: Sequence[str]
     ) -> Fields:
-        """Return the fields that are wanted."""
+        """Return the requested fields."""
         numbers, places = found.numbers, found.places
         count = len(numbers)
         rooms = SampleFields(
@@ -233,7 +233,7 @@ class ProvedSurface:
         return arrays
 
     def component_degrees(self, normals: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Return the sums of the degrees of components with a sample, but for regular points."""
+        """Return the sums of the degrees of components with a sample, except regular points."""
         found = self.index.query(normals, self.threads)
         components, _ = _components_in(self.surface.trim, found.undecided, normals)
         degrees = np.nan_to_num(components.degree)
@@ -241,7 +241,7 @@ class ProvedSurface:
 
 
 def _with_rows(found: ProvedPlaces, components: Undecided) -> ProvedPlaces:
-    """Return solutions with those that stand for components, and a column of their codes."""
+    """Return solutions and the points of components, with a column of component codes."""
     sides, uv = components.boxes.reshape(-1, 2, 2), components.uv
     rows = np.zeros((len(uv), CODE + 1))
     rows[:, :2], rows[:, 2:4] = uv, np.abs(sides - uv[:, :, None]).max(axis=2)
@@ -256,7 +256,7 @@ def _with_rows(found: ProvedPlaces, components: Undecided) -> ProvedPlaces:
 
 
 def proof_of(normals: NDArray[np.float64], open_: Undecided, face: int | None = None) -> Proof:
-    """Return the proof for unit normals (S, 3), of which some are open; on a face of a part."""
+    """Return the proof for unit normals (S, 3), given the undecided boxes; on a face of a part."""
     if len(open_.numbers) == 0:
         return Proof(len(normals), ())
     undecided = tuple(
@@ -271,9 +271,9 @@ def proof_of(normals: NDArray[np.float64], open_: Undecided, face: int | None = 
 def not_outside(
     trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]
 ) -> tuple[Undecided, NDArray[np.bool_]]:
-    """Return the boxes that may have points inside a trim, and which have no others.
+    """Return the boxes that may have points inside a trim, and flags for those entirely inside.
 
-    The others may meet the border of the trim.
+    The others may meet the boundary of the trim.
     """
     if trim is None or len(open_.numbers) == 0:
         return open_, np.ones(len(open_.numbers), np.bool_)
@@ -285,7 +285,7 @@ def not_outside(
 def _components_in(
     trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]
 ) -> tuple[Undecided, Undecided]:
-    """Return the components that are known and inside a trim, and what is left open."""
+    """Return the known components inside a trim, and the boxes that remain undecided."""
     open_, inside = not_outside(trim, open_, normals)
     known = inside & (open_.kinds != OPEN_BOX)
     return Undecided._make(x[known] for x in open_), Undecided._make(x[~known] for x in open_)

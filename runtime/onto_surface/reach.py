@@ -40,8 +40,8 @@ class InReach:
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
         """Return the cells (m, n) whose normals may enter the cap, or leave it.
 
-        The cosine of the angle is evaluated at the corners and the middle of each. It is assumed to
-        exceed their range by at most its width.
+        The cosine of the angle is evaluated at the corners and the centre of each cell. Its range
+        in the cell is assumed to exceed that of these values by at most their spread on each side.
         """
         nodes, middles = (self._cosines(domain, cells, shift) for shift in (0.0, 0.5))
         nodes = [nodes[i : i + cells[0], j : j + cells[1]] for i in (0, 1) for j in (0, 1)]

@@ -1,4 +1,4 @@
-"""Repeated samples: those of a fold of the spline coincide on the surface, which has no fold there.
+"""Repeated samples: samples on a fold of the spline that coincide on the surface without a fold.
 
 Of the preimages of a normal on a fold, all but one cancel in the sum of the signs of K.
 
@@ -24,9 +24,9 @@ def kept_once(spline: Spline, arrays: Fields, at_pole: Flags) -> Flags:
     """Return which samples (k,) to keep, so that none on the surface is repeated.
 
     Samples are repeated if they have the same normal, sign of K and point, and the same parameters
-    modulo periods; next to a pole, parameters are ignored. All but one are removed, first those
-    that have left their patch. Away from poles, as many samples of the normal with the other sign
-    of K that are not on the surface are removed with them: the other side of a fold that the
+    modulo periods; next to a pole, parameters are ignored. All but one are removed, those outside
+    their patch first. Away from poles they are removed in pairs, each with a sample of the same
+    normal and the other sign of K that is not on the surface: the other side of a fold that the
     surface does not have. So the sum of the signs does not change.
     """
     kept, found, normal_index = np.ones_like(at_pole), arrays[FLAG_NAMES[0]], arrays["normal_index"]
@@ -61,7 +61,7 @@ def left_patch(spline: Spline, arrays: Fields) -> Flags:
 def _repeats(
     spline: Spline, arrays: Fields, at_pole: Flags, rows: Indices
 ) -> tuple[Indices, Indices]:
-    """Return which of the rows, sorted by normal, repeat another row, and the latter.
+    """Return which of the rows, sorted by normal, repeat another row, and that other row.
 
     Rows are repeated if points, parameters (in cells) and the sign of K agree; at poles, parameters
     are ignored.
@@ -91,7 +91,7 @@ def _starts(values: Indices) -> Indices:
 
 
 def _paired(rows: Indices, keys: Indices, others: Indices) -> Indices:
-    """Return, for each of the `keys` (k,), as many rows as it has among others, or all if fewer."""
+    """Return as many rows with each key as `others` has, or all such rows if fewer."""
     if len(rows) == 0 or len(others) == 0:
         return rows[:0]
     order = np.argsort(keys, kind="stable")

@@ -36,7 +36,7 @@ __all__ = [
 ]
 
 
-# Each piece is fitted and searched by itself, which takes 20 ms.
+# The largest number of pieces: each takes 20 ms to be fitted and searched.
 MOST_PIECES = 2000
 FEWEST_CELLS = 4
 # A piece smaller than this part of the largest is degenerate, and gets no samples.
@@ -74,7 +74,7 @@ def geometries_of(
 def proved_or_fitted(
     surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None
 ) -> tuple[OnPatches | ProvedSurface, ...]:
-    """Return the same, but for each piece that can be proved its index."""
+    """Return a geometry for each piece: its index if it can be proved, else as `geometries_of`."""
     if place_of_samples(surface, on) == "spline":
         return geometries_of(surface, cells, on)
     return tuple(
@@ -128,7 +128,7 @@ def with_area(geometries: Sequence[OnSpline]) -> list[tuple[int, OnSpline]]:
 
 
 def _size_of(geometry: OnSpline, is_one_of_many: bool) -> float:
-    """Return the size of a piece; 0 if the trim leaves nothing of one of many."""
+    """Return the size of a piece; 0 if there are others, and the trim leaves nothing of it."""
     try:
         return geometry.size
     except SurfaceError:
@@ -149,7 +149,7 @@ def samples_of_pieces(
     """Return all points of a surface of several pieces that have one of the unit normals (S, 3).
 
     The report gets the `name`, and the samples the `surface`, None if they lie on splines. A piece
-    without a proof has no samples if its Gaussian image has no area beyond rounding.
+    without a proof has no samples if the area of its Gaussian image is rounding error.
     """
     fitted = on_grids([x.fitted for x in geometries])
     searched: dict[OnSpline, OnPatches | ProvedSurface] = dict(zip(fitted, geometries, strict=True))

@@ -1,12 +1,12 @@
-"""How often the normals at a tip cover a direction: its part in the degree of the Gauss map.
+"""How often the normals at a tip cover a direction: the degree of a tip.
 
-Near a tip the surface is a cone over a closed curve of rays. On a small ring round the tip the
-function n·x has 1 − changes/2 as its index (Banchoff), where changes counts changes of the sign
-of n·ray; this is the sum of the degrees at n and at −n. Their difference is the winding number of
-the normals of the cone round n.
+Near a tip the surface is a cone over a closed curve of rays. The index of the function n·x on a
+small ring around the tip is 1 − changes/2 (Banchoff), where changes is the number of changes of
+sign of n·ray. The index is the sum of the degrees at n and at −n. Their difference is the winding
+number of the normals of the cone around n.
 
-A cone through some rays has other signs than the surface at normals that nearly touch it between
-two of them: n·ray has an extreme value near 0 there. Rays near such a value are moved to it.
+A cone through finitely many rays has wrong signs for normals that nearly touch the surface between
+two of them: n·ray has an extreme value near 0 there. The ray next to it is moved to it.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from .on_spline import OnSpline
 
 __all__ = ["Tip", "tip_degrees", "tips_on"]
 
-# On a surface, the rays of a tip are at least as many.
+# The least number of rays of a tip of a surface.
 RAYS = 1 << 11
-# An extreme value is searched by cutting an interval into PARTS, TIMES times over: the last ones
+# An extreme value is searched by cutting an interval into PARTS, TIMES times: the last intervals
 # are 5e-8 rad long, and the error of the value is of the order of the square of that.
 PARTS, TIMES = 32, 4
 PRODUCTS_AT_A_TIME = 1 << 20
@@ -38,7 +38,7 @@ class Tip(NamedTuple):
     """A tip of a surface: its point (3,), one of its parameter pairs (2,), and its rays (k, 3).
 
     The rays are anticlockwise around it; `bends` (k,) are the sizes of their second differences,
-    and `ray_at` returns those at fractional numbers (m,). The degree is `outside` at all normals n
+    and `ray_at` returns rays at fractional indices (m,). The degree is `outside` at all normals n
     with n·axis < cosine.
     """
 
@@ -68,8 +68,8 @@ class Tip(NamedTuple):
         return found
 
     def _degrees(self, rays: Array, heights: Array, normals: Array) -> NDArray[np.int64]:
-        """Return the degrees of a cone at normals (S, 3), with heights (k, S) of its rays."""
-        # Normals below which the whole cone lies have one degree.
+        """Return the degrees of a cone at normals (S, 3), from the heights (k, S) of its rays."""
+        # All normals that have the whole cone below them have the same degree.
         is_below, found = (heights < 0.0).all(axis=0), np.empty(len(normals), np.int64)
         found[~is_below] = _degrees(rays, normals[~is_below])
         if is_below.any():
@@ -78,7 +78,7 @@ class Tip(NamedTuple):
         return found
 
     def _with_extremes(self, normal: Array, heights: Array) -> Array:
-        """Return the rays; those near extreme values of n·ray, if these may be 0, are moved there.
+        """Return the rays; rays next to an extreme value of n·ray that may be 0 are moved to it.
 
         The heights (k,) are n·ray.
         """
@@ -97,7 +97,7 @@ class Tip(NamedTuple):
 
 
 def tip_degrees(geometry: OnSpline, normals: Array) -> NDArray[np.int64]:
-    """Return the sum (S,) over the tips of a surface of their degrees at unit normals (S, 3)."""
+    """Return the sums (S,) of the degrees of all tips of a surface at unit normals (S, 3)."""
     found = np.zeros(len(normals), np.int64)
     for tip in tips_on(geometry):
         found += tip.degrees(normals)
@@ -120,7 +120,7 @@ def _tips(geometry: OnSpline) -> list[Tip]:
 
 
 def _tip(geometry: OnSpline, axis: int, end: int) -> Tip | None:
-    """Return the tip that is one end of the domain along an axis, if it has rays all round."""
+    """Return the tip at one end of the domain along an axis, if there are rays all around it."""
     spline = geometry.spline
     parts = spline.cells[1 - axis]
     if geometry.on == "surface":
@@ -128,7 +128,7 @@ def _tip(geometry: OnSpline, axis: int, end: int) -> Tip | None:
     (low, high), place = spline.domain[1 - axis], spline.domain[axis][end]
 
     def uv_at(numbers: Array) -> Array:
-        """Return parameters. The one around the tip runs anticlockwise, or clockwise."""
+        """Return parameters at fractional indices of rays, all anticlockwise or all clockwise."""
         turns = (numbers if axis == end else parts - 1.0 - numbers) / parts
         along = low + (high - low) * (turns % 1.0)
         fixed = np.full_like(along, place)
@@ -147,7 +147,7 @@ def _tip(geometry: OnSpline, axis: int, end: int) -> Tip | None:
     normals = normals[normals.any(axis=1)]
     mean = _unit(normals.sum(axis=0)[None])
     cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
-    # A cap below a half-sphere holds all normals at the tip, and the arcs between them.
+    # A cap smaller than a half-sphere contains all normals at the tip, and the arcs between them.
     cosine = cosine if cosine > 0.0 else -math.inf
     outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
     uv = uv_at(np.zeros(1) if axis == end else np.full(1, parts - 1.0))
