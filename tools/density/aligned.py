@@ -1,7 +1,8 @@
 """Graded grids: samples where parameter lines cross, spaced by the rate at which the normal turns.
 
-Where parameters run along lines of curvature, the cells of such a grid are long where the surface
-is curved in one direction only: the same angles need far fewer samples than round cells do.
+Where parameter lines are close to lines of curvature, the cells of such a grid are long where the
+surface is curved in one direction only: it needs far fewer samples for the same angles than round
+cells do.
 """
 
 from __future__ import annotations
@@ -23,15 +24,15 @@ from .steps import Forms, Steps, equal_steps, steps_for_count
 __all__ = ["AlignedGrid"]
 
 
-# The number of points along u and v at which the fundamental forms are evaluated, about.
+# The fundamental forms are evaluated at about this number of points along u and along v.
 PLACES = 64
-# On trimmed surfaces: the samples that are reserved for each sample of the grid next to the
-# boundary, and the part of a count that a grid then has to reach, in at most TRIALS.
+# On trimmed surfaces, this number of samples is reserved for each sample of the grid next to the
+# boundary. A grid then has to reach this part of a count, in at most TRIALS.
 BORDER, CLOSE, TRIALS = 0.5, 0.95, 4
-# The range of numbers of lines along u that are tried, around the best real number, and the ratio
-# of errors up to which numbers count as equally good.
+# The numbers of lines along u that are tried: this range around the best real number. Numbers with
+# errors up to this ratio count as equally good.
 AROUND, AS_GOOD = 0.12, 1.005
-# Gaps may be wider than requested by this factor, as the number of steps is not an integer.
+# Gaps may be wider than requested by this factor, since the number of steps is an integer.
 SLACK = 1.02
 # Chords that are equal when rounded to this number of decimals count as equal.
 DIGITS = 9
@@ -57,7 +58,7 @@ class AlignedGrid:
         if len(along_u) or len(along_v):
             axes = axes_with(geometry, (along_u, along_v))
             forms = forms_on(geometry, axes)
-        # From the unit of length of the spline to that of the space.
+        # From the unit of length of the spline to the unit of the space.
         forms[:3] *= (space.unit / (SCALE * geometry.spline.scale)) ** 2
         return cls(
             space,
@@ -81,7 +82,7 @@ class AlignedGrid:
         if self.geometry.spline.trim is None:
             return grid
         for _ in range(TRIALS):
-            # Samples outside the trim do not count; gaps at its boundary are filled later.
+            # Samples outside the trim do not count. Gaps at its boundary are filled later.
             spare = len(grid) + BORDER * grid.border
             whole *= most / max(spare, 1.0)
             grid = self.grid(self.steps_for(whole, distance), int(whole))
@@ -90,7 +91,7 @@ class AlignedGrid:
         return grid if len(grid) <= most else self.grid(self.steps_for(most, distance), most)
 
     def grid(self, steps: Steps, most: int | None) -> Grid:
-        """Return the grid of steps, on the whole domain with at most `most` samples if given."""
+        """Return the grid of steps, with at most `most` samples on the whole domain, if given."""
         lengths = [x.lengths(y) for x, y in zip(self.axes, steps.along, strict=True)]
         if most is None:
             numbers = [np.ceil(x).astype(np.int64) for x in lengths]
@@ -111,7 +112,7 @@ class AlignedGrid:
     def _numbers(self, steps: Steps, lengths: list[Array], most: int) -> list[Indices]:
         """Return the numbers of lines of each part, along u and v, from their lengths in steps.
 
-        Lines cross at most `most` times (unless there are more parts), and the errors are about
+        There are at most `most` crossings (more if there are more parts), and the errors are about
         minimal.
         """
         total, found = float(lengths[0].sum()), []
@@ -126,11 +127,11 @@ class AlignedGrid:
             left = most - int(numbers[0].sum()) * int(numbers[1].sum())
             found.append((self._excess(steps, scales), left, numbers))
         least = min(excess for excess, _, _ in found)
-        # Among the nearly best, the one with the fewest samples left over.
+        # Of nearly equal errors, choose the numbers that leave the fewest samples.
         return min((x for x in found if x[0] <= AS_GOOD * least), key=lambda x: x[1])[2]
 
     def _excess(self, steps: Steps, scales: list[Array]) -> float:
-        """Return the larger of both errors, relative to the requested ones, if steps are scaled.
+        """Return the larger of both errors, relative to the requested one, if steps are scaled.
 
         `scales` are the factors on the parts of each parameter.
         """
@@ -148,10 +149,10 @@ class AlignedGrid:
         return max(angle / steps.angle, distance / (SLACK * steps.distance))
 
     def _between(self, lines: list[Array], number: int) -> Array:
-        """Return positions midway between the neighbours on the grid with the largest angles.
+        """Return midpoints of the neighbours on the grid with the largest angles between them.
 
-        Only neighbours along the shorter distance in space are taken: a sample between others would
-        be the nearest one, in space, of points that belong to other rows.
+        Only neighbours along the shorter distance in space are taken: a sample between other
+        neighbours would be the nearest one, in space, to points that belong to other rows.
         """
         places, chords = [], []
         for axis in (0, 1):
@@ -165,8 +166,8 @@ class AlignedGrid:
     def _middles(self, lines: list[Array], axis: int) -> tuple[Array, Array, Array]:
         """Return the middles (k, 2) between neighbours along a parameter, in cells.
 
-        Also return the distances in space of these neighbours and of those across (2, k), and the
-        chords of the former in normal space (k,).
+        Also return the distances in space of these neighbours and of neighbours across (2, k), and
+        the chords in normal space between the former (k,).
         """
         steps = [np.gradient(x) if len(x) > 1 else np.full(1, np.inf) for x in lines]
         steps[axis] = np.diff(lines[axis])
@@ -210,7 +211,7 @@ def forms_on(geometry: OnSpline, axes: tuple[Axis, Axis]) -> Array:
 
 
 def shared(lengths: Array, number: int) -> Indices:
-    """Divide a number of lines among parts: the longest step gets the next line."""
+    """Divide a number of lines among parts: the part with the longest step gets the next line."""
     numbers = np.ones(len(lengths), dtype=np.int64)
     if number > len(lengths):
         numbers += np.floor(lengths * ((number - len(lengths)) / lengths.sum())).astype(np.int64)

@@ -16,7 +16,7 @@ from .trims import Trims
 
 __all__ = ["BorderLines", "places_along", "polygons_of"]
 
-# Boundaries are measured at steps of at most this part of the domain.
+# Boundaries are measured in steps of at most this part of the domain.
 FINE = 1.0 / 48.0
 # In a search for neighbours, domains have width 1 and pieces are this far apart.
 FAR = 16.0
@@ -27,7 +27,7 @@ PLACES_AT_A_TIME = 1 << 17
 class BorderLines:
     """Closed polygons, the boundaries of `pieces` (L,): vertices (k, 2), the first one repeated.
 
-    Polygon l has the vertices [starts[l], starts[l + 1]). rows (k, 8) and limits (k,) are those of
+    Polygon l has the vertices [starts[l], starts[l + 1]). rows (k, 8) and limits (k,) come from
     cells at the vertices.
     """
 
@@ -78,7 +78,7 @@ def places_along(
 ) -> tuple[Indices, Array, Array]:
     """Return parameters just inside boundaries, about step/√w apart, w the target density.
 
-    Between neighbours, normals turn by about `turn` radians at most. Return the pieces (k,), the
+    Normals of neighbours differ by about `turn` radians at most. Return the pieces (k,), the
     parameters (k, 2), and the limits (k,). Along each line, the points on its left come first.
     """
     owner, number, share = _spaced(lines, target, step, turn)
@@ -98,9 +98,9 @@ def places_along(
 def _spaced(
     lines: BorderLines, target: TargetDensity, step: float, turn: float
 ) -> tuple[Indices, Indices, Array]:
-    """Return positions along polygons: lines (k,), preceding vertices, and fractions beyond these.
+    """Return positions along polygons: lines (k,), the vertices before, and fractions (k,).
 
-    The fractions are those of the way to the next vertex of the line.
+    A fraction is the part of the way to the next vertex of the line.
     """
     rates = np.sqrt(np.clip(lines.rows[:, 6], target.floor, target.ceiling))
     lengths = np.linalg.norm(np.diff(lines.rows[:, :3], axis=0), axis=1)

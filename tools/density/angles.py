@@ -17,10 +17,10 @@ from .cover import STEP, Cover
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-# Normals at candidates are covered within an angle that is smaller by this part, which is left for
+# Normals at candidates are covered within an angle that is smaller by this part. The rest is for
 # the normals around them: along boundaries, half a step between candidates.
 MARGIN = 0.02
-# For normals far from all others, the radii of the greedy choice fall from this multiple on.
+# For normals far from all samples, the radii of the greedy choice fall from this multiple.
 FIRST = 2.0
 
 __all__ = ["MARGIN", "choose_apart", "chord_of", "cover_normals"]
@@ -32,12 +32,12 @@ def chord_of(angle: float) -> float:
 
 
 def cover_normals(cover: Cover, angle: float) -> float:
-    """Add samples until every normal of the surface is within `angle` degrees of one of theirs.
+    """Add samples until every normal of the surface is within `angle` degrees of a sample's.
 
-    If the samples are at normals of that density, only points at the boundary of the Gaussian image
-    are uncovered: the nearest of these normals may lie outside of it. Return the largest angle from
-    any normal, in degrees; `angle` if there are singular points, next to which normals are known
-    only at the places of cells.
+    If samples are at normals dense enough for that, only points at the boundary of the Gaussian
+    image are uncovered: the nearest prescribed normal may lie outside of it. Return the largest
+    angle from any normal, in degrees; `angle` if there are singular points, next to which normals
+    are known only at the places of cells.
     """
     limit = chord_of(angle)
     cover.evaluate_exactly()
@@ -60,7 +60,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
 
 
 def _distances(trees: Sequence[KDTree], rows: Array, threads: int | None) -> Array:
-    """Return the chords (M,) from normals of rows to the nearest ones in trees.
+    """Return the chords (M,) from the normals of rows to the nearest normals in trees.
 
     The chord is 0 for a row without a normal.
     """
@@ -79,8 +79,8 @@ def choose_apart(
 ) -> Indices:
     """Choose some of normals (M, 3), so that each is within the chord `near` of a chosen one.
 
-    At most `most` are chosen, the widest gaps first; `known` normals (N, 3), no two of them nearly
-    equal, count as chosen.
+    At most `most` are chosen, the widest gaps first; `known` normals (N, 3), no two nearly equal,
+    count as chosen.
     """
     rows, radius = np.arange(len(normals)), widest or FIRST * near
     if known is not None:
@@ -101,7 +101,7 @@ def _apart(
 ) -> tuple[Indices, float]:
     """Return the indices of normals farther than `near` from known ones, and the largest distance.
 
-    That distance is at most `widest`. Radii that fall from it on save most updates of distances.
+    That distance is at most `widest`. Radii that fall from it save most updates of distances.
     """
     distances = tree_of(known).query(normals, workers=thread_count(threads))[0]
     far = (distances > near) & normals.any(axis=1)

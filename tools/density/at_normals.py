@@ -25,8 +25,8 @@ from .space import Space
 __all__ = ["Given", "at_count", "at_lattices", "at_normals"]
 
 
-# A lattice that gives too many samples is replaced by one with this part of the normals that would
-# give as many as allowed.
+# If a lattice gives too many samples, a coarser one replaces it, with this part of the normals that
+# would give as many as allowed.
 FEWER = 0.98
 
 
@@ -42,8 +42,8 @@ class PieceSamples(NamedTuple):
 class Given:
     """Samples at normals (S, 3), which are `density` per steradian, on some pieces of a space.
 
-    The normals are those of all pieces, or, if `same_normals` is False, of each one in turn. On
-    `estimated` pieces points are not proved to be all.
+    If `same_normals` is False, the normals are those of each piece in turn. On `estimated` pieces
+    the points are not proved to be all.
     """
 
     space: Space
@@ -58,7 +58,7 @@ class Given:
 
     @cached_property
     def pieces(self) -> Indices:
-        """The pieces (N,) on which they are."""
+        """The pieces (N,) of the samples."""
         numbers = np.array([x.piece for x in self.found], dtype=np.int64)
         return np.repeat(numbers, [len(x.samples) for x in self.found])
 
@@ -72,7 +72,7 @@ class Given:
 
     @property
     def samples_per_steradian(self) -> float:
-        """Samples per steradian of the Gaussian image; those of the normals if it is empty."""
+        """Samples per steradian of the Gaussian image; normals per steradian if it is empty."""
         image = float(self.space.solid_angles(self.density).sum())
         return len(self) / image if len(self) and image > 0.0 else self.density
 
@@ -102,8 +102,8 @@ class Given:
 def at_normals(space: Space, normals: Array, curved: Iterable[int], progress: bool) -> Given:
     """Return all points that have one of normals (S, 3), each once.
 
-    Pieces that can prove their points have all of them. Of the other pieces, only those in `curved`
-    are searched, on their splines.
+    On pieces with a proof all points are found. Of the other pieces, only those in `curved` are
+    searched, on their splines.
     """
     density, found, estimated = len(normals) / (4 * math.pi), list[PieceSamples](), list[int]()
     for k, piece in enumerate(space.pieces):
@@ -127,8 +127,8 @@ def at_lattices(
 ) -> Given:
     """Return samples at lattices with a density of normals per steradian, one for each piece.
 
-    If there are more than `most` samples, coarser lattices are searched, and so on. If less than
-    half a sample of a piece is expected, it has none.
+    If there are more than `most` samples, coarser lattices are searched, repeatedly. A piece has
+    none if less than half a sample is expected.
     """
     pieces = list(pieces)
     while True:
@@ -140,7 +140,7 @@ def at_lattices(
 
 
 def at_count(space: Space, counts: Indices, progress: bool) -> Given:
-    """Return about as many samples of each piece as `counts` (P,) say, at normals of lattices."""
+    """Return about `counts` (P,) samples on the pieces, at normals of lattices."""
     parts, densities = list[PieceSamples](), [0.0]
     for piece in np.flatnonzero(counts).tolist():
 
@@ -161,7 +161,7 @@ def _given(space: Space, density: float, found: tuple[PieceSamples, ...]) -> Giv
 def _searched(
     space: Space, pieces: Iterable[int], search: Callable[[OnSpline], tuple[Samples, Array] | None]
 ) -> Iterable[PieceSamples]:
-    """Yield what a search finds on pieces; there is a warning for those that have no spline."""
+    """Yield the results of a search on pieces, with a warning for pieces without a spline."""
     for k in pieces:
         try:
             for geometry in space.pieces[k].geometries(space.threads):
@@ -187,5 +187,5 @@ def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Sam
 
 
 def _at_chosen(geometry: OnSpline, chosen: Chosen, progress: bool) -> tuple[Samples, Array]:
-    """Return the samples at the normals of a lattice, with all fields, and these."""
+    """Return the samples at the normals of a lattice, with all fields, and the normals."""
     return chosen.samples(geometry, ARRAY_NAMES_ON_SURFACE, np.float64, progress)

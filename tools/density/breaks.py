@@ -18,15 +18,15 @@ __all__ = ["breaks_along"]
 # Forms are compared along this number of lines.
 ACROSS = 8
 # A value may jump if it changes by more than JUMP between neighbouring points, relative to the
-# largest value; it does if REMAINS of this change is left after BISECTIONS.
+# largest value. It jumps if REMAINS of this change is left after BISECTIONS.
 JUMP, REMAINS, BISECTIONS = 0.1, 0.4, 8
-# Not 1/2: by symmetry, the line K = 0 would be hit exactly.
+# Not 1/2: by symmetry, bisection would hit the line K = 0 exactly.
 HALF = 0.47
 # K has to change its sign along this part of a line.
 ALONG = 0.75
-# K is 0 below this part of the largest one.
+# |K| below this part of its maximum counts as 0.
 FLAT = 1e-6
-# More breaks than this are not joints, and are ignored.
+# If there are more breaks than this, they are not joints, and are ignored.
 MOST = 64
 
 
@@ -74,6 +74,6 @@ def _values(forms: Array, scales: Array) -> Array:
 
 
 def _changes(low: Array, high: Array) -> Array:
-    """Return the changes (k,) of values (3, l, k): the means along the other parameter."""
+    """Return the mean changes (k,) of values (3, l, k) along the other parameter."""
     along_u, along_v, signs = np.abs(high - low).mean(axis=1)
     return np.maximum(np.maximum(along_u, along_v), np.where(signs < 2.0 * ALONG, 0.0, signs))

@@ -18,7 +18,7 @@ __all__ = ["Block", "Candidates"]
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
 
-# The size of the parts into which candidates are split for threads, about, and their maximum.
+# About the size of the parts into which candidates are split for threads, and its maximum.
 PART, MOST = 1 << 16, 64
 # Candidates nearer to a sample than this part of a radius are left out of the next searches.
 LEFT_OUT = 0.7
@@ -27,13 +27,13 @@ LEFT_OUT = 0.7
 class Candidates:
     """Candidates for samples, each with its distance from the nearest sample.
 
-    Candidates are rows (M, 8) of point, unit normal, density w, and one more number; those without
-    a normal are never chosen. All distances are multiplied by √w of the candidate. A sample counts
-    only for candidates on its side of the surface: the angle between their normals is at most 60
-    degrees.
+    Candidates are rows (M, 8) of point, unit normal, density w, and one more number; a candidate
+    without a normal is never chosen. All distances are multiplied by √w of the candidate. A sample
+    counts only for candidates on its side of the surface: the angle between their normals is at
+    most 60 degrees.
 
-    Samples update the distances of the candidates around them. In total, a candidate is updated by
-    a few dozen samples.
+    A new sample updates the distances of the candidates around it: a few dozen updates of each
+    candidate in total.
     """
 
     def __init__(
@@ -89,14 +89,14 @@ class Candidates:
         self._each(lambda k: self.parts[k].reset_distances(), len(self.parts))
 
     def choose(self, radius: float, most: int) -> Indices:
-        """Choose candidates until all others are within a radius of a sample or a chosen one.
+        """Choose candidates until all others are within a radius of a sample or of a chosen one.
 
         Return their rows. If more than `most` are chosen, return `most` of them, from all over the
         surface; then the distances of other candidates are too small.
         """
         found = dict[int, Numbers]()
-        # First the even parts, then the odd ones: neighbouring parts at the same time would choose
-        # candidates close to one another.
+        # First the even parts, then the odd ones: neighbouring parts that choose at the same time
+        # would choose candidates close to one another.
         for turn in (0, 1):
             now = range(turn, len(self.parts), 2)
             rows = self._each(lambda i, now=now: self.parts[now[i]].choose(radius), len(now))
@@ -107,7 +107,7 @@ class Candidates:
         return chosen if len(chosen) <= most else chosen[np.arange(most) * len(chosen) // most]
 
     def _update_other_parts(self, chosen: Mapping[int, Numbers], radius: float) -> None:
-        """Update the distances of every part by the candidates chosen in all other parts."""
+        """Update the distances in every part by the candidates chosen in all other parts."""
         numbers = np.zeros(len(self.parts) + 1, dtype=np.int64)
         for k, rows in chosen.items():
             numbers[k + 1] = len(rows)

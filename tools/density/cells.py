@@ -1,8 +1,8 @@
 """Cells: rectangles of parameters, each with a place, a parameter pair that may become a sample.
 
-The place of a cell is inside the trim: its midpoint, or one of its subplaces if the trim cuts the
-cell. Where the inside is too narrow for that, parameter pairs next to the boundary replace the
-cells; they are cells without an extent.
+The place of a cell is inside the trim: its midpoint, or a subplace if the trim cuts the cell. Where
+the inside is too narrow for that, the cell is replaced by points next to the boundary, which are
+cells without an extent.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Cells:
     """M cells: the indices of their `pieces` (M,), boxes (M, 4), u0, v0, u1, v1, places (M, 2).
 
     `whole` (M,) is True for cells that no boundary intersects. `limits` (M,) are least radii of
-    curvature: smaller ones count as these; 0 if unknown. `rows` (M, 8) and `numbers` (M, 14) are
+    curvature, which replace smaller ones; 0 if unknown. `rows` (M, 8) and `numbers` (M, 14) are
     those of kernels/cells.py, lengths and curvatures scaled as in `Space`. They take most of the
     memory, and are (M, 0) for cells that are not evaluated.
     """
@@ -59,7 +59,7 @@ class Cells:
         return len(self.pieces)
 
     def __getitem__(self, chosen: Indices | Flags | slice) -> Cells:
-        """Return some of the cells."""
+        """Return the selected cells."""
         return Cells(*(x[chosen] for x in self._arrays))
 
     def __add__(self, other: Cells) -> Cells:
@@ -73,7 +73,7 @@ class Cells:
         )  # fmt: skip
 
     def with_rows(self) -> Cells:
-        """Return the same cells with rows and numbers that are 0, except for the limits."""
+        """Return the same cells with rows and numbers filled with 0, except for the limits."""
         numbers = np.zeros((len(self), NUMBERS))
         numbers[:, LIMIT] = self.limits
         return replace(
@@ -96,7 +96,7 @@ class Cells:
         for mine, others in zip(self._arrays, cells._arrays, strict=True):
             mine[rows] = others
 
-    # --- what covers ask of them ------------------------------------------------------------------
+    # --- what covers need of them -----------------------------------------------------------------
 
     @property
     def radii(self) -> Array:
@@ -121,7 +121,7 @@ def joined(parts: Sequence[Cells]) -> Cells:
 def merged(parts: Sequence[Cells]) -> Cells:
     """Return the cells of all parts, sorted by their pieces.
 
-    Arrays are sorted one by one: copies of all of them would be large.
+    Arrays are sorted one by one, since copies of all of them would be large.
     """
     pieces = np.concatenate([x.pieces for x in parts])
     if (np.diff(pieces) >= 0).all():
@@ -131,12 +131,12 @@ def merged(parts: Sequence[Cells]) -> Cells:
 
 
 def halved(cells: Cells, along_u: Flags) -> Cells:
-    """Return the halves (2 M) of cells, along u or along v; they are not evaluated."""
+    """Return the halves (2 M) of cells, along u or along v, not evaluated."""
     return into_parts(cells, np.where(along_u[:, None], (2, 1), (1, 2)))
 
 
 def into_parts(cells: Cells, parts: Indices) -> Cells:
-    """Return cells cut into parts (M, 2) along u and v; they are not evaluated."""
+    """Return cells cut into parts (M, 2) along u and v, not evaluated."""
     total = parts.prod(axis=1)
     check_memory("candidates", total.sum())
     owner = np.repeat(np.arange(len(cells)), total)
@@ -175,7 +175,7 @@ def grouped(numbers: Indices) -> Iterator[tuple[int, Indices]]:
 def new_cells(
     pieces: Indices, boxes: Array, whole: Flags | bool = False, limits: Array | float = 0.0
 ) -> Cells:
-    """Return cells of pieces (M,) that are not evaluated."""
+    """Return unevaluated cells of pieces (M,)."""
     count = len(pieces)
     places, nothing = (boxes[:, :2] + boxes[:, 2:]) / 2.0, np.empty((count, 0))
     whole, limits = np.full(count, whole), np.full(count, limits, dtype=np.float64)
@@ -183,9 +183,9 @@ def new_cells(
 
 
 def points_of(pieces: Indices, places: Array, sizes: Array, limits: Array | float = 0.0) -> Cells:
-    """Return cells without an extent at parameters (k, 2) of pieces (k,), not evaluated.
+    """Return unevaluated cells without an extent at parameters (k, 2) of pieces (k,).
 
-    `sizes` (k, 2) are the lengths of their domains.
+    `sizes` (k, 2) are the lengths of the domains of these pieces.
     """
     boxes = np.concatenate([places - POINT * sizes, places + POINT * sizes], axis=1)
     return new_cells(pieces, boxes, True, limits)

@@ -21,11 +21,12 @@ __all__ = ["Chosen", "choose"]
 NEAR_ENOUGH = 0.01
 ATTEMPTS = 20
 # The first attempts scale the density by the ratio of the counts. The others vary it up and down by
-# this step: if samples are few, several appear or vanish together.
+# this step: with few samples, several appear or vanish together.
 IN_PROPORTION, DITHER = 6, 0.008
 # The largest number of normals per requested sample (a thin Gaussian image has few samples).
 NORMALS_PER_SAMPLE = 100
-# If points of the spline cannot be moved to the surface, so often the number of hits is corrected.
+# If points of the spline cannot be moved to the surface, the number of hits is corrected this many
+# times.
 CORRECTIONS = 3
 # For larger counts, the density is extrapolated from this count.
 PILOT = 1_000_000
@@ -57,9 +58,9 @@ class Chosen:
     def samples(
         self, geometry: OnPatches, fields: Sequence[str], dtype: DTypeLike, progress: bool
     ) -> tuple[Samples, NDArray[np.float64]]:
-        """Return the samples at the normals of a lattice, and these.
+        """Return the samples at the normals of a lattice, and the normals.
 
-        They are searched on the spline, unless they are already found.
+        The search on the spline is skipped if its hits are already known.
         """
         if self.found is not None:
             normals, hits = self.found
@@ -67,7 +68,7 @@ class Chosen:
         else:
             normals = self.part(0, len(self), geometry.threads)
             found = geometry.samples_at(normals, fields, dtype, progress, self.density)
-        # Nobody has asked for these normals: others take the place of those without a point.
+        # No user prescribed these normals: normals without a point are replaced by others.
         report = replace(found.report, undecided=None)
         return geometry.samples(found.arrays(), report), normals
 
@@ -92,7 +93,7 @@ def choose(geometry: OnPatches, count: int, progress: bool) -> Chosen:
 
 
 def _with_samples(geometry: OnPatches, chosen: Chosen, hits: int) -> float:
-    """Return how many of the hits at chosen normals have a sample, about."""
+    """Return about how many of the hits at chosen normals become samples."""
     assert chosen.found is not None
     return hits * geometry.share_at(*chosen.found)
 

@@ -17,25 +17,25 @@ from .voronoi import Voronoi
 
 __all__ = ["STEP", "Cover"]
 
-# Samples are chosen with radii that fall from WIDEST times the expected radius, by the factor STEP.
+# The radii of the choice fall from WIDEST times the expected radius, by the factor STEP.
 WIDEST, STEP = 1.25, 0.98
-# For a maximal set of n samples that are no closer to one another than r, relative to the sizing
+# For a maximal set of n samples with mutual distances of at least r, relative to the sizing
 # function, n r² is about this part of the integral of the target density.
 PACKED = 0.6
-# The radii of the cells of candidates, relative to the covering radius. They are cut again when the
-# covering radius has fallen by the factor SMALLER.
+# The radii of the cells of candidates, relative to the covering radius. Cells are cut again when
+# the covering radius has fallen by the factor SMALLER.
 FINE, SMALLER = 0.4, 1.3
-# To cover the whole surface, and not only candidates, cells that may hold an uncovered point are
-# bisected until they have this radius, relative to the covering radius.
+# To cover the whole surface, and not only candidates, cells that may contain an uncovered point are
+# bisected down to this radius, relative to the covering radius.
 FINEST = 0.07
-# Boundaries are covered at points that are apart by twice this part of the covering radius.
+# Boundaries are covered at points whose spacing is twice this part of the covering radius.
 ON_BORDERS = 0.05
-# All but a few samples move by less than this part of the radius when they move to centres.
+# All but a few samples move by less than this part of the radius in a move to centres.
 HARDLY = 0.3
 # The part of the samples that `spread` keeps for the widest gaps after the others have moved. With
-# half of it, samples in a row leave wider gaps than without moving.
+# half of it, samples in a row leave wider gaps than without the move.
 REST = 0.2
-# Gaps are at most this much wider than the radius while samples are missing.
+# While samples are missing, gaps are at most this factor wider than the radius.
 WIDEST_GAP = 2.0
 # Gaps between candidates are searched down to the radius, then to this part of it, and so on.
 STEP_DOWN, ROUNDS = 0.9, 3
@@ -48,8 +48,8 @@ class Cover:
 
     A point is covered if a sample is within radius/√w, with the target density w of the space.
     Lengths are scaled as in `Space`. The samples are rows of `points` (N, 6), point and unit
-    normal, and `curvatures` (N,), K. The first `given` samples are those `at_normals`, the others
-    lie at the places of the cells `added`, which begin with those of the `grid`, if there is one.
+    normal, and `curvatures` (N,), K. The first `given` samples are those `at_normals`. The others
+    lie at the places of the cells `added`; those of the `grid`, if there is one, come first.
 
     Samples are chosen among the places of `cells`. `show_count` is called with the number of
     samples whenever it grows.
@@ -87,7 +87,7 @@ class Cover:
 
     @property
     def curvatures(self) -> Array:
-        """K (N,) of the samples."""
+        """The Gaussian curvatures K (N,) of the samples."""
         return self._joined()._curvatures
 
     @property
@@ -101,7 +101,7 @@ class Cover:
         return len(self._points) + sum(map(len, self._waiting))
 
     def to_radius(self, radius: float, most: int | None = None) -> None:
-        """Add samples until every point is within radius/√w of one, or there are `most`."""
+        """Add samples until every point is within radius/√w of a sample, or there are `most`."""
         first = radius if most is None else max(radius, self._radius_for(most))
         self.take_candidates(first, WIDEST * first)
         self.narrow(WIDEST * first, radius, most)
@@ -116,7 +116,7 @@ class Cover:
         radius, largest = WIDEST * self._radius_for(count), self._largest_radius
         self._begin(radius, count)
         while self.count == count > self.fixed + 1 and radius < largest:
-            # The first candidates have used up the count, and may not be in the widest gaps.
+            # The first candidates used up the count, perhaps not in the widest gaps.
             self.remove_added()
             radius *= 2.0
             self._begin(radius, count)
@@ -126,7 +126,7 @@ class Cover:
         """Add samples until there are `count`; most of them are moved once.
 
         The move takes each sample towards the centre of the smallest ball around its Voronoi cell:
-        Lloyd's method for a high power of the distance instead of the mean of the squares.
+        Lloyd's method for a high power of the distance instead of its square.
         """
         self.to_count(count - round(REST * (count - self.count)))
         if self.count > self.fixed:
@@ -153,19 +153,20 @@ class Cover:
         self._choose(self.cells, self._candidates, radius, most)
 
     def take_candidates(self, radius: float, widest: float) -> None:
-        """Make candidates for sweeps with radii that fall from `widest` to this radius.
+        """Make candidates for `sweep` with radii that fall from `widest` to `radius`.
 
-        They are the places of cells whose radii are FINE times the radius.
+        They are the places of cells whose radii are FINE times `radius`.
         """
-        for name in ("cells", "_candidates"):  # free the former ones, which take as much memory
+        for name in ("cells", "_candidates"):  # free the old ones, which take as much memory
             vars(self).pop(name, None)
         self.radius, self.cells = widest, self.space.cut(FINE * radius)
         self._candidates = self._with_distances(self.cells.rows, radius, widest)
 
     def whole(self, turn: float) -> Cells:
-        """Return a few cells that make up the surface, and cells along its boundaries.
+        """Return a few cells that partition the surface, and cells along its boundaries.
 
-        Normals turn by about `turn` radians between the latter, and by half of it around each.
+        Normals turn by about `turn` radians between neighbours along boundaries, and by half of it
+        within each such cell.
         """
         space = self.space
         borders = space.along_borders(math.inf, turn)
@@ -173,12 +174,12 @@ class Cover:
         return merged([space.evaluated(space.first), borders])
 
     def missing(self) -> Cells:
-        """Return a cell near the middle of each piece without a sample, if it has a cell."""
+        """Return a cell near the middle of each piece that has cells but no sample."""
         held = np.concatenate([self.at_normals.pieces, self.added.pieces])
         return self.space.middles(np.setdiff1d(self.space.first.pieces, held))
 
     def remove_last(self, number: int) -> None:
-        """Remove samples that were added last, as long as their pieces have others."""
+        """Remove the samples that were added last, but not the last one of a piece."""
         numbers = np.bincount(self.added.pieces, minlength=len(self.space.pieces))
         removed: list[int] = []
         for k in range(len(self.added) - 1, self.fixed - self.given - 1, -1):
@@ -191,7 +192,7 @@ class Cover:
         self.renew_distances(self.radius)
 
     def add(self, cells: Cells) -> None:
-        """Add the places of some cells as samples."""
+        """Add the places of cells as samples."""
         first = self.count
         self._append(cells)
         self._candidates.update_distances(self.points[first:], self.radius)
@@ -204,7 +205,7 @@ class Cover:
             self._replace_added(space.known(added, keep=True))
 
     def renew_distances(self, widest: float) -> None:
-        """Compute the distances of all candidates from the samples again, within `widest`."""
+        """Recompute the distances of all candidates from the samples, within `widest`."""
         self._candidates.reset_distances()
         # Nearly all candidates are within this distance of a sample; the others need the wide
         # search.
@@ -213,7 +214,7 @@ class Cover:
         self._candidates.update_far(self.points, widest)
 
     def move_to_centres(self) -> Voronoi:
-        """Move the samples that are not fixed to about the centres of their Voronoi cells.
+        """Move the samples that are not fixed to approximate centres of their Voronoi cells.
 
         The distances of the candidates have to be renewed before and after the call. Return the
         Voronoi cells, for `fill_gaps`.
@@ -248,7 +249,7 @@ class Cover:
         self.narrow(widest, 0.0, count)
 
     def _evaluated_at(self, rows: Indices, places: Array) -> tuple[Cells, Indices]:
-        """Return cells without an extent at points (k, 2) of candidates, and their order."""
+        """Return cells without an extent at points (k, 2) of candidates, sorted, and the order."""
         order = np.argsort(self.cells.pieces[rows], kind="stable")
         near = self.cells[rows[order]]
         found = self.space.at(near.pieces, places[order], near.numbers[:, LIMIT], keep=True)
@@ -261,7 +262,7 @@ class Cover:
     def _radius_for(self, count: int) -> float:
         """Return the radius at which about `count` samples cover the surface.
 
-        On a strip narrower than the radius, the samples stand in a row.
+        On a strip narrower than the radius, the samples lie in a row.
         """
         packed = math.sqrt(PACKED * self.space.integral / count)
         return max(packed, 0.5 * self.space.longest / count)
@@ -278,7 +279,7 @@ class Cover:
     def _choose(
         self, cells: Cells, candidates: Candidates, radius: float, most: int | None
     ) -> None:
-        """Add those places of given cells that are far from all samples."""
+        """Add the places of cells that are far from all samples."""
         room = len(cells) if most is None else most - self.count
         if room > 0:
             self._append(cells[candidates.choose(radius, room)])
@@ -305,7 +306,7 @@ class Cover:
     def _cover_cells(
         self, cells: Cells, candidates: Candidates, radius: float, most: int | None
     ) -> None:
-        """Add samples until cells whose places are covered are covered as a whole."""
+        """Add samples until each of the cells is covered as a whole, not only its place."""
         shares = cells.radii * np.sqrt(cells.rows[:, 6]) / radius
         far, small = candidates.distances > (1.0 - shares) * radius, shares <= FINEST
         large = np.flatnonzero(far & ~small)
@@ -328,12 +329,12 @@ class Cover:
         return borders
 
     def _cover_small_cells(self, cells: Cells, radius: float, most: int | None) -> None:
-        """Add places of small cells until these are covered as a whole."""
+        """Add places of small cells until these cells are covered as a whole."""
         if not len(cells):
             return
         rows = cells.rows.copy()
-        # A sample covers a cell if its distance from the place, plus the radius of the cell, is
-        # small enough.
+        # A sample covers a cell if its distance from the place plus the radius of the cell is at
+        # most the covering radius.
         rows[:, 6] /= (1.0 - cells.radii * np.sqrt(rows[:, 6]) / radius) ** 2
         self._choose(cells, self._with_distances(rows, radius, radius), radius, most)
 

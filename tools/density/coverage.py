@@ -30,10 +30,9 @@ def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
     of cells; without such a sample, from the nearest of all.
 
     Points and the distance are scaled as in `Space`. The method is branch and bound: a cell is cut
-    if it may hold a point farther away than TIGHT times the farthest place, or than `asked` while
-    no place is farther than that. If the cells are on a spline and the samples on the surface,
-    twice the distance between spline and surface is added. The bound is infinite if there are no
-    samples.
+    if it may contain a point farther away than TIGHT times the farthest place, or than `asked`
+    while no place is. If the cells are on a spline and the samples on the surface, twice the
+    distance between spline and surface is added. The bound is infinite if there are no samples.
     """
     if len(samples) == 0:
         return math.inf
@@ -58,7 +57,7 @@ def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
 
 
 class _Distances:
-    """Distances from the nearest samples, which are points (N, 3), or with normals (N, 6)."""
+    """Distances from the nearest samples: points (N, 3), or points with normals (N, 6)."""
 
     def __init__(self, space: Space, samples: Array) -> None:
         self.space, self.samples = space, samples

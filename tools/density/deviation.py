@@ -17,11 +17,11 @@ from .space import Space
 
 __all__ = ["normal_deviation", "widest_angle"]
 
-# The number of test points for each sample at first, and the least number of test points.
+# The initial number of test points per sample, and the least number of test points.
 PLACES, FEWEST = 16, 20_000
-# Then cells that may hold a larger angle than the largest found so far are cut, at most this often.
+# Then cells that may contain a larger angle than any found so far are cut, at most this often.
 CUTS = 6
-# At most MOST test points are used at first; beyond that, their cells are cut further, BLOCK of
+# There are initially at most MOST test points; beyond that, their cells are cut further, BLOCK of
 # them at a time, to bound the memory.
 MOST, BLOCK = 1 << 21, 1 << 16
 
@@ -49,8 +49,8 @@ def widest_angle(
 ) -> float:
     """Return the largest angle found, in degrees, from a normal to the nearest of normals (N, 3).
 
-    Return `least` if it is larger, which saves the search for smaller angles. Cells at whose places
-    larger ones are found are appended to `wider`.
+    Return `least` if it is larger, which saves the search for smaller angles. Cells whose places
+    have larger angles are appended to `wider`.
     """
     if len(normals) == 0:
         return 180.0

@@ -1,4 +1,4 @@
-"""The normals for a requested number of samples: a Fibonacci lattice round the mean normal."""
+"""The normals for a requested number of samples: a Fibonacci lattice around the mean normal."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["Lattice"]
 class Lattice:
     """A Fibonacci lattice on the cap of directions n with n · `axis` ≥ `cosine`.
 
-    Caps larger than a hemisphere are replaced by the whole sphere round +z.
+    Caps larger than a hemisphere are replaced by the whole sphere around +z.
     """
 
     axis: NDArray[np.float64]
@@ -29,9 +29,9 @@ class Lattice:
 
     @classmethod
     def around(cls, spline: AnySpline, reach: Cap | None = None) -> Lattice:
-        """Return the lattice on the smallest cap round the mean normal that holds every normal.
+        """Return the lattice on the smallest cap around the mean normal that contains every normal.
 
-        The lattice is on the `reach` if that cap is smaller.
+        It is on the `reach` instead if that cap is smaller.
         """
         found = cls._around_all(spline)
         if reach is not None and reach.angle < 90.0:

@@ -1,4 +1,4 @@
-"""Samples for all densities but "gauss": at normals, and in the gaps that these leave."""
+"""Samples for all densities except "gauss": at normals, and in the gaps between these."""
 
 from __future__ import annotations
 
@@ -34,39 +34,39 @@ __all__ = ["Filling", "fields_of", "fill", "spacing", "target_of"]
 
 # Twice the area of a hexagon of circumradius 1.
 HEXAGON = 3.0 * math.sqrt(3.0)
-# If n samples of a greedy cover have the covering radius r, relative to the sizing function, the
+# If a greedy cover of n samples has the covering radius r, relative to the sizing function, the
 # integral of the target density is about n r² times this.
 GREEDY = 1.85
 # Balanced: the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
-# Balanced: the floor of the target density, relative to the mean of κ²; and the ceiling of κ, for a
-# count or a coverage, relative to the root of the floor.
+# Balanced: the floor of the target density, relative to the mean of κ². For a count or a coverage,
+# the ceiling of κ, relative to the root of the floor.
 FLOOR, MOST_CURVED = 0.8, 20.0
 # For an angle, the mean of κ² is that of the capped κ: mean and ceiling are iterated until the
 # ratio of consecutive means exceeds this.
 SETTLED = 0.9
 # An angle is refused if it would take more samples than this, minutes of work, and more than on
-# this number of spheres: then the reason is narrow faces, and not a small angle.
+# this number of spheres. The reason is then narrow faces, and not a small angle.
 MOST_FOR_ANGLE, SPHERES = 2e6, 300.0
-# Of parts with narrow tips, the angle is searched for places that are farther at most this often.
+# On parts with narrow tips, places with larger angles are searched at most this many times.
 MOST_SEARCHES = 8
 # |K|^α vanishes with K; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
-# The number of added samples that a sample at a normal is assumed to save. It saves up to 0.7; a
-# smaller value leaves more samples for the wide gaps of the density |K|.
+# The number of added samples that a sample at a normal is assumed to save: up to 0.7 are saved. A
+# smaller number leaves more samples for the wide gaps of the density |K|.
 SAVED = 0.25
-# A piece has samples at the normals of a lattice if these are at least this part of all samples:
-# its spline takes as long as many samples.
+# A piece has samples at the normals of a lattice only if they are at least this part of all
+# samples: the fit of its spline takes the time of many samples.
 LATTICE = 0.1
-# If some of several pieces have no lattice: the part of a count that is placed where normals are
+# If some of several pieces have no lattice, this part of a count is placed where normals are
 # farthest from those of all samples.
 FOR_NORMALS = 0.05
-# The chord between the normals of candidates for these samples, relative to the spacing of as many
-# points on a sphere, and about the number of these candidates in addition to the number of samples.
+# For these samples: the chord between the normals of candidates, relative to the spacing of as many
+# points on a sphere; and about the number of candidates beyond the number of samples.
 NORMALS_APART, CANDIDATES = 0.2, 200_000
 # The smallest such chord.
 LEAST_CHORD = math.radians(0.5)
-# Normals of samples are distinct when rounded to this number of decimals.
+# Normals of samples are distinct if they differ when rounded to this number of decimals.
 DIGITS = 6
 # Each piece gets a sample if there are at least this many samples per piece.
 SAMPLES_A_PIECE = 2
@@ -90,7 +90,7 @@ def fill(
 ) -> Cover:
     """Sample a space whose target density has no floor; raises the errors of `sample`.
 
-    With `each_once`, a sample at a prescribed normal that several pieces share is returned once.
+    With `each_once`, a point that several pieces share at a prescribed normal is returned once.
     """
     with counted(request.count, progress) as show_count:
         filling = Filling(space, request, progress, show_count, each_once)
@@ -104,9 +104,9 @@ def fill(
 
 
 def _covered_tips(cover: Cover, angle: float) -> float:
-    """Add samples as `cover_normals` does, and more in tips that are too narrow for its cells.
+    """Add samples as `cover_normals` does, and more in tips too narrow for its cells.
 
-    `widest_angle` finds places in these tips. Return the widest angle that is left.
+    `widest_angle` finds places in these tips. Return the largest remaining angle.
     """
     reached, near = cover_normals(cover, angle), (1.0 - MARGIN) * chord_of(angle)
     for _ in range(MOST_SEARCHES):
@@ -120,7 +120,7 @@ def _covered_tips(cover: Cover, angle: float) -> float:
 
 
 def fields_of(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
-    """Return fields of the samples at normals, followed by the others."""
+    """Return fields of the samples at normals, followed by those of the other samples."""
     added = cover.added
     order = np.argsort(added.pieces, kind="stable")
     added = added[order]
@@ -151,7 +151,7 @@ def _of_piece(
 class Filling:
     """The sampling of a space for a request; `show_count` is called with the number of samples.
 
-    `each_once` is that of `fill`.
+    `each_once` is as in `fill`.
     """
 
     space: Space
@@ -182,17 +182,17 @@ class Filling:
         return self._to_radius(space, Given(space), self._asked)
 
     def reached(self, cover: Cover) -> float:
-        """Return a bound of the scaled distance of any point from samples on its side."""
+        """Return a bound of the scaled distance from any point to a sample on its side."""
         asked = math.inf if self.request.coverage is None else self.request.coverage
         return coverage(self.space, cover.points, asked * self.space.unit)
 
     # --- the target density -----------------------------------------------------------------------
 
     def balanced(self, *, capped: bool = False) -> Space:
-        """Return the space with the floor of "balanced", and, if it is capped, a ceiling.
+        """Return the space with the floor of "balanced", and with a ceiling if it is capped.
 
-        For an angle, the floor follows from the capped density: else tiny fillets would make all
-        flat parts dense.
+        For an angle, the floor follows from the capped density. Otherwise tiny fillets would make
+        all flat parts dense.
         """
         floor = self._floor(math.inf)
         if not capped:
@@ -231,7 +231,7 @@ class Filling:
         """The requested coverage as a scaled length, between the rounding error and the size.
 
         If the cells are on a spline and the samples on the surface, twice the distance between
-        spline and surface is subtracted; at least half of the coverage is left.
+        spline and surface is subtracted; at least half of the coverage remains.
         """
         asked, space = self.request.coverage, self.space
         if asked is None:
@@ -266,7 +266,7 @@ class Filling:
         return self._to_radius(space, given, radius)
 
     def _to_radius(self, space: Space, given: Given, radius: float) -> Cover:
-        """Cover a space within a radius, with a sample on each piece unless these are too many."""
+        """Cover a space within a radius, with a sample on each piece unless there are too many."""
         cover = self._new(space, given)
         cover.to_radius(radius)
         missing = cover.missing()
@@ -275,9 +275,9 @@ class Filling:
         return cover
 
     def _by_count(self, space: Space, count: int) -> Cover:
-        """Divide a count between samples at normals and others, which fill gaps.
+        """Divide a count into samples at normals and samples that fill gaps.
 
-        Among several pieces, some of the latter cover the normals of pieces without a lattice.
+        On several pieces, some of the latter cover the normals of pieces without a lattice.
         """
         given, rest = Given(space), 0
         if self.request.density in BY_CURVATURE:
@@ -345,7 +345,7 @@ class Filling:
         # The number of filling samples for a lattice of one normal per steradian.
         filling = space.integral / (GREEDY * (WIDER * spacing(1.0)) ** 2)
         chosen, density = np.arange(len(seen)), 0.0
-        for _ in range(2):  # with all pieces, then with those that have a lattice
+        for _ in range(2):  # with all pieces, then with pieces that have a lattice
             curved = float(seen[chosen].sum())
             density = count / (curved + max(filling - SAVED * curved, 0.0))
             chosen = np.flatnonzero((seen > 0.0) & (density * seen >= LATTICE * count))

@@ -17,7 +17,7 @@ __all__ = ["Grid", "lines_of", "without_lines"]
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Samples on a grid: cells whose places they are, and the numbers of their lines.
+    """Samples on a grid: cells at whose places they lie, and the indices of their lines.
 
     `rows` and `columns` (N,) are the indices of the lines v = const and u = const, −1 between
     lines.
@@ -47,7 +47,7 @@ class Grid:
 
     @property
     def border(self) -> int:
-        """The number of samples that lack a neighbour in some direction within the domain."""
+        """The number of samples without a neighbour in some direction within the domain."""
         inside = np.zeros(self.lines, dtype=np.bool_)
         on = self.rows >= 0
         inside[self.columns[on], self.rows[on]] = True
@@ -62,7 +62,7 @@ class Grid:
 
 
 def lines_of(grid: Grid | None, count: int, fields: Sequence[str]) -> dict[str, Indices]:
-    """Return the requested ones of the fields row and column; samples of the grid come first."""
+    """Return the fields row and column, if requested; samples of the grid come first."""
     found = {name: np.full(count, -1, dtype=np.int64) for name in GRID_NAMES if name in fields}
     if grid is not None:
         for name, numbers in zip(GRID_NAMES, (grid.rows, grid.columns), strict=True):

@@ -19,8 +19,8 @@ FEWEST = 4.0
 class Axis:
     """An interval of a parameter, in cells, cut at increasing `edges` (k + 1,).
 
-    The edges with the indices `breaks`, which include the first and the last, separate parts: the
-    lines of each part are half a step away from its ends.
+    The edges with the indices `breaks`, which include the first and the last, separate parts. The
+    lines of a part are half a step away from its ends.
     """
 
     edges: Array
@@ -48,7 +48,7 @@ class Axis:
         return np.diff(self.edges)
 
     def lengths(self, steps: Array) -> Array:
-        """Return the lengths of the parts in steps (k,), which are given on the pieces."""
+        """Return the lengths of the parts, in steps (k,) given on the pieces."""
         return np.add.reduceat(self.widths / steps, self.breaks[:-1])
 
     def lines(self, steps: Array, numbers: Indices) -> Array:

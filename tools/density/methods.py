@@ -27,7 +27,7 @@ def progressive(self: Samples, *, progress: bool = False) -> Samples:
     """Return the samples in progressive order: every prefix is well distributed.
 
     The first ones are far apart relative to the local spacing of the samples; the next ones
-    halve the gaps, and so on. Spacings below a thousandth of the median are replaced by it.
+    halve the gaps, and so on. A spacing below a thousandth of the median counts as the median.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def normal_deviation(
 ) -> NormalDeviation:
     """Return the largest angles between normals of the surface and those of the samples.
 
-    Normals are compared at 16 test points for each sample, at least 20,000, and at more of them
+    Normals are compared at 16 test points for each sample, at least 20,000, and at further ones
     where larger angles are possible.
 
     Parameters

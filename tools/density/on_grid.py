@@ -1,4 +1,4 @@
-"""Covers that begin with graded grids; the remaining gaps are filled as usual."""
+"""Covers that begin with graded grids; the remaining gaps are filled by added samples."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ from .space import Space
 
 __all__ = ["cover_on_grid"]
 
-# The covering radius of samples whose round cells follow the curvature, relative to the sizing
+# The covering radius of samples with round cells that follow the curvature, relative to the sizing
 # function.
 WIDEST = 1.0
-# Without a requested coverage, gaps in flat regions are wider by this factor.
+# Gaps in flat regions are wider by this factor if no coverage is requested.
 WIDER = 2.0
-# Angle and distance requested of the grid are smaller by this part.
+# The angle and distance for the grid are smaller than the requested ones by this part.
 MARGIN = 0.02
-# The parts of a count tried for the grid, until the remaining samples suffice for a coverage.
+# The parts of a count that are tried for the grid, until the remaining samples suffice for a
+# coverage.
 PARTS = (1.0, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3)
 
 
@@ -77,7 +78,7 @@ def _by_errors(
 def _by_count_and_distance(
     space: Space, count: int, distance: float, show_count: Callable[[int], object]
 ) -> Cover:
-    """Return a cover with a count; the distance is kept if the count suffices."""
+    """Return a cover with a count; it satisfies the distance if the count suffices."""
     apart = min((1.0 - MARGIN) * distance, _usual_distance(space, count))
     even = space.uniform
     for part in PARTS:
@@ -95,7 +96,7 @@ def _by_count_and_distance(
 
 
 def _grid_of(space: Space, count: int, distance: float) -> Grid:
-    """Return the finest grids of at most a count of samples, divided among the pieces."""
+    """Return the finest grids with at most `count` samples, divided among the pieces."""
     counts = apportioned(count, space.integrals).tolist()
     grids = (AlignedGrid.of(space, k).grid_for(n, distance) for k, n in enumerate(counts) if n)
     return reduce(add, grids)

@@ -75,18 +75,18 @@ class Piece(ABC):
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> dict[str, NDArray[Any]]:
-        """Return fields of samples at parameters (k, 2); rows (k, 8) are those of candidates."""
+        """Return fields of samples at parameters (k, 2); rows (k, 8) are as for candidates."""
 
     def solid_angle(self, density: float) -> float | None:
         """Return the solid angle of the normals that a lattice of this density samples.
 
-        None if it follows from K.
+        None if the angle is to follow from K.
         """
         return None
 
     @property
     def exact(self) -> Piece:
-        """The piece with the derivatives of the sampled surface itself, which may take longer."""
+        """The piece with derivatives of the sampled surface itself, which may take longer."""
         return self
 
     @cached_property

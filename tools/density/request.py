@@ -18,7 +18,7 @@ from ...runtime.directions.unit import as_normals
 
 __all__ = ["BY_CURVATURE", "DENSITIES", "Request", "checked_request"]
 
-# The densities that follow the larger principal curvature.
+# Densities that follow the larger principal curvature.
 BY_CURVATURE = ("balanced", "aligned")
 DENSITIES = ("gauss", "balanced", "aligned", "uniform")
 BALANCED = [[x] for x in ("normals", "count", "angle", "coverage")] + [
@@ -55,7 +55,7 @@ class Request:
 
     @property
     def directions(self) -> NDArray[np.float64]:
-        """The normals, or those of an icosphere whose covering radius is at most the angle."""
+        """The normals; for an angle, those of an icosphere with at most this covering radius."""
         if self.normals is not None:
             return self.normals
         assert self.angle is not None
@@ -111,7 +111,7 @@ def _density(density: str | float | None, default: str) -> str | float:
 
 
 def _check_that_they_fit(density: str | float, given: list[str]) -> None:
-    """Raise InputError for amounts that a density does not support."""
+    """Raise InputError for a count, angle or coverage that a density does not support."""
     fitting = {
         # No angle: next to open boundaries, normals alone leave gaps wider than their covering
         # radius.

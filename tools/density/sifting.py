@@ -1,4 +1,4 @@
-"""The cells that are inside the trims of their pieces, and their places."""
+"""Selection of the cells inside the trims of their pieces, and their places."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ BOXES_AT_A_TIME = 1 << 13
 def sifted(
     trims: Trims, cells: Cells, pixels: Indices, owner: Indices | None = None
 ) -> tuple[Cells, Indices]:
-    """Return the cells that are not outside, with `whole` set, and their owners."""
+    """Return the cells that are not outside their trims, with `whole` set, and their owners."""
     whole = cells.whole | ~trims.trimmed[cells.pieces]
     open_, clear = np.flatnonzero(~whole), whole.copy()
     for k, rows in runs(cells.pieces[open_]):
@@ -35,7 +35,7 @@ def sifted(
 
 
 def placed(trims: Trims, cells: Cells) -> tuple[Cells, Cells]:
-    """Return the cells with a place inside the trim, which is set, and the other cells."""
+    """Return the cells that have a place inside the trim, with this place, and the other cells."""
     found, places, here = cells.whole.copy(), cells.places.copy(), np.flatnonzero(~cells.whole)
     found[here] = trims.contains(cells.pieces[here], places[here])
     lost = here[~found[here]]
@@ -60,7 +60,7 @@ def beside(trims: Trims, lost: Cells, pixels: Indices) -> tuple[Indices, Array]:
 
 
 def _subplaces(trims: Trims, pieces: Indices, boxes: Array) -> tuple[Flags, Array]:
-    """Return which boxes (M, 4) have subplaces inside, and the middle one of these."""
+    """Return which boxes (M, 4) have subplaces inside, and the middle one of these subplaces."""
     steps = (np.arange(SUB) + 0.5) / SUB
     grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
     sizes = boxes[:, None, 2:] - boxes[:, None, :2]

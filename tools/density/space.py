@@ -51,21 +51,21 @@ MOST_LOST = 4
 FEWEST_PIXELS, MOST_PIXELS = 64, 512
 # Cells that the boundary intersects are cut in two steps if they have more parts than this.
 AT_ONCE = 64
-# The smallest cells, relative to the domain of their piece and to its size.
+# The least size of a cell, relative to the domain of its piece and to the size of the space.
 DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
 # The factor by which cells are coarsened if they are too many.
 COARSER = 1.2
 # The number of points on boundaries that are evaluated at a time.
 PLACES_AT_A_TIME = 1 << 17
-# The largest number of cells that are evaluated at a time, and the number of ranges per thread,
-# about.
+# The largest number of cells that are evaluated at a time, and about the number of ranges per
+# thread.
 CELLS_AT_A_TIME, RANGES = 1 << 12, 32
 # `cut_by_normals` evaluates cells in blocks of about this number.
 BLOCK = 1 << 16
 # A cell counts as developable if |K| is below this part of 1/area.
 FLAT_CURVATURE = 1e-6
-# Where K is looked at once more: this part of the way from the place of a cell to its corner.
+# K is also evaluated at this part of the way from the place of a cell to its corner.
 BESIDE = 0.3
 
 
@@ -74,8 +74,8 @@ class Space:
     """The pieces of a surface or a part, with a target density.
 
     Lengths are multiplied by `unit`, and points are relative to `centre`, in L. The target density
-    of `first` has no floor and no ceiling, so that spaces that differ in these share it. On the
-    `developable` pieces, K is rounding error, and a power of it counts as 0.
+    of `first` has no floor and no ceiling, so that spaces that differ only in these share it. On
+    the `developable` pieces, K is rounding error, and its powers count as 0.
     """
 
     label: str
@@ -85,7 +85,7 @@ class Space:
     developable: frozenset[int] = frozenset()
     _held: dict[str, Any] = field(default_factory=dict, repr=False)
 
-    # --- the whole --------------------------------------------------------------------------------
+    # --- the surface as a whole -------------------------------------------------------------------
 
     @cached_property
     def unit(self) -> float:
@@ -170,18 +170,19 @@ class Space:
 
     @property
     def developable_share(self) -> float:
-        """The part of the area that is developable; 0 if no cell is known."""
+        """The part of the area that is developable; 0 without cells."""
         cells, count = self.first, len(self.pieces)
         chosen = np.flatnonzero(self._is_flat(cells))
-        # K may vanish at one place of a curved cell, as on two circles of a torus.
+        # K may vanish at the place of a curved cell, as on two circles of a torus.
         corners, places = cells.boxes[chosen, :2], cells.places[chosen]
         others = places + BESIDE * (corners - places)
         chosen = chosen[self._is_flat(self.at(cells.pieces[chosen], others, keep=True))]
-        # Cells whose place is an apex have the area 0. If all of a piece have, they count alike.
+        # A cell whose place is an apex has the area 0. If all cells of a piece do, they count
+        # alike.
         tiny = np.finfo(np.float64).tiny
         weights = np.maximum(cells.numbers[:, AREA], tiny)
         flat = np.bincount(cells.pieces[chosen], weights[chosen], count)
-        # Areas of cells at boundaries are approximate, those of pieces are not.
+        # Areas of cells at boundaries are approximate; those of pieces are exact.
         known = np.maximum(np.bincount(cells.pieces, weights, count), tiny)
         return float(np.sum(flat / known * self.areas) / self.area)
 
@@ -200,7 +201,7 @@ class Space:
 
     @property
     def exact(self) -> Space:
-        """The same space with the derivatives of the sampled surface, which may take longer."""
+        """The same space with derivatives of the sampled surface, which may take longer."""
         pieces = tuple(x.exact for x in self.pieces)
         if all(x is y for x, y in zip(pieces, self.pieces, strict=True)):
             return self
@@ -209,7 +210,7 @@ class Space:
         return made
 
     def to_power(self, exponent: float) -> Self:
-        """Return the same space with another exponent of the target density, and its cells.
+        """Return the space with another exponent of the target density; its cells are kept.
 
         The target density is a power of κ, without a Gauss weight.
         """
@@ -234,7 +235,7 @@ class Space:
 
     @property
     def _shared(self) -> dict[str, object]:
-        """The attributes that spaces of the same pieces share."""
+        """The cached attributes that spaces of the same pieces share."""
         return {x: getattr(self, x) for x in ("areas", "unit", "centre", "sizes", "trims")}
 
     def scaled_points(self, points: NDArray[np.floating]) -> Array:
@@ -268,7 +269,7 @@ class Space:
     def at(
         self, pieces: Indices, places: Array, limits: Array | float = 0.0, *, keep: bool = False
     ) -> Cells:
-        """Return cells without an extent at parameters (k, 2) of pieces (k,); see `known`."""
+        """Return cells without an extent at parameters (k, 2) of pieces (k,), as `known` does."""
         return self.known(points_of(pieces, places, self.sizes[pieces], limits), keep=keep)
 
     def middles(self, pieces: Indices) -> Cells:
@@ -286,7 +287,7 @@ class Space:
         return first[np.array(rows, dtype=np.int64)]
 
     def cut(self, radius: float) -> Cells:
-        """Return cells that lie within radius/√w of their places, w the target density there.
+        """Return cells within radius/√w of their places, w the target density there.
 
         Also return cells without an extent along boundaries, about as far apart.
         """
@@ -303,7 +304,7 @@ class Space:
         return merged([cells, self._beside_borders(radius)])
 
     def parts(self, radius: float) -> Indices:
-        """Return into how many parts (M, 2), along u and v, `cut` cuts each of the first cells.
+        """Return the numbers of parts (M, 2), along u and v, into which `cut` cuts the first cells.
 
         Raises InputError if the parts are too many.
         """
@@ -316,14 +317,14 @@ class Space:
         return parts.astype(np.int64)
 
     def _too_many(self) -> InputError:
-        """Return the error that the surface would have to be cut into more cells than allowed."""
+        """Return the error for a surface that would be cut into more cells than allowed."""
         return InputError(
             f"{self.label} would have to be searched in more than {MOST_CELLS:.0e} places; ask for "
             "a larger coverage or angle, or for fewer samples or normals."
         )
 
     def cut_by_normals(self, chord: float, most: float) -> Iterator[Cells]:
-        """Yield, in blocks, cells whose normals are within about a chord of that at their places.
+        """Yield blocks of cells whose normals are within about a chord of that at their place.
 
         The chord is increased until there are at most about `most` cells.
         """
@@ -338,7 +339,7 @@ class Space:
             yield self.evaluated(into_parts(first[rows], parts[rows].astype(np.int64)))
 
     def evaluated(self, cells: Cells, pixels: Indices | None = None) -> Cells:
-        """Return the cells that have a place inside the trim, evaluated."""
+        """Return those cells that have a place inside the trim, evaluated."""
         return self.known(self._inside(cells, self._fewest if pixels is None else pixels))
 
     def halves(self, cells: Cells) -> Cells:
@@ -362,7 +363,7 @@ class Space:
     # --- steps ------------------------------------------------------------------------------------
 
     def _inside(self, cells: Cells, pixels: Indices) -> Cells:
-        """Return the cells that have a place inside the trim, which is set."""
+        """Return those cells that have a place inside the trim, with this place."""
         return placed(self.trims, sifted(self.trims, cells.sorted(), pixels)[0])[0]
 
     def _beside_borders(self, step: float, turn: float = math.inf) -> Cells:
@@ -409,7 +410,7 @@ class Space:
         return np.full(len(self.pieces), FEWEST_PIXELS)
 
     def _pixels(self, radius: float) -> Indices:
-        """Return the number of pixels for each piece: half a radius wide, within the limits."""
+        """Return the numbers of pixels of the pieces: half a radius wide, within the limits."""
         cells, count = self.first, len(self.pieces)
         rates = np.sqrt(self.densities)
         low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)

@@ -1,11 +1,11 @@
-"""The steps of a graded grid: the distances of its lines for the same error everywhere.
+"""The steps of a graded grid: spacings of its lines with the same error everywhere.
 
-With steps a along u and b along v, the corners of a cell of a grid are farther apart than
+A cell with the steps a along u and b along v has a diagonal of the length
 
     √(e a² + 2 |f| a b + g b²)    and    √(E a² + 2 |F| a b + G b²)
 
-in normal space and in space, with the third and the first fundamental form. Lines u = const share
-the step a(u), lines v = const the step b(v).
+in normal space and in space, with the third and the first fundamental form. Lines u = const have
+the steps a(u), lines v = const the steps b(v).
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ SHARES, SEARCHES, COARSE = np.linspace(0.15, 0.95, 7), 4, 24
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 # The longest and the shortest step, as parts of the domain.
 LONGEST, SHORTEST = 0.5, 1e-9
-# The angle that gives a count is searched up to WIDEST, until the count is met within CLOSE.
+# The angle for a count is searched up to WIDEST, until the count is met within CLOSE.
 WIDEST, CLOSE, TRIALS = math.pi, 0.002, 12
-# A distance that needs too many samples is increased until this factor of the count is spare.
+# A distance that needs too many samples is increased until this factor of the count remains.
 LARGER = 1.1
 
 
@@ -97,8 +97,8 @@ class Steps:
 def equal_steps(forms: Forms, angle: float, distance: float) -> Steps:
     """Return the steps that give the fewest samples.
 
-    Half the diagonals of cells are at most `angle` in normal space (as a length), and `distance` in
-    space.
+    Half the diagonals of cells are at most `angle` in normal space (as a length on the sphere), and
+    `distance` in space.
     """
     limits, coarse = ((2.0 * angle) ** 2, (2.0 * distance) ** 2), forms.coarser(COARSE)
     share = _least(lambda x: _steps(coarse, limits, x).count)
@@ -106,9 +106,9 @@ def equal_steps(forms: Forms, angle: float, distance: float) -> Steps:
 
 
 def steps_for_count(forms: Forms, count: float, distance: float) -> Steps:
-    """Return the steps that give a count of samples and the smallest angle, for a distance.
+    """Return the steps with the smallest angle for a count of samples, within a distance.
 
-    If the distance needs more samples, it is made larger.
+    If the distance needs more samples, it is increased.
     """
     coarse = forms.coarser(COARSE)
     fewest = equal_steps(coarse, WIDEST, distance).count
@@ -133,7 +133,7 @@ def _least(value: Callable[[float], float]) -> float:
     found = [value(x) for x in places]
     for _ in range(SEARCHES):
         k = int(found[0] < found[1])
-        # The part beyond the worse point is dropped, and a new point taken in the rest.
+        # Drop the part beyond the worse point, and take a new point in the rest.
         low, high = (low, places[1]) if k else (places[0], high)
         places[k], found[k] = places[1 - k], found[1 - k]
         new = high - GOLDEN * (high - low) if k else low + GOLDEN * (high - low)
@@ -145,7 +145,7 @@ def _least(value: Callable[[float], float]) -> float:
 def _steps_at_share(
     forms: Forms, share: float, count: float, distance: float, angle: float
 ) -> tuple[Steps, float]:
-    """Return the steps for a share that give a count, and their angle, starting from a guess."""
+    """Return the steps for a share and a count, and their angle, starting from a guess."""
 
     def steps_at(angle: float) -> Steps:
         return _steps(forms, ((2.0 * angle) ** 2, (2.0 * distance) ** 2), share)
@@ -166,14 +166,14 @@ def _steps_at_share(
 
 
 def _typical(forms: Forms) -> float:
-    """Return the product of a count and the square of its angle, roughly."""
+    """Return roughly the product of a count and the square of its angle."""
     u, v = (np.sqrt(forms.third[k].max(axis=1 - k // 2)) for k in (0, 2))
     lengths = (u * forms.widths[0]).sum() * (v * forms.widths[1]).sum()
     return max(float(lengths) / 2.0, 1e-9)
 
 
 def _steps(forms: Forms, limits: tuple[float, float], share: float) -> Steps:
-    """Return steps of which those along u use a share of the limits."""
+    """Return steps, where steps along u use a share of the limits."""
     along = np.empty(len(forms.widths[0])), np.empty(len(forms.widths[1]))
     shared_steps(*forms.arrays, limits, share, SHORTEST, LONGEST, *along)
     lengths = tuple(float((w / x).sum()) for w, x in zip(forms.widths, along, strict=True))

@@ -40,7 +40,7 @@ class SurfacePiece(Piece):
     def of(cls, geometry: OnSpline, first_patch: int) -> SurfacePiece:
         """Return a geometry as a piece whose patches are numbered from `first_patch` on."""
         spline = geometry.spline
-        # At poles the curvature of splines is far from that of the surface.
+        # At poles the curvature of a spline is far from that of the surface.
         exactly = geometry.knows_jets or any("pole" in ends for ends in spline.boundary)
         return cls(
             label=f"surface {spline.name!r}",

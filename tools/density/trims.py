@@ -17,7 +17,7 @@ from .piece import Piece
 
 __all__ = ["Trims"]
 
-# The distance from the boundary of points beside it, relative to the domain.
+# The distance from a boundary to the points beside it, relative to the domain.
 BESIDE = 1e-6
 PLACES_AT_A_TIME = 1 << 17
 
@@ -33,8 +33,8 @@ class Trims:
         self.pieces = pieces
         self.trimmed = np.array([x.trim is not None for x in pieces], dtype=np.bool_)
         self.domains = np.array([x.domain for x in pieces])
-        # The index of each piece in `_loops`, −1 for others, and the sums of the bounds of reversed
-        # u.
+        # The index of each piece in `_loops`, −1 for other pieces, and the sums of the bounds of
+        # reversed u.
         self._place, self._totals = np.full(len(pieces), -1), np.full(len(pieces), np.nan)
         self._loops = list[Loops]()
         for k in np.flatnonzero(self.trimmed).tolist():
@@ -88,11 +88,11 @@ class Trims:
     def beside(
         self, pieces: Indices, places: Array, steps: Array
     ) -> tuple[Array, Indices, Indices]:
-        """Return parameters beside points (k, 2) of boundaries, on the sides that are inside.
+        """Return parameters beside points (k, 2) of boundaries, on each side that is inside.
 
-        Also return the indices of these points, and the side: 0 for left, 1 for right, in this
-        order. The boundaries run along steps (k, 2). If neither side is inside, in narrow tips, the
-        point itself is returned, with 2.
+        Also return the indices of these points, and the side, in this order: 0 for left, 1 for
+        right. The boundaries run along steps (k, 2). If neither side is inside, as in narrow tips,
+        return the point itself, with 2.
         """
         low, high = self.domains[pieces, :, 0], self.domains[pieces, :, 1]
         along = steps / (high - low)
@@ -128,7 +128,7 @@ class Trims:
         return allowed
 
     def _inside_loops(self, pieces: Indices, places: Array) -> Flags:
-        """Return which parameters (k, 2) of pieces (k,), whose trims are loops, are inside."""
+        """Return which parameters (k, 2) of pieces (k,) are inside the loops that trim them."""
         uv, totals, owners = self.wrapped(pieces, places), self._totals[pieces], self._place[pieces]
         uv[:, 0] = np.where(np.isnan(totals), uv[:, 0], totals - uv[:, 0])
         low, high = self._limits[owners, 0], self._limits[owners, 1]
@@ -144,7 +144,7 @@ class Trims:
 
     @cached_property
     def _limits(self) -> Array:
-        """(L, 2, 2): the smallest and the largest parameters that count as inside of loops."""
+        """(L, 2, 2): the smallest and largest parameters inside of loops."""
         return np.array([x.limits for x in self._loops])
 
     @cached_property

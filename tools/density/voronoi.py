@@ -13,24 +13,24 @@ from .kernels.greedy import Lists, note_samples
 
 __all__ = ["Voronoi"]
 
-# A candidate has a list of at most this many samples, which may be the nearest ones in its cell.
+# The list of a candidate has at most this many samples, which may be the nearest ones in its cell.
 MOST = 16
 
 
 class Voronoi:
-    """The nearest samples of a fine grid of points in cells.
+    """The nearest samples of a fine grid of points in the cells of candidates.
 
-    The cells are those of the candidates, whose distances from the samples (N, 6) are known. The
-    fine points are those of kernels/centres.py, linear in the parameters; in cells that a boundary
-    intersects, only the place of the cell counts. The lists remain valid for samples that move by
-    less than margin/√w. Of cells without a sample within radius/√w, only the place counts.
+    The distances of the candidates from the samples (N, 6) are known. The fine points are those of
+    kernels/centres.py, linear in the parameters. In a cell that a boundary intersects, or without a
+    sample within radius/√w, only the place counts. The lists remain valid for samples that move by
+    less than margin/√w.
     """
 
     def __init__(
         self, candidates: Candidates, cells: Cells, samples: Array, radius: float, margin: float
     ) -> None:
         self.cells, numbers = cells, cells.numbers
-        numbers[~cells.whole, SIDES] = 0.0  # nothing else reads these, and a copy is large
+        numbers[~cells.whole, SIDES] = 0.0  # nothing else reads these arrays, and a copy is large
         samples = np.ascontiguousarray(samples)
 
         def listed(first: int, last: int) -> tuple[Block, Lists]:
@@ -46,7 +46,7 @@ class Voronoi:
     def centres(self, samples: Array, first: int) -> tuple[Indices, Indices, Array]:
         """Return the samples from index `first` on that have a Voronoi cell, with its centre.
 
-        The centre is a cell of the candidates, and parameters (k, 2) in it.
+        The centre is given by a cell of the candidates, and parameters (k, 2) in it.
         """
         moments, work = np.zeros((len(samples), 4)), np.empty((5, FINER**2))
         for part, lists in self._parts:
@@ -61,9 +61,9 @@ class Voronoi:
         return moved, found[moved, 0], self._parameters(*found[moved].T)
 
     def widest(self, samples: Array, least: float) -> tuple[Indices, Array]:
-        """Return the cells with a point at least least/√w from all samples, and that point.
+        """Return the cells with a point at least least/√w from all samples.
 
-        The point is the farthest one of each cell, by its parameters (k, 2).
+        Also return the farthest such point of each cell, by its parameters (k, 2).
         """
         rows, places, work = list[Indices](), list[Indices](), np.empty((5, FINER**2))
         for part, lists in self._parts:
