@@ -19,11 +19,11 @@ LEAST_DENSITY = 10_000 / (4 * math.pi)
 
 @dataclass(frozen=True, eq=False)
 class CellMeasure:
-    """Of the cells (m n,): areas, absolute solid angles of their images, and the largest |K| there.
+    """The cells (m n,): areas, absolute solid angles of their images, and the largest |K| nearby.
 
-    K is the signed solid angle of a cell divided by its area: on a developable surface the elliptic
-    and hyperbolic errors of the spline cancel in it. It also vanishes where K changes its sign,
-    hence the maximum over the cell and its neighbours.
+    K of a cell is its signed solid angle divided by its area: on a developable surface, where the
+    spline has elliptic and hyperbolic errors, these cancel in it. It also vanishes where K changes
+    its sign, hence the maximum over the cell and its neighbours.
     """
 
     areas: Array
@@ -32,7 +32,7 @@ class CellMeasure:
 
     @classmethod
     def of(cls, measure: tuple[Array, Array], cells: tuple[int, int]) -> CellMeasure:
-        """Return that of the cells from areas and signed solid angles of the patches (4 m n,)."""
+        """Return the measure of cells from areas and solid angles of the patches (4 m n,)."""
         areas, signed = (x.reshape(*cells, 4).sum(axis=2) for x in measure)
         with np.errstate(divide="ignore", invalid="ignore"):
             curvatures = np.where(areas > 0.0, np.abs(signed) / areas, 0.0)

@@ -57,8 +57,8 @@ def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> 
 
     At open sides they follow from the boundary, at periodic ones they are copies. At a pole they
     are the first inner coefficients mirrored in their mean, so that this side of the spline is
-    exactly one point; the inner ones are moved to one plane, so that the pole has one normal
-    (poles.py).
+    exactly one point. The first inner coefficients are moved to one plane, so that the pole has one
+    normal (poles.py).
     """
     result = np.pad(inner, [(1, 1), (1, 1), (0, 0)])
     turned = np.swapaxes(result, 0, 1)
@@ -84,8 +84,8 @@ def _open_rows(rows: Array, boundary: BoundaryPair, sides: tuple[Array, Array]) 
 def _close(result: Array, turned: Array, boundary: Boundary) -> None:
     """Write the rows outside poles and periodic ends.
 
-    Poles come first, and rows along v precede rows along u, where u is open: then copies include
-    the ring along the other parameter.
+    Poles come first. Rows along v precede rows along u if u is open, so that copies include the
+    ring along the other parameter.
     """
     directions = ((turned, boundary[1]), (result, boundary[0]))
     for rows, end in directions:
@@ -104,15 +104,15 @@ def _close(result: Array, turned: Array, boundary: Boundary) -> None:
 def vertices_with_ring(values: Array, boundary: Boundary) -> Array:
     """Add the values (m, n, 3) at the vertices one step outside the domain.
 
-    Values of a periodic direction come without the repeated last row and get two rows at the upper
-    end; others get one row at each end. The row beyond a pole is the one before it, shifted by half
-    a period, or extrapolated if half a period is not an integer number of points.
+    Without its repeated last row, a periodic direction gets two rows at the upper end; others get
+    one row at each end. The row beyond a pole is the one before it, shifted by half a period, or
+    extrapolated if half a period is not an integer number of points.
     """
     if "pole" in boundary[0]:
         swapped = vertices_with_ring(np.swapaxes(values, 0, 1), (boundary[1], boundary[0]))
         return np.ascontiguousarray(np.swapaxes(swapped, 0, 1))
     turned = np.swapaxes(values, 0, 1)
-    reverse = values[::-1]  # in a closed row of vertices, the first stays the first
+    reverse = values[::-1]  # in a closed row of vertices, the first vertex stays the first
     reverse = np.roll(reverse, 1, axis=0) if closes(boundary[0]) else reverse
     opposite = np.roll(turned, len(values) // 2, axis=1)
     low, high = _beyond(turned, np.swapaxes(reverse, 0, 1), opposite, boundary[1])
@@ -126,8 +126,8 @@ def _beyond(
 ) -> tuple[Array, Array]:
     """Return the rows before the first and after the last one.
 
-    `mirrored` are the same rows with the other parameter reversed, `opposite` those half a period
-    away along it.
+    `mirrored` are the same rows with the other parameter reversed, `opposite` the rows shifted by
+    half a period along it.
     """
     if closes(boundary):
         source = rows if boundary[0] == "periodic" else mirrored

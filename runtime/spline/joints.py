@@ -21,8 +21,8 @@ __all__ = ["EDGES", "Edge", "Joints", "Topology", "linked", "merged_points"]
 class Edge(NamedTuple):
     """Rows of a net b200, b020, b002, b110, b101, b011: an edge, and the points beside it.
 
-    The edge has the control points `start`, `middle`, `end`; `start_beside` and `end_beside` are
-    those of the next row, so that their differences from `start` and `middle` point inwards.
+    The edge has the control points `start`, `middle`, `end`. The differences of `start_beside` and
+    `end_beside`, in the next row, from `start` and `middle` point inwards.
     """
 
     start: int
@@ -34,15 +34,16 @@ class Edge(NamedTuple):
 
 # The edges u = 0, v = 0, w = 0, counterclockwise.
 EDGES = (Edge(1, 5, 2, 3, 4), Edge(2, 4, 0, 5, 3), Edge(0, 3, 1, 4, 5))
-# The indices of the corners in the control normals N200, N110, N101, N020, N011, N002; then those
-# of the edges.
+# The indices of the corners in the control normals N200, N110, N101, N020, N011, N002; then of the
+# edges.
 CORNER_NORMALS = (0, 3, 5)
 EDGE_NORMALS = ((3, 4, 5), (5, 2, 0), (0, 1, 3))
 # Parameters of an edge at which the normals of its patches are compared.
 PLACES = np.linspace(0.0, 1.0, 9)
 # Points closer than this, relative to the largest coordinate, are the same point.
 SAME_POINT = 2.0**-36
-# The number of points of an edge that are tried as the nearest to a corner, and of Newton steps.
+# The number of points of an edge from which the nearest one to a corner is chosen, and the number
+# of Newton steps.
 TRIED, STEPS = 33, 4
 
 
@@ -81,7 +82,7 @@ def merged_points(points: Array) -> tuple[Array, Indices]:
     number = np.arange(len(points))
     if size == 0.0:
         return points[:1], np.zeros_like(number)
-    # Two points closer than half a box share a box in one of eight rasters.
+    # Two points closer than half a box share a box in one of eight shifted rasters.
     for shift in product((0.0, 0.5), repeat=3):
         boxes = np.floor(points / (2.0 * size) + shift)
         _, group = np.unique(boxes, axis=0, return_inverse=True)
@@ -109,7 +110,7 @@ def linked(count: int, one: Indices, other: Indices) -> tuple[int, Indices]:
 
 @dataclass(frozen=True, eq=False)
 class Topology:
-    """Nets (T, 6, 3) with the indices (T, 6) of their points, and control normals (T, 6, 3).
+    """Nets (T, 6, 3) with the indices (T, 6) of their points and control normals (T, 6, 3).
 
     Joints whose normals differ by at most `smooth` degrees are smooth.
     """
@@ -153,7 +154,7 @@ class Topology:
 
     @cached_property
     def joints(self) -> Joints:
-        """The joints; InputError for vertices inside edges, too many patches at an edge."""
+        """The joints; InputError for a vertex inside an edge, or too many patches at an edge."""
         pairs = self.pairs
         self._refuse_hanging_vertices()
         left, right = (_normals_along(self.normals, edges) for edges in pairs.T)
@@ -169,8 +170,8 @@ class Topology:
     def smooth_pairs(self) -> Indices:
         """Pairs of edges, as in `pairs`, along which the normals are the same.
 
-        They are those of the smooth joints, and the other two edges of a patch with a collapsed
-        edge: the normals along these are the same.
+        They are the pairs of the smooth joints, and pairs of the two other edges of patches with a
+        collapsed edge.
         """
         rows = np.flatnonzero(self.is_point)
         patch, edge = np.divmod(rows, 3)
@@ -180,7 +181,7 @@ class Topology:
 
     @cached_property
     def owner(self) -> tuple[Indices, NDArray[np.int8]]:
-        """For each edge (3 T,) the one whose boundary cone decides, and the sign of its form."""
+        """For each edge (3 T,), the edge whose boundary cone decides, and the sign of its form."""
         owner, side = np.arange(3 * len(self.nets)), np.ones(3 * len(self.nets), np.int8)
         pairs = self.pairs[self.joints.smooth]
         one, other = np.concatenate([pairs, pairs[:, ::-1]]).T
@@ -191,7 +192,7 @@ class Topology:
 
     @cached_property
     def on_border(self) -> Flags:
-        """Which edges (3 T,), collapsed ones excepted, are not on a smooth joint."""
+        """Which edges (3 T,) are not on a smooth joint, collapsed edges excepted."""
         free = ~self.is_point
         free[self.smooth_pairs.ravel()] = False
         return free
@@ -200,7 +201,7 @@ class Topology:
     def corners(self) -> tuple[Array, Indices]:
         """Unit normals at corners, shared by patches that meet smoothly, and their indices (T, 3).
 
-        A normal is 0 if no patch has one there.
+        A normal is 0 if no patch has a normal at that corner.
         """
         pairs = self.smooth_pairs
         # Edge j runs from corner j + 1 to corner j + 2.
@@ -231,7 +232,7 @@ class Topology:
 
     @cached_property
     def polar(self) -> tuple[Indices, Indices]:
-        """The end, 0 or 1, of each edge (3 T,) that is a smooth pole, and an edge with its tangent.
+        """The end, 0 or 1, of each edge (3 T,) at a smooth pole, and an edge with its tangent.
 
         The end is −1 if none or both are poles. Edges of one tangent at a pole are those of patches
         that have a singular corner there.
@@ -263,7 +264,7 @@ class Topology:
 
     @cached_property
     def angles(self) -> Array:
-        """The angle (T,) in radians between normals of a patch and those shared at its joints."""
+        """The largest angle (T,), in radians, of normals of a patch and those of its joints."""
         found = np.zeros(len(self.nets))
         joints = self.joints
         for side in (0, 1):

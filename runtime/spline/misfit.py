@@ -12,7 +12,7 @@ class Misfit:
     """The distance of a spline from the surface or the data that it approximates.
 
     Both are compared at equal parameters. So `distance` is an upper bound of the distance of the
-    two surfaces at these points, and a good one: tangential differences are small.
+    surfaces at these points, and a close one: tangential differences are small.
 
     Attributes
     ----------

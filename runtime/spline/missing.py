@@ -1,4 +1,4 @@
-"""Grids with missing points: the patches of their spline that do not depend on these."""
+"""Grids with missing points: the patches of their spline that do not depend on these points."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ __all__ = [
 # The usual values of missing elevations.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))
 USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)
-# If the given `nodata` differs from the lowest or the highest value by at most this part of itself,
-# it may be that value, printed with six digits.
+# A lowest or highest value that differs from the given `nodata` by at most this part of itself may
+# be the same number, printed with six digits.
 NEAR = 1e-5
-# The least number of heights of a block, and its least part of all heights.
+# The least number of heights in a block, and its least part of all heights.
 FEWEST, SMALLEST = 16, 1e-3
 # Shores are about as steep as the land. A block is missing data if the median step at its boundary
-# exceeds this multiple of the QUANTILE of the steps elsewhere.
+# exceeds the QUANTILE of the steps elsewhere by this factor.
 STEEPER, QUANTILE = 3.0, 0.99
-# The rows of points next to a pole that all patches around it depend on.
+# The number of rows of points next to a pole on which all patches around it depend.
 ROWS_AT_POLE = 3
 
 
@@ -49,7 +49,7 @@ ROWS_AT_POLE = 3
 class Known:
     """The patches of a spline on a grid of cells that do not depend on missing points.
 
-    `patches` (4 m n,) is True for these.
+    `patches` (4 m n,) is True for them.
     """
 
     domain: Domain
@@ -86,7 +86,7 @@ def checked_nodata(nodata: Any) -> float:  # noqa: ANN401
 def without_nodata(points: Array, nodata: object, name: str) -> Array:
     """Return points or elevations with NaN in place of `nodata`; warn of likely missing data.
 
-    The warning also comes with a `nodata` that no value is equal to: it may have been rounded.
+    It also warns if no value equals `nodata`, which may have been rounded.
     """
     if nodata is None:
         _warn_of_nodata(points, name)

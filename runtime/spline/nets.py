@@ -154,8 +154,8 @@ class NetSpline(PatchSpline, NetMethods):
     ) -> tuple[Array, NDArray[np.bool_]]:
         """Return unnormalized normals (k, 3) of patches (k,) at parameters u, v (k, 2).
 
-        At a singular point, which has no normal, it is that of a nearby point towards the centre;
-        the second array (k,) marks these.
+        At a singular point, which has no normal, return that of a nearby point towards the centre;
+        the second array (k,) marks these points.
         """
         patch = self.patch(patches)
 
@@ -170,7 +170,7 @@ class NetSpline(PatchSpline, NetMethods):
 
     @property
     def cap(self) -> tuple[Array, float]:
-        """A unit vector, and its least cosine with a normal; −1 if a normal is perpendicular."""
+        """A unit vector, and its least cosine with a normal; −1 unless all are positive."""
         control = self.topology.normals.reshape(-1, 3)
         lengths = np.linalg.norm(control, axis=1)
         unit = control[lengths > 0.0] / lengths[lengths > 0.0, None]
@@ -211,7 +211,7 @@ AnySpline = Spline | NetSpline
 
 
 def on_grid(spline: AnySpline) -> Spline:
-    """Return a spline with a grid of cells unchanged; InputError for one of nets."""
+    """Return a spline on a grid of cells unchanged; InputError for a spline of nets."""
     if isinstance(spline, NetSpline):
         raise InputError(
             f"{spline.name!r} is made of nets and has no grid of cells nor parameters u, v of a "
@@ -236,10 +236,10 @@ def from_nets(
 ) -> NetSpline:
     """Return a spline of quadratic Bézier triangles on any triangulation.
 
-    Joints are found: edges with the same ends and the same middle control point, up to
-    rounding, or with the same indices. Where normals are continuous, a normal on the joint belongs
-    to one of the two patches, and every point with a given normal is found exactly once. A joint
-    where they differ is a crease, and part of the boundary of both patches.
+    Joints are edges with the same ends and the same middle control point, up to rounding, or with
+    the same indices. Where normals are continuous, a normal on the joint belongs to one of the two
+    patches, and every point with a given normal is found exactly once. A joint where they differ is
+    a crease, and part of the boundary of both patches.
 
     Parameters
     ----------
@@ -251,8 +251,8 @@ def from_nets(
     name : str, default "nets"
         Label of the surface.
     smooth : float, default 0.01
-        The largest angle in degrees, of the normals of two patches, for which their joint is
-        smooth; see `NetSpline.joints`.
+        A joint is smooth if the normals of its patches differ by at most this angle, in degrees;
+        see `NetSpline.joints`.
 
     Returns
     -------

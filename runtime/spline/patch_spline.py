@@ -24,7 +24,7 @@ __all__ = ["PatchSpline"]
 class PatchSpline(Immutable, ABC):
     """Quadratic patches: a `Spline` on a grid of cells, or a `NetSpline`.
 
-    Both have `patches`, `control_nets`, `extent` and `measure`, too.
+    Both also have `patches`, `control_nets`, `extent` and `measure`.
     """
 
     name: str

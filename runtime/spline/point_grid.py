@@ -62,7 +62,7 @@ def checked_spacing(spacing: Sequence[float] | None, count: int) -> tuple[float,
     """Return the spacing of elevations, at most `count` along x and y; InputError if invalid."""
     try:
         dx, dy = (as_float(x) for x in (() if spacing is None else spacing))
-    except Exception:  # objects raise anything
+    except Exception:  # `float` may raise anything
         raise InputError(
             f"elevations (m, n) need spacing=(dx, dy), two numbers, not {shown(spacing)}."
         ) from None
@@ -93,7 +93,7 @@ def _check(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
 
 
 def _farthest(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
-    """Return the largest difference, NaN if all of them are missing."""
+    """Return the largest difference; NaN if all differences are missing."""
     return float(np.fmax.reduce(np.abs(first - second), axis=None))
 
 

@@ -24,15 +24,15 @@ from ..domain.domain import Boundary, BoundaryPair
 __all__ = ["broken_poles", "close_pole", "ring_around", "spread_missing", "without_poles"]
 
 
-# The number of pairs a, b among whose planes the closest one is chosen.
+# The number of pairs a, b from which the plane closest to the ring is chosen.
 CANDIDATES = 4096
-# The length of a and b is the root of this times the distance of neighbours in the ring: the plane
-# of longer vectors is closer to that of the ring, multiples of shorter ones to its coefficients.
+# The length of a and b is the root of this times the distance of neighbours in the ring. Longer
+# vectors have a plane closer to the ring; shorter ones have multiples closer to its coefficients.
 BALANCE = 1.0 / 32.0
 
 
 def broken_poles(points: Array, boundary: Boundary, axis: int) -> list[int]:
-    """Return the ends, 0 or 1, of an axis that are poles, but not one of the points (m, n, 3)."""
+    """Return the ends, 0 or 1, of an axis that are poles but not one point in (m, n, 3)."""
     rows, found = np.swapaxes(points, 0, axis), list[int]()
     for end in (0, 1):
         row = rows[-end][~np.isnan(rows[-end]).any(axis=1)]
@@ -42,7 +42,7 @@ def broken_poles(points: Array, boundary: Boundary, axis: int) -> list[int]:
 
 
 def spread_missing(bad: Flags, boundary: Boundary, rows: int) -> None:
-    """Mark all of the `rows` next to a pole as missing (m, n) if one of their points is."""
+    """Mark all of the `rows` next to a pole as missing (m, n) if any of their points is."""
     for axis, end in np.ndindex(2, 2):
         near = np.swapaxes(bad, 0, axis)[-rows:] if end else np.swapaxes(bad, 0, axis)[:rows]
         if boundary[axis][end] == "pole" and near.any():
@@ -59,7 +59,7 @@ def without_poles(boundary: Boundary) -> Boundary:
 
 
 def close_pole(rows: Array, outside: int, first: int) -> None:
-    """Write the row outside a pole, and the first one inside, in one plane; see `ring_around`."""
+    """Write the row outside a pole and the first row inside, in one plane; see `ring_around`."""
     ring, pole = ring_around(rows[first, 1:-1])
     rows[first, 1:-1] = ring
     rows[outside, 1:-1] = python_function(beyond_edge)(pole, ring)
@@ -69,7 +69,7 @@ def ring_around(ring: Array) -> tuple[Array, Array]:
     """Return a ring of coefficients (m, 3) moved into one plane, and the pole in its middle.
 
     All coordinates are multiples of a small power of two, so that 2 p − ring is exact. A ring that
-    does not run around p once, because of rounding, is only rounded.
+    does not run around p once, due to rounding, is only rounded.
     """
     grain = 4.0 * float(np.spacing(np.abs(ring).max()))
     ring = np.round(ring / grain)
@@ -79,7 +79,7 @@ def ring_around(ring: Array) -> tuple[Array, Array]:
 
 
 def _planar(offsets: Array) -> Array | None:
-    """Return vectors (m, 3) of integers in one plane; None if they do not run around 0 once."""
+    """Return integer vectors (m, 3) in one plane; None if they do not run around 0 once."""
     size = float(np.abs(offsets).max())
     axes, radius = _axes(offsets / (size or 1.0))
     length = math.sqrt(BALANCE * 2.0 * math.pi * radius * size / len(offsets))
@@ -106,10 +106,10 @@ def _axes(offsets: Array) -> tuple[Array, float]:
 
 
 def _lattice(axes: Array, length: float) -> Array:
-    """Return two vectors (2, 3) of integers in a plane near that of axes."""
+    """Return two integer vectors (2, 3) in a plane close to that of axes."""
     lengths = length * np.linspace(1.0, 2.0, CANDIDATES)
     pairs = np.round(lengths[:, None, None] * axes)
     normals = np.cross(pairs[:, 0], pairs[:, 1])
     sizes = np.linalg.norm(normals, axis=1)
-    tilts = np.linalg.norm(np.cross(normals, np.cross(*axes)), axis=1)  # accurate where small
+    tilts = np.linalg.norm(np.cross(normals, np.cross(*axes)), axis=1)  # accurate for small angles
     return pairs[np.argmin(np.divide(tilts, sizes, out=np.ones_like(sizes), where=sizes > 0.0))]

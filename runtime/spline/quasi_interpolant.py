@@ -34,7 +34,7 @@ __all__ = [
 class Values(NamedTuple):
     """Values at the centres (m, n, 3) and vertices (m + 1, n + 1, 3) of cells.
 
-    `middles` are those at the midpoints of the edges on the boundary of the domain.
+    `middles` are values at the midpoints of the edges on the boundary of the domain.
     """
 
     centres: Array

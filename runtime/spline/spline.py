@@ -134,7 +134,7 @@ class Spline(PatchSpline, Methods):
 
     @property
     def frame(self) -> NDArray[np.float64]:
-        """(4,) float64 array: the corner of the domain and the size of a cell, (u0, v0, du, dv)."""
+        """(4,) float64 array: corner of the domain and size of a cell, (u0, v0, du, dv)."""
         (u0, u1), (v0, v1) = self.domain
         return np.array([u0, v0, (u1 - u0) / self.cells[0], (v1 - v0) / self.cells[1]])
 
@@ -221,9 +221,9 @@ class Spline(PatchSpline, Methods):
     def measure(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Areas and solid angles of the patches, by quadrature: two (patches,) float64 arrays.
 
-        If there is a trim, they are multiplied by the share of each patch inside it.
-        Areas are in units of the squared diagonal of the bounding box of the coefficients. Solid
-        angles are the signed areas of the Gaussian images.
+        If there is a trim, they are multiplied by the share of each patch inside it. Areas are in
+        units of the squared diagonal of the bounding box of the coefficients. Solid angles are the
+        signed areas of the Gaussian images.
         """
         areas, solid_angles = np.empty(self.patches), np.empty(self.patches)
 

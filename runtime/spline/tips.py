@@ -1,7 +1,8 @@
 """Tips of splines: edges of patches that are one point, as at the apex of a cone.
 
 A quadratic patch with such an edge is developable: its normals depend only on the distance from the
-tip. Rounding gives it others, so it has no samples. Smooth poles, with one normal, are no tips.
+tip. It has no samples, since its other normals are rounding errors. Smooth poles, with one normal,
+are no tips.
 """
 
 from __future__ import annotations
@@ -19,15 +20,15 @@ from .spline import Spline
 
 __all__ = ["Tips", "are_one", "collapsed_sides", "is_point", "tips_of"]
 
-# Points within this distance, relative to the size of a surface, are one.
+# Points of a surface within this distance, relative to its size, are one point.
 SAME_POINT = 1e-9
 
 
 class Tips(NamedTuple):
     """The tips of a spline: `points` (T, 3), and the patches at them as flags (patches,).
 
-    A `collapsed` patch has an edge that is a tip, a `touching` one a corner there. Points within a
-    distance `same` of a tip are that tip.
+    A `collapsed` patch has an edge that is a tip, a `touching` patch has a corner there. Points
+    within the distance `same` of a tip are that tip.
     """
 
     points: Array
@@ -47,7 +48,7 @@ def is_point(spline: Spline, axis: int, end: int) -> bool:
 
 
 def are_one(points: Array, size: float) -> bool:
-    """Return whether points (k, 3) of a surface of a size are one."""
+    """Return whether points (k, 3) are one point, for a surface of a given size."""
     return bool(np.ptp(points, axis=0).max() <= SAME_POINT * size)
 
 
@@ -113,7 +114,7 @@ def _of_nets(spline: NetSpline) -> Tips | None:
 
 
 def _side(spline: Spline, axis: int, end: int) -> Array:
-    """Return the points on a side, at the corners of cells and half way between."""
+    """Return the points on a side, at the corners of cells and halfway between."""
     along = np.linspace(*spline.domain[1 - axis], 2 * spline.cells[1 - axis] + 1)
     place = np.full_like(along, spline.domain[axis][end])
     return spline.evaluate(*((place, along) if axis == 0 else (along, place)))
