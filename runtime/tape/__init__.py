@@ -1,1 +1,1 @@
-"""Straight-line programs of surfaces: their values, and enclosures of these over boxes."""
+"""Straight-line programs of surfaces: their values, and enclosures of the values over boxes."""

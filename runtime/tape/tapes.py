@@ -59,7 +59,7 @@ class TapeWriter:
         return row
 
     def constant(self, value: float, distance: float = 0.0) -> int:
-        """Return the row of a number that is exact up to a distance."""
+        """Return the row of a number with an error of at most `distance`."""
         return self.row(codes.CONSTANT, number=(value, distance))
 
     def spline(self, polynomials: Polynomials, turned: int = 0, number: Number = (0.0, 0.0)) -> int:
@@ -74,7 +74,7 @@ class TapeWriter:
         return row
 
     def power(self, row: int, halves: int) -> int:
-        """Return the row of a power whose exponent is a number of halves, not 0."""
+        """Return the row of a power whose exponent is `halves` / 2, not 0."""
         if halves < 0:
             return self.power(self.write("reciprocal", row), -halves)
         if halves % 2:
@@ -125,7 +125,7 @@ class TapeWriter:
     def row(
         self, code: int, a: int = 0, b: int = 0, last: int = 0, number: Number = (0.0, 0.0)
     ) -> int:
-        """Return the row of an operation by its code, as tapes hold it."""
+        """Return the row of an operation, by its code and the entries of a tape."""
         operation = code, a, b, last
         row = self._rows.setdefault((operation, number), len(self._operations))
         if row == len(self._operations):
@@ -175,7 +175,7 @@ def _folded(tape: Tape) -> Tape | None:
     if not np.isfinite(numbers).all():
         return None
     operations = tape.operations.copy()
-    same = np.arange(len(operations))  # for each row, one with the same values
+    same = np.arange(len(operations))  # for each row, the row with the same values
     for row in range(len(operations)):
         operations[row, 1:3] = same[operations[row, 1:3]]
         code, a, b, _ = operations[row]
@@ -253,7 +253,7 @@ def _needed(tape: Tape) -> Tape:
 def jets_of(tape: Tape, u: Array, v: Array) -> Array:
     """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) at u (k,) and v (k,)."""
     jets = np.empty((len(u), 6, 3))
-    u, v = np.array(u), np.array(v)  # other memory layouts would be compiled for
+    u, v = np.array(u), np.array(v)  # Kernels would be compiled anew for other memory layouts
     points_jets(tape, u, v, np.empty(POINT * len(tape.operations)), jets)
     return jets
 
