@@ -60,7 +60,7 @@ def _checked(domain: Sequence[Sequence[float]], names: str, form: str) -> list[I
     try:
         ends = [(as_float(low), as_float(high)) for low, high in domain]
         named = list(zip(names, ends, strict=True))
-    except Exception:  # objects raise anything
+    except Exception:  # `float` may raise anything
         given = domain if len(names) > 1 else domain[0]
         raise InputError(f"domain must be {form}, not {shown(given)}.") from None
     for name, (low, high) in named:
@@ -72,7 +72,7 @@ def _checked(domain: Sequence[Sequence[float]], names: str, form: str) -> list[I
 def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
     """Return the boundary conditions from their short forms; InputError on a clash.
 
-    Also return, for u and v, whether open sides were assumed: `periodic` has False, not "open".
+    Also return, for u and v, whether open sides are assumed: `periodic` has False, not "open".
     """
     boundary = checked_sides(periodic)
     for name, other, ends, around in (("u", "v", *boundary), ("v", "u", *boundary[::-1])):
@@ -83,7 +83,7 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
 
 
 def checked_sides(periodic: Periodic) -> Boundary:
-    """Return the boundary conditions of all sides, any of which may be poles; or InputError."""
+    """Return the boundary conditions of all sides, where poles are allowed; or InputError."""
     along_u, along_v = _entries(periodic)
     return _pair(along_u, "u"), _pair(along_v, "v")
 
@@ -94,7 +94,7 @@ def _entries(periodic: Periodic) -> tuple[Periodicity, Periodicity]:
         return bool(periodic), bool(periodic)
     try:
         along_u, along_v = periodic
-    except Exception:  # objects raise anything
+    except Exception:  # iteration may raise anything
         raise InputError(
             "periodic must be a pair, one entry for u and one for v, or True or False for both, "
             f"not {shown(periodic)}."
@@ -103,7 +103,7 @@ def _entries(periodic: Periodic) -> tuple[Periodicity, Periodicity]:
 
 
 def closes(ends: Sequence[str]) -> bool:
-    """Say whether a parameter is periodic or mirrored, by its boundary conditions."""
+    """Return whether a parameter is periodic or mirrored, by its boundary conditions."""
     return ends[0] in ("periodic", "mirrored")
 
 
@@ -118,7 +118,7 @@ def cells_between(shape: Sequence[int], boundary: Boundary) -> tuple[int, int]:
 def widened(values: NDArray[Any], mode: Literal["edge", "wrap"] = "wrap") -> NDArray[Any]:
     """Return the largest of the values (m, n) of each cell and its neighbours.
 
-    At the border that of the opposite side is a neighbour ("wrap"), or none ("edge").
+    At the boundary, cells of the opposite side are neighbours ("wrap"), or there are none ("edge").
     """
     for axis in (0, 1):
         padded = np.pad(values, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], mode=mode)
@@ -136,7 +136,7 @@ def less_periods(
 
 
 def places_in(domain: Domain, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return u and v (count,) of points (i/√2, i/√3), modulo 1 of the domain."""
+    """Return u and v (count,) of points (i/√2, i/√3), modulo 1, in units of the domain."""
     steps = np.arange(1, count + 1)
     u, v = (
         low + (high - low) * (np.sqrt(x) * steps % 1.0)

@@ -15,7 +15,7 @@ from .trim import Trim
 __all__ = ["FINEST", "Inside", "extremes_around", "subcentroids"]
 
 
-# A patch is tested at the centroids of the square of this number of triangles: COARSE for all
+# A patch is tested at the centroids of a number of triangles, the square of this: COARSE for all
 # patches, if the cells at the boundary of the trim are unknown, and FINEST for patches at the
 # boundary.
 COARSE, FINEST = 4, 8
@@ -24,7 +24,7 @@ POINTS_AT_A_TIME = 1 << 20
 
 @dataclass(frozen=True, eq=False)
 class Inside:
-    """The shares (patches,) of the patches inside a trim, by area in the parameters, from 0 to 1.
+    """The shares (patches,), from 0 to 1, of each patch inside a trim, by area in the parameters.
 
     `reached` (patches,) is True for patches that may have a part inside, however small.
     """
@@ -58,7 +58,7 @@ class Inside:
 def subcentroids(parts: int) -> Array:
     """Return the centroids (parts², 2) of the equal parts of the triangle (0, 0), (1, 0), (0, 1).
 
-    None of them lies on a line through points whose coordinates are binary fractions.
+    No centroid lies on a line through points whose coordinates are binary fractions.
     """
     i, j = (x.ravel() for x in np.indices((parts, parts)))
     upright, inverted = i + j < parts, i + j < parts - 1
@@ -67,7 +67,7 @@ def subcentroids(parts: int) -> Array:
 
 
 def _shares(trim: Trim, frame: Array, columns: int, patches: Indices, parts: int) -> Array:
-    """Return the shares of patches (k,) by the centroids of their parts."""
+    """Return the shares of patches (k,) inside a trim, by the centroids of their parts."""
     places, shares = subcentroids(parts), np.empty(len(patches))
     step = max(POINTS_AT_A_TIME // len(places), 1)
     for first in range(0, len(patches), step):

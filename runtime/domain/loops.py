@@ -1,4 +1,4 @@
-"""Loops: closed polygons in the parameter plane, with tests of points inside."""
+"""Loops: closed polygons in the parameter plane, with tests of whether points are inside."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from .kernels import trim as kernels
 __all__ = ["Loops", "checked_loops"]
 
 
-# The number of cells for each segment, about, and the largest number of rows of cells.
+# About the number of cells per segment, and the largest number of rows of cells.
 CELLS_A_SEGMENT, MOST_ROWS = 8, 2048
-# The largest number of entries of the lists of all cells, about.
+# About the largest number of entries of the lists of all cells.
 MOST_ENTRIES = 1 << 24
-# Segments belong to all cells within this margin: in units of a cell, and in roundings of the
+# Segments belong to all cells within this margin, in units of a cell, and in roundings of the
 # largest coordinate.
 MARGIN, MARGIN_IN_ROUNDINGS = 1e-9, 16.0
 POINTS_AT_A_TIME = 1 << 14
 # The largest number of times that a loop may run around a periodic direction.
 MOST_PERIODS = 100
-# The number of pairs of a box and a segment that are compared at a time.
+# The number of pairs of a box and a segment in one batch.
 PAIRS_AT_A_TIME = 1 << 20
 # Points on an open side of the domain are moved inwards by this part of the domain.
 INSIDE = 1e-13
@@ -41,8 +41,8 @@ INSIDE = 1e-13
 class Loops:
     """Closed polygons (k, 2) in the parameter plane; a point is inside by the even-odd rule.
 
-    The first point of a polygon is not repeated. Loops may run beyond the seam of a periodic
-    direction: a point is inside if it, or a copy shifted by whole periods, is.
+    The first point of a polygon is not repeated. Loops may cross the seam of a periodic direction:
+    a point is inside if it is, or a copy of it shifted by whole periods.
     """
 
     polygons: tuple[Array, ...]
@@ -73,7 +73,7 @@ class Loops:
             here = (i >= -1) & (i <= cells[0]) & (j >= -1) & (j <= cells[1])
             marks = np.zeros((cells[0] + 2, cells[1] + 2), dtype=np.bool_)
             marks[i[here] + 1, j[here] + 1] = True
-            # The cells with a point, and their neighbours.
+            # The cells that contain a point, and their neighbours.
             rows = marks[:-2] | marks[1:-1] | marks[2:]
             passed |= rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
         return passed
@@ -81,7 +81,7 @@ class Loops:
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
         """Return 1 for boxes (k, 4) inside, −1 outside, and 0 where a segment may meet the box.
 
-        The box has a margin for rounding. The normals (k, 3) are not used.
+        Boxes have a margin for rounding. The normals (k, 3) are not used.
         """
         low, high = boxes[:, ::2], boxes[:, 1::2]
         middles, halves = (low + high) / 2.0, (high - low) / 2.0
@@ -96,12 +96,12 @@ class Loops:
         return sides
 
     def _inwards(self, uv: Array) -> Array:
-        """Move points on open sides into the domain, by far less than its size."""
+        """Move points on open sides inwards, by far less than the size of the domain."""
         return uv.clip(*self.limits)
 
     @cached_property
     def limits(self) -> tuple[Array, Array]:
-        """The smallest and the largest parameters (2,) of points that count as inside."""
+        """The smallest and the largest parameters (2,) of points that may be inside."""
         low, high = np.array(self.domain).T
         nudge = INSIDE * (high - low)
         is_open = np.array([not closes(ends) for ends in self.boundary])
@@ -115,7 +115,7 @@ class Loops:
 
     @cached_property
     def shifts(self) -> Array:
-        """The maps (s, 4) to copies (a u + b, c v + d) of a point that may be inside."""
+        """The maps (s, 4) of a point to those copies (a u + b, c v + d) that may be inside."""
         (u0, u1), (v0, v1) = self.domain
         along_u, along_v = (self._periods(axis) for axis in (0, 1))
         rows = []
@@ -149,7 +149,7 @@ class Loops:
         scales = np.array([scale_to_one(float(x)) for x in sizes])
         ends = [np.stack([x, np.roll(x, -1, axis=0)], axis=1) for x in self.polygons]
         segments = np.concatenate(ends) * scales
-        # From the lower end: a segment that two polygons share is then the same for both.
+        # From the lower end, so that a segment of two polygons is the same for both.
         (u, v), (w, z) = segments[:, 0].T, segments[:, 1].T
         turned = (v > z) | ((v == z) & (u > w))
         segments[turned] = segments[turned][:, ::-1]
@@ -175,9 +175,9 @@ class Loops:
 
 
 def _may_meet(segments: Array, middles: Array, halves: Array) -> Flags:
-    """Return whether segments (n, 4) may meet boxes with middles and half sizes (k, 2): (k, n).
+    """Return whether segments (n, 4) may meet boxes (k, 2), middles and half sizes: (k, n).
 
-    Disjoint ones are separated by a line parallel to u, to v or to the segment.
+    If they are disjoint, a line parallel to u, to v or to the segment separates them.
     """
     start, way = segments[:, :2], (segments[:, 2:] - segments[:, :2]) / 2.0
     largest = np.maximum(np.abs(segments).max(), np.abs(middles).max(initial=0.0))
@@ -191,7 +191,7 @@ def _may_meet(segments: Array, middles: Array, halves: Array) -> Flags:
 
 
 def _steps(polygon: Array, steps: Array) -> Array:
-    """Return points on a polygon (k, 2), no farther apart than `steps` (2,) along u and v."""
+    """Return points on a polygon (k, 2), spaced by at most `steps` (2,) along u and v."""
     along = np.roll(polygon, -1, axis=0) - polygon
     parts = np.ceil(np.abs(along / steps).max(axis=1)).astype(np.int64) + 1
     owner = np.repeat(np.arange(len(polygon)), parts)

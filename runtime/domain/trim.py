@@ -38,7 +38,7 @@ class TrimPart(Protocol):
         ...
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
-        """Return the cells (m, n) of a grid that its boundary may pass; None if unknown."""
+        """Return the cells (m, n) of a grid that its boundary may intersect; None if unknown."""
         ...
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
@@ -121,7 +121,7 @@ class Trim:
         return inside
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> tuple[Flags, bool]:
-        """Return the cells (m, n) that the boundary may pass, and whether the list is complete.
+        """Return the cells that the boundary may intersect, and whether the list is complete.
 
         Parameters
         ----------
@@ -210,9 +210,9 @@ Traced = Callable[[Callable[[Array, Array], Any], Domain], OnBoxes | None]
 
 @dataclass(frozen=True, eq=False)
 class Predicate:
-    """A vectorized callable f(u, v) → booleans as a condition; name and domain are the surface's.
+    """A vectorized callable f(u, v) → booleans as a condition, on the domain of a surface.
 
-    `traced` returns its evaluation on boxes, or None.
+    `traced` returns its evaluation on boxes, or None. `name` is the surface's, for messages.
     """
 
     function: Callable[[Array, Array], Any]
@@ -257,7 +257,7 @@ class Turned:
 
     @staticmethod
     def of(part: TrimPart, total: float) -> TrimPart:
-        """Return a condition after reversal; two reversals give the original one."""
+        """Return a condition after the reversal of u; two reversals give the original condition."""
         return part.part if isinstance(part, Turned) else Turned(part, total)
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
@@ -304,7 +304,7 @@ def trimmed(trim: Trim | None, domain: Domain, boundary: Boundary, *parts: TrimP
 
 
 def with_uv(trim: Trim | None, fields: Sequence[str]) -> tuple[str, ...]:
-    """Return fields of samples, with uv if there is a trim, which needs it."""
+    """Return fields of samples, with uv if there is a trim."""
     return (*fields, "uv") if trim is not None and "uv" not in fields else tuple(fields)
 
 
