@@ -24,44 +24,44 @@ POINTS_AT_A_TIME = 1 << 16
 
 
 class Counts(NamedTuple):
-    """The numbers of test points on a line, of lines inside the domain, of scattered points."""
+    """The numbers of test points on a line, of lines inside the domain, and of scattered points."""
 
     steps: int
     lines: int
     spread: int
 
 
-# Test points are on lines along u and along v, and scattered over the domain. A strip of 1 % of the
-# domain has three of each line that crosses it.
+# Test points are on lines along u and along v, and scattered over the domain. Each line has three
+# of them in a strip of 1 % of the domain that it crosses.
 MANY = Counts(steps=301, lines=4, spread=2048)
-# The same for a spline of fewer cells than FEW_CELLS: the surface is evaluated at most twice as
+# The same for a spline with fewer cells than FEW_CELLS: the surface is evaluated at most twice as
 # often as for the fit, and at most 8,000 times.
 FEW_CELLS, FEW = 2048, Counts(steps=202, lines=1, spread=512)
-# Further lines in both directions are this close to the sides: at poles and open sides the spline
-# is worst, in the first cell.
+# More lines in both directions are this close to the sides: at poles and open sides the spline is
+# least accurate in the first cell.
 NEAR_ENDS = (0.002, 0.015)
 # A side of the domain is collapsed if the line nearest to it is shorter than this part of the
-# diagonal; within this fraction of the domain from it, normals converge more slowly.
+# diagonal; within this part of the domain from it, normals converge more slowly.
 COLLAPSED, NEXT_TO_POLE = 0.01, 1.0 / 16.0
 # Normals take four evaluations, points one: normals are compared at every third test point on
 # lines, and at every fourth of the scattered ones.
 EACH_ON_LINES, EACH_SPREAD = 3, 4
-# The multiples of irrational numbers are spread evenly, modulo 1: those of 1/g in one dimension, g
-# the golden ratio, those of 1/ρ and 1/ρ² in two, ρ³ = ρ + 1 (Roberts' R2 sequence). Parameters of
-# fits are rational.
+# Multiples of irrational numbers, modulo 1, are evenly spread: of 1/g in one dimension, g the
+# golden ratio, and of 1/ρ and 1/ρ² in two, ρ³ = ρ + 1 (Roberts' R2 sequence). Parameters of fits
+# are rational.
 GOLDEN = 0.6180339887498949
 PLASTIC = 0.7548776662466927
-# Central differences of positions over ± this part of the domain: the error of a direction falls
-# with the square of it, and its rounding grows with its inverse. On surfaces that are far from the
-# origin, relative to their size, it is the cube root of the rounding.
+# Central differences of positions over ± this part of the domain: errors of directions are of
+# second order in it, rounding errors of order −1. On surfaces far from the origin, relative to
+# their size, it is the cube root of the rounding.
 SHORTEST_STEP, LONGEST_STEP = 2.0**-17, 2.0**-11
-# Surface normals with a larger error than this (radians), near singular points, are left out.
+# Normals of the surface with a larger error than this (radians), near singular points, are ignored.
 NORMAL_ERROR = 1e-4
-# Of the difference of two coordinates, relative to the largest: eight roundings.
+# Rounding of the difference of two coordinates, relative to the largest: eight roundings.
 DIFFERENCE = 2.0**-49
 # The surface is evaluated again at AROUND points around each of the WORST test points, within a
-# cell, and its normal at every EACH_AROUND-th of these. The worst are in different ones of GROUPS
-# groups.
+# cell, and its normal at every EACH_AROUND-th of them. Each of the WORST is in another one of
+# GROUPS groups.
 AROUND, WORST, GROUPS, EACH_AROUND = 30, 16, 100, 4
 # The number of points on each line of a cross around a test point, within a cell on either side.
 CROSS = 17
@@ -91,7 +91,7 @@ class Comparison:
 
 
 def compare_with_data(spline: Spline, data: Array, boundary: Boundary) -> Comparison:
-    """Return the misfit of a spline to a grid of points (m, n, 3); those with NaN do not count."""
+    """Return the misfit of a spline to a grid of points (m, n, 3); points with NaN do not count."""
     cells = cells_between(data.shape, boundary)
     parts = [np.arange(k) / count for k, count in zip(data.shape, cells, strict=False)]
     rows = max(POINTS_AT_A_TIME // len(parts[1]), 1)
@@ -127,7 +127,7 @@ def squared_lengths(differences: Array, scale: float) -> Array:
 def angles_between(vectors: Array, normals: Array) -> Array:
     """Return the angles, in degrees, between vectors and unit normals.
 
-    At a singular point of the spline its vector vanishes, and the angle counts as 90°.
+    At a singular point of the spline the vector vanishes, and the angle counts as 90°.
     """
     largest = np.abs(vectors).max(axis=1, keepdims=True)
     scaled = vectors / np.where(largest > 0.0, largest, 1.0)
@@ -152,7 +152,7 @@ class Known:
     normals: Array
 
     def errors(self, spline: Spline) -> tuple[Array, Array]:
-        """Return the squared distances (k,) of a spline, times its scale, and the angles (l,)."""
+        """Return squared scaled distances (k,) of a spline, and angles in degrees (l,)."""
         points, vectors = evaluated(spline, *self.parts)
         squares = squared_lengths(points - self.points, spline.scale)
         return squares, angles_between(vectors[self.with_normals], self.normals)
@@ -160,7 +160,7 @@ class Known:
 
 @dataclass(frozen=True, eq=False)
 class Probe:
-    """Values of a surface at test points, with which splines of it are compared.
+    """Values of a surface at test points, with which its splines are compared.
 
     Attributes
     ----------
@@ -189,7 +189,7 @@ class Probe:
     def compare(self, spline: Spline) -> Comparison:
         """Return the misfit of a spline of the surface.
 
-        The surface is evaluated again around the worst test points, lest narrow maxima be missed.
+        The surface is evaluated again around the worst test points, to find narrow maxima.
         """
         squares, angles = self.known.errors(spline)
         rms = math.sqrt(float(squares[len(squares) - self.spread :].mean())) / spline.scale
@@ -257,11 +257,12 @@ def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
 def variation(
     surface: Surface, spline: Spline, comparison: Comparison, slopes: bool
 ) -> tuple[float, float]:
-    """Return the variation of the error of a spline along u and along v where it is worst.
+    """Return the variation of the error of a spline along u and along v at its maximum.
 
-    It varies between the middle of a cell and its ends along u if the cells are too long along u,
-    and less if they are too long along v only. With `slopes`, it is divided by the length of the
-    derivative of the surface: errors along the shorter tangent turn normals more.
+    If cells are too long along u, the error varies between the middle of a cell and its ends along
+    u; if they are too long along v only, it varies less along u. With `slopes`, the variation is
+    divided by the length of the derivative of the surface: errors along the shorter tangent turn
+    normals more.
     """
     found, place = [], comparison.steepest if slopes else comparison.farthest
     for axis in (0, 1):
@@ -284,9 +285,8 @@ def variation(
 def _places(counts: Counts) -> Array:
     """Return test points (2, k) as fractions of the domain: on lines along u and v, and scattered.
 
-    The first two lines along u, and along v, are the nearest to the sides. The number of steps is
-    one more than a multiple of EACH_ON_LINES, so that the points with normals differ from line to
-    line.
+    The first two lines along u, and along v, are next to the sides. The number of steps is one more
+    than a multiple of EACH_ON_LINES, so that the points with normals differ from line to line.
     """
     along = (np.arange(counts.steps, dtype=np.float64) + GOLDEN) / counts.steps
     numbers = np.arange(1, counts.lines + 1, dtype=np.float64)
@@ -320,7 +320,7 @@ def _points(surface: Surface, parts: Array) -> Array:
 
 
 def _belonging(surface: Surface, parts: Array) -> Indices:
-    """Return the indices of the test points inside the trim; of all, if none is."""
+    """Return the indices of the test points inside the trim; of all of them, if none is."""
     if surface.trim is None:
         return np.arange(parts.shape[1])
     inside = surface.trim.contains(np.stack(_in_domain(parts, surface.domain), axis=1))

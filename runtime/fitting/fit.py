@@ -33,14 +33,15 @@ from .tolerance import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
 __all__ = ["DEFAULT_CELLS", "check_range", "fit", "spline_of"]
 
 # Without cells or tolerance: the least numbers of cells, and the goal for which they are increased.
-# At creases no number of cells makes normals accurate: the search ends when they do not improve.
+# At creases no number of cells makes normals accurate: the search ends when they no longer improve.
 DEFAULT_CELLS = (64, 64)
 DEFAULT_TOLERANCE = Tolerance(distance=None, relative=1e-4, angle=0.1)
 DEFAULT_BOUNDS = Bounds(most=(1024, 1024), total=2**16, patience=2)
-# For a tolerance: the numbers of cells of the first attempt, and the largest ones.
+# For a tolerance: the numbers of cells of the first attempt, and their maximum.
 FEWEST_CELLS = (8, 8)
 BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
-# A callable is called twice at AGAIN points: both answers agree up to SAME times their extent.
+# A callable is called again at AGAIN points: both answers have to agree up to SAME times their
+# extent.
 AGAIN, SAME = 16, 1e-9
 
 
@@ -57,7 +58,7 @@ def patches_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) 
 
 
 def spline_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) -> Spline:
-    """Return the same; InputError for a spline of nets, which has no grid of cells."""
+    """Return the spline as `patches_of` does; InputError for nets, which have no grid of cells."""
     return on_grid(patches_of(surface, cells))
 
 
@@ -175,7 +176,7 @@ def fit(
 
 
 def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
-    """Return a spline within a tolerance, by default that of the default cells."""
+    """Return a spline within a tolerance, by default with the default cells."""
     spline = _fitted(surface, DEFAULT_CELLS if asked is None else FEWEST_CELLS)
     probe = probe_of(surface, DEFAULT_CELLS)
     goal = (asked or DEFAULT_TOLERANCE).goal(probe.diagonal, probe.largest, poles=asked is not None)
@@ -209,7 +210,7 @@ def _fit_data(
 
 
 def _trim_of(surface: Surface, spline: Spline, finest: bool) -> Trim | None:
-    """Return the trim of a surface, without patches of a coarse spline that need missing points."""
+    """Return the trim of a surface; a coarse spline loses patches that need missing points."""
     trim, grid = surface.trim, surface.grid
     if trim is None or grid is None or not np.isnan(grid).any():
         return trim
@@ -256,7 +257,7 @@ def _finest(surface: Surface, grid: NDArray[np.float64]) -> Spline:
 
 
 def _within(domain: Domain, bounds: Bounds) -> Bounds:
-    """Return bounds reduced for a domain that is narrow relative to the magnitude of its bounds."""
+    """Return bounds, reduced for a domain that is narrow relative to the size of its parameters."""
     most = [
         min(most, max(int((high - low) / np.spacing(max(-low, high)) / 8.0), 64))
         for (low, high), most in zip(domain, bounds.most, strict=True)
@@ -287,7 +288,7 @@ def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
 
 
 def _check_repeated(surface: Surface) -> None:
-    """Raise SurfaceError if a user's callable returns other points when it is called again."""
+    """Raise SurfaceError if a user's callable returns other points when called again."""
     if surface.grid is not None or isinstance(surface.function, Differentiable):
         return
     u, v = places_in(surface.domain, AGAIN)

@@ -14,16 +14,16 @@ from .comparison import Comparison, Misfit
 
 __all__ = ["FAR_OFF", "Bounds", "Goal", "Tolerance", "checked_tolerance", "refined"]
 
-# The largest part of the misfit that may remain when the cells are halved: of order 3 an eighth
-# remains, of order 1, as at folds, a half.
+# A spline is an improvement if at most this part of an error remains. Halved cells leave an eighth
+# for order 3, a half for order 1, as at folds.
 IMPROVED = 0.75
-# Cells are halved along both u and v unless one of the two has this many times the error.
+# Cells are halved along u and v, or along one of them if its error is this many times the other's.
 DOMINANT = 4.0
-# The smallest angle, in degrees, that is measured.
+# The smallest angle that is measured, in degrees.
 LEAST_ANGLE = 1e-4
-# The relative tolerance of positions if only that of normals is given.
+# The relative tolerance of positions if only a tolerance of normals is given.
 BESIDE_NORMALS = 1e-4
-# A spline whose distance exceeds the goal by this factor may miss a feature of the surface: the
+# A spline whose distance exceeds the goal by this factor may miss a feature of the surface, and the
 # search goes on.
 FAR_OFF = 10.0
 
@@ -32,8 +32,8 @@ FAR_OFF = 10.0
 class Bounds:
     """The largest numbers of cells along u and v, and in all.
 
-    `patience` is the number of steps without improvement after which the search ends, if the
-    distance is not far from the goal.
+    The search ends after `patience` steps without improvement, unless the distance is far from the
+    goal.
     """
 
     most: tuple[int, int]
@@ -131,9 +131,8 @@ def refined(
 ) -> tuple[Spline, Misfit, bool]:
     """Return a spline with enough cells for a goal, its misfit, and whether the goal is reached.
 
-    The cells of `spline` are halved along u, along v or both: along the parameter with the largest
-    `variation` of the error. If the goal is not reached, the last spline that was an improvement is
-    returned.
+    The cells of `spline` are halved along u, along v or both, where the `variation` of the error is
+    largest. If the goal is not reached, return the last spline that was an improvement.
     """
     stalled, comparison = 0, compare(spline)
     best, its_comparison = spline, comparison
@@ -141,7 +140,7 @@ def refined(
         distance, angle = goal.excess(comparison)
         if stalled >= bounds.patience and distance <= FAR_OFF:
             break
-        # Derivatives may mislead: the error changes along u, too, if cells are too long along v.
+        # Derivatives may mislead: the error also varies along u if cells are too long along v.
         u, v = variation(spline, comparison, angle > distance and stalled == 0)
         finer = _finer(spline.cells, u, v, bounds)
         if finer == spline.cells:
@@ -156,13 +155,13 @@ def refined(
 
 
 def _improved(goal: Goal, before: Comparison, after: Comparison) -> bool:
-    """Return whether one of the errors that exceed the goal fell."""
+    """Return whether one of the errors that exceed the goal decreased."""
     pairs = zip(goal.excess(before), goal.excess(after), strict=True)
     return any(old > 1.0 and new <= IMPROVED * old for old, new in pairs)
 
 
 def _finer(cells: tuple[int, int], u: float, v: float, bounds: Bounds) -> tuple[int, int]:
-    """Double the cells along u, v or both, by their errors, as far as the bounds allow."""
+    """Double the cells along u, v or both, by their errors, within the bounds."""
     twice = [min(2 * count, most) for count, most in zip(cells, bounds.most, strict=True)]
     along_u, along_v = (twice[0], cells[1]), (cells[0], twice[1])
     larger, smaller = (along_u, along_v) if u >= v else (along_v, along_u)
