@@ -1,4 +1,4 @@
-"""Seams and poles that are declared: whether a surface closes there."""
+"""Declared seams and poles: whether a surface closes there."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from .surface_values import SurfaceValues
 
 __all__ = ["close_seams", "closed_points"]
 
-# Points at the ends of a parameter are compared with those as many roundings of it away.
+# Points at one end of a parameter are compared with points this many roundings from the other.
 ROUNDINGS = 2.0
 
 
 def closed_points(surface: SurfaceValues, cells: tuple[int, int]) -> NDArray[np.float64]:
     """Return points (m + 1, n + 1, 3) of a surface at the corners of m × n cells of its domain.
 
-    Raises SurfaceError as `close_seams`, and if points are too large to compute with.
+    Raises SurfaceError as `close_seams` does, and if points are too large to compute with.
     """
     u, v = (
         np.linspace(*ends, count + 1) for ends, count in zip(surface.domain, cells, strict=True)

@@ -1,9 +1,9 @@
 """Collapsed sides of the domain: poles, where the surface is smooth, and apexes.
 
-A disk in polar coordinates has such a side, and a sphere has two. If boundary conditions were not
+A disk in polar coordinates has one such side, a sphere has two. If boundary conditions are not
 declared, poles are detected from a few points: the side is one point, the other parameter is
-smoothly periodic, and each meridian is smoothly continued by the opposite one. Any other collapsed
-side is an apex: the tip of a cone, the corner of a triangle.
+smoothly periodic, and each meridian continues the opposite one smoothly. Any other collapsed side
+is an apex: the tip of a cone, the corner of a triangle.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ __all__ = ["closed_grid", "with_found_sides"]
 
 Values = TypeVar("Values", bound=SurfaceValues)
 
-# The number of steps of a line along a side; it is even.
+# The number of steps of a line along a side, an even number.
 STEPS = 16
-# The distance of the lines near a side as a part of the domain. For a surface far from the origin,
+# The distance of the lines near a side, as a part of the domain. For a surface far from the origin,
 # relative to its size, it is the cube root of the rounding error, if that is larger.
 LEAST_STEP, MOST_STEP = 1e-4, 1e-2
-# A line is continued smoothly if three points predict the next one up to this part of the step. The
+# A line continues smoothly if three points predict the next one up to this part of the step. The
 # error is of second order in the step; for data, the step is that of the grid.
 KINK, KINK_OF_DATA = 1e-2, 0.3
 
 
 def with_found_sides(surface: Values) -> tuple[Values, int]:
-    """Return a surface with the poles that are found at its sides, and the number of its apexes.
+    """Return a surface with the poles found at its sides, and the number of its apexes.
 
-    A surface that cannot be evaluated next to its sides keeps its boundary conditions: if that is
+    A surface that cannot be evaluated next to its sides keeps its boundary conditions; if that is
     an error, the fit reports it.
     """
     boundary, apexes = surface.boundary, 0
@@ -61,8 +61,8 @@ def with_found_sides(surface: Values) -> tuple[Values, int]:
 def closed_grid(points: Array, boundary: Boundary, assumed: Assumed) -> tuple[Array, Boundary]:
     """Return a grid (m, n, 3) and its boundary conditions, with detected poles.
 
-    If a parameter turns out to be periodic, the points at its end are left out: they repeat those
-    at its beginning.
+    If a parameter turns out to be periodic, the points at its end are dropped: they repeat those at
+    its beginning.
     """
     if not any(assumed) or min(points.shape[:2]) < 4:
         return points, boundary
@@ -111,7 +111,7 @@ class _Sides:
 
     @classmethod
     def of_grid(cls, points: Array, boundary: Boundary, assumed: Assumed) -> _Sides:
-        """Return the sides of a grid of points; those with NaN are not one point."""
+        """Return the sides of a grid of points; a side with NaN is not one point."""
 
         def lines(axis: int, end: int) -> Array:
             rows = np.swapaxes(points, 0, axis)
@@ -162,7 +162,7 @@ class _Sides:
         return is_same and self._goes_on(low, high[1])
 
     def _goes_on(self, near: Array, beyond: Array) -> bool:
-        """Return whether lines at the distances 0, 1, 2 (3, k, 3) predict the one at −1 (k, 3)."""
+        """Return whether lines at the distances 0, 1, 2 (3, k, 3) predict the line at −1 (k, 3)."""
         step = float(np.abs(near[1] - near[0]).max())
         predicted = python_function(formulas.extrapolation)(*near)
         return bool(np.abs(predicted - beyond).max() <= self.kink * step + self.rounding)

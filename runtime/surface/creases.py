@@ -1,8 +1,8 @@
 """Creases, parameter lines where a NURBS surface is not smooth, and smoothly closed parameters.
 
-Both are measured: a surface may be smooth at a multiple knot, as a circle of four arcs is. It is
-smooth across a line if the normal does not jump there, and the length of the tangent across it does
-not jump so much that a spline would fold.
+Both are measured: a surface may be smooth at a multiple knot, as is a circle of four arcs. It is
+smooth across a line if neither the normal jumps there, nor the length of the tangent across the
+line so much that a spline would fold.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from .nurbs import Nurbs
 __all__ = ["CREASE_ANGLE", "creases", "smoothly_closed"]
 
 
-# The least jump of the normal at a crease, in degrees. Data for CAD are this smooth at best.
+# The least jump of the normal at a crease, in degrees. CAD data are at best this smooth.
 CREASE_ANGLE = 0.1
 # The largest smooth ratio of tangent lengths. The spline of a surface has no folds at this ratio,
-# but has some from 5 on.
+# and some from 5 on.
 LARGEST_JUMP = 3.0
 # Where |x_u × x_v| on a knot line is below SINGULAR times the largest |x_u| |x_v|, x_u or x_v
 # vanishes. The normal is then evaluated at a distance of BESIDE times the knot span from the line.
@@ -47,7 +47,7 @@ def smoothly_closed(nurbs: Nurbs, axis: int) -> bool:
     if apart(first[:, 0], last[:, 0], nurbs.control_points):
         return False
     if (np.einsum("ij,ij->i", first[:, 1 + axis], last[:, 1 + axis]) < 0.0).any():
-        return False  # a fold, with one normal from both sides
+        return False  # a fold, with one normal on both sides
     turning, jump = _turning(nurbs, axis, high, low), _jump(nurbs, axis, high, low)
     return turning <= CREASE_ANGLE and jump <= LARGEST_JUMP
 
@@ -84,7 +84,7 @@ def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
 def _jump(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
     """Return the largest ratio of the lengths of x_u, or x_v, below a line and above it.
 
-    Where both vanish, relative to other points, the ratio counts as 1.
+    It is 1 where both lengths vanish, relative to other points.
     """
     low, high = nurbs.domain[axis]
     first, second = (

@@ -32,7 +32,7 @@ def pieces_of(surface: Surface) -> tuple[Surface, ...]:
 
 
 def _moved_pieces(surface: Surface, moved: Moved) -> tuple[Surface, ...]:
-    """Return the pieces of a moved surface: those of the original surface, moved."""
+    """Return the pieces of a moved surface: the moved pieces of the original surface."""
     pieces = pieces_of(moved.surface)
     if len(pieces) == 1:
         return (surface,)

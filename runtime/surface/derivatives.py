@@ -44,7 +44,7 @@ Evaluation = Callable[[Array, Array], ArrayLike]
 Bounds = tuple[tuple[float, float], tuple[float, float]]
 Lines = tuple[tuple[float, ...], tuple[float, ...]]
 
-# The rows of a 2-jet.
+# The indices of a 2-jet.
 NAMES = ("x", "x_u", "x_v", "x_uu", "x_uv", "x_vv")
 EVERYWHERE: Bounds = ((-math.inf, math.inf), (-math.inf, math.inf))
 POINTS = FIRST.shape[1]
@@ -52,14 +52,14 @@ HALF = POINTS // 2
 # A step is the largest power of two up to this part of the domain. (With powers of two, sums of
 # parameters and steps are exact up to the last bit.)
 STEP = 1 / 256
-CHUNK = 4096  # number of rows that are evaluated at a time
+CHUNK = 4096  # number of rows in one batch
 # If differences of seven and nine points disagree by more than SAME, relative to the differences of
-# values, steps are divided by FINER, at most LEVELS times, as long as that helps or the
-# disagreement is LARGE.
+# values, steps are divided by FINER, at most LEVELS times, while that helps or the disagreement is
+# LARGE.
 SAME, LARGE = 1e-10, 1e-3
 FINER, LEVELS = 4.0, 5
 ROUNDING = 2.0**-46  # of values: smaller differences are rounding errors
-# Given derivatives are compared with numerical ones at some places.
+# The number of points where given derivatives are compared with numerical ones.
 PLACES = 48
 # They may differ by TOLERANCE, relative to the largest derivative of the same order, plus DOUBT
 # times the change of the numerical ones when their steps are doubled.
@@ -95,13 +95,13 @@ class Differentiable(ABC):
         return None
 
     def differences(self, boundary: Boundary) -> Differences | None:
-        """Return the `Differences` by which derivatives are computed; None if they are formulas."""
+        """Return the `Differences` that compute derivatives; None if they are formulas."""
         return None
 
 
 @dataclass(frozen=True)
 class Differences:
-    """The derivatives of a function by differences; it is called only inside the domain."""
+    """The derivatives of a function by differences; it is only called inside the domain."""
 
     function: Function
     domain: Domain
@@ -123,7 +123,7 @@ class Differences:
         return jets
 
     def _refined(self, u: Array, v: Array, steps: tuple[float, float], bounds: Bounds) -> Array:
-        """Return 2-jets (k, 6, 3), with smaller steps where these change them."""
+        """Return 2-jets (k, 6, 3), with smaller steps where these make a difference."""
         jets, doubts = differences(self._inside, u, v, steps, bounds)
         rows = np.flatnonzero(doubts > SAME)
         for _ in range(LEVELS):
@@ -141,7 +141,7 @@ class Differences:
 
 
 def _bounds(interval: Interval, ends: BoundaryPair) -> Interval:
-    """Return the bounds at open ends; beyond other ends the surface continues."""
+    """Return the bounds at open ends, infinity at other ends, where the surface continues."""
     (low, high), (at_low, at_high) = interval, ends
     return low if at_low == "open" else -math.inf, high if at_high == "open" else math.inf
 
@@ -202,8 +202,8 @@ def differences(
     -------
     (k, 6, 3) float64 array
         The error of a first derivative is about h⁸/630 of the ninth derivative plus 2 ε/h of the
-        value, that of a second derivative h⁸/3150 of the tenth plus 8 ε/h²: ten to a thousand times
-        as much next to a bound.
+        value, that of a second derivative h⁸/3150 of the tenth plus 8 ε/h². Next to a bound it is
+        ten to a thousand times larger.
     (k,) float64 array
         The distances from differences of seven points, relative to the differences of values;
         infinity if a value is not finite, unless x itself is not.
@@ -242,7 +242,7 @@ def differences(
 
 
 def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
-    """Return the change by omitting two points, relative to the differences (9, k, 3) of values."""
+    """Return the change if two points are omitted, relative to differences of (9, k, 3)."""
     changes = np.array([weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
     size, change = (np.abs(x).max(axis=0).max(axis=1) for x in (values, changes))
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -254,7 +254,7 @@ def shifts_inside(
 ) -> tuple[Indices, Indices]:
     """Return the steps by which points are shifted to stay inside, and the inward sign.
 
-    Step and ends are common to all values (k,), or arrays (k,).
+    Step and bounds are common to all values (k,), or arrays (k,).
     """
     before = np.clip(np.floor((values - low) / step), 0, HALF)
     after = np.clip(np.floor((high - values) / step), 0, HALF)
@@ -269,7 +269,7 @@ def nodes_between(
     low: float | Array,
     high: float | Array,
 ) -> Array:
-    """Return the nodes of a difference; rounding does not move them out of the bounds."""
+    """Return the nodes of a difference, which rounding does not move out of the bounds."""
     return np.clip(values + offsets * step, np.minimum(low, values), np.maximum(high, values))
 
 
@@ -343,7 +343,7 @@ def compare(derivatives: Function, numerical: Differences, label: str) -> None:
         allowed = TOLERANCE * sizes + DOUBT * np.abs(found - coarse).max(axis=-1)
         wrong: Flags = known & ~(error <= allowed)
     if wrong.any():
-        order = int(np.argmax(wrong.any(axis=0)))  # the first wrong one explains the others
+        order = int(np.argmax(wrong.any(axis=0)))  # the first wrong derivative explains the others
         place = int(np.argmax(np.where(wrong, error, -1.0)[:, order]))
         raise SurfaceError(
             f"derivatives of {label} contradict it: {NAMES[order]} at u = {float(u[place])}, v = "

@@ -31,7 +31,7 @@ __all__ = [
 def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tuple[Any, ...]:
     """Return three expressions in two symbols, or two in one; InputError if they are unusable.
 
-    Symbols of the same name in an expression are replaced by these, whatever their assumptions.
+    Symbols of an expression with the same name are replaced by these, whatever their assumptions.
     """
     by_name = {symbol.name: symbol for symbol in symbols}
     expressions = [as_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
@@ -49,7 +49,7 @@ def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tup
 
 
 def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
-    """Return a domain or an interval with floats for its bounds, which may be expressions.
+    """Return a domain or an interval with its bounds, which may be expressions, as floats.
 
     Raises InputError, with the required form, if it is invalid.
     """
@@ -60,7 +60,7 @@ def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
 
     try:
         return number(domain)
-    except (TypeError, ValueError, OverflowError, RecursionError):  # lists that hold themselves
+    except (TypeError, ValueError, OverflowError, RecursionError):  # lists that contain themselves
         raise InputError(f"domain must be {form} in numbers, not {shown(domain)}.") from None
 
 
@@ -80,7 +80,7 @@ def two_symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
     """Return real symbols for the parameters of a surface, symbols or names; InputError if not."""
     try:
         u, v = (_symbol(x) for x in parameters)
-    except Exception:  # objects raise anything
+    except Exception:  # iteration may raise anything
         u = v = None
     if u is None or v is None or u.name == v.name:
         raise InputError(f"parameters must be two SymPy symbols (u, v), not {shown(parameters)}.")
@@ -106,7 +106,7 @@ def _symbol(entry: object) -> sympy.Symbol | None:
 
 
 def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return an expression, or that of a text, whose names are first looked up in `symbols`.
+    """Return an expression, or the expression of a text; `symbols` are its names.
 
     Raises InputError, with the reason, if it is invalid, or if kernels cannot compute it.
     """
@@ -131,7 +131,7 @@ def as_condition(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - 
 def _read(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401
     """Return the SymPy object for a text, a number or an expression; None for anything else.
 
-    SymPy would run texts as Python, even those in lists, so that none is passed to it.
+    SymPy would run texts as Python, even those in lists, so none is passed to it.
     """
     import sympy as sp
 

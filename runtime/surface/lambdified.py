@@ -1,4 +1,4 @@
-"""Callables of SymPy expressions: points, and derivatives; pickled as the expressions.
+"""Callables of SymPy expressions: points and derivatives; pickled as the expressions.
 
 Derivatives are those of a tape if there is one; otherwise they are symbolic, as for |u|.
 """
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Expressions", "compiled"]
 
-PROBES = np.array([0.25, 0.75])  # parameters for a trial of the derivatives, whatever their values
+PROBES = np.array([0.25, 0.75])  # parameters for a trial of the derivatives; any values do
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class Expressions(Differentiable):
 
     @property
     def differentiable(self) -> bool:
-        """Whether there is a tape, or SymPy has the derivatives, and NumPy their functions."""
+        """Whether there is a tape, or NumPy has all functions of SymPy's derivatives."""
         return self._tape is not None or self._derivatives is not None
 
     def __call__(self, *values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -63,7 +63,7 @@ class Expressions(Differentiable):
         return self._tape
 
     def __getstate__(self) -> dict[str, object]:
-        """Return the pickled state: the expressions without the functions made of them."""
+        """Return the pickled state: the expressions without the compiled functions."""
         return {"expressions": self.expressions, "symbols": self.symbols}
 
     @cached_property
@@ -96,7 +96,7 @@ def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expres
     Raises InputError if they are unusable.
     """
     function = Expressions(as_position(position, symbols), tuple(symbols))
-    _ = function._position  # which raises InputError if the expressions are unusable
+    _ = function._position  # raises InputError if the expressions are unusable
     return function
 
 
@@ -112,7 +112,7 @@ def _jet(expressions: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> list[An
         x_u, x_v = ([_derivative(e, by) for e in x] for by in (u, v))
         x_uu, x_uv = ([_derivative(e, by) for e in x_u] for by in (u, v))
         x_vv = [_derivative(e, v) for e in x_v]
-    except Exception:  # SymPy raises anything
+    except Exception:  # SymPy may raise anything
         return None
     jet = [*x, *x_u, *x_v, *x_uu, *x_uv, *x_vv]
     if any(e.has(sp.Derivative, sp.Subs, sp.zoo, sp.nan) for e in jet):

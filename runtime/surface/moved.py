@@ -78,7 +78,7 @@ class Moved(Differentiable):
 
     @classmethod
     def of(cls, surface: SurfaceValues) -> Moved:
-        """Return the function of a surface as a `Moved`: its own, if it is one."""
+        """Return the function of a surface as a `Moved`, itself if it already is one."""
         if isinstance(surface.function, Moved):
             return surface.function
         return cls(surface, IDENTITY, False, surface.domain[0])

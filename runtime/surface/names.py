@@ -14,7 +14,7 @@ _lock = threading.Lock()
 
 
 def label(name: str | None, kind: str, function: object = None) -> str:
-    """Return a given name, or else that of a function or a kind of surface.
+    """Return a given name, or else the name of a function or of a kind of surface.
 
     Default names are distinct in a process: "waves", then "waves 2". InputError unless a given name
     is a text.

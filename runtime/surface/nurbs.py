@@ -24,10 +24,10 @@ __all__ = ["Nurbs"]
 class Nurbs(Differentiable):
     """A NURBS surface over a rectangle of its parameters: `nurbs(u, v)` and `nurbs.jets(u, v)`.
 
-    `points` are (m, n, 3), or (m, n, 4) if they are w x, w y, w z, w; they are relative to `centre`
-    (3,), so that a surface far from the origin keeps its digits. At the ends of the domain, which
-    may be lines where the surface is not smooth, it is evaluated from inside. `creases` are the
-    values of u, and of v, inside the domain where the surface is not smooth.
+    `points` are (m, n, 3), or (m, n, 4) with w x, w y, w z, w. They are relative to `centre` (3,),
+    so that a surface far from the origin keeps its digits. The ends of the domain may be lines
+    where the surface is not smooth; there it is evaluated from inside. `creases` are the values of
+    u, and of v, inside the domain where the surface is not smooth.
     """
 
     degrees: tuple[int, int]
@@ -62,7 +62,7 @@ class Nurbs(Differentiable):
         Nothing is checked. Beyond an end of the domain the last polynomials are continued.
         """
         jets = np.empty((len(u), 6, 3))
-        u, v = np.array(u), np.array(v)  # other memory layouts would be compiled separately
+        u, v = np.array(u), np.array(v)  # Kernels would be compiled anew for other memory layouts
         kernels.jets(self._net, u, v, self._scratch(), jets)
         return jets
 
@@ -89,7 +89,7 @@ class Nurbs(Differentiable):
     @cached_property
     def _net(self) -> kernels.Net:
         spans = [
-            # Kernels read the knots around a span without checks of bounds.
+            # Kernels read the knots around a span without bounds checks.
             np.clip(
                 (np.searchsorted(knots, low, "right"), np.searchsorted(knots, high, "left")),
                 degree + 1,
@@ -114,6 +114,6 @@ class Nurbs(Differentiable):
         )
 
     def _scratch(self) -> kernels.Scratch:
-        """Return memory for one call: calls of several threads share none."""
+        """Return memory for one call; threads share none."""
         p, q = self.degrees
         return kernels.Scratch(np.empty((3, p + 1)), np.empty((3, q + 1)), np.zeros((6, 4)))

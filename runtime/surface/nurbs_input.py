@@ -18,7 +18,7 @@ __all__ = ["MOST_DEGREE", "nurbs_of"]
 
 # No format for CAD data holds larger degrees.
 MOST_DEGREE = 25
-# Control points with smaller weights, relative to the largest one, say nothing about the centre.
+# Control points with smaller weights, relative to the largest one, do not count for the centre.
 LIGHT = 0.1
 
 
@@ -43,8 +43,8 @@ def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nur
         )
     )
     factors = np.ones(points.shape[:2]) if weights is None else _weights(weights, points.shape[:2])
-    # Quotients are small differences of large numbers where one weight outweighs all others, unless
-    # its point is the origin.
+    # Where one weight outweighs all others, quotients are small differences of large numbers,
+    # unless its point is the origin.
     heavy = points[factors >= LIGHT * factors.max()]
     centre = heavy.min(axis=0) / 2 + heavy.max(axis=0) / 2
     points = points - centre
@@ -59,7 +59,7 @@ def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nur
 def _pair(values: Any, name: str) -> tuple[Any, Any]:  # noqa: ANN401 - what a user gives
     try:
         u, v = values
-    except Exception:  # objects raise anything
+    except Exception:  # conversion may raise anything
         raise InputError(f"{name} must be a pair, one for u and one for v.") from None
     return u, v
 
@@ -92,7 +92,7 @@ def _knots(values: ArrayLike, degree: int, count: int, name: str) -> Array:
 
 
 def _check_multiplicities(knots: Array, degree: int, name: str) -> None:
-    """Raise InputError for knots inside the domain that tear the surface, and for excess knots."""
+    """Raise InputError for excess knots, and for knots inside the domain that tear the surface."""
     values, counts = np.unique(knots, return_counts=True)
     inside = (values > knots[degree]) & (values < knots[-degree - 1])
     for many, reason in (
@@ -124,9 +124,10 @@ def _weights(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 
 def _definition_of(value: object) -> tuple[Any, ...]:
-    """Return degrees, knots, points and weights of a geomdl or Splipy surface, told by attributes.
+    """Return degrees, knots, points and weights of a geomdl or Splipy surface.
 
-    Raises InputError for other objects, and for features that cannot be converted.
+    The attributes tell which it is. Raises InputError for other objects, and for features that
+    cannot be converted.
     """
     if is_of_geomdl(value):
         return _of_geomdl(value)
@@ -167,8 +168,8 @@ def _of_geomdl(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not impor
 def _of_splipy(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not imported
     """Return the definition of a `splipy.Surface`.
 
-    Its control points are w x, w y, w z, w if it is rational. Those at the end of a periodic
-    direction are not repeated.
+    Its control points are w x, w y, w z, w if it is rational. In a periodic direction, the first
+    ones are not repeated at the end.
     """
     bases = tuple(value.bases)
     points = real_array(value.controlpoints, "control points")

@@ -24,8 +24,8 @@ __all__ = ["nurbs_tape"]
 
 
 UNIT = 2.0**-53
-KEPT = 256  # number of cached bases of spans: faces of a part often share them
-MOST_NUMBERS = 4_000_000  # of coefficients of all polynomials: 64 MB with their errors
+KEPT = 256  # the number of cached bases of spans, which faces of a part often share
+MOST_NUMBERS = 4_000_000  # of the coefficients of all polynomials: 64 MB with their errors
 
 
 class Axis(NamedTuple):

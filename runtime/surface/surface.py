@@ -65,7 +65,7 @@ class Surface(SurfaceValues):
     trim : Trim or None
         The part of the domain that belongs to the surface, None for all of it; see `trimmed`.
     assumed_open : (bool, bool)
-        For u and for v, whether open sides were assumed: ``periodic=False``, and not "open". Then
+        For u and for v, whether sides are open by assumption: ``periodic=False``, not "open". Then
         `fit` tests whether one of them is a single point at which the surface is smooth; such a
         side becomes a pole, and the other parameter periodic. If points were given, `boundary` has
         these poles, and points that repeat the first ones are left out.
@@ -121,9 +121,9 @@ class Surface(SurfaceValues):
             "open", "periodic", "mirrored", "pole" for both ends, or a pair of these (lower bound,
             upper bound).
         derivatives : callable, optional
-            ``derivatives(u, v)`` returns (..., 6, 3): x, x_u, x_v, x_uu, x_uv, x_vv. They are
-            compared with numerical ones at their first use. By default derivatives are numerical,
-            see `derivatives`.
+            ``derivatives(u, v)`` returns (..., 6, 3): x, x_u, x_v, x_uu, x_uv, x_vv. At their first
+            use they are compared with numerical ones. By default derivatives are numerical, see
+            `derivatives`.
         name : str, optional
             Label of the surface. By default the name of f, or "surface" if it has none, with a
             number from the second surface of that name on: "waves", "waves 2".

@@ -240,7 +240,7 @@ class SurfaceValues(Immutable):
 
     @property
     def differences(self) -> Differences | None:
-        """The differences by which `derivatives` are computed; None if they are formulas.
+        """The differences that compute `derivatives`; None if these are formulas.
 
         Examples
         --------
@@ -256,7 +256,7 @@ class SurfaceValues(Immutable):
 
     @cached_property
     def tape(self) -> Tape | None:
-        """The tape of operations that compute the surface, from which its derivatives are bounded.
+        """The tape of operations that compute the surface, which gives bounds of its derivatives.
 
         It is known for the catalogue, for SymPy expressions, and for callables made of NumPy
         functions, if these are smooth elementary functions; otherwise it is None. A callable is

@@ -162,8 +162,8 @@ def surface(name: str, /, **parameters: float) -> Surface:
 def named(value: T | str) -> T | Surface:
     """Return the surface of the catalogue for a name, and any other value unchanged.
 
-    Every function that takes a surface calls this first. Raises UnknownNameError for other names,
-    with advice for names of files.
+    Every function that takes a surface calls this first. UnknownNameError for unknown names has
+    advice on names of files.
     """
     if isinstance(value, str) and value not in CATALOGUE and (advice := file_advice(value)):
         raise UnknownNameError(f"there is no surface {shown(value)}; {advice}.")
@@ -172,7 +172,7 @@ def named(value: T | str) -> T | Surface:
 
 @cache
 def _default(name: str) -> Surface:
-    """Return the surface of the catalogue with the default parameters, each time the same."""
+    """Return the surface of the catalogue with default parameters, always the same object."""
     return surface(name)
 
 

@@ -1,4 +1,4 @@
-"""Tracing of callables made of NumPy functions: these are called once with symbols.
+"""Tracing of callables made of NumPy functions: they are called once with symbols.
 
 Callables that return points give tapes; those that return booleans give inequalities of tapes.
 """
@@ -25,7 +25,7 @@ __all__ = ["traced_condition", "traced_tape"]
 Sides = NDArray[np.int8]
 Function = Callable[..., Any]  # of u and v: arrays, or traced numbers
 
-# The callable and the tape are compared at some places. Both have rounding errors; that of the
+# The number of points where callable and tape are compared. Both have rounding errors: that of the
 # tape is bounded, that of the callable may be larger.
 PLACES = 48
 ROUNDING = 64.0
@@ -34,8 +34,8 @@ ROUNDING = 64.0
 def traced_tape(function: Function, domain: Domain) -> Tape | None:
     """Return the tape of a callable f(u, v) → (..., 3); None if it cannot be traced.
 
-    Callables that depend on comparisons, single precision or other variables than u and v have
-    none.
+    A callable has none if it depends on comparisons, single precision, or variables other than u
+    and v.
     """
     for called in (function, _with_object_arrays(function)):
         try:
@@ -64,9 +64,9 @@ class ObjectArrays:
 
 
 def _with_object_arrays(function: Function) -> Function:
-    """Return a function of Python that fills new arrays with traced numbers.
+    """Return a Python function that fills its new arrays with traced numbers.
 
-    It runs with other globals: TypeError if a call assigns to one of them.
+    It runs with other globals: a call that assigns to one of them raises TypeError.
     """
     if not isinstance(function, FunctionType):
         return function
@@ -138,7 +138,7 @@ def row_of(writer: TapeWriter, value: object) -> int:
 
 
 def applied(name: str) -> Callable[[Traced], Traced]:
-    """Return the method that writes a function of the generated formulas."""
+    """Return the method that writes a function of the generated formulas to the tape."""
 
     def method(self: Traced) -> Traced:
         return self.written(name, self)
@@ -151,8 +151,8 @@ class Traced:
     """A number that depends on u and v: operations on it are written to a tape.
 
     NumPy's functions call the methods of their names for arrays of objects. Comparisons give
-    conditions, which have no truth value; absolute values can only be compared, and integers and
-    equality raise TypeError.
+    conditions, which have no truth value. Absolute values can only be compared. Integer conversion
+    and equality raise TypeError.
     """
 
     writer: TapeWriter
@@ -181,7 +181,7 @@ class Traced:
     def __lt__(self, other: object) -> Condition:
         return -self > self.written("negative", other)
 
-    __ge__, __le__ = __gt__, __lt__  # equality is decided by neither
+    __ge__, __le__ = __gt__, __lt__  # Neither decides equality
 
     def __abs__(self) -> AbsoluteValue:
         return AbsoluteValue(self)
@@ -228,7 +228,7 @@ class Traced:
         return self.written("sqrt", self * self + self.written("square", other))
 
     def arctan2(self, other: object) -> Traced:
-        """Return the angle of (other, self), from half of it; unbounded where that is π/2."""
+        """Return the angle of (other, self), from its half; unbounded where the half is π/2."""
         size = self.written("sqrt", self.written("square", other) + self * self)
         return self.written("atan", self / (size + other)) * 2.0
 
