@@ -192,8 +192,8 @@ class SampleArrays:
     def elliptic(self) -> NDArray[np.bool_]:
         """(N,) bool array: where the Gaussian curvature is positive (its sign bit is clear).
 
-        Every sample is either elliptic or hyperbolic, parabolic ones included, so that Σ sign K =
-        χ/2 holds for these two sets.
+        Every sample, even a parabolic one, is either elliptic or hyperbolic, so that Σ sign K = χ/2
+        holds for these two sets.
         """
         return ~self.hyperbolic
 
@@ -240,10 +240,10 @@ class SampleArrays:
     def principal_curvatures(self) -> NDArray[np.floating]:
         """(N, 2) float64: the principal curvatures, in 1/L, the larger one first.
 
-        They are computed from K and H. Where the two nearly agree, K and H determine their
-        difference only to about 1e-8 relative to H (3e-4 if they are float32); elsewhere both are
-        accurate, however different their sizes. NaN where H² − K is not finite, or where H² and K
-        are too small for float64.
+        They are computed from K and H. If they nearly agree, K and H determine their difference
+        only to about 1e-8 relative to H (3e-4 if they are float32). Otherwise both are accurate,
+        however different their sizes. NaN where H² − K is not finite, or where H² and K are too
+        small for float64.
         """
         K, H = (x.astype(np.float64) for x in (self.gaussian_curvature, self.mean_curvature))
         with np.errstate(all="ignore"):
@@ -302,8 +302,8 @@ def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
 def _is_parabolic(samples: SampleArrays) -> NDArray[np.bool_]:
     """Return at which samples (N,) one principal curvature is zero, up to rounding.
 
-    If both have the error t, κ₁ κ₂ has the error t (|κ₁| + |κ₂| + t), and |κ₁| + |κ₂| = 2|H|
-    where κ₂ is about 0; H = 1/D is assumed if it is unknown, D the diagonal of the bounding box.
+    If both have the error t, κ₁ κ₂ has the error t (|κ₁| + |κ₂| + t), and |κ₁| + |κ₂| = 2|H| where
+    κ₂ is about 0. If H is unknown, H = 1/D is assumed, D the diagonal of the bounding box.
     """
     K = samples.gaussian_curvature.astype(np.float64)
     diagonal, error = _size_and_error(samples)

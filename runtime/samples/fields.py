@@ -82,10 +82,10 @@ class Component(IntEnum):
 
 
 class Field(NamedTuple):
-    """An array of `Samples`: its columns in a table, one for each component, and their type.
+    """An array of `Samples`: its columns in a table, one per component, and their type.
 
-    `only` is the group of samples that have it, if not all do. `unit` is that of real numbers: L is
-    that of the surface, u and v have their own.
+    `only` is the group of samples that have it, if not all do. `unit` is the unit of real numbers:
+    L is that of the surface; u and v have units of their own.
     """
 
     columns: tuple[str, ...]
@@ -114,7 +114,7 @@ FIELDS: dict[str, Field] = {
     "other_uv": Field(("other_u", "other_v"), "parameter", only="edges"),
     "other_face_index": Field(("other_face_index",), kind="index", only="edges"),
 }
-# The groups of samples with fields that not all samples have, as worded in messages.
+# Groups of samples with fields that other samples lack, as worded in messages.
 ONLY = {
     "surface": 'on the surface only; see on="surface"',
     "proved": "at prescribed normals of surfaces with bounds of their derivatives only",
@@ -198,7 +198,7 @@ def regular(
     fields: Sequence[str],
     memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> dict[str, NDArray[Any]]:
-    """Return the component of `count` regular points, if it is among the fields."""
+    """Return the field `component` for `count` regular points, if it is requested."""
     found = {x: new_field(x, count, dtype_of(x, "f8"), memory) for x in GIVEN_NAMES if x in fields}
     for array in found.values():
         array[:] = Component.REGULAR
@@ -225,11 +225,10 @@ def checked_fields(
 ) -> tuple[str, ...]:
     """Return the requested fields, in the order of `COLUMNS`; None means all.
 
-    With `surface` they are for samples on the surface, with `given` for those at prescribed
-    normals, with `proved` also of a proved search (None: unknown), with `grid` for those that may
-    be on a grid, with `part` for those of a CAD part, and with `edges` also on its sharp edges.
-    Raises UnknownNameError for an unknown name, and InputError for anything but a tuple of names,
-    for no names, for a repeated name, and for an attribute that is computed from fields.
+    They are for samples on the surface (`surface`), at prescribed normals (`given`), of a proved
+    search (`proved`; None: unknown), on a grid (`grid`), of a CAD part (`part`), on its sharp edges
+    (`edges`). Raises UnknownNameError for an unknown name, and InputError for anything but a tuple
+    of names, for no names, for a repeated name, and for an attribute that is computed from fields.
     """
     from ..base.checks import known_name, listed
 
@@ -272,7 +271,7 @@ def checked_fields(
 def missing_fields(
     held: Sequence[str], lacking: Sequence[str], subject: str = ""
 ) -> MissingFieldError:
-    """Return the error for samples that lack fields that a subject needs."""
+    """Return the error for samples that lack fields which a subject needs."""
     needs = f"{subject} needs {_listed(lacking)}, but " if subject else ""
     return MissingFieldError(
         f"{needs}these samples hold {', '.join(held)} only; "

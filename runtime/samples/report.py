@@ -37,9 +37,9 @@ __all__ = [
 # A larger share of the area, of the length of a curve, or of samples causes a warning.
 WORTH_A_WARNING = 0.01
 # A count is missed if the difference exceeds this share of it plus this number of samples: on a
-# symmetric surface several appear or vanish together.
+# symmetric surface several samples appear or vanish together.
 COUNT_TOLERANCE, FEW = 0.02, 5
-# A share is a quotient of sums, so rounding may carry it this far beyond 0 or 1.
+# A share is a quotient of sums: rounding may carry it this far beyond 0 or 1.
 ROUNDING = 1e-9
 MOST_COUNT = 2**63 - 1
 # The surfaces on which samples may lie.
@@ -72,7 +72,7 @@ def _reach(values: Any) -> tuple[float, float, float, float]:  # noqa: ANN401
     """Return the unit vector of an axis and an angle, as plain floats."""
     try:
         x, y, z, angle = (float(value) for value in values)
-    except Exception:  # objects raise anything
+    except Exception:  # iteration may raise anything
         raise InputError(
             f"reach must be an axis and an angle, four numbers, not {shown(values)}."
         ) from None
@@ -131,7 +131,8 @@ class UndecidedNormal(NamedTuple):
         return cls(int(normal), box, str(kind), bool(border), face, degree)
 
 
-# Functions that convert the entries to plain values, and refuse others; only KNOWN are never None.
+# Functions that convert the entries to plain values and refuse others; only KNOWN entries are never
+# None.
 KNOWN = ("surface", "samples")
 CHECKS: dict[str, Callable[[Any, str], Any]] = {
     **dict.fromkeys(("surface", "crs", "unit"), text),
@@ -363,7 +364,7 @@ def warn_of(
 
 
 def _unseen(report: SamplingReport) -> list[str]:
-    """Return reasons for a warning: the part of the surface that no set of normals samples."""
+    """Return reasons for a warning: parts of the surface that no set of normals samples."""
     share = report.developable_share or 0.0
     if share > WORTH_A_WARNING:
         return [
@@ -394,7 +395,7 @@ def _missed(report: SamplingReport, count: int | None, coverage: float | None) -
 
 
 def _unrefined(report: SamplingReport) -> list[str]:
-    """Return reasons for a warning: samples, or points of the spline, not on the surface."""
+    """Return reasons for a warning: samples or points of the spline that are not on the surface."""
     reasons, unrefined = [], report.unrefined or 0
     if unrefined > WORTH_A_WARNING * report.samples:
         reasons.append(
@@ -413,7 +414,7 @@ def _unrefined(report: SamplingReport) -> list[str]:
 def common_report(
     reports: Sequence[SamplingReport], arrays: Mapping[str, NDArray[Any]]
 ) -> SamplingReport:
-    """Return a report of the common entries of reports, with the total number of samples."""
+    """Return a report with the common entries of reports, and the total number of samples."""
     common: dict[str, Any] = {
         x.name: getattr(reports[0], x.name)
         if len({getattr(report, x.name) for report in reports}) == 1

@@ -176,7 +176,7 @@ class Samples(SampleArrays, Methods):
 
 
 def spline_or(samples: Samples, spline: AnySpline | None) -> Spline:
-    """Return the given spline, that of the samples, or one of their surface.
+    """Return the given spline, or that of the samples, or one of their surface.
 
     Raises InputError without one.
     """

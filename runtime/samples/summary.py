@@ -145,8 +145,8 @@ def _infinite(samples: SampleArrays) -> str:
 def kinds_of_points(samples: SampleArrays) -> str:
     """Return the numbers of points by the sign of K, or the fields if K is missing.
 
-    Parabolic points are counted as such, and not by the sign bit of K. Components that are not
-    regular are counted by what they are.
+    Parabolic points are counted as such, whatever the sign bit of K. Components that are not
+    regular are counted by kind.
     """
     if "gaussian_curvature" not in samples.fields:
         return f" ({', '.join(samples.fields)} only)"
