@@ -32,7 +32,7 @@ NO_CLOUDS = (
 
 
 def is_mesh_file(name: str) -> bool:
-    """Say whether a file holds a mesh, by its suffix."""
+    """Return whether a file is a mesh, by its suffix."""
     return Path(name).suffix.lower() in _MESH_SUFFIXES
 
 
@@ -49,17 +49,17 @@ def file_advice(name: str) -> str | None:
 
 
 def is_of_geomdl(value: object) -> bool:
-    """Say whether a value is a NURBS surface of geomdl, by its attributes."""
+    """Return whether a value is a NURBS surface of geomdl, by its attributes."""
     return _has(value, "degree_u", "degree_v", "knotvector_u", "knotvector_v", "ctrlpts")
 
 
 def is_of_splipy(value: object) -> bool:
-    """Say whether a value is a spline of Splipy, by its attributes."""
+    """Return whether a value is a spline of Splipy, by its attributes."""
     return _has(value, "bases", "controlpoints", "rational")
 
 
 def is_raster(value: object) -> bool:
-    """Say whether a value is an open dataset of rasterio, by its attributes."""
+    """Return whether a value is an open dataset of rasterio, by its attributes."""
     return _has(value, "read", "transform", "crs", "nodatavals")
 
 

@@ -1,4 +1,4 @@
-"""Types of arrays that most modules name: of real numbers, of whole numbers, of truth values."""
+"""Types of arrays that most modules use: of real numbers, of integers, of booleans."""
 
 from __future__ import annotations
 

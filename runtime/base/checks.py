@@ -39,11 +39,11 @@ __all__ = [
 ]
 
 
-# Made once: a report checks many numbers.
+# Made once, since a report checks many numbers.
 WHOLE, OF_NUMPY = (int, np.integer), (np.ndarray, np.generic)
-SIMILAR = 0.7  # of a name that was meant, see difflib
-# The most entries of sequences that are no arrays, where each is looked at and where they become an
-# array; and how deep sequences in sequences are counted.
+SIMILAR = 0.7  # similarity of a name to the intended one, see difflib
+# The largest numbers of entries of a sequence that is no array, if each entry is looked at, and if
+# it becomes an array; and the depth to which nested sequences are counted.
 MOST_LISTED, MOST_CONVERTED, DEEPEST = 10**7, 10**8, 4
 
 
@@ -65,7 +65,7 @@ def known_name(name: str, known: Sequence[str], kind: str, command: str = "") ->
 
 
 def _near(text: str, known: Sequence[str]) -> list[str]:
-    """Return up to three names that are similar to a text, or have a word that is."""
+    """Return up to three names that are similar to a text, or contain a word that is."""
     near = difflib.get_close_matches(text, known, n=3, cutoff=SIMILAR)
     words = {word for name in known for word in name.split("_")} if not near else ()
     best = difflib.get_close_matches(text, words, n=1, cutoff=SIMILAR)
@@ -90,7 +90,7 @@ def pair_of_cells(cells: Sequence[int]) -> tuple[int, int]:
     """Return the numbers of cells (m, n); InputError unless both are positive whole numbers."""
     try:
         m, n = cells
-    except Exception:  # objects raise anything
+    except Exception:  # conversion may raise anything
         raise InputError(
             f"cells must be a pair of whole numbers (m, n), not {shown(cells)}."
         ) from None
@@ -114,25 +114,25 @@ def as_float(value: SupportsFloat | str) -> float:
         raise TypeError("neither complex nor masked arrays are real numbers")
     try:
         return float(value)
-    except Exception as error:  # objects raise anything
+    except Exception as error:  # conversion may raise anything
         raise TypeError(str(error)) from error
 
 
 def listed(values: object) -> list[Any] | None:
-    """Return the elements as a list; None for texts, objects without elements, and far too many."""
+    """Return the elements as a list; None for texts, no elements, or too many."""
     if isinstance(values, str | bytes | dict) or _size(values) > MOST_LISTED:
         return None
     try:
         found = list(islice(values, MOST_LISTED + 1))  # pyright: ignore[reportArgumentType]
-    except Exception:  # TypeError also by arrays without dimension; objects raise anything
+    except Exception:  # arrays without dimension raise TypeError; objects may raise anything
         return None
     return found if len(found) <= MOST_LISTED else None
 
 
 def _size(values: object) -> int:
-    """Return the number of entries, of sequences in sequences too; 1 for anything without any.
+    """Return the number of entries, nested ones included; 1 for anything without entries.
 
-    Of an array without its own memory, and of a `range`, the entries may be many more than fit.
+    An array without its own memory, or a `range`, may have more entries than fit into memory.
     """
     size, depth = 1, 0
     while isinstance(values, list | tuple | range | np.ndarray) and depth < DEEPEST:
@@ -140,7 +140,7 @@ def _size(values: object) -> int:
             return size * values.size
         if not values:
             return 0
-        # `len` fails for a range that is longer than an index can say.
+        # `len` fails for a range that is longer than the largest index.
         step = values.step if isinstance(values, range) else 0
         length = (values[-1] - values[0]) // step + 1 if step else len(values)
         size, values, depth = size * length, values[0], depth + 1
@@ -177,7 +177,7 @@ def positive_number(value: object, name: str, unit: str = "", most: float = math
     """Return a positive number up to `most`; InputError with its name otherwise."""
     number = math.nan
     if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
-        with suppress(OverflowError):  # of whole numbers beyond float64
+        with suppress(OverflowError):  # from whole numbers beyond float64
             number = float(value)
     if not 0.0 < number <= most or math.isinf(number):
         limit = "" if math.isinf(most) else f" of at most {most:g}{unit}"
@@ -188,9 +188,9 @@ def positive_number(value: object, name: str, unit: str = "", most: float = math
 def finite_array(
     values: ArrayLike, shape: tuple[int | str, ...] | None, name: str
 ) -> NDArray[np.float64]:
-    """Return a finite float64 array of the given shape, if any; InputError with its name otherwise.
+    """Return a finite float64 array of a given shape, if any; InputError with its name otherwise.
 
-    In the shape a letter stands for any number.
+    A letter in the shape stands for any number.
     """
     found = real_values(values, name)
     if shape is not None and not _fits(found, shape):
@@ -275,7 +275,7 @@ def checked_array(
 ) -> NDArray[Any]:
     """Return a C-contiguous array; InputError unless it has the given shape and type.
 
-    In the shape a letter stands for any number.
+    A letter in the shape stands for any number.
     """
     if not isinstance(array, np.ndarray):
         raise InputError(f"{name} must be a NumPy array, not {type(array).__name__}.")
@@ -314,7 +314,7 @@ def checked_rows(key: ArrayLike, count: int) -> NDArray[Any]:
     if rows.ndim == 0 and rows.dtype.kind in "iu":
         rows = rows[None]
     if rows.shape == (0,) and rows.dtype.kind == "f":
-        rows = rows.astype(np.intp)  # NumPy takes an empty list for floats
+        rows = rows.astype(np.intp)  # NumPy makes an empty list an array of floats
     if rows.ndim != 1 or rows.dtype.kind not in "biu":
         raise InputError(
             "samples are picked by a number, a slice, a boolean mask or a 1-D index array."

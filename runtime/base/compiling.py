@@ -1,6 +1,6 @@
 """A notice on terminals and in notebooks while kernels are compiled at their first call.
 
-Importing this module installs it: modules whose kernels users call import it.
+Importing this module installs it; each module with kernels that users call imports it.
 """
 
 from __future__ import annotations
@@ -21,16 +21,17 @@ PATIENCE = 2.0
 
 
 class Notice(event.Listener):
-    """Shows a line on standard error, unless it is a file, while kernels of gaussmap compile.
+    """Shows a line while kernels of gaussmap compile, on standard error unless that is a file.
 
     The line appears when compilation has taken longer than `PATIENCE` in this process. Numba sends
-    events under a lock, so there is one compilation at a time; each of its passes updates the line.
+    events under a lock, so that there is one compilation at a time; each of its passes updates the
+    line.
     """
 
     def __init__(self) -> None:
         self.quiet = False
-        self.kernels: list[str] = []  # the kernel and the nested ones that it calls
-        self.seconds = 0.0  # spent on earlier kernels
+        self.kernels: list[str] = []  # the kernel, and the kernels nested in it
+        self.seconds = 0.0  # seconds spent on earlier kernels
         self.since = 0.0
         self.line = ""
 

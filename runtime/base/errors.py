@@ -77,7 +77,7 @@ class SurfaceError(GaussmapError):
 class UnknownNameError(GaussmapError, LookupError):
     """A surface, formula or file type of that name does not exist.
 
-    It is a LookupError, too; the message has the names that are similar.
+    It is a LookupError, too; the message lists similar names.
 
     Examples
     --------
@@ -162,13 +162,13 @@ class GaussmapWarning(UserWarning):
 
 
 LONGEST_SHOWN = 60
-# Control characters, those that change the direction of a line, surrogates, and ends of lines.
+# Control characters, those that change the direction of writing, surrogates, and ends of lines.
 CONTROLS = ("Cc", "Cf", "Cs", "Zl", "Zp")
 LONGEST_MESSAGE = 300
 
 
 def _cut(message: str) -> str:
-    """Return a message; a long one (with a long path, say) is cut in the middle."""
+    """Return a message; the middle of a long one (with a long path, say) is left out."""
     if len(message) <= LONGEST_MESSAGE:
         return message
     half = LONGEST_MESSAGE // 2

@@ -1,4 +1,4 @@
-"""Calls of users' callables, and checks of the values that these return."""
+"""Calls of users' callables, and checks of the values that they return."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def returned(
     shape: tuple[int, ...],
     label: str,
 ) -> NDArray[np.float64]:
-    """Return the values of a callable for arrays of one shape: an array of that shape + `shape`.
+    """Return the values of a callable for arrays of one shape: an array of their shape + `shape`.
 
     Raises SurfaceError, which names the callable by `label`, if the callable raises, or returns
     another shape or anything but real numbers.
@@ -72,7 +72,7 @@ def returned(
 
 
 def _shapes_that_differ(values: object, shape: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Return the shapes of coordinates in a list, as those with constants, if they differ."""
+    """Return the shapes of listed coordinates if they differ, as with constants among them."""
     if not isinstance(values, tuple | list) or shape[1:] or [len(values)] != [*shape]:
         return []
     parts = [np.shape(x) for x in values if isinstance(x, np.ndarray | float | int | np.number)]

@@ -28,7 +28,7 @@ def from_extra(module: str, extra: str, purpose: str) -> Any:  # noqa: ANN401
 
 
 def if_installed(module: str) -> Any | None:  # noqa: ANN401
-    """Import a module that only saves time; None if it is missing or its import fails."""
+    """Import a module that merely saves time; None if it is missing or its import fails."""
     try:
         return importlib.import_module(module)
     except (ImportError, OSError):

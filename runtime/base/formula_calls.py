@@ -24,7 +24,7 @@ def vector(array: ArrayLike) -> Vector:
 
 
 def plane_vector(array: ArrayLike) -> PlaneVector:
-    """Return an array (..., 2) as a vector of the plane whose components are arrays (...)."""
+    """Return an array (..., 2) as a plane vector whose components are arrays (...)."""
     return PlaneVector(*np.moveaxis(np.asarray(array), -1, 0))
 
 

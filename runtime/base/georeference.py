@@ -16,7 +16,8 @@ from .errors import GaussmapWarning, InputError, shown
 
 __all__ = ["Georeference", "checked_origin", "crs_label", "warn_of_rounding"]
 
-# Rounding to single precision warns if it moves points by more than this part of their spacing.
+# Rounding to single precision causes a warning if it moves points by more than this part of their
+# spacing.
 ROUNDING = 1e-3
 # The least number of points from which a spacing is estimated.
 FEWEST = 3
@@ -38,7 +39,7 @@ def checked_origin(origin: Sequence[float] | None) -> Origin:
         return 0.0, 0.0, 0.0
     try:
         values = [as_float(x) for x in islice(origin, 4)]
-    except Exception:  # objects raise anything
+    except Exception:  # conversion may raise anything
         values = []
     if len(values) not in (2, 3) or not all(math.isfinite(x) for x in values):
         raise InputError(f"origin must be two or three finite numbers, not {shown(origin)}.")

@@ -1,4 +1,4 @@
-"""Methods that are defined in folders above that of the class, imported at first use."""
+"""Methods that are defined in folders above that of their class, imported at first use."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ __all__ = ["Later"]
 class Later:
     """A descriptor: a function of another module as a method of a class.
 
-    So a class has methods that are defined in modules that import it. The first access replaces the
-    descriptor by the function. The name of the function is that of the method by default.
+    So a class has methods from modules that import it. The first access replaces the descriptor by
+    the function. Its name is that of the method by default.
     """
 
     def __init__(self, module: str, function: str = "") -> None:

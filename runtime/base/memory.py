@@ -1,7 +1,7 @@
-"""The check of requests against the memory that is free, before anything is allocated.
+"""The check of requests against free memory, before anything is allocated.
 
-A system that overcommits memory kills the process when the memory is used; then there is no
-MemoryError to catch. `COSTS` lists the memory of each kind of request.
+A system that overcommits memory kills the process when the memory is used, without a MemoryError
+that could be caught. `COSTS` lists the memory of each kind of request.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ UNCHECKED = 2.0**24
 # estimates are not exact.
 SHARE = 0.75
 PROC, CONTROL_GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
-# Control groups of versions 1 and 2: folder, files of limit and use, and the line of memory.stat
-# for cached files, which can be dropped.
+# Control groups of versions 1 and 2: their folder, the files of limit and use, and the line of
+# memory.stat for cached files, which the system can drop.
 VERSION_1 = ("memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
 VERSION_2 = ("", "memory.max", "memory.current", "inactive_file")
 
 
 class Cost(NamedTuple):
-    """The peak memory of a request: bytes for each item, and copies of the row stored of it.
+    """The peak memory of a request: bytes per item, and the number of copies of its stored row.
 
-    The last column is advice for a request that is too large.
+    The last column is advice for requests that are too large.
     """
 
     things: str
@@ -53,11 +53,11 @@ COSTS: dict[str, Cost] = {
     "cap": Cost("normals", 96.0, 0.0, "use fewer"),
     "polygon": Cost("normals", 24.0, 1.0, "use fewer"),
     "numbers": Cost("numbers", 9.0, 0.0, "use fewer"),
-    # Normals in bins, and one sample for each normal.
+    # Normals in bins, and one sample per normal.
     "search": Cost("normals", 52.0, 0.0, FEWER),
     "stored": Cost("samples", 0.0, 1.0, 'use fewer normals, fewer fields or dtype="float32"'),
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or gm.sample_stream"),
-    # The others have some candidates for each sample.
+    # The others have several candidates per sample.
     "balanced": Cost("samples", 3900.0, 0.0, FEWER),
     "uniform": Cost("samples", 3900.0, 0.0, FEWER),
     "aligned": Cost("samples", 900.0, 0.0, FEWER),
@@ -119,7 +119,7 @@ def _limits() -> Iterator[tuple[float, float]]:
 
 
 def _limits_of_process(page: float) -> Iterator[tuple[float, float]]:
-    """Yield the limits that are set by ulimit."""
+    """Yield the limits set by ulimit."""
     with suppress(ImportError, OSError, ValueError):
         import resource
 
@@ -139,7 +139,7 @@ def _limits_of_group(
 ) -> Iterator[tuple[float, float]]:
     """Yield the limits of a control group and of its ancestors.
 
-    In a container the path may be that of the host; then the root is the group of the process.
+    In a container the path may be the host's; then the root is the group of the process.
     """
     folder, limit, use, droppable = version
     root = CONTROL_GROUPS / folder

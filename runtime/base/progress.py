@@ -1,4 +1,4 @@
-"""A clock on terminals for work whose number of steps is unknown, with the step at hand."""
+"""A clock on terminals for work with an unknown number of steps, and its current step."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PATIENCE, INTERVAL = 1.0, 0.5
 
 @dataclass
 class Step:
-    """What is done at the moment, and how much of it, from 0 to 1, if that is known."""
+    """The current step, and its finished share, from 0 to 1, if known."""
 
     task: str
     name: str = ""
@@ -35,7 +35,7 @@ STEP: ContextVar[Step | None] = ContextVar("step", default=None)
 
 
 def tell(name: str, share: Callable[[], float] | None = None) -> None:
-    """Name the step at hand, if a terminal shows the task; `share` is called while it goes on."""
+    """Set the current step, if a terminal shows the task; `share` is called while it goes on."""
     if (step := STEP.get()) is not None:
         step.name, step.share = name, share
 

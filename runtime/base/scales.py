@@ -1,4 +1,4 @@
-"""The scale of coordinates: powers of two that bring it to about 1, its limits, its rounding."""
+"""The scale of coordinates: powers of two that bring them to about 1, their limits and rounding."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ __all__ = [
 
 # Above this binary exponent, products with a few small integers may overflow.
 LARGEST_EXPONENT = 1000
-# Points that are declared to be one may be this far apart, relative to the size of the surface.
+# Points that are declared to coincide may be this far apart, relative to the size of the surface.
 SAME_POINT = 1e-6
-# Rounding of coordinates, in units of the last place: they come from several operations each.
+# Rounding of coordinates, in units of the last place; each results from several operations.
 ROUNDING = 64.0
 
 
@@ -49,9 +49,9 @@ def apart(
 def extent_of(points: NDArray[np.float64]) -> tuple[float, float]:
     """Return the size of points (m, n, 3), and the unit in the last place of their coordinates.
 
-    Missing points, NaN, are left out.
+    Missing points, NaN, are ignored.
     """
-    high, low = (f.reduce(f.reduce(points)) for f in (np.fmax, np.fmin))  # fastest this way
+    high, low = (f.reduce(f.reduce(points)) for f in (np.fmax, np.fmin))  # the fastest way
     largest = np.maximum(np.abs(low), np.abs(high)).max()
     return float((high - low).max()), float(np.spacing(largest))
 

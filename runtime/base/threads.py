@@ -19,7 +19,7 @@ __all__ = ["counted", "interruptible", "over_ranges", "seen", "shown", "thread_c
 
 Result = TypeVar("Result")
 
-# Ranges for each thread that are computed before their results are used.
+# The number of ranges per thread that are computed ahead of use.
 AHEAD = 4
 
 
@@ -52,7 +52,7 @@ def over_ranges(
         return
     starts = range(0, total, size)
     workers = min(thread_count(threads), len(starts))
-    # Nested work runs on its own thread: all other threads may be waiting for it.
+    # Nested work runs on its own thread, since all other threads may be waiting for it.
     if workers <= 1 or getattr(_HERE, "is_worker", False):
         results = (work(first, min(first + size, total)) for first in starts)
     else:
@@ -71,14 +71,14 @@ def _in_threads(
             result = ahead.popleft().result()
             ahead.extend(pool.submit(work, start) for start in islice(waiting, 1))
             yield result
-            del result  # so that it is not kept alive while the next one is computed
+            del result  # so that the result is not kept alive while the next one is computed
     finally:
-        for future in ahead:  # after an error or Ctrl-C: remaining ranges are cancelled
+        for future in ahead:  # after an error or Ctrl-C, cancel the remaining ranges
             future.cancel()
 
 
 def interruptible(work: Callable[[], Result]) -> Result:
-    """Return work(), a long compiled call, computed by a thread: Ctrl-C does not wait for it."""
+    """Return work(), a long compiled call, run by a thread: Ctrl-C does not wait for it."""
     if getattr(_HERE, "is_worker", False):
         return work()
     return next(_in_threads(lambda _: work(), (0,), 1))

@@ -1,6 +1,7 @@
 """Bounds of rounding errors and thresholds derived from them, each with its unit and its reason.
 
-NumPy code and kernels read the same numbers. ε = 2⁻⁵² is the distance from 1 to the next float64.
+NumPy code and kernels read the same numbers. ε = 2⁻⁵² is the distance from 1 to the next float64. A
+comment says which quantity the bound is for.
 """
 
 from __future__ import annotations
@@ -52,15 +53,15 @@ ANGLE_ERROR = 2.0**-40
 # patch has a singular point there. The threshold is far above the rounding error of a cross
 # product.
 SHORT_CONTROL_NORMAL = 2.0**-30
-# A point is singular where the normal is shorter than this, relative to that at the centre of its
-# patch; its curvatures are taken at this distance (in u, v) from it.
+# A point is singular where the normal is shorter than this, relative to the normal at the centre of
+# its patch; its curvatures are taken at this distance (in u, v) from it.
 SINGULAR_POINT = 2.0**-20
 # A point is near a singular point where the normal is shorter than this, relative to the square of
 # the tangents: parameters with few digits do not give its direction there.
 NEAR_SINGULAR_POINT = 2.0**-12
-# A normal, or a slope along it, is zero where it is shorter than this, relative to the tangents
-# that it is a product of, or to the largest normal of the patch: 4096 ε, far above the rounding of
-# such a product.
+# A normal, or a slope along it, is zero where it is shorter than this, relative to the product of
+# tangents that it consists of, or to the largest normal of the patch: 4096 ε, far above the
+# rounding of such a product.
 VANISHING = 2.0**-40
 # Of a coefficient of the parabolic cubic, or of the cubic of its directions, relative to the
 # product of the lengths of the vectors in its terms: 256 ε.
@@ -71,9 +72,9 @@ PARAMETER_ERROR = 1e-12
 # double root, and a smaller imaginary part is zero: a rounding error ε splits a double root by √ε ≈
 # 1.5e-8, times the condition number of the cubic, for which a factor of 67 is left.
 DOUBLE_ROOT = 1e-6
-# Of the radius of a cap in degrees: the iteration has converged if it grows by less.
+# Of the radius of a cap in degrees: the iteration has converged if it grows by less than this.
 CAP_RADIUS_ERROR = 1e-12
-# Of the height of a circle of latitude on the unit sphere: free points are farther from it.
+# Of the height of a circle of latitude on the unit sphere: free points are farther away from it.
 CIRCLE_HEIGHT_ERROR = 1e-12
 # The flip or collapse of an edge must raise a cosine, or the tangent of an angle of a triangle, by
 # at least this, which exceeds their rounding errors.
@@ -86,7 +87,7 @@ CURVATURE_ERROR = 4.0
 # Of a principal curvature times the diagonal of the bounding box, relative to the rounding of
 # coordinates in units of the diagonal: on a surface that is given by values only (second
 # differences of them), and on a spline, where this is multiplied by the square of its number of
-# cells. Measured on planes, cylinders and cones are 1.3e7 and 40.
+# cells. Measured values on planes, cylinders and cones are 1.3e7 and 40.
 DERIVATIVE_ERROR, PATCH_ERROR = 2.0**26, 2.0**8
 # Of a difference of two coefficients of a planar spline, in units of the last place of the largest
 # coordinate.
@@ -101,12 +102,12 @@ RADIUS_ERROR = 2.0**-46
 ROTATION_ERROR = 1e-12
 # Parameters that differ by less than this part of their range are the same.
 SAME_PARAMETER = 1e-12
-# Of triple products of unit vectors: 4 ε. Regions of the sphere are closed up to it.
+# Of triple products of unit vectors: 4 ε. Regions of the sphere are closed up to this.
 TRIPLE_PRODUCT_ERROR = 2.0**-50
 # Of the normal of a sample on a surface, as an angle (radians).
 NORMAL_ERROR = 1e-12
-# Of the same where Newton's method stagnates because of the rounding of parameters and derivatives,
-# or of the error of finite differences: a sample with a larger error is not on the surface.
+# The same where Newton's method stagnates because of the rounding of parameters and derivatives, or
+# of the error of finite differences: a sample with a larger error is not on the surface.
 NORMAL_NOISE = 1e-9
 # Of the distance at which two samples of one normal coincide on the surface, relative to a cell of
 # the spline: the error of points found with numerical derivatives, far from the origin.

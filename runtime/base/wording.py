@@ -11,6 +11,6 @@ def plural(count: int, what: str) -> str:
 
 
 def at_normals(used: int, requested: int) -> str:
-    """Return at how many of the prescribed normals there are samples."""
+    """Return the number of prescribed normals that have samples, in words."""
     part = "" if used == requested else f"{used:,} of "
     return f"at {part}{plural(requested, 'prescribed normal')}"
