@@ -40,7 +40,8 @@ def circle(count: int) -> NDArray[np.float64]:
     """
     total = whole_number(count, "count")
     check_memory("circle", total)
-    # Angles in 8 count parts of a turn: a quarter has 2 count of them, and half of it is mirrored.
+    # Angles in parts of a turn / (8 count): a quarter turn has 2 count parts, and its half is
+    # mirrored.
     quarter, place = np.divmod(4 * (2 * np.arange(total) + 1), 2 * total)
     beyond = place > total
     angle = np.pi / (4 * total) * np.where(beyond, 2 * total - place, place)

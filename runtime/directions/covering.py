@@ -38,10 +38,10 @@ def covering_radius(normals: ArrayLike) -> float:
 
     Notes
     -----
-    Each facet of the convex hull of the normals bounds an empty cap round its own normal; the
-    covering radius is the largest angle of these caps. It is that of the whole sphere: for normals
+    Each facet of the convex hull of the normals bounds an empty cap around its own normal; the
+    covering radius is the largest angle of these caps. It refers to the whole sphere: for normals
     within a hemisphere, such as those of a small `cap`, it is 180° minus the radius of the smallest
-    cap that holds them.
+    cap that contains them.
 
     Examples
     --------
@@ -57,19 +57,20 @@ def covering_radius(normals: ArrayLike) -> float:
 
     try:
         hull = ConvexHull(directions)
-    except QhullError:  # coplanar, or fewer than four
+    except QhullError:  # coplanar normals, or fewer than four
         return 180.0 - _smallest_cap(directions)
     outwards, corners = hull.equations[:, :3], directions[hull.simplices[:, 0]]
     largest = float(angles_between(outwards, corners).max())
-    # If the centre of the sphere is outside the hull, the farthest direction belongs to no facet.
+    # If the centre of the sphere is outside the hull, the farthest direction is the normal of no
+    # facet.
     return largest if largest <= 90.0 else 180.0 - _smallest_cap(directions)
 
 
 def _smallest_cap(normals: Array) -> float:
-    """Return the radius in degrees, at most 90, of the smallest cap that holds all normals.
+    """Return the radius in degrees, at most 90, of the smallest cap that contains all normals.
 
-    It is determined by at most three of them. Normals outside are added one by one, the farthest
-    first, and the cap grows with each.
+    At most three normals determine it. Normals outside are added one by one, the farthest first,
+    and the cap grows each time.
     """
     basis, radius = normals[:1], -1.0
     while True:

@@ -39,7 +39,7 @@ def checked_reach(reach: Any) -> Cap | None:  # noqa: ANN401
         return None
     try:
         axis, angle = reach
-    except Exception:  # objects raise anything
+    except Exception:  # iteration may raise anything
         raise InputError(
             f"reach must be an axis and an angle in degrees, such as ((0, 0, 1), 60.0), not "
             f"{shown(reach)}."
@@ -145,7 +145,7 @@ def polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:
         raise InputError(
             "the corners must go round a convex polygon anticlockwise, as seen from outside."
         )
-    check_memory("polygon", len(directions), 9.0 * len(around))  # a number and a truth value each
+    check_memory("polygon", len(directions), 9.0 * len(around))  # a number and a boolean each
     return directions[(directions @ inwards.T >= -TRIPLE_PRODUCT_ERROR).all(axis=1)]
 
 

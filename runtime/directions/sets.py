@@ -81,7 +81,7 @@ def icosphere(frequency: int) -> NDArray[np.float64]:
 
 
 def frequency_within(angle: float) -> int:
-    """Return the least ν with a covering radius of `icosphere(ν)` of at most `angle` degrees.
+    """Return the least ν for which `icosphere(ν)` has a covering radius of at most `angle` degrees.
 
     Raises InputError if there is none.
     """

@@ -17,9 +17,9 @@ from .kernels.unit import are_unit
 
 __all__ = ["PIECE", "as_normals", "in_pieces", "normalized", "perpendicular", "unit_vector"]
 
-# The number of normals that are computed at a time, so that their arrays fit into the cache.
+# The number of normals in one batch, such that their arrays fit into the cache.
 PIECE = 1 << 15
-# The number of vectors that are checked at a time.
+# The number of vectors in one batch of checks.
 PART = 1 << 18
 
 
@@ -28,9 +28,9 @@ def as_normals(
 ) -> NDArray[np.float64]:
     """Return directions (S, dimension), of any non-zero lengths, as unit normals, float64.
 
-    A vector that has unit length already, up to rounding, is kept bit for bit; an array of such
+    A vector that already has unit length, up to rounding, is kept bit for bit; an array of such
     vectors is returned itself, not a copy. Raises InputError for another shape, an empty array,
-    NaN, infinity, or a vector of length 0, with the number of its row.
+    NaN, infinity, or a vector of length 0, with the index of its row.
     """
     if hasattr(normals, "normals"):  # samples: as an array they are points
         raise InputError(
@@ -90,7 +90,7 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _normalized(vectors: NDArray[np.float64], largest: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the same of vectors whose `largest` components are known."""
+    """Return `normalized` vectors whose `largest` components are known."""
     exponents = np.frexp(largest)[1]
     far = np.abs(exponents) > 1
     if far.any():
