@@ -2,10 +2,10 @@
 
     python -m gaussmap.runtime.machine_code.building [--usual] [FOLDER]
 
-compiles them, or those that usual calls need, for the level of this architecture, without running
-them, in one process per core, into FOLDER/compiled (by default of the package). Entries of a file
-of the same sources and versions are reused. With GAUSSMAP_KERNELS=0 nothing is compiled, and no
-file used.
+compiles all of them, or with --usual those that usual calls need, for the level of this
+architecture, without running them, in one process per core, into FOLDER/compiled (by default of the
+package). Entries of a file of the same sources and versions are reused. With GAUSSMAP_KERNELS=0
+nothing is compiled, and no file used.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ from .sources import PACKAGE
 
 __all__ = ["build", "kernel_named"]
 
-# Intel's vector library may be installed on the machine that builds, and not on others.
+# Intel's vector library may exist on the machine that builds, but not on others.
 OPTIONS = {"NUMBA_CPU_FEATURES": "", "NUMBA_DISABLE_INTEL_SVML": "1"}
 # Numba numbers functions in the order in which a process compiles them, and machine code contains
-# these numbers. So each process compiles one share, and shares are the same for any number of
+# these numbers. So each process compiles one share, and the shares do not depend on the number of
 # cores: the same sources, in the same folder, give the same bytes.
 SHARES = 3
 
@@ -104,7 +104,7 @@ def _keys(listing: signatures.Listing) -> Iterator[tuple[str, str]]:
 
 
 def _known(path: Path) -> dict[str, bytes]:
-    """Return the entries of a file if it was made of these sources, with these versions."""
+    """Return the entries of a file if it has these sources and versions."""
     try:
         pack = Pack(path)
     except (OSError, ValueError):
@@ -136,7 +136,7 @@ def _module_of(name: str) -> str:
 
 def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:
     """Compile kernels for their signatures; called in a process of its own."""
-    gc.disable()  # Numba numbers types as well, and renumbers those that were collected
+    gc.disable()  # Numba also numbers types, and renumbers those that were garbage-collected.
     entries: dict[str, bytes] = {}
     for name, kinds in listing.items():
         kernel = kernel_named(name)

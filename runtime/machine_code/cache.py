@@ -1,4 +1,4 @@
-"""Numba's cache of kernels: the machine code of the package, and that compiled here."""
+"""Numba's cache of kernels: the machine code of the package, and what was compiled here."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["KernelCache", "say_why"]
 
 
 class KernelCache(NullCache):
-    """The machine code of one kernel: that of the package, or what was compiled here."""
+    """The machine code of one kernel: the package's, or what was compiled here."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         """Touch no file before the first call."""
@@ -55,11 +55,11 @@ class KernelCache(NullCache):
         return found
 
     def save_overload(self, sig: Any, cres: Any) -> None:
-        """Keep what was compiled here, and let waiting processes load it."""
+        """Cache what was compiled here, and let waiting processes load it."""
         folder = disk.kept_folder()
         if folder is not None:
             key, processor = key_of(self._function, sig), _processor(cres.target_context)
-            with suppress(TypeError):  # a kernel of somebody else, of other types than ours
+            with suppress(TypeError):  # a user's kernel, with types that ours do not have
                 disk.save(folder, key, processor, entry_of(cres))
         if self._lock is not None:
             self._lock.release()
@@ -75,7 +75,7 @@ def _processor(context: Any) -> object:
 
 @cache
 def say_why() -> None:
-    """Warn, once, if the package has machine code that is for other versions than these."""
+    """Warn, once, if the machine code of the package is for other versions than these."""
     if others := shipped.misfit():
         warnings.warn(
             f"the compiled kernels of this installation are for {others}: new ones are compiled "

@@ -29,7 +29,7 @@ from .trust import is_private, private_content
 
 __all__ = ["FileLock", "entries_in", "kept_folder", "load", "lock_of", "save"]
 
-config: Any = numba_config  # Numba makes its attributes at run time
+config: Any = numba_config  # Numba creates its attributes at run time
 # Folders of other sources are removed after this many days without use.
 DAYS_KEPT = 30
 # In seconds: the longest wait for another process that compiles, and the polling interval.
@@ -39,10 +39,10 @@ SUFFIX = ".kernel"
 
 @cache
 def kept_folder() -> Path | None:
-    """Return the folder for machine code made of these sources; None if none can be written.
+    """Return the folder for machine code of these sources; None if none can be written.
 
-    It is in NUMBA_CACHE_DIR if that is set, else next to the sources, or else in the user's cache
-    folder. A folder that others can write to is not used: entries could run anything.
+    It is in NUMBA_CACHE_DIR if that is set, otherwise next to the sources, or else in the user's
+    cache folder. A folder that others can write to is not used: its entries could run anything.
     """
     asked, refused = config.CACHE_DIR, None
     for base in [Path(asked)] if asked else [PACKAGE / "__pycache__", *_of_user()]:

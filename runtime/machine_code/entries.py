@@ -1,9 +1,10 @@
 """The machine code of one kernel for one signature, as bytes: an entry.
 
-Unlike Numba's own cache, an entry is no pickle, and has neither LLVM's bitcode nor the annotated
-source: machine code that is not linked into other functions needs neither. It is a checksum, which
-detects damage, the size of a head, the head, and the object code. The head (JSON) has names and
-types. An entry is loaded without Numba's compiler. Files of entries are written atomically.
+Unlike in Numba's own cache, an entry is no pickle, and has neither LLVM's bitcode nor the annotated
+source: machine code that is not linked into other functions needs neither. An entry consists of a
+checksum, which detects damage, the size of a head, the head, and the object code. The head (JSON)
+has names and types. An entry is loaded without Numba's compiler. Files of entries are written
+atomically.
 """
 
 from __future__ import annotations
@@ -122,7 +123,7 @@ def opened(content: bytes) -> bytes | None:
 
 
 def replace_file(path: Path, content: bytes, mode: int = 0o644) -> None:
-    """Write a file atomically, with permissions of at most a mode."""
+    """Write a file atomically; its permissions are at most `mode`."""
     part = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
     try:
         with open(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY | BINARY, mode), "wb") as file:

@@ -19,8 +19,8 @@ __all__ = ["inline", "jit", "long_vectors", "loop"]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-config: Any = numba_config  # Numba makes its attributes at run time
-# Kernels are called from Python and from one another, and never from C; they count no references.
+config: Any = numba_config  # Numba creates its attributes at run time
+# Kernels are called from Python and from one another, never from C; they count no references.
 OPTIONS: dict[str, Any] = {
     "nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True,
     "_nrt": False,
@@ -30,8 +30,8 @@ OPTIONS: dict[str, Any] = {
 def loop(function: Function) -> Function:
     """Compile a function that kernels call, once and separately.
 
-    Use it for functions that are long or have several callers. They allocate no memory: arrays
-    come from the caller. Short functions are `inline`, that is, copied into their callers.
+    Use it for functions that are long or have several callers. They allocate no memory: arrays come
+    from the caller. Use `inline` for short functions, which are copied into their callers.
     """
     options = {"pipeline_class": PartCompiler, "no_cpython_wrapper": True, **OPTIONS}
     return without_literals(numba.njit(**options)(function))  # pyright: ignore
@@ -40,7 +40,7 @@ def loop(function: Function) -> Function:
 def jit(function: Function) -> Function:
     """Compile a kernel at its first call from Python, unless its machine code is cached.
 
-    Kernels allocate no memory either: all arrays are arguments. They are called from Python only:
+    Kernels also allocate no memory: all arrays are arguments. They are called from Python only:
     machine code of the package cannot be linked into other kernels.
     """
     kernel: Any = numba.njit(pipeline_class=KernelCompiler, **OPTIONS)(function)
@@ -52,7 +52,7 @@ def jit(function: Function) -> Function:
 def _long_vectors(_: object) -> tuple[Any, Callable[..., Any]]:
     """Request the longest vectors of the processor in the calling function.
 
-    LLVM uses half of their length unless it is told to. The results are the same.
+    By default, LLVM uses half of their length. The results are the same.
     """
 
     def lowered(context: Any, builder: Any, *_: object) -> Any:

@@ -1,9 +1,9 @@
 """Linking of kernels: each part is optimised once, and compiled to machine code with the kernel.
 
 Numba optimises a function together with everything that it calls, and makes machine code of all of
-it, at each level of calls: what a kernel reaches in four steps is optimised four times. Here a part
-is optimised once, on its own, together with small parts that may be inlined; a kernel is linked
-with the parts that it needs. The results are the same.
+it, at each level of calls: it optimises a function four times if a kernel calls it through three
+others. Here a part is optimised once, on its own, together with small parts that may be inlined; a
+kernel is linked with the parts that it needs. The results are the same.
 
 This overrides methods of Numba that are not public. If a version of Numba lacks them, it compiles
 in its own way, which takes twice as long.
@@ -50,7 +50,7 @@ class Part(JITCodeLibrary):
         return self
 
     def set_env(self, name: str, environment: Any) -> None:
-        """Do nothing: the kernels, which have the variable of this name, set it."""
+        """Do nothing: the kernels set the variable of this name."""
 
     def finalize(self) -> None:
         """Optimise this function alone."""
@@ -78,10 +78,10 @@ class Part(JITCodeLibrary):
 
 
 class Kernel(Part):
-    """The code of a kernel, with that of all parts that it needs."""
+    """The code of a kernel, with the code of all parts that it needs."""
 
     def _finish(self) -> None:
-        # Callers first: code without remaining callers is left out.
+        # Callers first, so that code without remaining callers is left out.
         for part in reversed(self.called):
             self._final_module.link_in(part._get_module_for_linking(), preserve=True)
         self._final_module.verify()
@@ -122,7 +122,7 @@ def copies_in(library: Any) -> list[str]:
 
 def without_literals(part: Any) -> Any:
     """Compile one copy of a part for all integers, where Numba makes one for each literal."""
-    if hasattr(part, "_compiler"):  # not if compilation is switched off
+    if hasattr(part, "_compiler"):  # absent if compilation is switched off
         fold = part._compiler.fold_argument_types
 
         def folded(*arguments: Any) -> Any:

@@ -2,8 +2,8 @@
 
     python -m gaussmap.runtime.machine_code.listing [--write | --usual] [FOLDER]
 
-Kernels that the file of the package lacks are compiled and cached in the folder (by default that of
-this machine): after a run of tests these are missing from the list. Exit code 1 means that some are
+Kernels that the package's file lacks are compiled and cached in the folder (by default that of this
+machine): after a run of tests, they are those that the list lacks. Exit code 1 means that some are
 missing. With --usual, the kernels cached there become the list of those that usual calls need.
 """
 
@@ -25,7 +25,7 @@ PACKAGE = signatures.__name__.partition(".")[0]  # this module may be __main__
 
 
 def compiled_in(folder: Path) -> dict[str, list[Any]]:
-    """Return the signatures of the kernels of this package that a folder keeps."""
+    """Return the signatures of the kernels of this package in a folder."""
     found: dict[str, list[Any]] = defaultdict(list)
     for entry in entries_in(folder):
         name, kinds = signature_in(entry) or ("", [])
@@ -35,7 +35,7 @@ def compiled_in(folder: Path) -> dict[str, list[Any]]:
 
 
 def _is_named(name: str) -> bool:
-    """Return whether a kernel is one of this package, and not one of a test or a user."""
+    """Return whether a kernel is one of this package, not of a test or a user."""
     if not name.startswith(f"{PACKAGE}."):
         return False
     try:
@@ -45,7 +45,7 @@ def _is_named(name: str) -> bool:
 
 
 def missing(folder: Path) -> list[str]:
-    """Return the kernels, with types of arguments, that a folder keeps and the list lacks."""
+    """Return the kernels, with types of arguments, that are in a folder and not in the list."""
     listed = signatures.read()
     found = compiled_in(folder).items()
     return [f"{name}{x}" for name, kinds in found for x in kinds if x not in listed.get(name, ())]

@@ -1,4 +1,4 @@
-"""Versions, platform and processor: what machine code depends on, apart from its sources."""
+"""Versions, platform and processor: what machine code depends on besides its sources."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CODE_OPTIONS = (
 
 
 class Level(NamedTuple):
-    """A level of processors of one architecture: those with all its features run its code."""
+    """A level of processors of one architecture: processors with all its features run its code."""
 
     name: str
     """LLVM's name of the processor."""
@@ -31,7 +31,7 @@ class Level(NamedTuple):
 
 
 V3 = "cx16 sahf popcnt sse3 sse4.1 sse4.2 ssse3 avx avx2 bmi bmi2 f16c fma lzcnt movbe"
-# One level for each architecture: code for v3 takes 0 to 12 % longer than for the processor itself.
+# One level per architecture: code for v3 takes up to 12 % longer than for the processor itself.
 LEVELS = {
     "x86_64": Level("x86-64-v3", V3),
     "aarch64": Level("generic", "neon"),
@@ -65,7 +65,7 @@ def runs_here(level: Level) -> bool:
 
 
 def changed_options() -> dict[str, str]:
-    """Return the options of Numba that ask for other code than usual, by variable."""
+    """Return the options of Numba that request other code than usual, by variable."""
     names = (f"NUMBA_{name}" for name in CODE_OPTIONS)
     return {name: os.environ[name] for name in names if os.environ.get(name)}
 

@@ -1,12 +1,12 @@
 """The file of machine code that comes with the package: `compiled/LEVEL.kernels`.
 
-A wheel has the file of one level of processors, made by `building`. It is used if the sources of
+A wheel has the file for one level of processors, made by `building`. It is used if the sources of
 kernels, the series of Numba, Python and the platform are those of the build, and the processor has
-the level; else kernels are compiled here. The results are the same, bit for bit.
+the level. Otherwise kernels are compiled here. The results are the same, bit for bit.
 
-The file is `MAGIC`, the size of a header, the header (sealed JSON), and the entries that it lists.
-It is read from the folder of the package only, and not if others can write it than can write the
-sources: machine code could do anything.
+The file consists of `MAGIC`, the size of a header, the header (sealed JSON), and the entries that
+it lists. It is read from the folder of the package only, and not if more people can write it than
+the sources: machine code could do anything.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .trust import is_as_safe_as_sources
 
 __all__ = ["MAGIC", "SWITCH", "WORD", "Pack", "misfit", "open_pack", "pack_path", "write_pack"]
 
-config: Any = numba_config  # Numba makes its attributes at run time
+config: Any = numba_config  # Numba creates its attributes at run time
 MAGIC = b"gaussmap kernels 2\n"
 SWITCH = "GAUSSMAP_KERNELS"  # set to 0, the file is neither built nor used
 
@@ -35,7 +35,7 @@ SWITCH = "GAUSSMAP_KERNELS"  # set to 0, the file is neither built nor used
 class Pack:
     """A file of machine code.
 
-    Raises OSError if it cannot be read, ValueError if it is not such a file, or its header is
+    Raises OSError if it cannot be read, ValueError if it is not such a file or its header is
     damaged.
     """
 

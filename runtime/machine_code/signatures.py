@@ -1,6 +1,6 @@
 """The list of signatures of kernels, `signatures.json`, from which the package's file is built.
 
-`usual.json` names those that usual calls need: `pip install .` compiles these.
+`usual.json` names the kernels that usual calls need: `pip install .` compiles these.
 
 A type is a text, as "float64", "int64 2 C" (an array: item, dimensions, layout) or "int64 2 C
 readonly", a list of types (a tuple), {"module.Class": a list of types} (a named tuple), or "none".
@@ -30,7 +30,7 @@ __all__ = [
 
 SIGNATURES = Path(__file__).with_suffix(".json")
 USUAL = SIGNATURES.with_name("usual.json")
-# The types of arguments of each kernel, by its module and name.
+# The types of arguments of each kernel, by module and name.
 Listing = Mapping[str, Sequence[Any]]
 
 
@@ -89,6 +89,6 @@ def as_types(kind: Any) -> Any:
 
 
 def named(name: str) -> Any:
-    """Return an object by its name, such as "gaussmap.runtime.tape.kernels.points.Tape"."""
+    """Return the object of a name such as "gaussmap.runtime.tape.kernels.points.Tape"."""
     module, _, name = name.rpartition(".")
     return getattr(import_module(module), name)

@@ -1,4 +1,4 @@
-"""Who may write a file or a folder of machine code: what others can write is not run."""
+"""Write access to files and folders of machine code: what others can write is not run."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
 def is_private(found: os.stat_result) -> bool:
-    """Return whether only the user, root or the owner of this package can write a file."""
+    """Return whether nobody but the user, root and the owner of this package can write a file."""
     return _is_owned(found) and (os.name == "nt" or not found.st_mode & OTHERS)
 
 
 def is_as_safe_as_sources(path: Path) -> bool:
-    """Return whether nobody can write a file of the package who cannot write its sources."""
+    """Return whether everyone who can write a file of the package can also write its sources."""
     found, own = path.stat(), Path(__file__).stat()
     more = found.st_mode & OTHERS & ~own.st_mode
     other_group = bool(found.st_mode & stat.S_IWGRP) and found.st_gid != own.st_gid
