@@ -108,11 +108,11 @@ class GaussMap(Methods):
 
     @property
     def _fitted(self) -> tuple[OnPatches, ...]:
-        """What is sampled by a density, each piece with its spline."""
+        """The geometries that densities use, each piece with its spline."""
         return tuple(x.fitted for x in self._pieces)
 
     def _with_fit(self, samples: Samples, reach: Cap | None = None) -> Samples:
-        """Return samples with their spline, and with a report that speaks of it, where it had none.
+        """Return samples with their spline, and with the entries on it in their report.
 
         They are in a `reach`, if it is not None.
         """
@@ -275,7 +275,7 @@ class GaussMap(Methods):
         out: Samples | None = None,
         reach: Cap | None = None,
     ) -> Samples:
-        """Return the points with unit normals (S, 3); a `reach` leaves only the normals in it."""
+        """Return the points with unit normals (S, 3); with a `reach`, only at normals in it."""
         if not isinstance(out, Samples | None):
             raise InputError(f"out must be Samples of an earlier call, not {shown(out)}.")
         number, surface = checked_dtype(dtype), self._surface
@@ -300,7 +300,7 @@ class GaussMap(Methods):
 
 
 def check_part(cells: Sequence[int] | None, on: str | None) -> None:
-    """Raise InputError for arguments of splines, which parts do not have."""
+    """Raise InputError for arguments on splines, which parts do not have."""
     if cells is not None:
         raise InputError("cells=... are for splines; the faces of a part need none.")
     if checked_place(on) == "spline":
