@@ -195,6 +195,7 @@ def _compare_with_splines(found: SupportPoints, gauss_map: GaussMap, normals: Ar
     on_splines = [(x, _farthest(kept_map(x.spline), normals)) for x in on_grids(gauss_map._fitted)]
     for piece, near in on_splines:
         points = piece.jets(*near.uv.T.copy())[:, 0]
+        points = np.where(np.isfinite(points), points, near.points)
         found.add(np.arange(len(normals)), normals, points, near.uv, -1, near.on_border)
     for piece, near in on_splines:
         bounds = near.values + piece.distance - found.values
@@ -401,7 +402,8 @@ def _of_trim(geometry: OnSpline, line: Array) -> Segments:
     low, high = np.array(spline.domain).T
     starts = low + (around + line[:-1] - middles) * (high - low)
     found = Segments(geometry, starts, np.diff(line, axis=0) * (high - low))
-    if spline.trim is None or not any(isinstance(x, Predicate) for x in spline.trim.parts):
+    parts = () if spline.trim is None else spline.trim.parts
+    if len(starts) < 3 or not any(isinstance(x, Predicate) for x in parts):
         return found
     points = found.at(np.arange(len(starts)), np.zeros(len(starts)))[1]
     chords, steps = points[2:] - points[:-2], np.diff(points, axis=0)[:-1]

@@ -10,7 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import real_array
 from .errors import GaussmapError, InputError, SurfaceError
 
-__all__ = ["called", "check_finite", "evaluated", "returned"]
+__all__ = ["Needed", "called", "check_finite", "evaluated", "returned"]
+
+Needed = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 
 
 def evaluated(
@@ -18,23 +20,35 @@ def evaluated(
     parameters: Mapping[str, NDArray[np.float64]],
     dimension: int,
     label: str,
+    needed: Needed | None = None,
 ) -> NDArray[np.float64]:
     """Return the points (..., dimension) of a callable for parameters of one shape, by their names.
 
     Raises SurfaceError, which names the callable by `label`, if the callable raises, or returns
-    another shape, anything but real numbers, or NaN or infinity; the message gives the parameters.
+    another shape, anything but real numbers, or NaN or infinity where values are `needed`; the
+    message gives the parameters.
     """
     arrays = {name: np.atleast_1d(x) for name, x in parameters.items()}
     points = returned(function, tuple(arrays.values()), (dimension,), f"the callable of {label}")
-    check_finite(points, arrays, label)
+    check_finite(points, arrays, label, needed)
     return points.reshape(*np.shape(next(iter(parameters.values()))), dimension)
 
 
 def check_finite(
-    values: NDArray[np.float64], parameters: Mapping[str, NDArray[np.float64]], label: str
+    values: NDArray[np.float64],
+    parameters: Mapping[str, NDArray[np.float64]],
+    label: str,
+    needed: Needed | None = None,
 ) -> None:
-    """Raise SurfaceError, with the parameters, if values (..., k) are not finite."""
+    """Raise SurfaceError, with the parameters, if values (..., k) are not finite.
+
+    Those at parameters (j, 2) for which `needed` returns False may be NaN or infinite.
+    """
     bad = ~np.isfinite(values).all(axis=-1)
+    if needed is not None and bad.any():
+        bad[bad] = needed(
+            np.stack([np.broadcast_to(x, bad.shape)[bad] for x in parameters.values()], axis=-1)
+        )
     if bad.any():
         where = np.unravel_index(int(np.argmax(bad)), bad.shape)
         place = ", ".join(f"{name} = {float(array[where])}" for name, array in parameters.items())

@@ -236,8 +236,9 @@ def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
     counts = FEW if cells[0] * cells[1] < FEW_CELLS else MANY
     parts = _places(counts)
     points = _points(surface, parts)
-    sizes = np.array([np.ptp(x) for x in points.T])
-    extent, largest = float(sizes.max()), float(np.abs(points).max())
+    finite = points[np.isfinite(points).all(axis=1)]
+    sizes = np.array([np.ptp(x) for x in finite.T])
+    extent, largest = float(sizes.max()), float(np.abs(finite).max())
     first = len(points) - counts.spread
     diagonal = float(np.hypot.reduce(sizes))
     lines = points[:first].reshape(2, -1, counts.steps, 3)

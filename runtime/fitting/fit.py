@@ -18,9 +18,17 @@ from ..base.scales import not_too_large
 from ..domain.domain import Domain, cells_between, places_in
 from ..domain.trim import Trim, trimmed
 from ..spline.misfit import Misfit
-from ..spline.missing import known_of_values
+from ..spline.missing import known_of, known_of_values
 from ..spline.nets import AnySpline, on_grid
-from ..spline.quasi_interpolant import checked_cells, fit_grid, fit_values, values_at
+from ..spline.quasi_interpolant import (
+    checked_cells,
+    completed,
+    continued,
+    fit_grid,
+    fit_values,
+    from_values,
+    values_at,
+)
 from ..spline.spline import Spline, short_label
 from ..surface.closing import close_seams
 from ..surface.collapsed import with_found_sides
@@ -171,7 +179,7 @@ def fit(
             spline = _fitted(surface, cells)
             misfit = probe_of(surface, spline.cells).compare(spline).misfit
             spline = replace(spline, misfit=misfit)
-    trim = _trim_of(surface, spline, finest=cells is None)
+    trim = spline.trim or _trim_of(surface, spline, finest=cells is None)
     return replace(spline, trim=trim, apexes=apexes, georeference=surface.georeference)
 
 
@@ -284,7 +292,14 @@ def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
 
     values = values_at(evaluate, surface.domain, checked_cells(cells))
     close_seams(surface, values.vertices)
-    return fit_values(values, surface.domain, surface.boundary, surface.name)
+    domain, boundary, trim = surface.domain, surface.boundary, surface.trim
+    if trim is None or all(np.isfinite(x).all() for x in values[:2]):
+        return fit_values(values, domain, boundary, surface.name)
+    # The callable has no values somewhere outside of its trim.
+    values = values.filled_by(continued)
+    known = known_of(*from_values(values), domain, boundary)
+    spline = fit_values(values.filled_by(completed), domain, boundary, surface.name)
+    return replace(spline, trim=trimmed(trim, trim.domain, trim.boundary, known))
 
 
 def _check_repeated(surface: Surface) -> None:

@@ -24,6 +24,7 @@ from .quasi_interpolant import from_grid, from_values, values_at
 __all__ = [
     "Known",
     "checked_nodata",
+    "known_of",
     "known_of_grid",
     "known_of_values",
     "without_nodata",
@@ -185,7 +186,7 @@ def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) 
     spread_missing(bad, boundary, ROWS_AT_POLE)
     zeros = np.zeros((*bad.shape, 3))
     zeros[bad] = np.nan
-    known = _known(*from_grid(zeros, without_poles(boundary)), domain, boundary)
+    known = known_of(*from_grid(zeros, without_poles(boundary)), domain, boundary)
     if not known.patches.any():
         raise InputError(
             f"{int(bad.sum()):,} of the {bad.size:,} points of {name} are missing, and every part "
@@ -207,10 +208,10 @@ def known_of_values(
         bad = ~exists(uv.reshape(-1, 2)).reshape(uv.shape[:2])
         return np.where(bad[..., None], np.nan, np.zeros(3))
 
-    return _known(*from_values(values_at(values, domain, cells)), domain, boundary)
+    return known_of(*from_values(values_at(values, domain, cells)), domain, boundary)
 
 
-def _known(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> Known:
+def known_of(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> Known:
     """Return the patches without NaN in their control nets, from coefficients (m, n, 3)."""
     bad: Flags = np.any(np.isnan(inner), axis=2)
     spread_missing(bad, boundary, 1)  # the coefficients around a pole depend on one another

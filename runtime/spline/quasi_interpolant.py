@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.aliases import Array
+from ..base.aliases import Array, Flags
 from ..base.checks import pair_of_cells
 from ..base.errors import InputError, SurfaceError
 from ..base.limits import MOST
@@ -22,13 +22,19 @@ from .spline import Spline
 __all__ = [
     "Values",
     "checked_cells",
-    "filled",
+    "completed",
+    "continued",
     "fit_grid",
     "fit_values",
     "from_grid",
     "from_values",
     "values_at",
 ]
+
+
+# Missing values are continued over so many steps: a patch depends on values two cells away, and the
+# nearest known one may be one cell away from it.
+FAR = 3
 
 
 class Values(NamedTuple):
@@ -40,6 +46,14 @@ class Values(NamedTuple):
     centres: Array
     vertices: Array
     middles: Sides
+
+    def filled_by(self, fill: Callable[[Array], Array]) -> Values:
+        """Return the values with others in place of missing ones, by `continued` or `completed`."""
+        g = fill(self.vertices)
+        rows = g[:, 0], g[:, -1], g[0], g[-1]
+        sides = zip(self.middles, rows, strict=True)
+        a, b, c, d = (np.where(np.isfinite(x), x, y[1:]) for x, y in sides)
+        return Values(fill(self.centres), g, (a, b, c, d))
 
 
 def values_at(
@@ -109,12 +123,49 @@ def filled(points: Array) -> Array:
     bad = np.isnan(points)
     if not bad.any():
         return points
+    touched: Flags = np.any(bad, axis=2)
+    result = points.copy()
+    result[touched] = np.where(bad[touched], points[*_nearest(touched)], points[touched])
+    return result
+
+
+def completed(points: Array) -> Array:
+    """Return points (m, n, 3), with missing ones from the nearest quadratic patch."""
+    bad: Flags = np.any(np.isnan(points), axis=2)
+    if not bad.any() or bad.all():
+        return np.nan_to_num(points)
+    lines = (np.linspace(-1.0, 1.0, count) for count in bad.shape)
+    u, v = np.meshgrid(*lines, indexing="ij")
+    terms = np.stack([u**0, u, v, u * u, u * v, v * v], axis=2)
+    result = points.copy()
+    result[bad] = terms[bad] @ np.linalg.lstsq(terms[~bad], points[~bad])[0]
+    return result
+
+
+def continued(points: Array) -> Array:
+    """Return points (m, n, 3) with more of them beside missing ones, NaN or infinite.
+
+    Up to FAR steps from a known point they continue a quadratic through the three known points on
+    one line; elsewhere they are NaN.
+    """
+    bad: Flags = np.any(~np.isfinite(points), axis=2)
+    places, nearest = np.argwhere(bad), _nearest(bad).T
+    last = np.array(bad.shape) - 1
+    lines = [nearest + k * (nearest - places) for k in range(3)]
+    a, b, c = (points[*np.clip(x, 0, last).T] for x in lines)
+    near = (np.abs(nearest - places) <= FAR) & (lines[2] >= 0) & (lines[2] <= last)
+    result = points.copy()
+    result[bad] = np.where(near.all(axis=1, keepdims=True), 3.0 * a - 3.0 * b + c, np.nan)
+    return result
+
+
+def _nearest(bad: Flags) -> NDArray[np.int32]:
+    """Return the indices (2, k) of the known values nearest to the k missing ones."""
     from scipy.ndimage import distance_transform_edt
 
-    touched = bad.any(axis=2)
-    nearest: NDArray[np.int32] = np.empty((2, *touched.shape), dtype=np.int32)
-    distance_transform_edt(touched, return_distances=False, return_indices=True, indices=nearest)
-    return np.where(bad, points[nearest[0], nearest[1]], points)
+    nearest: NDArray[np.int32] = np.empty((2, *bad.shape), dtype=np.int32)
+    distance_transform_edt(bad, return_distances=False, return_indices=True, indices=nearest)
+    return nearest[:, bad]
 
 
 def checked_cells(cells: Sequence[int]) -> tuple[int, int]:

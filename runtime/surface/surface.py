@@ -540,8 +540,8 @@ class Surface(SurfaceValues):
         -------
         Surface
             The part. If the surface is already trimmed, or if loops and a predicate are given, all
-            conditions hold. The spline is fitted on the whole domain, on which the surface must be
-            defined.
+            conditions hold. A callable may return NaN outside of the trim: there the spline
+            continues it for up to three cells.
 
         Raises
         ------

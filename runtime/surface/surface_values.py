@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..base.checks import checked_array, parameter_arrays, text
 from ..base.errors import InputError, shown
-from ..base.evaluation import check_finite, evaluated
+from ..base.evaluation import Needed, check_finite, evaluated
 from ..base.georeference import Georeference
 from ..base.kept import Immutable
 from ..base.later import Later
@@ -76,13 +76,13 @@ class SurfaceValues(Immutable):
         Returns
         -------
         (..., 3) float64 array
-            The points.
+            The points; outside of the trim, the callable may return NaN.
 
         Raises
         ------
         SurfaceError
             If the callable raises, returns another shape than (..., 3), anything but real numbers,
-            or NaN or infinity; the message gives the parameters.
+            or NaN or infinity inside of the trim; the message gives the parameters.
         InputError
             If the parameters are not real numbers, or lie outside a surface that was given by
             points.
@@ -96,7 +96,12 @@ class SurfaceValues(Immutable):
         """
         u_array, v_array = parameter_arrays(u, v)
         parameters = {"u": u_array, "v": v_array}
-        return evaluated(self.function, parameters, 3, f"surface {self.name!r}")
+        return evaluated(self.function, parameters, 3, f"surface {self.name!r}", self._needed)
+
+    @property
+    def _needed(self) -> Needed | None:
+        """Where values have to be finite; None for everywhere."""
+        return None if self.trim is None else self.trim.contains
 
     @property
     def evaluable(self) -> bool:
@@ -162,7 +167,8 @@ class SurfaceValues(Immutable):
         jets = self.jets(*(x.flatten() for x in arrays)).reshape(*arrays[0].shape, len(NAMES), 3)
         for row, name in enumerate(NAMES):
             parameters = dict(zip("uv", arrays, strict=True))
-            check_finite(jets[..., row, :], parameters, f"{name} of surface {self.name!r}")
+            label = f"{name} of surface {self.name!r}"
+            check_finite(jets[..., row, :], parameters, label, self._needed)
         return jets
 
     def normals(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:

@@ -471,3 +471,28 @@ def test_flat_points_outside_of_a_predicate_are_known(edge, borders):
         (0, x) for x in borders
     ]
     assert (samples.normal_index == 0).sum() == (edge < 0.0)
+
+
+@pytest.mark.parametrize("radius", [0.5, 0.6])
+def test_a_callable_has_values_inside_its_trim_only(radius):
+    def half_sphere(u, v):
+        height = np.sqrt(1.0 - u * u - v * v)
+        points = np.stack([u, v, height], axis=-1)
+        return np.where((u * u + v * v < radius)[..., None], points, np.nan)
+
+    whole = gm.Surface.from_callable(half_sphere, ((-1, 1), (-1, 1)))
+    cap = whole.trimmed(within=lambda u, v: u * u + v * v < 0.5)
+    assert np.isnan(cap.evaluate(0.9, 0.9)).all()
+    fitted, normals = gm.GaussMap(cap, cells=(32, 32)), gm.fibonacci(1000)
+    angle = fitted.spline.misfit.angle
+    assert angle < 3.0  # the spline continues it smoothly
+    samples = fitted.points(normals)
+    away = np.degrees(np.arccos(normals[:, 2])) - 45.0
+    found = np.isin(np.arange(1000), samples.normal_index)
+    np.testing.assert_array_equal(found[abs(away) > angle], (away < 0.0)[abs(away) > angle])
+    np.testing.assert_allclose(
+        samples.points, samples.normals, rtol=0, atol=1e-11
+    )  # of first differences
+    np.testing.assert_allclose(cap.bounds[1], [np.sqrt(0.5), np.sqrt(0.5), 1.0], atol=1e-4)
+    with pytest.raises(gm.errors.SurfaceError, match="not finite at u = "):
+        gm.fit(whole.trimmed(within=lambda u, v: u > -0.9))
