@@ -302,9 +302,9 @@ class GaussMap(Methods):
 def check_part(cells: Sequence[int] | None, on: str | None) -> None:
     """Raise InputError for arguments on splines, which parts do not have."""
     if cells is not None:
-        raise InputError("cells=... are for splines; the faces of a part need none.")
+        raise InputError("cells are for splines; the faces of a part need none.")
     if checked_place(on) == "spline":
-        raise InputError('on="spline" is for surfaces; samples of a part lie on its faces.')
+        raise InputError("samples on a spline are of surfaces; those of a part lie on its faces.")
 
 
 def kept_map(

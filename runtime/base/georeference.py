@@ -65,8 +65,8 @@ def warn_of_rounding(points: NDArray[np.floating], stacklevel: int) -> None:
     if step > ROUNDING * math.dist(low, high) / math.sqrt(len(points)):
         x, y = (f"{math.floor(q)}" for q in low[:2])
         warnings.warn(
-            f"single precision rounds these coordinates to {step:.2g}; subtract an origin, as in "
-            f"terrain(..., origin=({x}, {y})), --origin {x} {y}.",
+            f"single precision rounds these coordinates to {step:.2g}; subtract an origin such as "
+            f"{x} {y}.",
             GaussmapWarning,
             stacklevel=stacklevel,
         )

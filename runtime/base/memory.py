@@ -41,7 +41,7 @@ class Cost(NamedTuple):
     instead: str
 
 
-FEWER = "use fewer, or gm.sample_stream with a count, for samples at normals in chunks"
+FEWER = "use fewer; a stream yields samples at normals in chunks"
 LARGER = "ask for fewer samples, or a larger angle or coverage"
 # Measured; tests/runtime/base/test_memory.py measures again.
 COSTS: dict[str, Cost] = {
@@ -55,8 +55,8 @@ COSTS: dict[str, Cost] = {
     "numbers": Cost("numbers", 9.0, 0.0, "use fewer"),
     # Normals in bins, and one sample per normal.
     "search": Cost("normals", 52.0, 0.0, FEWER),
-    "stored": Cost("samples", 0.0, 1.0, 'use fewer normals, fewer fields or dtype="float32"'),
-    "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or gm.sample_stream"),
+    "stored": Cost("samples", 0.0, 1.0, "use fewer normals, fewer fields or float32"),
+    "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or a stream"),
     # The others have several candidates per sample.
     "balanced": Cost("samples", 3900.0, 0.0, FEWER),
     "uniform": Cost("samples", 3900.0, 0.0, FEWER),
@@ -66,7 +66,7 @@ COSTS: dict[str, Cost] = {
     "curve": Cost("samples", 420.0, 0.0, "use fewer"),
     # 450 bytes in arrays, the rest in Qhull.
     "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples, or parts of patches"),
-    "cells": Cost("cells", 120.0, 0.0, "use fewer, or tolerance=..., which chooses them"),
+    "cells": Cost("cells", 120.0, 0.0, "use fewer, or give a tolerance, which chooses them"),
     "heights": Cost(
         "heights", 250.0, 0.0,
         "crop the file, or coarsen it, as with gdal_translate -outsize 25% 25% -r average",

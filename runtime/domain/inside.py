@@ -49,7 +49,7 @@ class Inside:
         shares[cut] = shares_of(number[cut], FINEST)
         if not shares.any():
             raise SurfaceError(
-                f"the trim of surface {name!r}, or reach=(axis, angle), leaves nothing of it, or "
+                f"the trim of surface {name!r}, or the reach, leaves nothing of it, or "
                 "less than a part of a cell of its spline; is it inside the domain?"
             )
         return cls(shares, cut | (shares > 0.0))

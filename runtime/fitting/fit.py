@@ -76,7 +76,7 @@ def check_range(name: str, largest: float, dtype: DTypeLike) -> None:
     if not float(limits.tiny) <= largest <= float(limits.max) and largest > 0.0:
         raise SurfaceError(
             f"the coordinates of {name!r} are too {'large' if largest > 1.0 else 'small'} "
-            f"for {limits.dtype}; choose another unit of length or dtype=numpy.float64."
+            f"for {limits.dtype}; choose another unit of length or double precision."
         )
 
 

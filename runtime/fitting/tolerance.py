@@ -108,9 +108,9 @@ def checked_tolerance(
     if not given:
         return None
     if cells is not None:
-        raise InputError(f"cells=... and {next(iter(given))}=... do not go together: choose one.")
+        raise InputError(f"cells and {next(iter(given))} do not go together: choose one.")
     if "tolerance" in given and "relative_tolerance" in given:
-        raise InputError("tolerance=... and relative_tolerance=... do not go together: choose one.")
+        raise InputError("tolerance and relative_tolerance do not go together: choose one.")
     if given.get("normal_tolerance", math.inf) < LEAST_ANGLE:
         raise InputError(
             f"normal_tolerance must be at least {LEAST_ANGLE:g} degrees: normals are compared with "

@@ -48,8 +48,8 @@ def place_of_samples(surface: object, on: str | None) -> str:
     if on == "surface" and not known:
         if isinstance(surface, Surface):
             raise InputError(
-                f'on="surface" needs a surface that can be evaluated everywhere, and '
-                f"{surface.name!r} was given by points; its spline is all there is: leave out on=…."
+                "samples on the surface need one that can be evaluated everywhere, and "
+                f"{surface.name!r} was given by points; its spline is all there is."
             )
         if isinstance(surface, AnySpline):
             raise InputError(

@@ -57,8 +57,8 @@ def pieces_to_sample(surface: object) -> tuple[Surface, ...]:
     if len(pieces) > MOST_PIECES and isinstance(surface, Surface):
         raise InputError(
             f"surface {surface.name!r} has {len(pieces):,} smooth pieces between creases, "
-            f"and at most {MOST_PIECES:,} are sampled as one; gm.fit(surface) gives one "
-            "spline, which rounds the creases."
+            f"and at most {MOST_PIECES:,} are sampled as one; samples on its spline, "
+            "which rounds the creases, are not limited."
         )
     return pieces if len(pieces) > 1 else ()
 
@@ -119,7 +119,7 @@ def with_area(geometries: Sequence[OnSpline]) -> list[tuple[int, OnSpline]]:
         label = f"surface {geometries[0].spline.name!r}"
         raise SurfaceError(
             f"{label} has no area beyond rounding: all its points lie on one curve or are one "
-            'point; only density="gauss" takes it.'
+            'point; only the density "gauss" takes it.'
             if len(geometries) == 1
             else f"{label} and the other pieces have no area beyond rounding, or their trim leaves "
             "nothing of them."

@@ -116,12 +116,12 @@ FIELDS: dict[str, Field] = {
 }
 # Groups of samples with fields that other samples lack, as worded in messages.
 ONLY = {
-    "surface": 'on the surface only; see on="surface"',
+    "surface": "on the surface only, not on its spline",
     "proved": "at prescribed normals of surfaces with bounds of their derivatives only",
     "given": "at prescribed normals only",
-    "grid": 'on a grid only; see density="aligned"',
-    "part": "of CAD parts only; see gm.read_part",
-    "edges": "of CAD parts with edges=True only",
+    "grid": 'on a grid only, of density "aligned"',
+    "part": "of CAD parts only",
+    "edges": "of CAD parts with samples on edges only",
 }
 
 
@@ -263,7 +263,7 @@ def checked_fields(
         if name in FIELDS and not has[FIELDS[name].only]:
             raise InputError(f"{name} is a field of samples {ONLY[FIELDS[name].only]}.")
         if name in without:
-            raise InputError(f'{name} is a field of samples found on a spline; see on="spline".')
+            raise InputError(f"{name} is a field of samples on a spline only.")
         known_name(name, known, "field")
     return tuple(name for name in known if name in names)
 
@@ -275,7 +275,7 @@ def missing_fields(
     needs = f"{subject} needs {_listed(lacking)}, but " if subject else ""
     return MissingFieldError(
         f"{needs}these samples hold {', '.join(held)} only; "
-        f"add {_listed([repr(name) for name in lacking])} to fields=... when sampling."
+        f"add {_listed([repr(name) for name in lacking])} to the fields when sampling."
     )
 
 

@@ -400,13 +400,13 @@ def _unrefined(report: SamplingReport) -> list[str]:
     if unrefined > WORTH_A_WARNING * report.samples:
         reasons.append(
             f"{unrefined} of {report.samples} samples could not be moved to the surface, and lie "
-            "on its spline (see Samples.on_surface)"
+            "on its spline (on_surface tells which)"
         )
     left = 0 if report.proved is not None else len(report.undecided or ())
     if left > WORTH_A_WARNING * (report.normals or 0):
         reasons.append(
             f"points of its spline with {left} of {report.normals} normals could not be moved to "
-            "the surface, and are left out (see report.undecided)"
+            "the surface, and are left out (undecided lists them)"
         )
     return reasons
 

@@ -111,14 +111,14 @@ def _warn_of_nodata(points: Array, name: str, given: float | None = None) -> Non
         if (value in usual or near) and lowest < highest:
             _warn(
                 f"{name} holds {value:.9g} {int((points == value).sum()):,} times, which often "
-                f"means that there is no data; if so, say nodata={value:.9g}{instead}."
+                f"means that there is no data; if so, say {value:.9g} as nodata{instead}."
             )
             return
     block = _suspicious_block(points) if points.ndim == 2 else None
     if block is not None:
         _warn(
             f"{name} holds a block of {block[1]:,} heights of {block[0]:.9g}, where the others end "
-            f"abruptly: there may be no data; if so, say nodata={block[0]:.9g}{instead}."
+            f"abruptly: there may be no data; if so, say {block[0]:.9g} as nodata{instead}."
         )
 
 

@@ -64,7 +64,7 @@ def checked_spacing(spacing: Sequence[float] | None, count: int) -> tuple[float,
         dx, dy = (as_float(x) for x in (() if spacing is None else spacing))
     except Exception:  # `float` may raise anything
         raise InputError(
-            f"elevations (m, n) need spacing=(dx, dy), two numbers, not {shown(spacing)}."
+            f"elevations (m, n) need a spacing of two numbers, dx and dy, not {shown(spacing)}."
         ) from None
     if not np.isfinite([dx * count, dy * count]).all() or dx <= 0.0 or dy == 0.0:
         raise InputError(

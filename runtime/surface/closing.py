@@ -72,6 +72,6 @@ def _by_rounding(
     if not moved >= 0.5 * far:
         return f"; they differ by {far:.3g}"
     return (
-        f"; they differ by {far:.3g}, as much as its rounding changes the points there: let the "
-        f"callable reduce {along} first, as by numpy.where({along} == {high!r}, {low!r}, {along})"
+        f"; they differ by {far:.3g}, as much as its rounding changes the points there: "
+        f"compute them at {along} = {low!r} in place of {high!r}"
     )

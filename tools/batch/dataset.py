@@ -401,7 +401,7 @@ class Dataset:
         if few.any():
             part, held = numbers[few][0], samples[few][0]
             warnings.warn(
-                f"part {part} has {held:,} samples, fewer than points={count}: some of them are "
+                f"part {part} has {held:,} samples, fewer than {count} points: some of them are "
                 "repeated in its batch, as are those of other parts with fewer.",
                 GaussmapWarning,
                 stacklevel=3,

@@ -307,7 +307,7 @@ def _check_same(old: Settings, new: Settings, path: Path) -> None:
             before, after = (json.dumps(x.get(name)) for x in (then, now))
             if before == after:
                 continue
-            what = f"was made with {name}={_short(before)}, not {_short(after)}"
+            what = f"was made with {name} {_short(before)}, not {_short(after)}"
             if name in ("gaussmap", "formulas"):
                 what = f"was made by another version of gaussmap ({old.gaussmap})"
             raise InputError(f"the data set '{path}' {what}; name another folder, or overwrite it.")

@@ -68,13 +68,13 @@ def mesh_of_samples(samples: Samples, angle: float | None, prefer: str) -> PartM
     assert isinstance(part, Part)
     if angle is not None:
         raise InputError(
-            "angle=... is for meshes of surfaces, and these samples are of a CAD part."
+            "an angle that triangles deviate by is for meshes of surfaces, not of CAD parts."
         )
     density = samples.report.density or "balanced"
     if density not in DENSITIES and spaced.by_shape:
         raise InputError(
             'a mesh of a CAD part follows the density "balanced" or "uniform", and these samples '
-            f'have "{density}"; use one of these, or prefer="normals".'
+            f'have "{density}"; use one of these, or prefer normals.'
         )
     density = "uniform" if density == "uniform" and spaced.by_shape else "balanced"
     return mesh_of_part(part, len(samples), density, spaced, refuse=True)
@@ -145,8 +145,8 @@ def _check_apart(part: Part) -> None:
         more = ", …" if len(named) > MOST_NAMED else ""
         raise InputError(
             f"{len(named)} solids of part {part.name!r} share faces or edges "
-            f"({', '.join(named[:MOST_NAMED])}{more}): mesh each by itself, as "
-            f"part.select(index=part.solids[{shared.min()}].faces)."
+            f"({', '.join(named[:MOST_NAMED])}{more}): mesh each by itself, "
+            "selected by the indices of its faces."
         )
 
 

@@ -78,12 +78,12 @@ def _check(request: Request) -> None:
     """Raise InputError for densities that are not available for parts."""
     if isinstance(request.density, str) and request.density not in DENSITIES:
         raise InputError(
-            f'density="{request.density}" is for surfaces; of a part use "balanced" or "uniform".'
+            f'density "{request.density}" is for surfaces; of a part use "balanced" or "uniform".'
         )
     if request.density == "gauss" and request.normals is None:
         raise InputError(
-            'density="gauss" of a part goes with normals=...; with count=... use "balanced", or a '
-            "power of |K|, such as density=1.0."
+            'density "gauss" of a part goes with normals; with a count use "balanced", or a power '
+            "of |K|, such as 1.0."
         )
 
 
@@ -137,8 +137,8 @@ def _warn(part: Part, report: SamplingReport, failed: int, angle: float | None) 
     reasons = []
     if failed:
         reasons.append(
-            f"{failed} of {len(part):,} faces cannot be sampled, and got no samples (see "
-            "part.failed)"
+            f"{failed} of {len(part):,} faces cannot be sampled, and got no samples; the list of "
+            "failed faces says why"
         )
     if angle is not None and report.angle is not None and report.angle > angle:
         reasons.append(

@@ -137,7 +137,7 @@ def _at(index: ArrayLike, count: int) -> Flags:
     places = np.atleast_1d(real_values(index, "index"))
     chosen = np.zeros(count, dtype=np.bool_)
     if places.dtype.kind not in "iu" or places.ndim != 1:
-        raise InputError(f"index must be whole numbers, places in part.faces, not {shown(index)}.")
+        raise InputError(f"index must be whole numbers, indices of faces, not {shown(index)}.")
     bad = places[(places < 0) | (places >= count)]
     if len(bad):
         raise InputError(f"index holds {bad[0]}, and the faces are 0 to {count - 1:,}.")

@@ -14,7 +14,6 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, TextIO
 
 from ...runtime.base.errors import printable
-from .wording import for_commands
 
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
@@ -61,7 +60,7 @@ def table(rows: Iterable[tuple[str, str]]) -> None:
 def complain(text: str) -> None:
     """Print one line to standard error; ignore errors if it is closed."""
     with suppress(OSError, ValueError):
-        write(f"gaussmap: {' '.join(for_commands(text).split())}", sys.stderr)
+        write(f"gaussmap: {' '.join(text.split())}", sys.stderr)
 
 
 def fail(message: str) -> None:

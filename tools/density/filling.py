@@ -367,9 +367,9 @@ def _refuse_too_many(space: Space, radius: float, request: Request) -> None:
         return
     most, enough = int(counts.argmax()), angle * math.sqrt(total / MOST_FOR_ANGLE)
     raise InputError(
-        f"{space.label} would take about {total / 1e6:,.1f} million samples for angle={angle:g}, "
-        f"{counts[most] / total:.0%} of them on {space.pieces[most].label}, which is narrow and "
-        f"sharply curved; ask for angle={enough:.2g} or more, or for a count."
+        f"{space.label} would take about {total / 1e6:,.1f} million samples for an angle of "
+        f"{angle:g}, {counts[most] / total:.0%} of them on {space.pieces[most].label}, which is "
+        f"narrow and sharply curved; ask for {enough:.2g} degrees or more, or for a count."
     )
 
 

@@ -78,7 +78,7 @@ def checked_request(
     given = [name for name, value in amounts.items() if value is not None]
     if not given or len({*given} - {"coverage"}) > 1:
         raise InputError(
-            "say how many samples by one of normals=..., count=..., angle=... and coverage=...; "
+            "say how many samples by one of normals, count, angle and coverage; "
             + (f"{' and '.join(given)} do not go together." if given else "none is given.")
         )
     kind = _density(density, "gauss" if given == ["normals"] else "balanced")
@@ -86,7 +86,7 @@ def checked_request(
     cap = checked_reach(reach)
     if cap is not None and kind == "aligned":
         raise InputError(
-            'density="aligned" is a grid on all of a surface; with reach=... use "balanced".'
+            'density "aligned" is a grid on all of a surface; with a reach use "balanced".'
         )
     return Request(
         None if normals is None else as_normals(normals, threads=threads),
@@ -103,9 +103,7 @@ def _density(density: str | float | None, default: str) -> str | float:
         return default
     if isinstance(density, str):
         if density == "isotropic":  # of version 0.1
-            raise UnknownNameError(
-                'density="isotropic" has another name: write density="balanced".'
-            )
+            raise UnknownNameError('density "isotropic" has another name: write "balanced".')
         return known_name(density, DENSITIES, "density")
     return positive_number(density, "density, as the power of |K|,", most=LARGEST_POWER)
 
@@ -123,6 +121,6 @@ def _check_that_they_fit(density: str | float, given: list[str]) -> None:
     if given not in fitting:
         shown = f'"{density}"' if isinstance(density, str) else density
         raise InputError(
-            f"density={shown} does not go with {' and '.join(f'{x}=...' for x in given)}; "
-            f"use {' or '.join(f'{x[0]}=...' for x in fitting if len(x) == 1)}."
+            f"density {shown} does not go with {' and '.join(given)}; "
+            f"use {' or '.join(x[0] for x in fitting if len(x) == 1)}."
         )

@@ -67,6 +67,6 @@ def archive_of(file: BufferedReader) -> Iterator[Archive]:
             raise UnusableError(
                 f"has {packed / 1e6:,.1f} MB, and would unpack to {arrays.unpacked / 1e6:,.0f} MB, "
                 f"more than {MOST_TIMES} times as much; if you trust it, write it again "
-                "without compression (numpy.savez)."
+                "without compression."
             )
         yield arrays

@@ -130,7 +130,7 @@ def _suffix_of_samples(path: PathLike) -> str:
     if suffix in MESH_SUFFIXES and suffix not in SUFFIXES:
         raise UnknownNameError(
             f"'{path}' has the suffix '{suffix}' of meshes; use one of {', '.join(SUFFIXES)} for "
-            "samples, or write a mesh: `gaussmap mesh`, in Python samples.mesh()."
+            "samples, or write a mesh, by the command `gaussmap mesh` or the method `mesh`."
         )
     return known_suffix(path, SUFFIXES)
 

@@ -50,7 +50,7 @@ def read_array(source: str) -> NDArray[Any]:
     except Exception as error:  # NumPy and zipfile raise a dozen types of exceptions on bad bytes
         raise FileError(
             f"'{file_name}' is damaged, or holds objects instead of numbers "
-            f"({type(error).__name__}: {error}); write it again with numpy.save or numpy.savez."
+            f"({type(error).__name__}: {error}); write it again, with NumPy."
         ) from error
 
 

@@ -47,8 +47,8 @@ def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any: 
     """
     if target is not None and target.is_geographic:
         raise InputError(
-            f"crs={crs_text(target)} has degrees, and normals need lengths; use one in metres, such"
-            " as that of UTM, EPSG:326NN north and 327NN south of the equator for zone NN."
+            f"the CRS {crs_text(target)} has degrees, and normals need lengths; use one in metres, "
+            "such as that of UTM, EPSG:326NN north and 327NN south of the equator for zone NN."
         )
     if target is not None or source is None or not source.is_geographic:
         return target if target is not None else source
@@ -61,7 +61,7 @@ def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any: 
     elif float(np.ptp(x)) > WIDEST_ZONE:
         raise InputError(
             f"{name} spans {float(np.ptp(x)):.0f} degrees of longitude, too many for UTM; give "
-            "a projection, as in crs='EPSG:3035', or crop it."
+            "a projection, such as EPSG:3035, or crop it."
         )
     else:
         number = (32701 if south else 32601) + int((middle + 180.0) % 360.0 // 6.0)

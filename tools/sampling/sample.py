@@ -273,7 +273,7 @@ def _sampled(
     if isinstance(surface, Whole):
         return _of_part(surface, given)
     if given.edges:
-        raise InputError("edges=True is for CAD parts; other surfaces have no sharp edges.")
+        raise InputError("edges are sampled of CAD parts; other surfaces have no sharp edges.")
     if density == "gauss" and normals is not None:
         return _at_normals(surface, normals, given), normals
     if isinstance(surface, NetSpline) and density != "gauss":

@@ -87,6 +87,6 @@ def check_degrees(x: Array, y: Array, heights: Array, name: str) -> None:
         raise InputError(
             f"{name} has x from {x.min():.6g} to {x.max():.6g} and y from {y.min():.6g} to "
             f"{y.max():.6g}, which look like degrees, and heights that vary by {ranges[2]:.6g}: "
-            "normals need one unit; give source_crs='EPSG:4326' (--source-crs), and they are "
+            "normals need one unit; give their CRS, EPSG:4326, as that of the source, and they are "
             "projected."
         )

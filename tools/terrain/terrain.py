@@ -160,8 +160,8 @@ def _of_raster(raster: Raster, spacing: Sequence[float] | None, path: Path) -> t
         return of_transform(raster.transform, _shape(raster.heights))
     if spacing is None:
         raise InputError(
-            f"'{path}' is not georeferenced; give the size of its pixels by spacing=(dx, dy) "
-            "(--spacing DX DY), dy < 0 if rows run from north to south."
+            f"'{path}' is not georeferenced; give the size of its pixels, dx and dy, as "
+            "spacing, dy < 0 if rows run from north to south."
         )
     return of_spacing(spacing, _shape(raster.heights))
 
@@ -171,7 +171,7 @@ def _of_array(
 ) -> tuple[Array, Array]:
     if (x is None) != (y is None) or (x is None) == (spacing is None):
         raise InputError(
-            "an array of elevations needs x and y, its coordinates, or spacing=(dx, dy)."
+            "an array of elevations needs x and y, its coordinates, or a spacing, dx and dy."
         )
     if spacing is not None:
         return of_spacing(spacing, _shape(heights))
@@ -243,5 +243,5 @@ def _check_unit(unit: str, system: Any, name: str) -> None:  # noqa: ANN401
     if abs(factor / METRES[known] - 1.0) > SAME_UNIT:
         raise InputError(
             f"{name} has heights in {unit} and x, y in {along}: normals need one unit; give a CRS "
-            f"in {unit} by crs=... (--crs), to which x and y are projected."
+            f"in {unit}, to which x and y are projected."
         )

@@ -77,8 +77,8 @@ def check_count(count: int) -> None:
     """Raise InputError if a page cannot show this number of samples."""
     if count > MOST:
         raise InputError(
-            f"a page shows at most {MOST:,} samples, not {count:,}; take fewer, or some, as in "
-            "samples.progressive()[:50_000].view(path)."
+            f"a page shows at most {MOST:,} samples, not {count:,}; take fewer, "
+            "or the first ones in a progressive order."
         )
 
 

@@ -256,7 +256,7 @@ def test_ends_that_differ_by_amplified_rounding(axis: int) -> None:
     if axis == 1:
         domain, periodic = domain[::-1], periodic[::-1]
     surface = gm.Surface.from_callable(rounded, domain, periodic)
-    text = "as much as its rounding changes the points there: let the callable reduce " + "uv"[axis]
+    text = "as much as its rounding changes the points there: compute them at " + "uv"[axis]
     refused(text, gm.fit, surface, (8, 8), error=gm.errors.SurfaceError)
     gm.fit(gm.Surface.from_callable(reduced, domain, periodic), (8, 8))
 

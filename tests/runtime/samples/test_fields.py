@@ -96,7 +96,7 @@ def test_components_are_those_of_prescribed_normals(tmp_path, on):
 def test_a_missing_field_is_said_to_be():
     samples = narrow(("points", "normals"))
     with pytest.raises(
-        gm.errors.MissingFieldError, match=r"hold points, normals only; add 'uv' to fields="
+        gm.errors.MissingFieldError, match=r"hold points, normals only; add 'uv' to the fields"
     ):
         _ = samples.uv
     for name in ("elliptic", "hyperbolic", "principal_curvatures"):

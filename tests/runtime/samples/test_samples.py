@@ -490,4 +490,4 @@ class TestAsASequence:
         assert np.asarray(samples, dtype=np.float32).dtype == np.float32
         assert np.linalg.norm(samples, axis=1).shape == (12,)
         others = Samples(normals=samples.normals, report=REPORT)
-        refused("add 'points' to fields", np.asarray, others, error=gm.errors.MissingFieldError)
+        refused("add 'points' to the fields", np.asarray, others, error=gm.errors.MissingFieldError)

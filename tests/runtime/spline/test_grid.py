@@ -364,7 +364,7 @@ def test_nothing_but_missing_points():
 
 @pytest.mark.parametrize("spacing", [None, 5, (), (1,), (1, 2, 3), ("a", 1), (1j, 1), (10**400, 1)])
 def test_spacing_that_is_none(spacing):
-    refused(r"elevations \(m, n\) need spacing=\(dx, dy\), two numbers", HEIGHTS, spacing=spacing)
+    refused(r"elevations \(m, n\) need a spacing of two numbers", HEIGHTS, spacing=spacing)
 
 
 @pytest.mark.parametrize(

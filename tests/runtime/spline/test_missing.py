@@ -91,7 +91,7 @@ def test_three_ways_to_say_it():
 
 @pytest.mark.parametrize("value", [-9999.0, -32768.0, 3.4028234663852886e38])
 def test_numbers_that_look_like_missing_data(value):
-    with pytest.warns(gm.GaussmapWarning, match=r"grid.* holds .* 7 times, .* say nodata="):
+    with pytest.warns(gm.GaussmapWarning, match=r"grid.* holds .* 7 times, .* as nodata"):
         terrain(np.where(np.isnan(island()), value, island()))
 
 
@@ -101,11 +101,11 @@ def test_numbers_that_look_like_missing_data(value):
 )
 def test_a_rounded_or_a_wrong_number_for_missing_data_is_said(value, given):
     heights = np.where(np.isnan(island()), value, island())
-    message = rf"say nodata={value:.9g} instead of {given:.9g}, which is none of its values"
+    message = rf"say {value:.9g} as nodata instead of {given:.9g}, which is none of its values"
     with pytest.warns(gm.GaussmapWarning, match=re.escape(message)):
         terrain(heights, nodata=given)
     # what is said works
-    (said,) = re.findall(r"nodata=(\S+) instead", message)
+    (said,) = re.findall(r"say (\S+) as nodata instead", message)
     np.testing.assert_array_equal(
         known(terrain(heights, nodata=float(said))).patches, known(terrain(island())).patches
     )

@@ -96,7 +96,7 @@ def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
     expected = gm.sample(parts[0], 100, fields=("points", "normals"), **ASKED)
     np.testing.assert_array_equal(data.samples(0).points, expected.points)
     np.testing.assert_array_equal(data.samples(0).normals, expected.normals)
-    refused("count=100, not 101", gm.sample_many, parts, 101, out=out, progress=False, **ASKED)
+    refused("count 100, not 101", gm.sample_many, parts, 101, out=out, progress=False, **ASKED)
 
 
 def test_units_of_length_are_those_of_the_parts(tmp_path):

@@ -52,11 +52,11 @@ def test_sample(saved, capsys, main):
     [
         (["sample", "part.npz", "--cells", "4", "4", "-o", "o.ply"], "--cells is for surfaces"),
         (["sample", "part.npz", "--set", "a=1", "-o", "o.ply"], "--set is for surfaces"),
-        (["sample", "part.npz", "--on", "spline", "-o", "o.ply"], "--on spline is for surfaces"),
+        (["sample", "part.npz", "--on", "spline", "-o", "o.ply"], "on a spline are of surfaces"),
         (["sample", "part.npz", "-o", "part.npz"], "'part.npz' is read"),
         (["mesh", "part.npz", "-o", "o.ply"], "does not say how its edges go around its faces"),
         (["mesh", "box.npz", "--count", "7", "-o", "o.stl"], "needs at least 8 vertices"),
-        (["sample", "torus", "--edges", "-o", "o.ply"], "--edges is for CAD parts"),
+        (["sample", "torus", "--edges", "-o", "o.ply"], "edges are sampled of CAD parts"),
         (["faces", "part.npz", "--name", "slot*"], "no face"),
         (["faces", "part.npz", "--kind", "hole"], "'hole'"),
         (["sample", "part.npz", "--faces", "1;2", "-o", "o.ply"], "--faces takes indices"),

@@ -206,8 +206,8 @@ def test_some_fields(tmp_path):
 @pytest.mark.parametrize(
     ("surface", "arguments", "match"),
     [
-        ("torus", {"edges": True}, "is for CAD parts"),
-        (box(), {"fields": ("other_uv",)}, "with edges=True only"),
+        ("torus", {"edges": True}, "of CAD parts"),
+        (box(), {"fields": ("other_uv",)}, "with samples on edges only"),
         (box(), {"edges": np.zeros(3)}, "edges must be True or False"),
     ],
 )

@@ -271,7 +271,7 @@ def test_edges_without_places_leave_their_faces_out():
     [
         (lambda: gm.sample(made.part(box_faces()), 100), {}, "read the CAD file again"),
         (lambda: gm.sample(box(), 60)[:0], {}, "there are no samples"),
-        (lambda: gm.sample(box(), 100), {"angle": 10.0}, "angle="),
+        (lambda: gm.sample(box(), 100), {"angle": 10.0}, "an angle"),
         (lambda: gm.sample(box(), 30, density=1.0), {}, '"balanced" or "uniform", .* have "power"'),
         (lambda: gm.sample(box(), 30, density=0.5), {}, '"balanced" or "uniform", .* have "power"'),
     ],

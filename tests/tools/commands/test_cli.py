@@ -427,7 +427,7 @@ def test_samples_go_to_a_pipe(kind: str, capfdbinary: pytest.CaptureFixture[byte
 # ── What can go wrong ────────────────────────────────────────────────────────────────────────────
 
 # Arguments with values, functions and methods of Python.
-PYTHON = r"\w=(\.\.\.|…|True|\")|\b(gm|numpy|np)\.[a-z]|\b[a-z]\w*\.[a-z]\w*\("
+PYTHON = r"\w=(\.\.\.|…|True|[\"(])|\b(gm|numpy|np|samples|report)\.[a-z]|\b[a-z]\w*\.[a-z]\w*\("
 TO = ["-o", "a.npz"]
 HEIGHTS = ["--spacing", "1", "1", *TO]
 SADDLE = ["--formula", "u", "v", "u**2-v**2"]
@@ -467,13 +467,16 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", "--angle", "x", *TO], "--angle: it must be a number, not 'x'"),
         (["sample", "torus", "--coverage", "-1", *TO], "coverage must be a positive number, not"),
         (["sample", "torus", "--density", "flat", *TO], "there is no density"),
-        (["sample", "torus", "--density", "isotropic", *TO], "write --density balanced"),
+        (["sample", "torus", "--density", "isotropic", *TO], 'write "balanced"'),
         (["sample", "torus", "--density", "-2", *TO], "a positive number of at most 8, not"),
-        (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "density gauss does not go with --"),
+        (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "does not go with coverage; use"),
         (["sample", "torus", "--progressive", "--fields", "uv", *TO], "needs points and normals"),
         (["sample", "torus", "--cells", "8", "0", *TO], "--cells: it must be a whole number"),
         (["sample", "torus", "--cells", "8", *TO], "--cells: it must be .*, not '-o'"),
         (["sample", "torus", "--cells", "2", "8", *TO], "at least 3 x 3 cells"),
+        (["sample", "torus", "--fields", "row", "--on", "spline", *TO], "on a grid only"),
+        (["sample", "torus", "--reach", *"0019", "--density", "aligned", *TO], "with a reach use"),
+        (["mesh", "torus", "--count", "9", "-o", "a.ply"], "take more samples"),
         # surfaces by name
         (["sample", "tours", *TO], "no surface 'tours'; did you mean torus.* `gaussmap surfaces`"),
         (["sample", "TORUS", *TO], r"did you mean torus\?"),

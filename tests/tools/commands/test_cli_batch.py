@@ -98,7 +98,7 @@ def test_elevations(capfd: pytest.CaptureFixture[str]) -> None:
     assert same_as_sample(data, 0, "heights.npy", "--spacing", "30", "-30")
     assert same_as_sample(data, 1, "two.npz:high", "--spacing", "30", "-30")
     assert main([*command, "--spacing", "30", "30"]) == 2
-    assert "spacing=[30.0, -30.0], not [30.0, 30.0]" in capfd.readouterr().err
+    assert "spacing [30.0, -30.0], not [30.0, 30.0]" in capfd.readouterr().err
 
 
 @pytest.mark.slow

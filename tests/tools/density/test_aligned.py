@@ -199,7 +199,7 @@ def test_only_aligned_samples_are_on_a_grid():
 
 @pytest.mark.compiled
 def test_prescribed_normals_are_never_on_a_grid():
-    with pytest.raises(gm.errors.InputError, match=r"density=.aligned. does not go with normals"):
+    with pytest.raises(gm.errors.InputError, match=r"density .aligned. does not go with normals"):
         gm.sample("torus", normals=gm.icosphere(4), density="aligned")
 
 

@@ -181,7 +181,7 @@ def test_a_library_that_is_not_installed(library, extra, convert, monkeypatch):
 
 @pytest.mark.parametrize("convert", ["to_pyvista", "to_trimesh", "to_open3d"])
 def test_points_are_needed(convert):
-    with pytest.raises(gm.errors.MissingFieldError, match="add 'points' to fields"):
+    with pytest.raises(gm.errors.MissingFieldError, match="add 'points' to the fields"):
         getattr(samples(fields=("uv",)), convert)()
 
 

@@ -210,7 +210,7 @@ def test_samples_that_no_normal_gave(name: str, tmp_path: Path) -> None:
 def test_fields_that_pictures_need() -> None:
     spline, normals = gm.fit(gm.surfaces.torus(), (12, 8)), gm.icosphere(6)
     samples = gm.sample(spline, normals=normals, fields=("points",))
-    with pytest.raises(gm.errors.MissingFieldError, match="add 'normal_index' to fields"):
+    with pytest.raises(gm.errors.MissingFieldError, match="add 'normal_index' to the fields"):
         samples.plot(normals=normals)
 
 

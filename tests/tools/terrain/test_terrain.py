@@ -281,7 +281,9 @@ def test_an_origin_is_subtracted_and_kept(tmp_path: Path) -> None:
     for suffix in (".npz", ".ply"):
         samples.write(tmp_path / f"x{suffix}")
         assert gm.read_samples(tmp_path / f"x{suffix}").report == samples.report
-    with pytest.warns(gm.GaussmapWarning, match=r"rounds these coordinates to 0.25.*--origin 5000"):
+    with pytest.warns(
+        gm.GaussmapWarning, match=r"rounds these coordinates to 0.25.*origin such as 5000"
+    ):
         gm.sample(far, 100, dtype=np.float32)
     gm.sample(near, 100, dtype=np.float32)
     with pytest.warns(gm.GaussmapWarning, match="rounds these coordinates"):
@@ -295,7 +297,7 @@ def test_blocks_without_data_are_told_from_water() -> None:
     for value in (0.0, -1.0, 5000.0):
         holed = np.where(i + j < 30, value, land)
         with pytest.warns(
-            gm.GaussmapWarning, match=rf"block of 465 heights of {value:.0f}.*nodata="
+            gm.GaussmapWarning, match=rf"block of 465 heights of {value:.0f}.*as nodata"
         ):
             gm.terrain(holed, spacing=(30, 30))
     gm.terrain(np.where(i + j < 30, 0.0, land), spacing=(30, 30), nodata=0.0)
