@@ -254,7 +254,10 @@ class GaussMap(Methods):
         special = found.component != Component.REGULAR
         signs[special] = 0.0
         sums = np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
-        which = np.unique(found.normal_index[special])
+        which = np.unique(found.normal_index[found.component == Component.ISOLATED])
+        whole = self._surface
+        for face in whole._space(threads).pieces if isinstance(whole, Whole) else ():
+            sums[which] += face.component_degrees(directions[which])
         for piece in self._pieces:
             if piece.has_tips and isinstance(geometry := piece.fitted, OnSpline):
                 sums += tip_degrees(geometry, directions)

@@ -16,7 +16,7 @@ from ..base.memory import check_memory
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
 from ..directions.regions import Cap
-from ..domain.trim import Trim, samples_inside, with_uv
+from ..domain.trim import samples_inside, with_uv
 from ..fitting.fit import check_range
 from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
 from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places
@@ -30,17 +30,19 @@ from ..surface.closing import closed_points
 from ..surface.collapsed import with_found_sides
 from ..surface.derivatives import power_of_two
 from ..surface.surface import Surface
+from ..tape.tapes import jets_of
+from .cut_components import components_in
 from .newton import near_poles
 from .on_spline import Fields, count_of, in_turn
 from .on_surface import OnSurface, geometry_of
 from .pole_charts import pole_charts
 
-__all__ = ["Proof", "ProvedSurface", "index_of", "not_outside", "proof_of"]
+__all__ = ["CODE", "Proof", "ProvedSurface", "index_of", "proof_of", "with_components"]
 
 PLACES_AT_A_TIME = 1 << 14
 # The column of solutions that holds the code of the component, if not all are regular points.
 CODE = 6
-OPEN_BOX, CURVE = KINDS.index("open"), KINDS.index("curve")
+CURVE = KINDS.index("curve")
 
 
 class Proof(NamedTuple):
@@ -150,8 +152,9 @@ class ProvedSurface:
         trim, georeference = self.surface.trim, self.surface.georeference
         left = found.undecided
         if len(left.numbers) > 0:
-            components, left = _components_in(trim, left, normals)
-            found = _with_rows(found, components)
+            components, left = components_in(trim, left, normals, self._jets)
+            numbers, places = with_components(found.numbers, found.places, components)
+            found = found._replace(numbers=numbers, places=places)
         check_memory("stored", len(found.numbers), bytes_of(fields, dtype))
         arrays = samples_inside(trim, self._arrays(normals, found, with_uv(trim, fields)), fields)
         held = {x: arrays[x].astype(dtype_of(x, dtype), copy=False) for x in fields}
@@ -232,27 +235,38 @@ class ProvedSurface:
                 arrays["component"][:] = places[:, CODE]
         return arrays
 
+    def _jets(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+        return jets_of(self.index.tape, u, v)
+
     def component_degrees(self, normals: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the sums of the degrees of components with a sample, except regular points."""
         found = self.index.query(normals, self.threads)
-        components, _ = _components_in(self.surface.trim, found.undecided, normals)
+        trim = self.surface.trim
+        components, _ = components_in(trim, found.undecided, normals, self._jets)
         degrees = np.nan_to_num(components.degree)
         return np.bincount(components.numbers, degrees, len(normals)).astype(np.int64)
 
 
-def _with_rows(found: ProvedPlaces, components: Undecided) -> ProvedPlaces:
-    """Return solutions and the points of components, with a column of component codes."""
+def with_components(
+    numbers: NDArray[np.int64], places: NDArray[np.float64], components: Undecided
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return solutions with those that stand for components, and a column of their codes.
+
+    `places` (k, 6) are those of `ProvedPlaces`, for normals with the `numbers` (k,).
+    """
     sides, uv = components.boxes.reshape(-1, 2, 2), components.uv
     rows = np.zeros((len(uv), CODE + 1))
     rows[:, :2], rows[:, 2:4] = uv, np.abs(sides - uv[:, :, None]).max(axis=2)
     rows[:, 4] = np.where(np.isnan(components.degree), 1.0, components.degree)
     rows[:, 5] = components.border
     rows[:, CODE] = np.where(components.kinds == CURVE, Component.CURVE, Component.ISOLATED)
-    regular_rows = np.pad(found.places, ((0, 0), (0, 1)))  # a column of zeros: Component.REGULAR
-    places = np.concatenate([regular_rows, rows])
-    numbers = np.concatenate([found.numbers, components.numbers])
+    places = np.pad(places, ((0, 0), (0, 1)))  # a column of zeros: Component.REGULAR
+    if len(rows) == 0:
+        return numbers, places
+    places = np.concatenate([places, rows])
+    numbers = np.concatenate([numbers, components.numbers])
     order = np.lexsort((places[:, 1], places[:, 0], numbers))
-    return found._replace(numbers=numbers[order], places=places[order])
+    return numbers[order], places[order]
 
 
 def proof_of(normals: NDArray[np.float64], open_: Undecided, face: int | None = None) -> Proof:
@@ -266,26 +280,3 @@ def proof_of(normals: NDArray[np.float64], open_: Undecided, face: int | None = 
         for number, box, kind, border, degree, _ in zip(*(x.tolist() for x in open_), strict=True)
     )
     return Proof(len(normals) - len(np.unique(open_.numbers)), undecided)
-
-
-def not_outside(
-    trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]
-) -> tuple[Undecided, NDArray[np.bool_]]:
-    """Return the boxes that may have points inside a trim, and flags for those entirely inside.
-
-    The others may meet the boundary of the trim.
-    """
-    if trim is None or len(open_.numbers) == 0:
-        return open_, np.ones(len(open_.numbers), np.bool_)
-    sides = trim.sides(open_.boxes, normals[open_.numbers])
-    open_ = open_._replace(border=open_.border | (sides == 0))
-    return Undecided._make(x[sides >= 0] for x in open_), sides[sides >= 0] > 0
-
-
-def _components_in(
-    trim: Trim | None, open_: Undecided, normals: NDArray[np.float64]
-) -> tuple[Undecided, Undecided]:
-    """Return the known components inside a trim, and the boxes that remain undecided."""
-    open_, inside = not_outside(trim, open_, normals)
-    known = inside & (open_.kinds != OPEN_BOX)
-    return Undecided._make(x[known] for x in open_), Undecided._make(x[~known] for x in open_)

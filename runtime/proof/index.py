@@ -49,8 +49,9 @@ __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
 
 # Irregular cells are cut into four this many times. Cells without a narrow cone of normals are cut
-# further while this adds at most MOST cells per cell of the grid.
-LEVELS, ROUNDS, MOST = 2, 3, 8
+# further while this adds at most MOST cells per cell of the grid, or of a grid of FEWEST cells: the
+# cells of NURBS may be as large as their spans.
+LEVELS, ROUNDS, MOST, FEWEST = 2, 3, 8, 256
 CELLS = (64, 64)
 # Whether a surface has normals at all is tested on this number of cells, of this size.
 PROBES, SMALL = 16, 2.0**-5
@@ -184,7 +185,7 @@ class ProvedIndex:
         if _has_no_normals(tape, grid):
             return None
         cut = _cut(tape, grid, LEVELS, threads)
-        cut = _narrowed(tape, cut, len(cut.place) + MOST * len(grid), threads)
+        cut = _narrowed(tape, cut, len(cut.place) + MOST * max(len(grid), FEWEST), threads)
         blind = cut.noise[:, REACH] == 0.0
         u, v, h_u, h_v = cut.place[blind].T
         unbounded = np.vstack(

@@ -95,8 +95,7 @@ class UndecidedNormal(NamedTuple):
         a region with this normal, such as a ruling of a cylinder. "open": it is not known whether
         there is a point, as next to a fold, up to rounding, or where x_u × x_v may vanish.
         "unmoved": points of the spline could not be moved to the surface. The first two are
-        components that have no sample: the boundary of a trim may meet them, or they are on a CAD
-        part.
+        components without a sample: no point of them was found inside of the trim.
     border : bool
         Whether the box reaches an open side of the domain, or may meet the boundary of the trim.
     face : int or None
@@ -108,10 +107,10 @@ class UndecidedNormal(NamedTuple):
     Examples
     --------
     >>> import gaussmap as gm
-    >>> part_of_torus = gm.surfaces.torus().trimmed(within=lambda u, v: u < 3)
-    >>> place = gm.GaussMap(part_of_torus).points([[0, 0, 1]]).report.undecided[0]
-    >>> place.normal, place.kind, place.border, len(place.box), place.face
-    (0, 'curve', True, 4, None)
+    >>> saddle = gm.surfaces.monkey_saddle().trimmed(within=lambda u, v: u > 1e-9)
+    >>> place = gm.GaussMap(saddle).points([[0, 0, 1]]).report.undecided[0]
+    >>> place.normal, place.kind, place.border, len(place.box), place.face, place.degree
+    (0, 'isolated', True, 4, None, -2)
 
     """
 

@@ -69,8 +69,8 @@ class Samples(SampleArrays, Methods):
         NaN on faces of parts where points are estimated. None for others.
     component : (N,) uint8 array or None
         For samples at prescribed normals: what the points near a sample with its normal are, see
-        `Component`. None for others, which are regular. Samples that are not regular have K = 0 and
-        H = 0, and are no vertices of meshes; their `weights` are 0.
+        `Component`. None for others, which are regular. Samples that are not regular have K = 0,
+        and are no vertices of meshes; their `weights` are 0.
     row, column : (N,) int64 array or None
         For samples on a grid (see ``density="aligned"`` of `sample`): the indices, from 0 on, of
         the lines v = const and u = const that meet at a sample; −1 for a sample that is not on a

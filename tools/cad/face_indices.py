@@ -105,27 +105,35 @@ class Offset:
     def _turned(self, found: FacePlaces, normals: Array, sign: float) -> FacePlaces:
         """Return the points of the basis at which the normal of the offset has the given sign.
 
-        Undecided boxes of the basis stay undecided: the sign may change inside of them.
+        Components of the basis are open where the sign may change inside of their boxes.
         """
-        sides = self._sides(found, normals[found.numbers])
+        sides, open_ = self._sides(found.uv, found.radius, normals[found.numbers]), found.undecided
         is_known = np.abs(sides.middle) > sides.radius
         keep, lost = is_known & (sign * sides.middle > 0.0), ~is_known
         u, v, of_u, of_v = np.concatenate([found.uv, found.radius], axis=1)[lost].T
         small = np.stack([u - of_u, u + of_u, v - of_v, v + of_v], axis=1)
         singular = undecided(found.numbers[lost], small, OPEN_BOX, border=False)
+        low, high = open_.boxes[:, 0::2], open_.boxes[:, 1::2]
+        sides = self._sides((low + high) / 2.0, (high - low) / 2.0, normals[open_.numbers])
+        is_known = np.abs(sides.middle) > sides.radius
+        open_ = open_._replace(
+            kinds=np.where(is_known, open_.kinds, OPEN_BOX),
+            degree=np.where(is_known, sign * open_.degree, np.nan),
+        )
+        own = ~is_known | (sign * sides.middle > 0.0)
         both = Undecided._make(
-            np.concatenate([x, y]) for x, y in zip(found.undecided, singular, strict=True)
+            np.concatenate([x[own], y]) for x, y in zip(open_, singular, strict=True)
         )
         return FacePlaces(
             found.numbers[keep], found.uv[keep], found.radius[keep], sign * found.sign[keep], both
         )
 
-    def _sides(self, found: FacePlaces, normals: Array) -> Ball:
+    def _sides(self, uv: Array, radius: Array, normals: Array) -> Ball:
         """Return enclosures (k,) of numbers whose sign is that of the product of both normals.
 
-        The normal of the basis is exactly one of normals (k, 3), somewhere within the radii.
+        The normal of the basis is exactly one of normals (k, 3), somewhere within the radii (k, 2).
         """
-        bounds = bounds_over_boxes(self.tape, found.uv, found.radius)
+        bounds = bounds_over_boxes(self.tape, uv, radius)
         factors = zip((U2, U1V1, V2, U1, V1), (2.0, 1.0, 2.0, 1.0, 1.0), strict=True)
         vectors = [
             Vector._make(factor * Ball(bounds[:, 0, k, x], bounds[:, 1, k, x]) for x in range(3))

@@ -19,11 +19,12 @@ from ...runtime.base.memory import check_memory
 from ...runtime.base.scales import scale_to_one
 from ...runtime.directions.regions import Cap
 from ...runtime.domain.domain import Domain
+from ...runtime.onto_surface.cut_components import components_in
 from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import geometry_of
-from ...runtime.onto_surface.proved import not_outside, proof_of
+from ...runtime.onto_surface.proved import CODE, proof_of, with_components
 from ...runtime.onto_surface.reach import in_reach
-from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, GIVEN_NAMES, bytes_of, dtype_of, regular
+from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, Component, bytes_of, dtype_of
 from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.kernels.jets import evaluate_jets
@@ -38,7 +39,7 @@ from .records import Geometry
 
 __all__ = ["FacePiece", "pieces_of"]
 
-Array = NDArray[np.float64]
+Array, Indices = NDArray[np.float64], NDArray[np.int64]
 
 # Angles are divided into parts of at most this, in radians.
 ANGLE = 0.25
@@ -158,19 +159,31 @@ class FacePiece(Piece):
         nothing = not len(found.numbers) and not len(found.undecided.numbers)
         return [] if nothing else [self._samples(normals, found)]
 
+    def component_degrees(self, normals: Array) -> Indices:
+        """Return the sums of the degrees of components with a sample, but for regular points."""
+        index = kept(self.surface, face_index, self._index)
+        if index is None:
+            return np.zeros(len(normals), np.int64)
+        found = components_in(self.trim, index.query(normals).undecided, normals, self.jets)[0]
+        degrees = np.bincount(found.numbers, np.nan_to_num(found.degree), len(normals))
+        return degrees.astype(np.int64)
+
     def _samples(self, normals: Array, found: FacePlaces) -> Samples:
         """Return the points with normals (S, 3) that are inside the trim."""
         inside = self.contains(found.uv)
-        check_memory("stored", int(inside.sum()), bytes_of(ARRAY_NAMES_OF_PART, np.float64))
-        given, uv = normals[found.numbers[inside]], found.uv[inside]
+        places = np.column_stack([found.uv, found.radius, found.sign, 0.0 * found.sign])[inside]
+        components, open_ = components_in(self.trim, found.undecided, normals, self.jets)
+        numbers, places = with_components(found.numbers[inside], places, components)
+        check_memory("stored", len(numbers), bytes_of(ARRAY_NAMES_OF_PART, np.float64))
+        given, uv, codes = normals[numbers], places[:, :2], places[:, CODE].astype(np.uint8)
         fields = self.fields_at(uv, uv, ARRAY_NAMES_OF_PART, np.float64)
         lost = ~fields["normals"].any(axis=1)
         if lost.any():  # at a pole
             beside = uv[lost] + BESIDE * (self.middle.T - uv[lost])
             for name, values in self.fields_at(beside, beside, CURVATURES, np.float64).items():
                 fields[name][lost] = values
-        fields["gaussian_curvature"] = np.copysign(fields["gaussian_curvature"], found.sign[inside])
-        open_, _ = not_outside(self.trim, found.undecided, normals)
+        K = np.where(codes == Component.REGULAR, fields["gaussian_curvature"], 0.0)
+        fields["gaussian_curvature"] = np.copysign(K, places[:, 4])
         proof = proof_of(normals, open_, self.face.index)
         report = SamplingReport(
             self.label, len(normals), len(uv), None, None, None, **proof._asdict()
@@ -179,9 +192,9 @@ class FacePiece(Piece):
             **fields,
             "normals": given,
             "support": np.einsum("kx,kx->k", fields["points"], given),
-            "normal_index": found.numbers[inside],
-            "uv_radius": found.radius[inside],
-            **regular(len(given), GIVEN_NAMES),
+            "normal_index": numbers,
+            "uv_radius": places[:, 2:4],
+            "component": codes,
         }
         return Samples(**arrays, report=report)
 

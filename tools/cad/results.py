@@ -66,7 +66,7 @@ def weights_of(part: Part, samples: Samples) -> Array:
     """Return the weights of samples: the areas (N,) nearest to each on its own face.
 
     They add up to the area of each face, or of its part in the reach of the samples. Faces without
-    samples are left out, and samples on edges have weight 0.
+    samples are left out, and samples on edges, or not regular, have weight 0.
     """
     found, faces = np.zeros(len(samples)), samples.face_index
     if faces is None:
@@ -75,7 +75,7 @@ def weights_of(part: Part, samples: Samples) -> Array:
             f"{', '.join(samples.fields)} only."
         )
     on_edge = samples.other_face_index
-    inner = np.ones(len(samples), np.bool_) if on_edge is None else on_edge < 0
+    inner = samples._regular if on_edge is None else samples._regular & (on_edge < 0)
     space = space_of(part, None, reach=samples.report._cap)
     points = space.scaled_points(samples.points)
     cells = space.uniform.cut(math.sqrt(space.area / (CELLS_A_SAMPLE * max(len(samples), 1))))

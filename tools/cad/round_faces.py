@@ -142,8 +142,10 @@ class RoundFace:
         """Return the rulings of a cylinder or cone with normals (S, 3), beyond an apex, too."""
         radius, angle = self.sizes
         quotient, found = python_function(cone_normal), [NOTHING]
-        ends = quotient(radius, math.sin(angle), np.array(self.domain[1]))
-        for sign in sorted({math.copysign(1.0, x) for x in ends.tolist()}):
+        first, last = quotient(radius, math.sin(angle), np.array(self.domain[1])).tolist()
+        low, high = self.domain[1]
+        apex = low + (high - low) * first / (first - last) if first * last < 0.0 else low
+        for sign in sorted({math.copysign(1.0, x) for x in (first, last)}):
             near = np.arange(len(normals))
             if angle == 0.0:
                 size = NEAR * math.sqrt(float((self.frame**2).sum()))
@@ -153,7 +155,8 @@ class RoundFace:
             rows = np.abs(slopes + angle) <= self.error
             if not rows.any():
                 continue
-            part = Angles.on_lines(near[rows], self.domain)._replace(
+            along = (low if sign * first > 0.0 else apex, high if sign * last > 0.0 else apex)
+            part = Angles.on_lines(near[rows], (self.domain[0], along))._replace(
                 u=np.arctan2(own[rows, 1], own[rows, 0]),
                 of_u=np.full(rows.sum(), self.error / math.cos(angle)),
             )

@@ -1,4 +1,8 @@
-"""Points with given normals on edges where faces meet smoothly: one face keeps each of them."""
+"""Points with given normals on edges where faces meet smoothly: one face keeps each of them.
+
+The owner is the face of lowest index. So it is for curves and regions of points with one normal
+that run over such edges, and for points of other faces at their ends.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...runtime.base.aliases import Indices
+from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.kept import kept
+from ...runtime.samples.fields import Component
+from ...runtime.spline.joints import linked
 from ..density.at_normals import Given
+from .edges import Edges, at_places, edges_of
 from .part import Part
 from .results import PartSpace
 
@@ -20,6 +27,11 @@ __all__ = ["each_once"]
 SAME = 1e-8
 # Coordinates along this direction sort points; on symmetric parts, few are equal.
 DIRECTION = np.array([0.52, 0.47, 0.71])
+# The place of an edge where a face has a normal is searched at PLACES places, and then at as many
+# of an interval that is smaller by ZOOM, ROUNDS times over. The face has it up to NEAR.
+PLACES, ZOOM, ROUNDS, NEAR = 33, 4.0, 12, 1e-6
+# The place is on a component if it is in its box up to this part of the domain.
+SAME_PLACE = 1e-6
 
 
 def each_once(space: PartSpace, given: Given) -> Given:
@@ -52,19 +64,81 @@ def each_once(space: PartSpace, given: Given) -> Given:
         lost[:-step] |= near & (first > second)
     keep = np.ones(len(order), dtype=np.bool_)
     keep[order[lost]] = False
+    keep &= _first_of_curves(space, given, keep)
     ends = np.cumsum([len(x.samples) for x in given.found])[:-1]
     parts = np.split(keep, ends) if given.found else ()
     found = (x._replace(samples=x.samples[y]) for x, y in zip(given.found, parts, strict=True))
-    return replace(given, found=tuple(found)) if lost.any() else given
+    return given if keep.all() else replace(given, found=tuple(found))
+
+
+def _first_of_curves(space: PartSpace, given: Given, keep: Flags) -> Flags:
+    """Return which points at normals stand for a component, of those to keep.
+
+    Of curves and regions that meet at edges, with what else meets them there, one does.
+    """
+    component, normals = given.array("component", np.float64), given.array("normal_index", np.int64)
+    curves = np.flatnonzero(keep & (component == Component.CURVE))
+    if len(curves) == 0:
+        return keep
+    rows = np.flatnonzero(keep & np.isin(normals, normals[curves]))
+    edges, first = edges_of(space), np.ones(len(keep), np.bool_)
+    # Pairs of an edge and a normal that both of its faces have, one of them on a curve.
+    has, of_curves = np.zeros((2, len(space.pieces), len(given.normals)), np.bool_)
+    has[given.pieces[rows], normals[rows]] = True
+    of_curves[given.pieces[curves], normals[curves]] = True
+    one, other = edges.pieces.T
+    owner, number = np.nonzero(has[one] & has[other] & (of_curves[one] | of_curves[other]))
+    places, distances = _places_with(edges, owner, given.normals[number])
+    links = [np.empty((0, 2), np.int64)]
+    uv, radius = given.array("uv", np.float64), given.array("uv_radius", np.float64)
+    for k in np.flatnonzero((distances <= NEAR).all(axis=1)):
+        here = rows[normals[rows] == number[k]]
+        sides = []
+        for side, piece in enumerate(edges.pieces[owner[k]].tolist()):
+            mine, sizes = here[given.pieces[here] == piece], space.sizes[piece]
+            away = np.abs(uv[mine] - places[k, side])
+            turned = np.array([x[0] == "periodic" for x in space.pieces[piece].surface.boundary])
+            away = np.where(turned, np.minimum(away, np.abs(sizes - away)), away)
+            sides.append(mine[(away <= radius[mine] + SAME_PLACE * sizes).all(axis=1)])
+        links.append(np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 2))
+    one, other = np.concatenate(links).T
+    group = linked(len(keep), one, other)[1]
+    order = np.lexsort((given.pieces, component != Component.CURVE, group))
+    first[order[1:]] = np.diff(group[order]) > 0
+    return keep & first
+
+
+def _places_with(edges: Edges, owner: Indices, normals: Array) -> tuple[Array, Array]:
+    """Return where both faces of edges (k,) have nearly the normals (k, 3), and how nearly.
+
+    These are parameters (k, 2, 2), and lengths (k, 2) of differences of normals.
+    """
+    half = np.tile((np.diff(edges.starts) - 1.0)[owner, None, None] / 2.0, (1, 2, 1))
+    middle, last, steps = half, 2.0 * half, np.linspace(-1.0, 1.0, PLACES)
+    for _ in range(ROUNDS):
+        at = np.clip(middle + half * steps, 0.0, last)
+        best = _compared(edges, owner, normals, at)[1].argmin(axis=2)[..., None]
+        middle, half = np.take_along_axis(at, best, axis=2), half / ZOOM
+    uv, away = _compared(edges, owner, normals, middle)
+    return uv[:, :, 0], away[:, :, 0]
+
+
+def _compared(edges: Edges, owner: Indices, normals: Array, at: Array) -> tuple[Array, Array]:
+    """Return parameters (k, 2, m, 2) on both faces, and the lengths (k, 2, m) of differences.
+
+    The positions (k, 2, m) on the edges are for each face.
+    """
+    count, _, m = at.shape
+    both = edges.at(np.repeat(owner, 2 * m), at.ravel()).reshape(count, 2, m, 2, 2)
+    uv = np.stack([both[:, side, :, side] for side in (0, 1)], axis=1)
+    pieces = np.repeat(edges.pieces[owner].ravel(), m)
+    found = at_places(edges.space, pieces, uv.reshape(-1, 2)).normals.reshape(count, 2, m, 3)
+    return uv, np.linalg.norm(found - normals[:, None, None], axis=3)
 
 
 def _connected(part: Part) -> Indices:
     """Return numbers (F,) that are equal for connected faces."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     arrays = part.arrays
     starts, faces = arrays["edge_side_starts"], arrays["side_faces"]
     first = faces[np.repeat(starts[:-1], np.diff(starts))]
-    links = coo_array((np.ones(len(faces)), (first, faces)), (len(part), len(part)))
-    return connected_components(links, directed=False)[1].astype(np.int64)
+    return linked(len(part), first, faces)[1]

@@ -134,18 +134,39 @@ def test_each_component_has_one_sample(name: str, move: str) -> None:
     np.testing.assert_allclose(own - normal / np.linalg.norm(normal), 0.0, atol=tolerance)
 
 
-def test_components_at_the_border_of_a_trim_are_listed() -> None:
-    """The circle of a torus with the normal z is inside, outside, or cut."""
-    torus = gm.surfaces.torus()
-    for within, samples, kinds in (
-        (lambda u, v: v < 3.0, 1, []),
-        (lambda u, v: v > 3.0, 0, []),
-        (lambda u, v: u < 3.0, 0, ["curve"]),
-    ):
-        found = gm.GaussMap(torus.trimmed(within=within)).points([Z])
-        assert (len(found), [x.kind for x in found.report.undecided or ()]) == (samples, kinds)
-        assert all(x.border for x in found.report.undecided or ())
-        assert found.report.proved == 1 - len(kinds)
+def disc(u: float, v: float, radius: float) -> Any:
+    angles = np.linspace(0.0, 2.0 * math.pi, 99, endpoint=False)
+    return np.stack([u + radius * np.cos(angles), v + radius * np.sin(angles)], axis=1)
+
+
+# Surfaces with a trim, and the number of pieces that it leaves of a circle, a line or a plane.
+CUT: dict[str, tuple[Callable[[], gm.Surface], Any, int]] = {
+    "inside": (gm.surfaces.torus, {"within": lambda u, v: v < 3.0}, 1),
+    "outside": (gm.surfaces.torus, {"within": lambda u, v: v > 3.0}, 0),
+    "half": (gm.surfaces.torus, {"within": lambda u, v: u < 3.0}, 1),
+    "at the seam": (gm.surfaces.torus, {"within": lambda u, v: u % 2.0 < 1.0}, 3),
+    "loops": (gm.surfaces.torus, {"loops": [disc(1.0, 1.5, 0.4), disc(3.0, 1.8, 0.4)]}, 2),
+    "discs": (gm.surfaces.plane, {"loops": [disc(-0.5, 0.0, 0.4), disc(0.5, 0.2, 0.4)]}, 2),
+    "ring": (gm.surfaces.plane, {"loops": [disc(0.0, 0.0, 0.8), disc(0.0, 0.0, 0.3)]}, 1),
+    "arcs": (CASES["crater"].surface, {"within": lambda u, v: abs(u + v) > 0.2}, 2),
+}
+
+
+@pytest.mark.parametrize("name", CUT)
+def test_pieces_inside_of_a_trim_have_one_sample_each(name: str) -> None:
+    make, trim, pieces = CUT[name]
+    surface = make().trimmed(**trim)
+    for side, sign in ((surface, 1.0), (surface.flipped(), -1.0)):
+        known = gm.GaussMap(side)
+        samples = known.points([(0.0, 0.0, sign)])
+        assert (samples.report.proved, samples.report.undecided) == (1, ())
+        curves = samples[samples.component == CURVE]
+        assert len(curves) == pieces
+        assert side.trim is not None
+        assert side.trim.contains(curves.uv).all()
+        own = side.normals(*curves.uv.T)
+        np.testing.assert_allclose(own - [0.0, 0.0, sign], 0.0, atol=1e-12)
+        np.testing.assert_array_equal(known.count([(0.0, 0.0, sign)]), len(samples))
 
 
 def test_summaries_name_what_samples_stand_for() -> None:

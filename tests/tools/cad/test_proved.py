@@ -184,44 +184,48 @@ def test_planes_cylinders_and_cones_have_lines_of_points(is_reversed):
     ])  # fmt: skip
     with pytest.warns(gm.GaussmapWarning, match="is flat"):
         samples = gm.sample(lines, normals=normals)
-    assert len(samples) == 0
-    assert samples.report.proved == 3
-    assert "proved to be complete for 3 of 6 normals" in samples.summary()
-    assert [(x.normal, x.face, x.kind) for x in samples.report.undecided] == [
-        (k, k, "curve") for k in range(3)
-    ]
+    assert (samples.component == gm.Component.CURVE).all()
+    assert (samples.report.proved, samples.report.undecided) == (6, ())
+    assert "3 on curves with one normal" in samples.summary()
+    assert samples.normal_index.tolist() == samples.face_index.tolist() == [0, 1, 2]
     u = 3.0 - phi if is_reversed else phi
-    assert samples.report.undecided[0].box == (0.0, 1.0, 0.0, 2.0)
-    for place, ends in zip(samples.report.undecided[1:], [(-1.0, 1.0), (0.0, 2.0)], strict=True):
-        u0, u1, *along = place.box
-        assert u0 < u < u1 < u0 + 1e-13
-        assert tuple(along) == ends
+    expected = [(0.5, 1.0), (u, 0.0), (u, 1.0)]
+    np.testing.assert_allclose(samples.uv, expected, rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(samples.uv_radius[:, 1], 1.0, rtol=1e-15)
+    assert (samples.uv_radius[1:, 0] < 1e-13).all()
     known = lines.faces[2].surface.normals(u, 1.0)
     np.testing.assert_allclose(known, normals[2], atol=1e-14)
 
 
-def test_rulings_outside_of_a_trim_are_known():
-    """The face is a triangle, with u from 0.5 to 2.5; rulings run through the domain."""
+def test_rulings_are_cut_by_trims():
+    """The face is a letter M, with u from 0.5 to 2.5; rulings run through the domain."""
     loop = np.array([(0.5, 0.0), (2.5, 0.0), (1.5, 1.0)])
+    loop = np.concatenate([loop, [(2.5, 2.0), (0.5, 2.0)]])
     band = face("cylinder", 1.5, u=(0.0, 3.0), v=(0.0, 2.0), area=3.0, loops=[loop])
-    angles = np.array([0.3, 0.499, 0.501, 1.5, 2.4, 2.7])
+    angles = np.array([0.3, 0.499, 0.501, 1.4, 1.6, 2.4, 2.7])
     normals = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=1)
-    report = gm.GaussMap(part([band])).points(normals).report
-    assert [(x.normal, x.kind, x.border) for x in report.undecided] == [
-        (k, "curve", True) for k in (2, 3, 4)
-    ]
-    assert report.proved == 3
+    known = gm.GaussMap(part([band]))
+    samples = known.points(normals)
+    assert (samples.report.proved, samples.report.undecided) == (7, ())
+    assert samples.normal_index.tolist() == [2, 3, 4, 4, 5, 5]
+    assert known.count(normals).tolist() == [0, 0, 1, 1, 2, 2, 0]
+    np.testing.assert_allclose(samples.uv[:, 0], angles[samples.normal_index], atol=1e-14)
+    for place, (u, v) in zip(samples.uv_radius, samples.uv, strict=True):
+        length = 2.0 if u < 1.5 else 2.5 - u  # of the piece
+        assert length / 2.0 <= place[1] <= length + 0.02
+        assert u < 1.5 or abs(v - 1.0) > u - 1.5
 
 
 def test_both_sides_of_an_apex():
+    """Below it ρ < 0, and x_u × x_v points to the axis: at the angle π from n."""
     cone = part([face("cone", 0.0, 0.5, v=(-1.0, 1.0), area=3.0)])
-    normals = [[math.cos(0.5), 0.0, s * math.sin(0.5)] for s in (-1.0, 1.0)]
-    with pytest.warns(gm.GaussmapWarning, match="100 % of its area is flat"):
-        found = gm.sample(cone, normals=normals).report.undecided
-    middles = sorted((x.normal, round((x.box[0] + x.box[1]) / 2, 6) % 6.283185) for x in found)
-    # Below the apex ρ < 0, and x_u × x_v points to the axis: at the angle π from n.
-    assert {x for x, _ in middles} == {0, 1}
-    assert any(abs(u - math.pi) < 1e-5 for x, u in middles if x == 1)
+    normals = np.array([[math.cos(0.5), 0.0, s * math.sin(0.5)] for s in (-1.0, 1.0)])
+    found = gm.GaussMap(cone).points(normals)
+    assert found.component.tolist() == [gm.Component.CURVE] * 2
+    np.testing.assert_allclose(found.uv, [(0.0, 0.5), (math.pi, -0.5)], atol=1e-14)
+    np.testing.assert_allclose(
+        cone.faces[0].surface.normals(*found.uv.T), normals, rtol=0.0, atol=1e-14
+    )
 
 
 # --- faces of splines: a search by differences from many starts -----------------------------------
@@ -398,8 +402,9 @@ def test_a_triangular_face():
         if k in boxes:
             assert any(x[0] <= u[k] <= x[1] and x[2] <= v[k] <= x[3] for x in boxes[k])
         else:
-            gaps = np.abs(samples.uv[samples.normal_index == k] - [u[k], v[k]]).max(axis=1)
-            assert gaps.min() < 1e-4
+            mine = samples[samples.normal_index == k]
+            gaps = np.abs(mine.uv - [u[k], v[k]]) - np.asarray(mine.uv_radius)
+            assert gaps.max(axis=1).min() < 1e-4
     chosen = normals[40:] / np.linalg.norm(normals[40:], axis=1)[:, None]
     expected = [
         len(x) for x in roots(f, chosen, 1.0, lambda u, v: (u < 0.97) & (u > 0) & (v > 0) & (v < 1))

@@ -1,5 +1,7 @@
 """Points with given normals where faces meet smoothly: each of them is there once."""
 
+import itertools
+
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -89,3 +91,47 @@ def test_gaps_are_filled_beside_what_is_left():
     assert (np.bincount(samples.normal_index[samples.normal_index >= 0]) == 1).all()
     assert (samples.report.coverage or np.inf) <= 0.3
     assert len(samples) == samples.report.samples > 50
+
+
+def nurbs_torus(first: int, last: int) -> gm.Surface:
+    """Return some of the thirds of a torus of 3 × 3 rational spans."""
+    angles, radii = np.arange(7) * np.pi / 3.0, 1.0 + np.arange(7) % 2
+    x, y, weights = radii * np.cos(angles), radii * np.sin(angles), 1.0 / radii
+    knots, some = np.repeat(np.arange(4), [3, 2, 2, 3]), slice(2 * first, 2 * last + 1)
+    reach, height = 1.0 + 0.4 * x, np.broadcast_to(0.4 * y, (len(x[some]), 7))
+    points = np.dstack([np.outer(x[some], reach), np.outer(y[some], reach), height])
+    ends = np.repeat(np.arange(first, last + 1), [3, *[2] * (last - first - 1), 3])
+    return gm.Surface.from_nurbs((2, 2), (ends, knots), points, np.outer(weights[some], weights))
+
+
+@pytest.mark.parametrize("cuts", [[0, 3], [0, 1, 3], [0, 1, 2, 3]])
+def test_circles_over_edges_are_one_component(cuts):
+    faces = [nurbs_torus(*x) for x in itertools.pairwise(cuts)]
+    gauss_map = gm.GaussMap(gm.Part([x.transformed(TILT) for x in reversed(faces)]))
+    normals = np.concatenate([np.eye(3), -np.eye(3), gm.fibonacci(50)]) @ TILT.T
+    samples = gauss_map.points(normals)
+    assert (samples.report.proved, samples.report.estimated_faces) == (len(normals), 0)
+    curves = np.isin(np.arange(len(normals)), [2, 5])
+    assert gauss_map.count(normals).tolist() == np.where(curves, 1, 2).tolist()
+    assert (gauss_map.degree(normals) == 0).all()
+    on_curve = samples[samples.component == gm.Component.CURVE]
+    assert on_curve.normal_index.tolist() == [2, 5]
+    assert (np.asarray(on_curve.face_index) == 0).all()
+
+
+@pytest.mark.parametrize("matrix", [np.eye(3), TILT], ids=["", "tilted"])
+def test_planes_with_what_meets_them_smoothly_are_one_component(matrix):
+    """The top of a box in two rectangles, with a fillet that ends in a rounded corner."""
+    to_y = np.array([(0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)])  # the z axis
+    faces = [
+        cut(gm.surfaces.plane(), (0.0, 1.0), (0.0, 1.0)),
+        cut(gm.surfaces.plane(), (1.0, 2.0), (0.0, 1.0)),
+        moved(cut(gm.surfaces.sphere(), (0.0, QUARTER), (0.0, QUARTER)), (2.0, 1.0, -1.0)),
+        moved(cut(gm.surfaces.cylinder(), (0.0, QUARTER), (0.0, 0.5), to_y), (2.0, 0.0, -1.0)),
+    ]
+    gauss_map = gm.GaussMap(gm.Part([x.transformed(matrix) for x in faces]))
+    normals = np.array([(0.0, 0.0, 1.0), (0.6, 0.0, 0.8), (1.0, 0.0, 0.0)]) @ matrix.T
+    samples = gauss_map.points(normals)
+    assert (samples.normal_index.tolist(), samples.report.proved) == ([0, 1, 2], 3)
+    assert np.asarray(samples.component).tolist() == [gm.Component.CURVE] * 3
+    assert np.asarray(samples.face_index).tolist() == [0, 3, 3]
