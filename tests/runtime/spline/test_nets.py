@@ -152,11 +152,11 @@ def test_closed_spline_of_8_patches() -> None:
 @pytest.mark.parametrize("bumps", [0.0, 0.15, 0.6])
 @pytest.mark.quick_for("0.15")
 def test_powell_sabin_spline(bumps: float) -> None:
-    nets = powell_sabin(30, 3, bumps)
+    nets = powell_sabin(12, 3, bumps)
     spline = gm.Spline.from_nets(nets, name="Powell-Sabin")
     assert spline.joints.smooth.all()
     assert spline.joints.angles.max() < 1e-9
-    normals = gm.directions.random(60, seed=2) * [0.6, 0.6, 1.0]
+    normals = gm.directions.random(30, seed=2) * [0.6, 0.6, 1.0]
     normals[:, 2] = np.abs(normals[:, 2]) + 0.2
     samples = gm.sample(spline, normals=normals)
     for k, n in enumerate(normals / np.linalg.norm(normals, axis=1, keepdims=True)):

@@ -11,7 +11,6 @@ from ...products import covering
 from ...refusals import refused
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
-OPEN = (("open", "open"), ("open", "open"))
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 
 # The corners u = 1 and v = 1 of the triangles south, east, north, west of a cell, from its centre.
@@ -85,13 +84,12 @@ def step(spline):
     return max(np.abs(np.diff(spline.coefficients, axis=axis)).max() for axis in (0, 1))
 
 
-def check_smooth(spline, patch, place, other_patch, other_place, turned=(1.0, 1.0)):
-    """Check that value and derivatives agree; `turned` are the signs of the other derivatives."""
-    here, there = read(spline, patch, place), read(spline, other_patch, other_place)
+def check_smooth(spline, patch, other_patch, place):
+    """Check that values and derivatives of two patches agree."""
+    here, there = read(spline, patch, place), read(spline, other_patch, place)
     size = np.abs(spline.coefficients).max()
     np.testing.assert_allclose(here[0], there[0], rtol=0, atol=8e-16 * size)
-    for slope, other, sign in zip(here[1:], there[1:], turned, strict=True):
-        np.testing.assert_allclose(slope, sign * other, rtol=0, atol=4e-15 * size)
+    np.testing.assert_allclose(here[1:], there[1:], rtol=0, atol=4e-15 * size)
     assert np.abs(here[1]).max() > 1e-3 * step(spline)
 
 
@@ -123,12 +121,6 @@ def test_quadratics_have_exact_normals(rng):
     expected /= np.linalg.norm(expected, axis=1, keepdims=True)
     normals = gm.fit(surface, (7, 5)).normals(u, v)
     np.testing.assert_allclose(normals, expected, rtol=0, atol=2e-14)
-
-
-def test_cubics_are_not_reproduced(rng):
-    """The test above can fail."""
-    u, v = rng.random((2, 50))
-    assert np.abs(gm.fit(CUBE, (8, 8)).evaluate(u, v) - cube(u, v)).max() > 1e-5
 
 
 def rough(u, v):
@@ -179,30 +171,6 @@ def test_open_borders_in_rational_numbers(cells):
             assert (spline.evaluate(u, v) == rough(np.float64(u), np.float64(v))).all()
 
 
-@pytest.mark.compiled
-def test_noise_does_not_grow_at_the_border():
-    """The largest value of a spline of data between −1 and 1 is no larger there than inside."""
-    signs = np.random.default_rng(2).choice([-1.0, 1.0], (400, 7, 7, 1)) * np.ones(3)
-    places = np.linspace(0, 6, 25)
-    largest = np.zeros((25, 25))
-    for points in signs:
-        spline = gm.fit(gm.Surface.from_grid(points))
-        largest = np.maximum(largest, np.abs(spline.evaluate(places[:, None], places))[..., 0])
-    assert largest.max() < 1.6
-    assert largest[12, 12] > 1.2
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_constants_stay_constant(name):
-    surface = made(name)
-    constant = gm.Surface(
-        name, lambda u, v: np.full((*u.shape, 3), 0.75), surface.domain, surface.boundary
-    )
-    spline = gm.fit(constant, (6, 5))
-    assert (spline.coefficients == 0.75).all()
-    assert (spline.control_nets == 0.75).all()
-
-
 # --- smoothness -----------------------------------------------------------------------------------
 
 
@@ -216,62 +184,29 @@ def test_c1_inside(name, rng):
         for turn in range(4):  # half diagonals, from the centre to the corner v = 1 of this patch
             place = [i + 0.5, j + 0.5] + along[index, :, None] * CORNERS[turn + 1]
             patch = np.full(3, 4 * index + turn)
-            check_smooth(spline, patch, place, np.full(3, 4 * index + (turn + 1) % 4), place)
+            check_smooth(spline, patch, np.full(3, 4 * index + (turn + 1) % 4), place)
         if i + 1 < m:  # east of this cell, west of the next
             place = np.column_stack([np.full(3, i + 1.0), j + along[index]])
             patch, other = np.full(3, 4 * index + 1), np.full(3, 4 * (index + n) + 3)
-            check_smooth(spline, patch, place, other, place)
+            check_smooth(spline, patch, other, place)
         if j + 1 < n:  # north of this cell, south of the next
             place = np.column_stack([i + along[index], np.full(3, j + 1.0)])
             patch, other = np.full(3, 4 * index + 2), np.full(3, 4 * (index + 1) + 0)
-            check_smooth(spline, patch, place, other, place)
+            check_smooth(spline, patch, other, place)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_c1_over_seams(name, rng):
-    surface = made(name)
-    spline = gm.fit(surface, None if name == "grid" else (6, 5))
-    m, n = spline.cells
-    along = rng.random(4)
-    if surface.boundary[0][0] in ("periodic", "mirrored"):
-        flip = surface.boundary[0][0] == "mirrored"
-        for j in range(n):
-            place = np.column_stack([np.full(4, float(m)), j + along])
-            other = np.column_stack([np.zeros(4), n - j - along if flip else j + along])
-            cell = n - 1 - j if flip else j
-            patches = np.full(4, 4 * ((m - 1) * n + j) + 1), np.full(4, 4 * cell + 3)
-            check_smooth(spline, patches[0], place, patches[1], other, (1.0, -1.0 if flip else 1.0))
-    if surface.boundary[1][0] == "periodic":
-        for i in range(m):
-            place = np.column_stack([i + along, np.full(4, float(n))])
-            other = np.column_stack([i + along, np.zeros(4)])
-            patches = np.full(4, 4 * (i * n + n - 1) + 2), np.full(4, 4 * i * n)
-            check_smooth(spline, patches[0], place, patches[1], other)
-
-
-def test_c1_over_a_mirrored_seam_of_v(rng):
+@pytest.mark.parametrize("name", ["torus", "moebius_band", "klein", "swapped"])
+def test_seams_of_coefficients_are_bitwise_equal(name):
+    """So that the spline is C¹ there, too, as it is inside."""
     band = gm.surfaces.moebius_band()
-    turned = gm.Surface.from_callable(
-        lambda u, v: band.evaluate(v, u), (band.domain[1], band.domain[0]), (False, "mirrored")
-    )
-    spline = gm.fit(turned, (5, 6))
-    for i in range(5):
-        along = rng.random(4)
-        place = np.column_stack([i + along, np.full(4, 6.0)])
-        other = np.column_stack([5 - i - along, np.zeros(4)])
-        patches = np.full(4, 4 * (i * 6 + 5) + 2), np.full(4, 4 * (4 - i) * 6)
-        check_smooth(spline, patches[0], place, patches[1], other, (-1.0, 1.0))
-
-
-def test_seams_of_coefficients_are_bitwise_equal():
-    coefficients = gm.fit(TORUS, (6, 5)).coefficients
-    for axis in (0, 1):
-        rows = np.swapaxes(coefficients, 0, axis)
-        assert (rows[0] == rows[-2]).all()
-        assert (rows[-1] == rows[1]).all()
-    rows = gm.fit(gm.surfaces.moebius_band(), (6, 5)).coefficients
-    assert (rows[0] == rows[-2, ::-1]).all()
-    assert (rows[-1] == rows[1, ::-1]).all()
+    surface = made(name) if name != "swapped" else gm.Surface.from_callable(
+        lambda u, v: band.evaluate(v, u), band.domain[::-1], (False, "mirrored")
+    )  # fmt: skip
+    spline = gm.fit(surface, (6, 5))
+    for axis, (kind, _) in enumerate(surface.boundary):
+        rows, turn = np.swapaxes(spline.coefficients, 0, axis), -1 if kind == "mirrored" else 1
+        assert kind == "open" or (rows[0] == rows[-2, ::turn]).all()
+        assert kind == "open" or (rows[-1] == rows[1, ::turn]).all()
 
 
 # --- poles ----------------------------------------------------------------------------------------
@@ -299,30 +234,6 @@ def test_poles_are_one_point(name, cells, shift):
         end = surface.domain[1][0 if corner == 0 else 1]
         north = surface.evaluate(0.0, end) + shift
         np.testing.assert_allclose(edge[0], north, rtol=1e-15, atol=5.0 / cells[0] ** 3)
-
-
-def test_half_a_sphere_has_one_pole():
-    ball = gm.surfaces.sphere()
-    half = gm.Surface.from_callable(
-        ball.function, ((0, 2 * np.pi), (0, np.pi / 2)), (True, ("open", "pole"))
-    )
-    spline = gm.fit(half, (32, 16))
-    u = np.linspace(0, 2 * np.pi, 50)
-    np.testing.assert_allclose(
-        spline.evaluate(u, np.pi / 2), spline.evaluate(np.zeros(50), np.pi / 2), rtol=0, atol=2e-16
-    )
-    np.testing.assert_allclose(spline.evaluate(u, 0.0), ball.evaluate(u, 0.0), rtol=0, atol=1e-3)
-
-
-@pytest.mark.compiled
-@covering(cells=[None, (8, 6), (10, 7), (400, 300)], name=["sphere", "ellipsoid"])
-def test_poles_have_no_normal(name, cells):
-    spline = gm.fit(gm.surfaces.surface(name), cells)
-    u, (south, north) = np.linspace(*spline.domain[0], 50), spline.domain[1]
-    for pole in (south, north):
-        assert np.isnan(spline.normals(u, pole)).all()
-        beside = spline.normals(u, 0.9999999 * pole)
-        np.testing.assert_allclose(np.linalg.norm(beside, axis=1), 1.0, rtol=0, atol=1e-15)
 
 
 # --- reading --------------------------------------------------------------------------------------
@@ -383,15 +294,6 @@ def test_mirrored_parameters_wrap(turns, rng):
     np.testing.assert_allclose(np.abs((spline.normals(beyond, v) * normals).sum(axis=1)), 1.0)
 
 
-def test_both_ends_of_a_period_are_the_same_point():
-    spline = gm.fit(TORUS, (8, 7))
-    v = np.linspace(0, 2 * np.pi, 29)
-    low, high = spline.evaluate(0.0, v), spline.evaluate(2 * np.pi, v)
-    np.testing.assert_allclose(low, high, rtol=0, atol=1e-15)
-    tiny = spline.evaluate(-1e-20, v)
-    np.testing.assert_allclose(low, tiny, rtol=0, atol=1e-15)
-
-
 def test_outside_an_open_domain():
     spline = gm.fit(CUBE, (5, 5))
     for u, v, name in (
@@ -404,9 +306,6 @@ def test_outside_an_open_domain():
         for read_ in (spline.evaluate, spline.normals):
             refused(complaint, read_, [0.5, u], [0.5, v])
     spline.evaluate([0.0, 1.0], [1.0, 0.0])
-
-
-def test_infinite_periodic_parameters():
     refused("u = inf lies outside", gm.fit(TORUS, (5, 5)).evaluate, np.inf, 0.0)
 
 
@@ -438,55 +337,6 @@ def test_powers_of_two_change_no_bit(name, exponent):
     assert (scaled.measure[0] == plain.measure[0]).all()
 
 
-@pytest.mark.compiled
-@pytest.mark.parametrize("ends", [(False, False), (True, False), (True, True), ("mirrored", False)])
-def test_affine_maps_commute_with_fitting(ends):
-    """On binary fractions nothing is rounded, so that the coefficients map exactly."""
-
-    def dyadic(u, v):
-        points = np.stack([u * v - v * v, u * (1 - u) * v, 3 * u * u * v * (1 - v)], axis=-1)
-        points *= np.round(64 * u * (1 - u) * v * (1 - v))[..., None]
-        return np.round(256 * points) / 256  # 0 on the whole border: closes whichever way
-
-    surface = gm.Surface.from_callable(dyadic, SQUARE, ends)
-    matrix, shift = np.array([[2.0, -1.0, 0.5], [0.25, 3.0, -4.0], [1.0, 0.0, 8.0]]), [1e6, -3.5, 7]
-    plain = gm.fit(surface, (8, 6)).coefficients
-    assert np.ptp(plain) > 0.1
-    mapped = gm.fit(moved(surface, matrix, shift), (8, 6)).coefficients
-    assert (mapped == plain @ matrix.T + shift).all()
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize(
-    ("factor", "shift"),
-    [*((x, 0.0) for x in (1e-12, 1e12, 1e-300, 1e300)), (1.0, 1e6), (1.0, 1e12)],
-)
-def test_any_unit_of_length_and_far_from_the_origin(factor, shift, rng):
-    u, v = 2 * np.pi * rng.random((2, 200))
-    plain = gm.fit(TORUS, (8, 7))
-    other = gm.fit(moved(TORUS, factor * np.eye(3), shift), (8, 7))
-    points, normals = (other.evaluate(u, v) - shift) / factor, other.normals(u, v)
-    atol = (4e-15, 1e-13) if shift == 0.0 else (4 * np.spacing(shift), 50 * np.spacing(shift))
-    np.testing.assert_allclose(points, plain.evaluate(u, v), rtol=0, atol=atol[0])
-    np.testing.assert_allclose(normals, plain.normals(u, v), rtol=0, atol=atol[1])
-
-
-def test_the_smallest_numbers_there_are(rng):
-    """Sizes at which the last bits of coefficients are lost, most of them, or all."""
-    u, v = 2 * np.pi * rng.random((2, 200))
-    plain = gm.fit(TORUS, (8, 7))
-    tiny = gm.fit(moved(TORUS, 2.0**-990 * np.eye(3), 0.0), (8, 7))
-    np.testing.assert_allclose(
-        tiny.evaluate(u, v) * 2.0**990, plain.evaluate(u, v), rtol=0, atol=1e-9
-    )
-    assert np.isfinite(tiny.normals(u, v)).all()
-    with pytest.raises(gm.errors.SurfaceError, match="too small to compute with"):
-        gm.fit(moved(TORUS, 2.0**-1060 * np.eye(3), 0.0), (8, 7))
-    none = gm.fit(moved(TORUS, 0.0 * np.eye(3), 0.0), (8, 7))
-    assert (none.evaluate(u, v) == 0.0).all()
-    assert np.isnan(none.normals(u, v)).all()
-
-
 def test_normals_of_a_surface_that_is_nearly_a_curve():
     thin = gm.fit(moved(TORUS, np.diag([1.0, 1.0, 1e-200]), 0.0), (8, 7))
     normals = thin.normals(0.3, np.linspace(0, 6, 20))
@@ -494,13 +344,6 @@ def test_normals_of_a_surface_that_is_nearly_a_curve():
 
 
 # --- area and solid angle -------------------------------------------------------------------------
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize(("name", "euler"), [("torus", 0), ("dupin_cyclide", 0), ("sphere", 2)])
-def test_gauss_bonnet(name, euler):
-    solid_angles = gm.fit(gm.surfaces.surface(name), (64, 64)).measure[1]
-    assert solid_angles.sum() == pytest.approx(2 * math.pi * euler, abs=0.02)
 
 
 @pytest.mark.compiled
@@ -542,29 +385,15 @@ def test_cells(cells):
         ((2, 3), "at least 3 x 3 cells are needed, not 2 x 3"),
         ((3, 2), "at least 3 x 3 cells are needed, not 3 x 2"),
         ((10**5, 10**5), "at most 1,000,000,000 cells are possible, not 100,000 x 100,000"),
-        ((10**30, 4), r"cells\[0\] must be a whole number of at most 1,000,000,000"),
-        ((0, 5), r"cells\[0\] must be a whole number"),
         ((5, -5), r"cells\[1\] must be a whole number"),
-        ((5.0, 5), r"cells\[0\] must be a whole number"),
-        ((True, 5), r"cells\[0\] must be a whole number"),
-        ((np.nan, 5), r"cells\[0\] must be a whole number"),
-        (("5", "5"), r"cells\[0\] must be a whole number"),
-        (np.array([5.0, 5.0]), r"cells\[0\] must be a whole number"),
-        (5, "cells must be a pair of whole numbers"),
-        ((5,), "cells must be a pair of whole numbers"),
-        ((5, 5, 5), "cells must be a pair of whole numbers"),
         ({"u": 5, "v": 5}, r"cells\[0\] must be a whole number"),
+        (5, "cells must be a pair of whole numbers"),
+        ((5, 5, 5), "cells must be a pair of whole numbers"),
     ],
 )
 def test_cells_that_are_none(cells, complaint):
     for call in (gm.fit, lambda surface, cells: gm.sample(surface, count=5, cells=cells)):
         refused(complaint, call, CUBE, cells)
-
-
-@pytest.mark.parametrize("surface", [None, ["torus"], 5, np.zeros((5, 5, 3)), TORUS.evaluate])
-def test_what_cannot_be_fitted(surface):
-    for call in (gm.fit, lambda surface: gm.sample(surface, count=5)):
-        refused("a Surface or its name is needed, not ", call, surface)
 
 
 @pytest.mark.parametrize("domain", [((0, 5e-324), (0, 1)), ((1, 1 + 2**-50), (0, 1))])

@@ -7,6 +7,8 @@ from gaussmap.runtime.spline.nets import AnySpline
 from gaussmap.runtime.spline.tips import tips_of
 from numpy.typing import NDArray
 
+from ...products import covering
+
 Array = NDArray[np.float64]
 
 HALF = np.pi / 3
@@ -68,9 +70,7 @@ def directions() -> Array:
     return n / np.linalg.norm(n, axis=1, keepdims=True)
 
 
-@pytest.mark.parametrize("nets", [False, True])
-@pytest.mark.parametrize("motion", MOTIONS)
-@pytest.mark.parametrize("shape", SHAPES)
+@covering(shape=SHAPES, motion=MOTIONS, nets=[False, True])
 def test_points_are_those_of_the_surface(shape: str, motion: str, nets: bool) -> None:
     n, matrix = directions(), MOTIONS[motion]
     spline = gm.fit(made(shape, matrix))
@@ -93,8 +93,7 @@ def normals_at_tips(spline: gm.Spline) -> Array:
     return np.concatenate([n, -n, near, -near])
 
 
-@pytest.mark.parametrize("nets", [False, True])
-@pytest.mark.parametrize("shape", SHAPES)
+@covering(shape=SHAPES, nets=[False, True])
 def test_normals_of_collapsed_patches_find_nothing_at_the_tip(shape: str, nets: bool) -> None:
     spline = gm.fit(made(shape, np.eye(3)))
     n = normals_at_tips(spline)

@@ -92,18 +92,6 @@ def test_what_is_said_is_respected(periodic, expected):
     assert gm.fit(gm.Surface.from_callable(lens, DISK, periodic), (8, 8)).boundary == expected
 
 
-def test_a_disk_of_expressions():
-    position = "r*cos(phi)", "r*sin(phi)", "r**2/4 + r/5*sin(phi)"
-    disk = gm.Surface.from_sympy(position, ("r", "phi"), ((0, 1), (0, "2*pi")))
-    assert gm.fit(disk, (8, 8)).boundary == (("pole", "open"), PERIODIC)
-    other = gm.Surface.from_sympy(position, ("phi", "r"), ((0, "2*pi"), (0, 1)))
-    assert gm.fit(other, (8, 8)).boundary == (PERIODIC, ("pole", "open"))
-
-
-def test_surfaces_of_the_catalogue_say_how_they_end():
-    assert gm.surfaces.cone().assumed_open == (False, False)
-
-
 @covering(
     turned=[False, True],
     count=[24, 25],

@@ -4,12 +4,11 @@ import gaussmap as gm
 import numpy as np
 import pytest
 import sympy as sp
-from gaussmap.runtime.surface.derivatives import NAMES, Differences, differences
+from gaussmap.runtime.surface.derivatives import NAMES
 from gaussmap.symbolic.surfaces import CATALOGUE
 
 from ...refusals import refused
 
-TURN = (0.0, 2 * np.pi)
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
 
 
@@ -77,23 +76,6 @@ def test_numerical_derivatives(name):
     assert errors[3:].max() < 1e-9
 
 
-def test_numerical_derivatives_of_polynomials_are_exact_but_for_rounding():
-    """Nine points are exact up to degree 8, those on one side as well."""
-
-    def f(u, v):
-        return np.stack([u**5 * v**3, u**8 - v**8, (u - v) ** 7], axis=-1)
-
-    u, v = np.array([0.0, 1.0, 0.5, 0.01, 1.0]), np.array([1.0, 0.25, 0.5, 0.02, 0.0])
-    a, b = sp.symbols("a b")
-    x = [a**5 * b**3, a**8 - b**8, (a - b) ** 7]
-    orders = ((), (a,), (b,), (a, a), (a, b), (b, b))
-    g = sp.lambdify((a, b), [[sp.diff(y, *by) if by else y for y in x] for by in orders])
-    exact = np.array([g(*place) for place in zip(u, v, strict=True)], float)
-    for bounds in (SQUARE, ((-np.inf, np.inf), (-np.inf, np.inf))):
-        found = differences(f, u, v, (2.0**-5, 2.0**-5), bounds)[0]
-        np.testing.assert_allclose(found, exact, rtol=0, atol=1e-10)
-
-
 @pytest.mark.parametrize("waves", [3, 10, 100])
 def test_steps_become_smaller_where_the_surface_varies_fast(waves):
     k = 2 * np.pi * waves
@@ -124,17 +106,6 @@ def test_derivatives_beside_a_fillet_and_beside_a_hole():
     u, v = np.full(100, 0.8999), np.linspace(0.9, 1.0, 100)
     assert np.isfinite(surface.jets(u, v)).all()
     assert np.isnan(surface.jets(u + 0.0002, 0.1 + 0.9 * v)).any()
-
-
-def test_the_function_is_called_once_for_many_places():
-    calls = []
-
-    def f(u, v):
-        calls.append(len(u))
-        return np.stack([u, v, u * v], axis=-1)
-
-    Differences(f, SQUARE, (("open", "open"), ("open", "open"))).jets(*places(SQUARE, 100))
-    assert calls == [2700]
 
 
 @pytest.mark.parametrize(

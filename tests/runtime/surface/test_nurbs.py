@@ -1,8 +1,6 @@
 """NURBS surfaces: their values and derivatives, what defines them, and where their normals turn."""
 
 import math
-import pickle
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import gaussmap as gm
@@ -20,7 +18,6 @@ from splipy.volume import Volume
 from ...refusals import refused
 
 RNG = np.random.default_rng(8)
-EPS = np.finfo(float).eps
 
 # A circle of four quarters, of degree 2: directions of its control points, and their weights.
 AROUND = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)])
@@ -60,34 +57,7 @@ def random_parameters(surface, count):
     return np.ascontiguousarray(RNG.uniform(low, high, (count, 2)).T)
 
 
-def curvature(jets):
-    """Return the Gaussian curvature of 2-jets."""
-    _, x_u, x_v, x_uu, x_uv, x_vv = np.moveaxis(jets, 1, 0)
-    N = np.cross(x_u, x_v)
-    L, M, second = ((N * x).sum(axis=1) for x in (x_uu, x_uv, x_vv))
-    return (L * second - M * M) / (N * N).sum(axis=1) ** 2
-
-
 # --- values and derivatives -----------------------------------------------------------------------
-
-
-def test_circles_are_exact():
-    surface = torus()
-    x, y, z = surface.evaluate(*random_parameters(surface, 500)).T
-    assert np.abs(np.hypot(np.hypot(x, y) - 2.0, z) - 0.5).max() < 8 * EPS
-    points = sphere().evaluate(*random_parameters(sphere(), 500))
-    assert np.abs(np.linalg.norm(points, axis=1) - 1.0).max() < 4 * EPS
-
-
-def test_second_derivatives_give_the_curvature_of_a_torus_and_a_sphere():
-    """K does not depend on the parameters, which are no angles here."""
-    surface = torus()
-    jets = surface.jets(*random_parameters(surface, 300))
-    cosine = (np.hypot(*jets[:, 0, :2].T) - 2.0) / 0.5
-    assert curvature(jets) == pytest.approx(cosine / (0.5 * (2.0 + 0.5 * cosine)), abs=1e-12)
-    u, v = random_parameters(sphere(), 300)
-    jets = sphere().jets(u, 0.01 + 0.99 * v)
-    assert curvature(jets) == pytest.approx(1.0, abs=1e-11)
 
 
 def random_knots(degree, clamped):
@@ -176,27 +146,6 @@ def test_ends_are_those_of_the_domain_and_period():
     assert np.allclose(surface.evaluate([high, high + 4.0, low - 8.0], 0.0), corner, atol=1e-15)
     refused(r"v = 2.5 lies outside the domain \(0.0, 2.0\)", sphere().evaluate, 0.0, 2.5)
     assert np.isnan(surface.jets(np.array([np.nan]), np.zeros(1))).any()
-
-
-@pytest.mark.compiled
-def test_calls_of_several_threads_do_not_disturb_one_another():
-    surface = torus()
-    places = [random_parameters(surface, 2000) for _ in range(8)]
-    alone = [surface.jets(u, v) for u, v in places]
-    with ThreadPoolExecutor(8) as pool:
-        together = list(pool.map(lambda x: surface.jets(*x), places))
-    assert all(np.array_equal(x, y) for x, y in zip(alone, together, strict=True))
-
-
-def test_pickling():
-    surface = torus()
-    assert nurbs_of(surface).creases == ((), ())
-    copy = pickle.loads(pickle.dumps(surface))
-    u, v = random_parameters(surface, 10)
-    assert np.array_equal(copy.jets(u, v), surface.jets(u, v))
-    assert (copy.domain, copy.boundary, copy.name) == (
-        surface.domain, surface.boundary, surface.name,
-    )  # fmt: skip
 
 
 # --- closing --------------------------------------------------------------------------------------

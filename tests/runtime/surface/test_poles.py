@@ -127,23 +127,21 @@ def test_the_ring_at_a_pole_is_moved_by_the_error_of_the_spline_only(shape: str)
 @covering(
     shape=SHAPES,
     rotation=[np.eye(3), ROTATION],
+    cells=[(24, 24), (63, 64)],
     **{"shift, factor": [(0.0, 1.0), (1e6, 1.0), (0.0, 1e9), (1e6, 1e-9), (0.0, 1e-12)]},
 )
-def test_every_normal_counts_once(shape: str, rotation: Array, shift: float, factor: float):
-    spline = gm.fit(moved(shape, rotation, shift, factor), (24, 24))
+def test_every_normal_counts_once(
+    shape: str, rotation: Array, cells: tuple[int, int], shift: float, factor: float
+):
+    spline = gm.fit(moved(shape, rotation, shift, factor), cells)
     assert (signed_counts(spline, hard_normals(spline, 200, 3, 8)) == 1).all()
 
 
 @pytest.mark.slow
 @pytest.mark.compiled
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("rotation", [np.eye(3), ROTATION], ids=["aligned", "rotated"])
-@pytest.mark.parametrize("cells", [(32, 32), (63, 64), (128, 128)])
-@pytest.mark.parametrize(("shift", "factor"), [(0.0, 1.0), (1e6, 1e12), (0.0, 1e-9), (1e9, 1.0)])
-def test_every_one_of_many_normals_counts_once(
-    shape: str, rotation: Array, cells: tuple[int, int], shift: float, factor: float
-):
-    spline = gm.fit(moved(shape, rotation, shift, factor), cells)
+def test_every_one_of_many_normals_counts_once(shape: str):
+    spline = gm.fit(moved(shape, ROTATION, 1e9), (128, 128))
     assert (signed_counts(spline, hard_normals(spline, 20_000, 12, 36)) == 1).all()
 
 

@@ -104,23 +104,6 @@ def test_what_is_no_name(name):
         refused(UNKNOWN, call, name, error=gm.errors.UnknownNameError)
 
 
-@pytest.mark.compiled
-def test_a_name_stands_for_the_surface():
-    torus, normals = gm.surfaces.torus(), gm.icosphere(2)
-    by_name, by_surface = gm.sample("torus", 50), gm.sample(torus, 50)
-    assert (by_name.points == by_surface.points).all()
-    assert by_name.report == by_surface.report
-    assert (gm.fit("torus").coefficients == gm.fit(torus).coefficients).all()
-    assert [len(x) for x in gm.sample_many(["torus", torus], 50, progress=False)] == [50, 50]
-    assert len(gm.convolve("torus", "sphere", normals)) == len(
-        gm.convolve(torus, "sphere", normals)
-    )
-    assert gm.gauss_map.GaussianImages.of_spline("torus").sheets(normals).sum() > 0
-    assert len(gm.gauss_map.parabolic_points("torus").curves) == 2
-    assert len(gm.silhouette("torus", (0, 1, 1), count=50)) > 0
-    assert sum(map(len, gm.sample_stream("torus", 50))) > 0
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_signatures_are_those_of_the_catalogue(name):
     """At run time, and in the file that type checkers read."""
@@ -193,9 +176,3 @@ def test_numpy_numbers_are_parameters_too():
     for minor in (np.float32(0.25), np.float64(0.25), np.array(0.25), sp.Rational(1, 4)):
         maker: Any = gm.surfaces.torus
         assert (maker(minor=minor).evaluate(1.0, 2.0) == reference).all()
-
-
-def test_each_surface_keeps_its_own_parameters():
-    thick, thin = gm.surfaces.torus(minor=0.5), gm.surfaces.torus(minor=0.1)
-    assert thick.evaluate(0.0, 0.0).tolist() == [1.5, 0.0, 0.0]
-    assert thin.evaluate(0.0, 0.0).tolist() == [1.1, 0.0, 0.0]
