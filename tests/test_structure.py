@@ -172,27 +172,6 @@ def test_what_is_inside_of_a_room_is_found(source: str, room: str | None) -> Non
     assert len([*violations(source, room)]) == 1
 
 
-@pytest.mark.parametrize(
-    ("source", "room"),
-    [
-        ("import gaussmap as gm; gm.errors.InputError", None),
-        ("from gaussmap import symbolic; from gaussmap.symbolic.surfaces import CATALOGUE", None),
-        ("from gaussmap.runtime.samples.report import SamplingReport", None),
-        ("from gaussmap.runtime.search.exact import decide", "gaussmap.runtime.search"),
-        ("from gaussmap.runtime.search import exact; exact.SAME_PLACE", "gaussmap.runtime.search"),
-        (
-            "from gaussmap.tools.sampling import stream; x.setattr(stream, 'N', 1)",
-            "gaussmap.tools.sampling.stream",
-        ),
-        ("from gaussmap.generated.patch import forms", "gaussmap.runtime.search"),
-        ("from .made import samples", None),
-        ("from ...refusals import refused", "gaussmap.runtime.search"),
-    ],
-)
-def test_what_is_public_is_open(source: str, room: str | None) -> None:
-    assert [*violations(source, room)] == []
-
-
 @pytest.mark.parametrize("side", ["runtime", "tools"])
 def test_every_room_has_a_folder_of_tests_and_there_are_no_others(side: str) -> None:
     def folders(root: Path, pattern: str) -> set[Path]:

@@ -12,7 +12,6 @@ import pytest
 import sympy as sp
 from gaussmap.generated import elementary as generated
 from gaussmap.symbolic.elementary import (
-    CODES,
     FIRST_PART,
     FORMULAS,
     FUNCTIONS,
@@ -154,17 +153,6 @@ def test_the_c_library_is_as_exact_as_is_assumed(name):
         with mp.workdps(40):
             value = function(name)(mp.mpf(place))
             assert abs(getattr(math, name)(place) - value) <= LIBRARY * 2.0**-53 * abs(value)
-
-
-def test_codes_are_those_of_the_table():
-    assert [getattr(generated, name.upper()) for name in CODES] == list(range(len(CODES)))
-    assert CODES["reciprocal"] == len(CODES) - len(FUNCTIONS)
-    assert len(generated.ROUNDINGS) == len(generated.EXTREMES) == len(FUNCTIONS)
-
-
-def test_functions_are_of_x():
-    assert all(f.of.free_symbols == {x} for f in FUNCTIONS.values())
-    assert math.isnan(generated.EXTREMES[row("exp"), 0])
 
 
 def test_angles_below_a_number_are_not_so_near_to_quarters_that_the_last_part_is_too_short():

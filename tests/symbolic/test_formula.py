@@ -8,20 +8,7 @@ import pytest
 import sympy as sp
 from gaussmap.symbolic import (
     Formula,
-    curve,
-    elementary,
-    faces,
     formulas,
-    gaussian_image,
-    jet,
-    mesh,
-    offset,
-    patch,
-    proved,
-    rational,
-    spline,
-    support,
-    taylor,
 )
 from gaussmap.symbolic.formula import BEYOND_THE_PAPER, Parts, compose, formula
 from gaussmap.symbolic.notation import (
@@ -148,12 +135,6 @@ def test_components_of_a_defined_vector_can_be_used():
     assert formula.expanded() == {"h": s**2 * a_y**2}
 
 
-def test_expanded_has_inputs_only():
-    for each in formulas.values():
-        for value in each.expanded().values():
-            assert value.free_symbols <= set(each.in_components().inputs)
-
-
 def test_undefined_symbols_are_refused():
     with pytest.raises(ValueError, match=r"name: x uses undefined \['b', 't'\]"):
         built(inputs=[a, s], outputs=[("x", s * a + t * b)])
@@ -204,14 +185,10 @@ print(*(name for name, x in formulas.items() if "_content" in vars(x)))
 
 def test_only_what_is_read_is_derived():
     """Those that are built of lists are there; of the others one is asked for."""
-    derived = []
-    for name in ("envelope", "at_pole"):
-        run = [sys.executable, "-c", READ_ONE, name]
-        derived.append(
-            {*subprocess.run(run, capture_output=True, text=True, check=True).stdout.split()}
-        )
-    assert derived[1] - derived[0] == {"at_pole"}
-    assert {"parabolic_cubic", "sample", "triangle", "product_3"}.isdisjoint(derived[1])
+    run = [sys.executable, "-c", READ_ONE, "at_pole"]
+    read = subprocess.run(run, capture_output=True, text=True, check=True).stdout.split()
+    assert "at_pole" in read
+    assert {"parabolic_cubic", "sample", "triangle", "product_3"}.isdisjoint(read)
 
 
 # --- composition ----------------------------------------------------------------------------------
@@ -249,27 +226,7 @@ def test_compose_refuses_an_output_that_no_part_defines():
         both.outputs  # noqa: B018
 
 
-def test_a_sample_is_its_parts():
-    sample, parts = patch.SAMPLE.expanded(), {}
-    values: dict[sp.Symbol, sp.Expr] = {}
-    for part in (patch.FORMS, patch.PARAMETERS, patch.ENVELOPE, patch.TANGENTS, patch.CURVATURE):
-        for symbol, value in part.in_components().definitions:
-            values[symbol] = substitute(value, values)
-            parts[symbol.name] = values[symbol]
-    assert {name: parts[name] for name in sample} == sample
-
-
 # --- what users see -------------------------------------------------------------------------------
-
-
-def test_all_formulas_by_name_in_order():
-    modules = (
-        patch, offset, gaussian_image, spline, support, jet, rational, taylor, elementary, proved,
-        faces, mesh, curve,
-    )  # fmt: skip
-    assert list(formulas) == [x.name for module in modules for x in module.FORMULAS]
-    assert all(formula.name == name for name, formula in formulas.items())
-    assert not hasattr(formulas, "__setitem__")
 
 
 @pytest.mark.parametrize("formula", formulas.values(), ids=formulas)
@@ -278,17 +235,6 @@ def test_every_formula_says_what_it_is(formula):
     assert formula.sentence.endswith(".")
     assert formula.description.count("$") % 2 == 0
     assert formula.source == BEYOND_THE_PAPER or "eq" in formula.source or "Sect" in formula.source
-
-
-def test_text():
-    assert formulas["forms"].text().splitlines() == [
-        "A = n·a", "B = n·b", "C = n·c", "P = n·d", "Q = n·e",
-        "D = A*C - B**2", "U = B*Q - C*P", "V = B*P - A*Q", "W = D - U - V",
-    ]  # fmt: skip
-    assert formulas["tangents"].text().splitlines()[-1] == "N = p_u × p_v"
-    assert formulas["curvature"].text().splitlines()[-3:] == [
-        "g = 1/|N|**2", "K = D*g", "H = g*(2*B*F - A*G - C*E)/2"
-    ]  # fmt: skip
 
 
 def test_notebooks_show_the_latex():

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import Formula, formulas
+from gaussmap.symbolic import Formula
 from gaussmap.symbolic.jet import AT_JET, AT_POLE, CONTOUR, NEWTON, POLAR_CHART
 from gaussmap.symbolic.notation import Cross, Det, Dot, derivative, scalar, substitute
 from gaussmap.symbolic.notation import vectors as vector_symbols
@@ -32,10 +32,6 @@ def evaluated(formula: Formula, values: dict[sp.Expr, sp.Expr]) -> dict[str, sp.
 def jet(x: Any, u: sp.Symbol, v: sp.Symbol) -> dict[sp.Expr, sp.Expr]:
     derivatives = {"a": (u, u), "b": (u, v), "c": (v, v), "d": (u,), "e": (v,)}
     return vectors(**{name: diff(x, *by) for name, by in derivatives.items()})
-
-
-def test_they_are_formulas():
-    assert [formulas[x.name] for x in (AT_JET, NEWTON, CONTOUR)] == [AT_JET, NEWTON, CONTOUR]
 
 
 def test_a_sphere_with_outward_normals():

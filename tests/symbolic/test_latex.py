@@ -10,7 +10,6 @@ from gaussmap.symbolic import files, formulas, surfaces
 from gaussmap.symbolic.display import latex_name
 from gaussmap.symbolic.formula import Formula
 from gaussmap.symbolic.latex import FORMULAS as SECTIONS
-from gaussmap.symbolic.latex import markdown
 from gaussmap.symbolic.notation import Cross, Det, Dot, VectorSymbol, scalar, substitute, vectors
 from gaussmap.symbolic.simplify import straight_line
 
@@ -56,11 +55,6 @@ def test_text_says_the_same(formula):
     for (_, value), side in zip(definitions, pairs.values(), strict=True):
         expected = substitute(value, {scalar("n_n"): Dot(*vectors("nn"))})
         assert sp.expand(parsed(side, formula) - expected) == 0
-
-
-@EACH_FORMULA
-def test_lines_of_text_are_short(formula):
-    assert max(map(len, formula.text().splitlines())) <= 88
 
 
 # --- LaTeX of a formula ---------------------------------------------------------------------------
@@ -115,15 +109,6 @@ def test_lines_of_latex(name, line):
 
 
 @EACH_FORMULA
-def test_vectors_are_bold(formula):
-    latex = formula.latex()
-    whole = {x for pair in formula.definitions for side in pair for x in side.free_symbols}
-    for symbol in whole:  # and not in components alone
-        if isinstance(symbol, VectorSymbol):
-            assert latex_name(symbol.name, bold=True) in latex
-
-
-@EACH_FORMULA
 def test_rows_of_latex_fit_on_a_page(formula):
     """About 90 characters fit on a line of 174 mm."""
     for row in formula.latex().splitlines():
@@ -158,13 +143,6 @@ def is_balanced(latex: str) -> bool:
     return not stack
 
 
-def test_balance_is_checked():
-    assert is_balanced(r"\begin{a}\left( \frac{1}{2} \right)\end{a} \{")
-    assert not is_balanced(r"\frac{1}{2")
-    assert not is_balanced(r"\begin{a}{\end{a}}")
-    assert not is_balanced(r"\bigl( x")
-
-
 def test_every_formula_and_surface_is_a_block_of_its_own():
     entries = re.findall(r"^### `(\w+)`$", MARKDOWN, re.MULTILINE)
     assert entries == [*formulas, *surfaces.CATALOGUE]
@@ -177,11 +155,6 @@ def test_every_formula_and_surface_is_a_block_of_its_own():
             assert section.format(title) in page
 
 
-def test_letters_of_a_sentence_are_those_of_its_formula():
-    """$t$ is a vector of `hessian` and the parameter of an arc."""
-    assert r"$`\mathbf{p}(t(\mathbf{n}))`$" in MARKDOWN
-
-
 def test_latex_is_balanced():
     snippets = [*blocks(), *inline()]
     assert len(snippets) > len(blocks()) > 40
@@ -189,14 +162,6 @@ def test_latex_is_balanced():
         assert is_balanced(latex), latex
         assert latex.isascii()
         assert not {"`", "$"} & set(latex)
-
-
-@pytest.mark.parametrize("block", blocks())
-def test_blocks_are_aligned(block):
-    lines = block.splitlines()
-    assert (lines[0], lines[-1]) == (r"\begin{aligned}", r"\end{aligned}")
-    assert r"\end{aligned}" not in block[: -len(lines[-1])]
-    assert not lines[-2].endswith("\\")
 
 
 @EACH_FORMULA
@@ -232,20 +197,6 @@ def test_entries_name_the_functions(name, functions):
     typeset = re.sub(r"`(.*?)`", r"\\texttt{\1}", functions).replace("_", r"\_")
     title = f"\\subsection*{{\\texttt{{{name}}}}}".replace("_", r"\_")
     assert f"Functions: {typeset}" in TEX.partition(title)[2].partition("\\subsection")[0]
-
-
-def test_functions_are_those_of_the_sources_that_are_given():
-    """The pages are derived beside the files, not from those that were written before."""
-    page = markdown({"new.py": "def orientation(patch, n):\n    pass\n"})
-    entry = page.partition("### `orientation`\n")[2].partition("\n#")[0]
-    assert "- Functions: `new.orientation`.\n" in entry
-    assert "- Functions: none.\n" in page
-
-
-def test_symbols_in_sentences_are_mathematics():
-    entry = MARKDOWN.partition("### `parabolic_directions`\n")[2].partition("```")[0]
-    assert "in $`(s, t)`$:" in entry
-    assert r"$`\det[t \mathbf{a} - s \mathbf{b}," in entry
 
 
 @pytest.mark.parametrize("surface", surfaces.CATALOGUE.values(), ids=surfaces.CATALOGUE)

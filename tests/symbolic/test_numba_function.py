@@ -87,14 +87,6 @@ def test_the_scalar_function_in_a_kernel() -> None:
     assert total(rows) == (1.0 - 3.0) + (4.0 - 6.0)
 
 
-def test_stages_are_kept() -> None:
-    found = compiled(tilt())
-    assert found.formula is not None
-    assert found.simplified is found.simplified
-    assert [str(x) for x, _ in found.simplified.assignments] == ["N_x", "N_y", "N_z", "t"]
-    assert found.operations == (14, 14)
-
-
 def test_errors() -> None:
     refused("takes a Formula, not str", compiled, "x + y", error=TypeError)
     refused("takes 2 arrays, K, H, not 1", compiled(shape_index()), [1.0], error=TypeError)

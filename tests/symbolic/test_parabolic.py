@@ -68,19 +68,6 @@ def test_binary_cubic_is_the_determinant(generator):
     assert sp.expand(rows.det() - binary_cubic(vectors)) == 0
 
 
-def test_binary_cubic_by_the_dual_basis(generator):
-    """math.md, Sect. 1: det[a b c] (t n·d − s n·e) with n = s² a* + st b* + t² c*."""
-    a, b, c, d, e = vectors = [random_vector(generator) for _ in NAMES]
-    basis = sp.Matrix.hstack(a, b, c)
-    assert basis.det() != 0
-    dual = basis.inv().T
-    normal = s**2 * dual.col(0) + s * t * dual.col(1) + t**2 * dual.col(2)
-    expected = basis.det() * (t * dot(normal, d) - s * dot(normal, e))
-    assert sp.expand(expected - binary_cubic(vectors)) == 0
-    first = evaluated(gaussian_image.PARABOLIC_NORMAL, vectors, s=s, t=t)[:3]
-    assert sp.expand(sp.Matrix(first) - basis.det() * normal) == sp.zeros(3, 1)
-
-
 def test_the_cubic_vanishes_on_the_line_of_every_root(generator):
     """For a symbolic direction (s, 1): what is left on the line is a multiple of the cubic in s."""
     vectors = [random_vector(generator) for _ in NAMES]
@@ -140,93 +127,6 @@ def test_three_rational_lines_are_the_factors_of_the_cubic(generator):
     quotient, rest = sp.div(sp.Poly(cubic_of(vectors), u, v), sp.Poly(product, u, v))
     assert rest.is_zero
     assert quotient.total_degree() == 0
-
-
-def test_a_double_line(generator):
-    vectors = rational_patch(generator, [(1, 2), (1, 2), (-1, 1)])
-    (l_u, l_v, l_1), *_ = lines_at(vectors, (1, 2))
-    square = sp.Poly((l_u * u + l_v * v + l_1) ** 2, u, v)
-    assert sp.rem(sp.Poly(cubic_of(vectors), u, v), square).is_zero
-
-
-# --- det[a b c] = 0 -------------------------------------------------------------------------------
-
-
-def dependent(generator: random.Random, weights) -> tuple[list[Any], Any]:
-    """Return vectors with λ1 a + λ2 b + λ3 c = 0, and a normal n0 of a, b, c."""
-    a, b = random_vector(generator), random_vector(generator)
-    l1, l2, l3 = weights
-    c = -(l1 * a + l2 * b) / sp.Integer(l3)
-    return [a, b, c, random_vector(generator), random_vector(generator)], a.cross(b)
-
-
-@pytest.mark.parametrize("weights", [(1, -1, -6), (2, 1, 1), (1, 2, 1), (0, 1, 3), (0, 0, 1)])
-@pytest.mark.quick_for("weights0")
-def test_rank_two_has_two_lines_in_fixed_directions(generator, weights):
-    """The binary cubic is λ(s,t) (t n0·d − s n0·e), up to a factor; the last is at infinity."""
-    vectors, n0 = dependent(generator, weights)
-    d, e = vectors[3:]
-    form: Any = weights[0] * s**2 + weights[1] * s * t + weights[2] * t**2
-    expected = form * (t * dot(n0, d) - s * dot(n0, e)) / weights[2]
-    assert sp.expand(binary_cubic(vectors) - expected) == 0
-    cubic = sp.Poly(cubic_of(vectors), u, v)
-    assert cubic.total_degree() <= 2
-    infinite = (dot(n0, d), dot(n0, e))
-    for l_u, l_v, l_1 in lines_at(vectors, infinite):
-        assert l_u == l_v == 0
-        assert l_1 != 0
-    product = sp.S.One
-    for root, multiplicity in sp.roots(sp.Poly(form.subs(t, 1), s)).items():
-        if root.is_rational:
-            l_u, l_v, l_1 = lines_at(vectors, (root, 1))[0]
-            product *= (l_u * u + l_v * v + l_1) ** multiplicity
-    assert sp.rem(cubic, sp.Poly(product, u, v)).is_zero
-    if weights[1] ** 2 < 4 * weights[0] * weights[2]:  # two complex lines, one real point
-        w = scalar("w")
-        form_of_cubic: Any = sp.hessian(cubic.homogenize(w).as_expr(), (u, v, w))
-        assert form_of_cubic.det() == 0
-        assert form_of_cubic[:2, :2].det() > 0
-
-
-def test_translational_patch_has_lines_along_the_axes(generator):
-    vectors = [random_vector(generator) for _ in NAMES]
-    vectors[1] = sp.zeros(3, 1)
-    a, _, c, d, e = vectors
-    cubic = sp.factor(cubic_of(vectors))
-    in_u, in_v = dot(c, (a * u + d).cross(e)), dot(a, d.cross(c * v + e))
-    assert sp.expand(cubic - in_u * in_v) == 0
-    assert binary_cubic(vectors).subs({s: 1, t: 0}) == binary_cubic(vectors).subs({s: 0, t: 1}) == 0
-
-
-def test_ruled_patch_is_hyperbolic_but_for_one_double_line(generator):
-    vectors = [random_vector(generator) for _ in NAMES]
-    vectors[0] = sp.zeros(3, 1)
-    _, b, c, d, e = vectors
-    (l_u, l_v, l_1), *_ = lines_at(vectors, (0, 1))
-    normal_b = sp.expand(dot((b * v + d).cross(b * u + c * v + e), b))
-    assert sp.expand(cubic_of(vectors) + normal_b**2) == 0
-    assert l_u == 0
-    assert sp.expand(normal_b * l_v - normal_b.coeff(v) * (l_v * v + l_1)) == 0
-
-
-def test_graph_has_a_constant_and_no_lines(generator):
-    axis, d, e = (random_vector(generator) for _ in range(3))
-    alpha, beta, gamma = (generator.randint(-5, 5) for _ in range(3))
-    vectors = [alpha * axis, beta * axis, gamma * axis, d, e]
-    determinant = sp.Matrix.hstack(d, e, axis).det()
-    assert binary_cubic(vectors) == 0
-    assert cubic_of(vectors) == (alpha * gamma - beta**2) * determinant**2
-
-
-def test_developable_patches_have_no_lines(generator):
-    a, b, c, d, e = (random_vector(generator) for _ in range(5))
-    cylinder = [a, sp.zeros(3, 1), sp.zeros(3, 1), d, e]
-    apex = [generator.randint(-5, 5) for _ in range(2)]
-    cone = [a, b, c, apex[0] * a + apex[1] * b, apex[0] * b + apex[1] * c]
-    plane = [3 * d - e, d + e, 2 * d, d, e]
-    for vectors in (cylinder, cone, plane):
-        assert cubic_of(vectors) == 0
-        assert binary_cubic(vectors) == 0
 
 
 # --- the boundary ---------------------------------------------------------------------------------

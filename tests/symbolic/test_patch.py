@@ -95,14 +95,6 @@ def test_formula_12_comes_out_exactly():
     assert sp.cancel(triangle_of(POINTS_12).support_function - FORMULA_12) == 0
 
 
-def test_the_printed_control_points_11_give_another_formula():
-    numerator = 18 * x**2 * z - 59 * x * y * z + 18 * x * z**2 + 18 * y**3
-    denominator = 9 * x**2 - 34 * x * y + 14 * x * z + 33 * y**2 - 34 * y * z + 9 * z**2
-    h = triangle_of(POINTS_11).support_function
-    assert sp.cancel(h - numerator / denominator) == 0
-    assert sp.cancel(h - FORMULA_12) != 0
-
-
 # --- the support function -------------------------------------------------------------------------
 
 
@@ -146,34 +138,6 @@ def test_groups_are_only_another_writing(points):
     at: Any = {x: 3, y: -1, z: sp.Rational(1, 2)}
     assert [value.subs(at) for value in point] == [value.subs(at) for value in triangle.gradient]
     assert sp.cancel(triangle.support_function - triangle._cubic_over_quadratic) == 0
-
-
-def test_gradient_is_the_point_with_that_normal_identically():
-    triangle = triangle_of(POINTS_12)
-    point = bezier_point(triangle.control_points)
-    at_n = dict(zip((u, v), triangle.parameters, strict=True))
-    difference = point.xreplace(at_n) - sp.Matrix(triangle.gradient)
-    assert difference.applyfunc(sp.cancel) == sp.zeros(3, 1)
-
-
-def test_euler(case):
-    h, gradient = case.triangle.support_function, sp.Matrix(case.triangle.gradient)
-    assert sp.cancel(dot(n, gradient) - h) == 0
-
-
-def test_support_function_is_odd_and_homogeneous(case):
-    h = case.triangle.support_function
-    scaled = h.xreplace({a: t * a for a in n})
-    assert sp.cancel(scaled - t * h) == 0  # t = −1: odd
-    numerator, denominator = h.as_numer_denom()
-    assert sp.Poly(numerator, *n).total_degree() == 3
-    assert sp.Poly(denominator, *n).total_degree() == 2
-
-
-def test_support_function_is_the_distance_of_the_tangent_plane(case):
-    for place in case.places:
-        h = case.at_normal(case.triangle.support_function, place)
-        assert h == dot(case.normal, case.p).subs(place)
 
 
 @pytest.mark.slow
@@ -277,26 +241,6 @@ def test_radii_formula_is_the_reciprocal_of_curvature():
     assert sp.cancel(radii["R_sum"] * curvature["K"] / 2 - curvature["H"]) == 0
 
 
-@pytest.mark.parametrize(("sign", "order"), [(1, [0, 1, 2, 3, 4, 5]), (-1, [1, 0, 2, 3, 5, 4])])
-def test_radii_are_positive_where_normals_point_away_from_the_centre(sign, order):
-    """p = (u, v, −(u² + v²)/6) osculates a sphere of radius 3 whose pole is the origin."""
-    sixth = sp.Rational(1, 6)
-    cap = [
-        [1, 0, -sixth],
-        [0, 1, -sixth],
-        [0, 0, 0],
-        ["1/2", "1/2", 0],
-        ["1/2", 0, 0],
-        [0, "1/2", 0],
-    ]
-    triangle = triangle_of([cap[k] for k in order])
-    pole = dict(zip(n, (0, 0, 5 * sign), strict=True))
-    assert triangle.orientation.subs(pole) > 0
-    assert [r.subs(pole) for r in triangle.principal_radii] == [3 * sign, 3 * sign]
-    assert triangle.mean_curvature.subs(pole) == sp.Rational(sign, 3)
-    assert triangle.gaussian_curvature.subs(pole) == sp.Rational(1, 9)
-
-
 # --- the Gaussian image ---------------------------------------------------------------------------
 
 
@@ -329,13 +273,6 @@ def test_parabolic_cubic_is_d_of_the_normal_field(case):
     )  # fmt: skip
     assert sp.expand(cubic - D) == 0
     assert sp.Poly(sp.expand(D), u, v).total_degree() == 3
-
-
-def test_bernstein_coefficients():
-    assert patch.bernstein(u * v, 2) == {
-        "200": 0, "110": sp.Rational(1, 2), "101": 0, "020": 0, "011": 0, "002": 0
-    }  # fmt: skip
-    assert set(patch.bernstein(sp.Integer(7), 3).values()) == {7}
 
 
 def test_quadrature_is_exact_on_quadratics():

@@ -49,14 +49,6 @@ def test_named_terms_stay_even_if_used_once():
     assert code(("p", 2 * scalar("r")), terms=[("r", x + y)]) == {"r": "x + y", "p": "2*r"}
 
 
-@pytest.mark.parametrize("formula", formulas.values(), ids=formulas)
-def test_temporaries_are_numbered_consecutively(formula):
-    named = {symbol for symbol, _ in formula.in_components().definitions}
-    assignments = straight_line(formula).assignments
-    temporaries = [symbol.name for symbol, _ in assignments if symbol not in named]
-    assert temporaries == [f"t{k}" for k in range(len(temporaries))]
-
-
 def test_temporaries_avoid_the_names_of_the_formula():
     t0 = scalar("t0")
     formula = Formula.build(

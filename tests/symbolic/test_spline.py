@@ -15,7 +15,6 @@ from ..refusals import refused
 HALF = Fraction(1, 2)
 NET: Any = spline.control_points()
 CELLS = [(i, j) for i in range(-2, 3) for j in range(-2, 3)]  # the support and one ring more
-ORDINATES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # pairs of corners
 MONOMIALS = [(r, s) for r, s in product(range(3), repeat=2) if r + s <= 2]
 
 
@@ -83,41 +82,6 @@ def test_c1_across_every_edge(net):
         for end in edge:
             assert left.value(end) == right.value(end)
             assert left.gradient(end) == right.gradient(end)
-
-
-def test_not_smoother_than_that(net):
-    """Across the diagonals of an outer cell the second derivatives jump."""
-    south, east = (Piece(triangle, net) for triangle in spline.triangles([(1, 0)])[:2])
-    middle, vertex = (Fraction(1), Fraction(0)), (3 * HALF, HALF)
-    assert south.gradient(middle) == east.gradient(middle)
-    assert south.gradient(vertex) != east.gradient(vertex)
-
-
-def test_support_is_the_octagon(net):
-    inside = {place for place, value in net.items() if value}
-    assert inside
-    assert all(abs(x) < 3 * HALF and abs(y) < 3 * HALF and abs(x) + abs(y) < 2 for x, y in inside)
-    assert all(value > 0 for place, value in net.items() if place in inside)
-    assert max(net.values()) == net[Fraction(0), Fraction(0)] == HALF
-
-
-def test_symmetric_as_the_square(net):
-    for (x, y), value in net.items():
-        assert net[y, x] == net[-x, y] == value
-
-
-def test_translates_sum_to_one(net, numbers):
-    for triangle in spline.triangles([(0, 0)]):
-        for i, j in ORDINATES:
-            place = spline.middle(triangle[i], triangle[j])
-            assert sum(net.get((place[0] - r, place[1] - s), 0) for r, s in CELLS) == 1
-            assert sum(spline.net_weights(place).values()) == 1
-
-
-def test_integral_is_one(net):
-    quarter_cell = Fraction(1, 4)
-    means = [sum(x.ordinates[i][j] for i, j in ORDINATES) / 6 for x in pieces(net)]
-    assert quarter_cell * sum(means) == 1
 
 
 def test_conditions_that_leave_a_choice_are_refused(monkeypatch):
@@ -220,17 +184,6 @@ def test_the_spline_of_a_quadratic_is_that_quadratic(name, numbers):
             piece = Piece(triangle, {place: ordinates[key] for place, key in places.items()})
             for point in [(numbers(), numbers()) for _ in range(6)]:
                 assert piece.value(point) == monomial(powers, point)
-
-
-def test_weights_of_the_functionals():
-    for orbits, weights in (
-        ((spline.CENTRE, spline.orbit(HALF, HALF)), [2, Fraction(-1, 4)]),
-        (
-            (spline.CENTRE, spline.orbit(Fraction(0), Fraction(1))),
-            [Fraction(3, 2), Fraction(-1, 8)],
-        ),
-    ):
-        assert spline.coefficient_weights(*orbits) == weights
 
 
 @pytest.mark.parametrize(

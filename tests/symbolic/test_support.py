@@ -55,50 +55,6 @@ def test_branch_is_what_differentiation_of_the_extension_gives(h):
             assert at(place, derived[f"H_{key}"] - second) == 0
 
 
-@EACH_FUNCTION
-def test_the_plane_of_the_envelope_point_has_the_distance_h(h):
-    """Eq. (4): n·x = h; and the Hessian has n in its kernel."""
-    derived = branch(h).expanded()
-    for place in places():
-        distance = sum(s * derived[f"x_{axis}"] for s, axis in zip(NORMAL, "xyz", strict=True))
-        assert at(place, distance - h) == 0
-        for i in range(3):
-            names = ("xyz"[min(i, j)] + "xyz"[max(i, j)] for j in range(3))
-            row = sum(s * derived[f"H_{key}"] for s, key in zip(NORMAL, names, strict=True))
-            assert at(place, row) == 0
-
-
-def test_odd_polynomial_by_hand():
-    """For h = n_x³ eq. (6) gives 3 n_x² (e_x − n_x n), and eq. (5) 3 n_x² e_x − 2 n_x³ n."""
-    derived = branch(x**3).expanded()
-    place = {x: sp.Rational(2, 3), y: sp.Rational(1, 3), z: sp.Rational(2, 3)}
-    point = [derived[f"x_{axis}"].xreplace(place) for axis in "xyz"]
-    assert point == [sp.Rational(76, 81), sp.Rational(-16, 81), sp.Rational(-32, 81)]
-
-
-def test_intrinsic_gradient_and_envelope_by_hand():
-    """dh = (3, 0, 0), n = (2, 1, 2)/3: dh·n = 2."""
-    n = {f"n_{axis}": sp.Rational(k, 3) for axis, k in zip("xyz", (2, 1, 2), strict=True)}
-    values = {scalar(k): v for k, v in (n | {"dh_x": sp.Integer(3)}).items()}
-    values |= {scalar("dh_y"): sp.S.Zero, scalar("dh_z"): sp.S.Zero}
-    projected = [v.xreplace(values) for v in formulas["intrinsic_gradient"].expanded().values()]
-    assert projected == [sp.Rational(5, 3), sp.Rational(-2, 3), sp.Rational(-4, 3)]
-    values |= {scalar(f"dh_S_{axis}"): v for axis, v in zip("xyz", projected, strict=True)}
-    values[scalar("h")] = sp.Integer(6)
-    point = [v.xreplace(values) for v in formulas["envelope_operator"].expanded().values()]
-    assert point == [sp.Rational(17, 3), sp.Rational(4, 3), sp.Rational(8, 3)]
-
-
-def test_the_envelope_operator_is_linear():
-    """Eq. (7): no product of two inputs that depend on h, and no constant."""
-    parts = (formulas["intrinsic_gradient"], formulas["envelope_operator"])
-    for formula in (*parts, formulas["hessian_of_extension"]):
-        of_h = [s for s in formula.in_components().inputs if s.name[0] == "d" or s.name[0] == "h"]
-        assert of_h
-        for value in formula.expanded().values():
-            assert {sum(m) for m in sp.Poly(value, *of_h).monoms()} == {1}
-
-
 def test_curvature_from_hessian_against_eigenvalues():
     """A Hessian with the eigenvalues 5 and −3 in the plane orthogonal to n = (2, 1, 2)/3."""
     n, s, t = (sp.Matrix(v) / 3 for v in ((2, 1, 2), (1, 2, -2), (2, -2, -1)))
@@ -155,6 +111,7 @@ def test_homogeneous_of_degree_1(h, answer):
     assert is_homogeneous(h) is answer
 
 
+@pytest.mark.slow
 def test_long_expressions_are_not_expanded():
     h = sum((sp.sqrt(k * x**2 + y**2 + z**2 + k * x * z) for k in range(1, 60)), start=sp.S.Zero)
     assert 3 * h.count_ops() > LONGEST_PROOF  # those of three derivatives

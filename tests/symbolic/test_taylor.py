@@ -92,7 +92,7 @@ def names_of(name: str) -> list[str]:
 
 
 @EACH
-@pytest.mark.quick_for("product_2", "composition_2")
+@pytest.mark.quick_for("product_2")
 @given(data=st.data())
 def test_radii_bound_the_change_by_errors(name, data):
     """Without rounding: values change within their errors, results within the radii."""
