@@ -125,13 +125,6 @@ def test_a_name_is_the_same_surface_each_time():
     assert gm.GaussMap("torus").surface is gm.sample("torus", normals=AXES).surface
 
 
-def test_numbers_of_a_map_may_be_rounded():
-    known = gm.GaussMap("torus")
-    single = known.points(NORMALS, dtype=np.float32, fields=("points", "normal_index"))
-    assert single.points.dtype == np.float32
-    np.testing.assert_array_equal(single.points, known.points(NORMALS).points.astype(np.float32))
-
-
 def test_surfaces_of_several_pieces_have_maps():
     knots = [0, 0, 0, 0.5, 0.5, 1, 1, 1]  # double inside: a crease
     u, v = np.meshgrid(range(5), range(5), indexing="ij")
@@ -154,13 +147,6 @@ def test_unusable_arguments_are_refused_at_once(arguments):
         gm.GaussMap(**arguments)
     with pytest.raises(gm.GaussmapError):
         gm.sample(**arguments, normals=AXES)
-
-
-def test_unusable_normals_are_refused():
-    known = gm.GaussMap("torus")
-    for normals in ([], [[0, 0, 0]], [[np.nan, 0, 1]], "x", [[1, 2]]):
-        with pytest.raises(gm.GaussmapError):
-            known.count(normals)
 
 
 def test_a_point_of_no_curvature_counts_with_its_sign_bit() -> None:

@@ -38,11 +38,9 @@ def test_every_request_keeps_to_the_reach_and_its_guarantee(name: str) -> None:
     requests: list[dict[str, Any]] = [
         {"count": 300},
         {"count": 300, "density": "uniform"},
-        {"count": 300, "density": 0.5},
         {"count": 300, "density": "gauss"},
         {"coverage": 0.06},
         {"angle": 4.0},
-        {"angle": 6.0, "coverage": 0.1},
     ]
     for how in requests:
         samples = gm.sample(surface, reach=(AXIS, ANGLE), **how)
@@ -91,8 +89,8 @@ def test_a_reach_of_everything_leaves_nothing_out() -> None:
 
 
 def test_terrain_meshes_and_pickles() -> None:
-    x = np.linspace(0.0, 6.0, 60)
-    heights = gm.terrain(2.0 * np.sin(x)[:, None] * np.cos(x), spacing=(0.1, 0.1))
+    x = np.linspace(0.0, 6.0, 30)
+    heights = gm.terrain(2.0 * np.sin(x)[:, None] * np.cos(x), spacing=(0.2, 0.2))
     samples = gm.sample(heights, 400, reach=((0, 0, 1), 25.0))
     assert len(samples) == 400
     assert angles(samples.normals, (0, 0, 1)).max() <= 25.0 + ROUNDING

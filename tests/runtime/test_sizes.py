@@ -252,7 +252,7 @@ def test_singular_points_are_reported() -> None:
     assert "infinite" not in samples.summary()
 
 
-@pytest.mark.parametrize("exponent", EXPONENTS)
+@pytest.mark.parametrize("exponent", [-997, 997])
 def test_files(exponent: int, tmp_path: Path) -> None:
     samples = gm.sample(spline(exponent), 200)
     for suffix in ("npz", "ply"):

@@ -6,18 +6,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
-from ..refusals import refused
-
-
-@pytest.mark.parametrize("threads", [0, -1, 1.5, True, "2", np.nan, [2]])
-def test_threads_that_are_none(threads):
-    calls = [
-        lambda: gm.sample(gm.surfaces.torus(), count=10, cells=(4, 4), threads=threads),
-        lambda: next(gm.sample_many([gm.surfaces.torus()], count=10, threads=threads)),
-    ]
-    for call in calls:
-        refused(r"^threads must be a whole number of at least 1", call)
-
 
 @pytest.mark.compiled
 def test_several_python_threads_at_once():

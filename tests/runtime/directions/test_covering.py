@@ -74,30 +74,6 @@ def test_platonic_solids(normals: Array, cosine: float) -> None:
     assert abs(gm.directions.covering_radius(repeated) - np.degrees(np.arccos(cosine))) < ACCURACY
 
 
-@pytest.mark.parametrize("frequency", [2, 3, 8, 20])
-def test_icosphere_has_the_largest_circle_of_its_triangles(frequency: int) -> None:
-    """Its triangles are those of the lattices on the faces: here of the one between +x and +z."""
-    corners = gm.icosphere(1)
-    face = corners[np.argsort(-(corners @ [1.0, 0.0, 2.618]))[:3]]
-    i, j = (x.ravel() for x in np.indices((frequency, frequency)))
-
-    def vertex(i: Any, j: Any) -> Array:
-        weights = np.stack([i, j, frequency - i - j], axis=1)
-        points = weights @ face
-        return points / np.linalg.norm(points, axis=1, keepdims=True)
-
-    radii = []
-    for k, first in ((0, i + j < frequency), (1, i + j < frequency - 1)):
-        a, b, c = (vertex(x[first], y[first]) for x, y in ((i + k, j + k), (i + 1, j), (i, j + 1)))
-        centres = np.cross(b - a, c - a)
-        centres /= np.linalg.norm(centres, axis=1, keepdims=True)
-        radii.append(angles_between(centres, a))
-    largest = max(np.minimum(x, 180 - x).max() for x in radii)
-    assert (
-        abs(gm.directions.covering_radius(gm.icosphere(frequency)) - largest) < 1e-10
-    )  # small triangles
-
-
 @pytest.mark.parametrize("normals", [[[0, 0, 1]], [[0, 3, 4]] * 5])
 def test_one_normal(normals: Any) -> None:
     assert gm.directions.covering_radius(normals) == 180.0
@@ -106,35 +82,6 @@ def test_one_normal(normals: Any) -> None:
 @pytest.mark.parametrize("angle", [1e-6, 1.0, 90.0, 179.0, 180.0])
 def test_two_normals(angle: float) -> None:
     assert abs(gm.directions.covering_radius(ring(90, [0, angle])) - (180 - angle / 2)) < ACCURACY
-
-
-@pytest.mark.parametrize(
-    ("normals", "radius"),
-    [
-        (ring(90, [0, 120, 240]), 90),
-        (ring(90, [0, 90, 180]), 90),
-        (ring(90, np.arange(0, 360, 7)), 90),
-        (ring(90, [0, 50, 80, 110]), 180 - 55),  # less than half of a great circle
-        (ring(30, [0, 120, 240]), 150),
-        (ring(30, np.arange(0, 360, 1)), 150),
-        (ring(150, [0, 100, 200]), 150),
-        (np.concatenate([ring(40, np.arange(0, 360, 10)), [[0, 0, 1]]]), 140),
-        (np.concatenate([ring(90, [0, 90, 180, 270]), [[0, 0, 1]]]), 90),
-        (np.concatenate([ring(90, np.arange(0, 360, 30)), ring(30, [5, 95, 185])]), 90),
-    ],
-)
-def test_normals_in_a_plane_or_a_hemisphere(normals: Array, radius: float) -> None:
-    assert abs(gm.directions.covering_radius(normals) - radius) < 1e-10
-    turned = normals @ np.linalg.qr(np.random.default_rng(0).standard_normal((3, 3)))[0]
-    assert (
-        abs(gm.directions.covering_radius(turned) - radius) < 1e-6
-    )  # a plane is one up to rounding only
-
-
-def test_a_cap_leaves_the_rest_of_the_sphere() -> None:
-    """The smallest cap of those within 30° of an axis: at most one distance of normals smaller."""
-    part = gm.directions.cap(gm.fibonacci(20_000), [1, 2, 3], 30)
-    assert 150 <= gm.directions.covering_radius(part) < 150.5
 
 
 # --- brute force ----------------------------------------------------------------------------------
@@ -170,24 +117,7 @@ def test_sets_against_a_search(normals: Array) -> None:
     check(normals)
 
 
-def test_adding_normals_never_makes_it_larger() -> None:
-    normals = gm.directions.random(200, seed=5)
-    radii = [gm.directions.covering_radius(normals[:k]) for k in range(1, 200)]
-    assert (np.diff(radii) <= 1e-9).all()
-
-
 # --- what it is good for --------------------------------------------------------------------------
-
-
-@pytest.mark.compiled
-def test_every_surface_point_has_a_sample_with_nearly_its_normal() -> None:
-    """The Gaussian image of each half of a torus is the whole sphere."""
-    spline, normals = gm.fit(gm.surfaces.torus(), (32, 32)), gm.fibonacci(300)
-    samples = gm.sample(spline, normals=normals)
-    places = np.random.default_rng(0).uniform(0, 2 * np.pi, (2, 500))
-    distances = nearest(spline.normals(*places), samples.normals)
-    assert distances.max() <= gm.directions.covering_radius(normals)
-    assert distances.max() > 0.7 * gm.directions.covering_radius(normals)
 
 
 @pytest.mark.parametrize(

@@ -100,17 +100,6 @@ def test_the_faces_of_an_icosahedron_cover_the_sphere() -> None:
     assert len(np.unique(np.concatenate(parts), axis=0)) == len(NORMALS)
 
 
-def test_many_corners_are_nearly_a_cap() -> None:
-    t = np.linspace(0, 2 * np.pi, 200, endpoint=False)
-    ring = np.stack([np.cos(t), np.sin(t), 0 * t + 1], axis=1)
-    part = gm.directions.polygon(NORMALS, ring)
-    assert (
-        len(gm.directions.cap(NORMALS, [0, 0, 1], 44.98))
-        <= len(part)
-        <= len(gm.directions.cap(NORMALS, [0, 0, 1], 45))
-    )
-
-
 def test_corners_on_one_great_circle_bound_a_hemisphere() -> None:
     corners = [[1, 0, 0], [-1, 2, 0], [-1, -2, 0]]
     assert (gm.directions.polygon(NORMALS, corners)[:, 2] >= 0).all()
@@ -139,9 +128,3 @@ def test_its_corners_belong_to_a_polygon() -> None:
 )
 def test_corners_that_are_none(corners: Any, message: str) -> None:
     refused(message, gm.directions.polygon, NORMALS, corners)
-
-
-def test_a_star_is_not_convex() -> None:
-    t = 2 * np.pi * np.arange(5) * 2 / 5
-    star = np.stack([np.cos(t), np.sin(t), 0 * t + 1], axis=1)
-    refused("convex", gm.directions.polygon, NORMALS, star)

@@ -33,20 +33,6 @@ def nearest(normals):
 
 
 @pytest.mark.parametrize("frequency", FREQUENCIES)
-def test_icosphere_counts(frequency):
-    normals = gm.icosphere(frequency)
-    assert normals.shape == (10 * frequency**2 + 2, 3)
-    assert normals.dtype == np.float64
-    assert normals.flags.c_contiguous
-    assert len(np.unique(normals.round(9) + 0.0, axis=0)) == len(normals)
-
-
-@pytest.mark.parametrize("frequency", FREQUENCIES)
-def test_icosphere_is_of_unit_length(frequency):
-    np.testing.assert_allclose(lengths(gm.icosphere(frequency)), 1.0, rtol=0, atol=2 * ULP)
-
-
-@pytest.mark.parametrize("frequency", FREQUENCIES)
 def test_icosphere_is_symmetric(frequency):
     """Under n → −n bitwise, and under the symmetries that exchange or mirror the axes."""
     normals = gm.icosphere(frequency) + 0.0  # no −0
@@ -59,16 +45,6 @@ def test_icosphere_is_symmetric(frequency):
     rounded = set(map(tuple, (normals.round(9) + 0.0).tolist()))
     turned = set(map(tuple, (np.roll(normals, 1, axis=1).round(9) + 0.0).tolist()))
     assert rounded == turned
-
-
-@pytest.mark.parametrize("frequency", [2, 3, 5, 8, 16])
-def test_icosphere_is_even(frequency):
-    distances = nearest(gm.icosphere(frequency))
-    assert distances.max() < 1.5 * distances.min()
-    # six triangles meet in most vertices: 10 ν² triangles' area of about √3/2 d² for each normal
-    assert distances.mean() == pytest.approx(
-        np.sqrt(4 * np.pi / (10 * frequency**2) * 2 / np.sqrt(3)), rel=0.2
-    )
 
 
 def test_icosphere_begins_with_vertices_then_edges():
@@ -88,14 +64,9 @@ def test_icosphere_begins_with_vertices_then_edges():
 MAKERS = [gm.icosphere, gm.fibonacci, gm.directions.healpix, gm.directions.random]
 
 
-@covering(make=MAKERS, number=[0, -1, 1.0, True, "4", None, np.nan, [4], 4j])
+@covering(make=MAKERS, number=[0, 1.0])
 def test_numbers_that_are_none(make, number):
     refused(r"must be a whole number of at least 1, not ", make, number)
-
-
-@pytest.mark.parametrize("make", MAKERS)
-def test_numpy_integers_are_numbers(make):
-    assert (make(np.int16(8)) == make(8)).all()
 
 
 @pytest.mark.parametrize("make", [gm.icosphere, gm.directions.healpix])
@@ -113,18 +84,6 @@ def test_fibonacci_counts_and_lengths(count):
     np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
     assert (np.diff(normals[:, 2]) < 0).all()
     assert len(np.unique(normals, axis=0)) == count
-
-
-@pytest.mark.parametrize("count", [300, 3000])
-def test_fibonacci_is_even(count):
-    normals = gm.fibonacci(count)
-    distances = nearest(normals)
-    ideal = np.sqrt(4 * np.pi / count * 2 / np.sqrt(3))
-    assert distances.min() > 0.7 * ideal
-    assert distances.max() < 1.1 * ideal
-    assert np.abs(normals.mean(axis=0)).max() < 2.0 / count
-    np.testing.assert_allclose(normals[:, 2], -normals[::-1, 2], rtol=0, atol=4 * ULP)
-    np.testing.assert_allclose(normals.T @ normals / count, np.eye(3) / 3, rtol=0, atol=2 / count)
 
 
 def test_fibonacci_gives_every_cap_its_share():
@@ -161,12 +120,6 @@ def test_healpix_lies_on_rings(nside):
     np.testing.assert_allclose(normals[:, 2], np.repeat(heights, counts), rtol=0, atol=8 * ULP)
     first = np.arctan2(*normals[:4, 1::-1].T)
     np.testing.assert_allclose(np.mod(first, 2 * np.pi), np.pi / 4 * np.array([1, 3, 5, 7]))
-
-
-def test_healpix_gives_equal_areas_equal_shares():
-    normals = gm.directions.healpix(32)
-    np.testing.assert_allclose(normals.mean(axis=0), 0, rtol=0, atol=16 * ULP)
-    np.testing.assert_allclose(normals.T @ normals / len(normals), np.eye(3) / 3, atol=1e-4)
 
 
 @pytest.mark.parametrize("nside", [3, 6, 100, 9999])
@@ -222,33 +175,12 @@ def test_points_stay_as_they_are(frequency: int) -> None:
     assert len(np.unique(normals, axis=0)) == 10 * frequency**2 + 2
 
 
-@pytest.mark.parametrize(
-    "factor", [1.0, 3.0, 1e-3, 1e-160, 1e-300, 1e-307, 1e160, 1e300, 1.7e308, 2.0**-1022]
-)
-def test_any_length(factor):
-    directions = gm.icosphere(3)
-    normals = as_normals(factor * directions)
-    np.testing.assert_allclose(normals, directions, rtol=0, atol=2 * ULP)
-    np.testing.assert_allclose(lengths(normals), 1.0, rtol=0, atol=2 * ULP)
-
-
 def test_extreme_directions():
     tiny, huge = 5e-324, np.finfo(float).max
     given_ = [[tiny, 0, 0], [0, -huge, 0], [huge, huge, huge], [tiny, tiny, 0], [huge, tiny, -huge]]
     third, half = 3**-0.5, 2**-0.5
     expected = [[1, 0, 0], [0, -1, 0], [third, third, third], [half, half, 0], [half, 0, -half]]
     np.testing.assert_allclose(as_normals(given_), expected, rtol=0, atol=2 * ULP)
-
-
-@pytest.mark.parametrize("exponent", [-1000, -1, 1, 1000])
-def test_powers_of_two_change_no_bit(exponent):
-    directions = np.random.default_rng(0).standard_normal((200, 3))
-    np.testing.assert_array_equal(as_normals(directions * 2.0**exponent), as_normals(directions))
-
-
-@pytest.mark.parametrize("normals", [gm.icosphere(16), gm.fibonacci(5000)], ids=["ico", "fib"])
-def test_unit_normals_are_kept_bit_for_bit(normals):
-    np.testing.assert_array_equal(as_normals(normals), normals)
 
 
 def test_unit_normals_are_not_copied():
@@ -279,25 +211,6 @@ def test_any_direction(vectors):
     assert (np.sign(normals) * np.sign(vectors) >= 0).all()
     largest = np.abs(vectors).argmax(axis=1)
     assert (np.abs(normals)[np.arange(len(normals)), largest] >= 0.57).all()
-
-
-@pytest.mark.parametrize(
-    "bring",
-    [lambda x: x.tolist(), lambda x: x.astype(np.float32), lambda x: x.astype(">f8"),
-     lambda x: x.astype(np.longdouble), np.asfortranarray, lambda x: np.repeat(x, 2, axis=0)[::2],
-     lambda x: np.ma.masked_array(x, mask=False), tuple],
-)  # fmt: skip
-def test_any_array_of_directions(bring):
-    directions = 7 * gm.fibonacci(50)
-    normals = as_normals(bring(directions))
-    assert normals.dtype == np.float64
-    assert type(normals) is np.ndarray
-    assert normals.flags.c_contiguous
-    np.testing.assert_allclose(normals, gm.fibonacci(50), rtol=0, atol=1e-7)
-
-
-def test_integer_directions():
-    np.testing.assert_array_equal(as_normals([[3, 4, 0], [0, 0, -9]]), [[0.6, 0.8, 0], [0, 0, -1]])
 
 
 def test_the_array_of_the_user_is_left_alone():

@@ -9,7 +9,6 @@ import shapely
 from gaussmap.runtime.domain.domain import Boundary
 from gaussmap.runtime.domain.loops import checked_loops
 from gaussmap.runtime.domain.trim import Trim
-from scipy.ndimage import binary_dilation
 from scipy.spatial import KDTree
 
 from ...products import covering
@@ -59,20 +58,6 @@ def torus():
     return gm.surfaces.torus()
 
 
-@pytest.mark.parametrize("count", [3, 8, 60])
-def test_cells_of_a_border(count):
-    """All that it passes, also those of which it cuts a corner, and none two cells away."""
-    polygon = np.random.default_rng(count).uniform(0.0, 1.0, (count, 2))
-    found = checked_loops([polygon], UNIT, OPEN).cells_of_border(UNIT, (40, 30))
-    along = np.linspace(0.0, 1.0, 20_000, endpoint=False)[:, None, None]
-    border = (polygon + along * (np.roll(polygon, -1, axis=0) - polygon)).reshape(-1, 2)
-    passed = np.zeros((40, 30), dtype=bool)
-    passed[tuple((border * (40, 30)).astype(int).T)] = True
-    assert found[passed].all()
-    near = np.asarray(binary_dilation(passed, np.ones((3, 3))), dtype=np.bool_)
-    assert not (found & ~near).any()
-
-
 def test_an_open_side_is_outside_a_loop_beside_it():
     """Such points stand for points inside the domain, but for much nearer ones than these."""
     for gap, inside in ((0.0, True), (1e-9, False)):
@@ -85,14 +70,6 @@ def test_an_open_side_is_outside_a_loop_beside_it():
 
 @pytest.mark.kernels
 class TestEvenOdd:
-    @pytest.mark.parametrize("count", [3, 8, 60])
-    def test_random_loops(self, count):
-        rng = np.random.default_rng(count)
-        polygons = [rng.uniform(-0.2, 1.2, (count, 2)) for _ in range(3)]
-        places = rng.uniform(0, 1, (1000, 2))
-        found = checked_loops(polygons, UNIT, OPEN).contains(places)
-        np.testing.assert_array_equal(found, crossings(polygons, places))
-
     def test_places_on_vertices_and_sides(self):
         rng = np.random.default_rng(0)
         places = (np.indices((9, 9)).reshape(2, -1).T + 1.0) / 10.0
@@ -195,12 +172,6 @@ class TestInput:
         inside = (u > 2) & (u < 4) & (v > 2) & (v < 3)
         np.testing.assert_array_equal(trim_of(surface).contains(places), inside)
 
-    def test_a_trim_pickles(self):
-        trim = trim_of(graph().trimmed([SQUARE / 5], within=half))
-        places = np.random.default_rng(2).uniform(0, 1, (100, 2))
-        other = pickle.loads(pickle.dumps(trim))
-        np.testing.assert_array_equal(trim.contains(places), other.contains(places))
-
     def test_samples_pickle_without_a_spline_whose_predicate_does_not(self):
         surface = torus().trimmed(within=lambda u, v: u < 1)
         samples = gm.sample(surface, 50, cells=(8, 8))
@@ -301,15 +272,6 @@ class TestSampling:
             assert abs(len(samples) - 300) <= 11
         else:
             assert len(samples) == 300
-
-    def test_samples_on_the_surface_cover_the_part(self):
-        surface = PARTS["annulus"]
-        samples = gm.sample(surface, coverage=0.2, cells=(12, 12), on="surface")
-        assert trim_of(surface).contains(samples.uv).all()
-        assert np.abs(surface.evaluate(*samples.uv.T) - samples.points).max() < 1e-14
-        uv = np.random.default_rng(3).uniform(1.0, 5.0, (20_000, 2))
-        points = surface.evaluate(*uv[trim_of(surface).contains(uv)].T)
-        assert KDTree(samples.points).query(points)[0].max() <= 0.2
 
     def test_samples_at_normals_are_those_of_the_whole_that_are_inside(self):
         normals = gm.icosphere(12)
@@ -465,16 +427,6 @@ def chosen(u, v):
 def test_predicates_that_are_not_inequalities_leave_boxes_open(within):
     trim = trim_of(graph().trimmed(within=within))
     assert trim.sides(np.array([[0.9, 0.91, 0.9, 0.91]]), np.zeros((1, 3))).tolist() == [0]
-
-
-@pytest.mark.parametrize(("edge", "borders"), [(0.2, []), (0.0, [True]), (-0.2, [])])
-def test_flat_points_outside_of_a_predicate_are_known(edge, borders):
-    surface = gm.surfaces.monkey_saddle().trimmed(within=lambda u, v: u + v > edge)
-    samples = gm.GaussMap(surface).points([[0, 0, 1], [0.3, 0, 1]])
-    assert [(x.normal, x.border) for x in samples.report.undecided or ()] == [
-        (0, x) for x in borders
-    ]
-    assert (samples.normal_index == 0).sum() == (edge < 0.0)
 
 
 @pytest.mark.parametrize("radius", [0.5, 0.6])

@@ -1,6 +1,5 @@
 """The misfit of a spline beside independent measurements, on smooth and hard surfaces."""
 
-import pickle
 from typing import Any
 
 import gaussmap as gm
@@ -118,12 +117,6 @@ def test_angles_are_measured_as_long_as_coordinates_tell_normals() -> None:
     assert unknown is None
 
 
-def test_quadratics_have_no_misfit() -> None:
-    misfit = misfit_of(gm.fit("hyperbolic_paraboloid", (16, 16)))
-    assert misfit.distance < 1e-15
-    assert misfit.angle < 1e-6
-
-
 def test_surface_without_normals_has_no_angle() -> None:
     line = gm.Surface.from_callable(
         lambda u, v: np.stack([u, u, u + 0 * v], axis=-1), ((0, 1), (0, 1)), name="line"
@@ -137,11 +130,6 @@ def test_surface_is_evaluated_in_proportion_to_the_fit() -> None:
         gm.fit(torus(calls=calls), cells)
         of_fit = 2 * cells[0] * cells[1] + 3 * sum(cells) + 1
         assert sum(calls) - of_fit < min(most, 2.2 * of_fit + 8_000)
-
-
-def test_misfit_is_pickled_with_the_spline() -> None:
-    spline = gm.fit("torus", (16, 16))
-    assert misfit_of(pickle.loads(pickle.dumps(spline))) == misfit_of(spline)
 
 
 def test_misfit_is_reported_and_kept_in_files(tmp_path) -> None:
@@ -173,18 +161,6 @@ def test_misfit_to_elevations_is_that_at_all_of_them(cells) -> None:
     assert misfit_of(spline).distance == pytest.approx(distances.max(), rel=1e-9)
     assert misfit_of(spline).rms == pytest.approx(np.sqrt((distances**2).mean()), rel=1e-9)
     assert misfit_of(spline).angle is None
-
-
-@pytest.mark.parametrize("cells", [None, (12, 12)])
-def test_misfit_to_periodic_points(cells) -> None:
-    exact = gm.surfaces.torus()
-    u, v = np.meshgrid(*(2.0 * np.pi * np.arange(k) / k for k in (24, 20)), indexing="ij")
-    grid = gm.Surface.from_grid(exact.evaluate(u, v), periodic=(True, True))
-    spline = gm.fit(grid, cells)
-    i, j = np.meshgrid(np.arange(24), np.arange(20), indexing="ij")
-    distances = np.linalg.norm(spline.evaluate(i, j) - points_of(grid), axis=-1)
-    assert misfit_of(spline).distance == pytest.approx(distances.max(), rel=1e-9)
-    assert misfit_of(spline).distance < 0.02
 
 
 # --- a part of the domain -------------------------------------------------------------------------

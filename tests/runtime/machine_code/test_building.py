@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gaussmap.runtime.machine_code import building, disk, entries, jit, listing, shipped, signatures
+from gaussmap.runtime.machine_code import building, disk, jit, listing, shipped, signatures
 from numba import typeof, types
 
 from ...refusals import refused
@@ -75,24 +75,6 @@ def test_all_listed_kernels_are_there(name: str) -> None:
     for kinds in signatures.read()[name]:
         assert len(kinds) == kernel.py_func.__code__.co_argcount
         assert [signatures.as_json(signatures.as_types(x)) for x in kinds] == kinds
-
-
-@pytest.mark.compiled
-@pytest.mark.slow
-def test_a_file_is_built_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    name = "gaussmap.runtime.directions.kernels.unit.are_unit"
-    monkeypatch.setattr(signatures, "read", {name: signatures.read()[name]}.copy)
-    path = building.build(tmp_path)
-    assert path is not None
-    pack, built = shipped.Pack(path), path.stat().st_mtime_ns
-    (key,) = pack.places
-    assert key.startswith(name)
-    entry = pack.get(key)
-    assert entry is not None
-    assert entries.signature_in(entry) is not None
-    assert building.build(tmp_path) == path
-    assert path.stat().st_mtime_ns == built
-    assert [*path.parent.iterdir()] == [path]
 
 
 @pytest.mark.compiled

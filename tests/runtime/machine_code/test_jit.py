@@ -272,13 +272,6 @@ def test_the_digest_covers_all_that_kernels_are_made_of() -> None:
     assert loaded <= {x.resolve() for x in (*listed, *room, *others)}
 
 
-def test_without_compilation_kernels_are_functions() -> None:
-    if numba.config.DISABLE_JIT:  # pyright: ignore
-        assert jit.jit(triple) is triple
-    else:
-        assert jit.jit(triple).py_func is triple  # pyright: ignore
-
-
 @pytest.mark.compiled
 def test_a_cache_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
     """Kernels are compiled all the same, and not kept."""

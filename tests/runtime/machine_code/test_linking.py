@@ -84,6 +84,7 @@ def test_long_parts_are_called(kernel: Any, monkeypatch: pytest.MonkeyPatch) -> 
     assert len(code[0]) > len(code[linking.SMALL])
 
 
+@pytest.mark.slow
 def test_copies_are_listed() -> None:
     """Kernels that are compiled here, one of each family that calls the most parts."""
     copies: set[str] = set()

@@ -1,6 +1,5 @@
 """Samples on the surface, and not only on the spline that approximates it."""
 
-import pickle
 from typing import Any
 
 import gaussmap as gm
@@ -8,7 +7,6 @@ import numpy as np
 import pytest
 from gaussmap.runtime.onto_surface import on_surface
 from gaussmap.runtime.onto_surface.on_surface import geometry_of
-from scipy.spatial import KDTree
 
 from ...products import covering
 from ...refusals import refused
@@ -48,7 +46,6 @@ REQUESTS: list[dict[str, Any]] = [
 
 
 MIXED: list[dict[str, Any]] = [{"normals": gm.icosphere(4)}, {"count": 60}]
-UNIFORM_TOO: list[dict[str, Any]] = [{"density": "uniform"}, {}]
 
 
 @pytest.mark.parametrize("request_", REQUESTS, ids=[*"abcdef"])
@@ -87,19 +84,6 @@ def test_samples_of_the_spline_are_those_of_the_spline_itself():
     assert samples.fields == FIELDS_ON_SPLINE
     for name, array in samples.arrays().items():
         np.testing.assert_array_equal(array, getattr(others, name))
-
-
-@pytest.mark.usefixtures("unproved")
-def test_the_same_normals_have_the_same_samples_as_on_the_spline():
-    normals = gm.icosphere(8)
-    on_surface, on_spline = (
-        gm.sample("catenoid", normals=normals, cells=(16, 16), on=on)
-        for on in ("surface", "spline")
-    )
-    np.testing.assert_array_equal(on_surface.normal_index, on_spline.normal_index)
-    np.testing.assert_array_equal(on_surface.patch_index, on_spline.patch_index)
-    moved = np.linalg.norm(on_surface.points - on_spline.points, axis=1)
-    assert 0.0 < moved.max() < 0.1
 
 
 @covering(
@@ -141,22 +125,6 @@ def test_the_measure_of_an_opaque_function_is_that_of_its_spline():
         np.testing.assert_array_equal(found, expected)
     assert geometry.cell_measure.developable_share(1.0) == 0.0
     assert not places
-
-
-def test_angle_and_coverage_hold_for_the_surface():
-    """With so few cells that the spline is 0.009 and 1.6 degrees off."""
-    torus = gm.surfaces.torus()
-    u, v = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, (2, 20_000))
-    samples = gm.sample(torus, coverage=0.15, cells=(10, 10), on="surface")
-    distance = KDTree(samples.points).query(torus.evaluate(u, v))[0].max()
-    assert samples.report.coverage is not None
-    assert distance <= samples.report.coverage <= 0.15
-    assert distance <= samples.coverage() <= samples.report.coverage * 1.2
-    samples = gm.sample(torus, angle=12.0, cells=(10, 10), on="surface")
-    normals = normals_at(torus, np.stack([u, v], axis=1))
-    chord = KDTree(samples.normals).query(normals)[0].max()
-    assert samples.report.angle is not None
-    assert np.degrees(2.0 * np.arcsin(chord / 2.0)) <= samples.report.angle <= 12.0
 
 
 @pytest.mark.slow
@@ -204,13 +172,6 @@ class TestPoles:
         found = (np.abs(samples.uv[:, 1]) > np.pi / 2 * (1 - 2 / 32)).mean()
         assert share / 1.5 < found < share * 1.5
 
-    @pytest.mark.slow
-    def test_gauss_bonnet(self):
-        for request_ in UNIFORM_TOO:
-            samples = gm.sample(egg_surface(), 8000, **request_, on="surface")
-            total = samples.weights() @ samples.gaussian_curvature
-            assert total == pytest.approx(4 * np.pi, rel=0.01)
-
 
 class TestStream:
     def test_it_is_the_sampling(self):
@@ -222,24 +183,6 @@ class TestStream:
         assert joined.report.unrefined == whole.report.unrefined
         for name in FIELDS_ON_SURFACE:
             np.testing.assert_array_equal(getattr(joined, name), getattr(whole, name))
-
-    def test_samples_next_to_poles_come_once(self):
-        surface, normals = egg_surface(), gm.directions.fibonacci(500)
-        whole = gm.sample(surface, normals=normals, cells=(16, 16), on="surface")
-        chunks = [
-            *gm.sample_stream(surface, normals=normals, chunk=40, cells=(16, 16), on="surface")
-        ]
-        assert max(map(len, chunks)) <= 40
-        joined = gm.Samples.concatenate(chunks)
-        np.testing.assert_array_equal(np.sort(joined.normal_index), np.arange(500))
-        np.testing.assert_array_equal(joined.points, whole.points)
-
-    def test_no_samples(self):
-        with pytest.warns(
-            gm.GaussmapWarning, match="none of the normals lies in its Gaussian image"
-        ):
-            chunks = [*gm.sample_stream("catenoid", normals=[[0, 0, 1]], cells=CELLS, on="surface")]
-        assert [len(chunk) for chunk in chunks] == [0]
 
 
 class TestArguments:
@@ -262,27 +205,6 @@ class TestArguments:
             gm.errors.InputError, match="on_surface is a field of samples on the surface"
         ):
             gm.sample("torus", 10, fields=("points", "on_surface"), on="spline")
-
-    def test_many(self):
-        surfaces = ["torus", gm.fit("torus", CELLS)]
-        with pytest.warns(gm.GaussmapWarning, match="needs the surface, not its spline"):
-            (samples,) = gm.sample_many(surfaces, 50, on="surface", on_error="skip", progress=False)
-        assert samples.report.on == "surface"
-
-
-def test_samples_pickle_with_and_without_their_surface():
-    samples = gm.sample("torus", 50, cells=CELLS, on="surface")
-    other = pickle.loads(pickle.dumps(samples))
-    assert isinstance(other.surface, gm.Surface)
-    assert isinstance(samples.surface, gm.Surface)
-    expected = samples.surface.evaluate(0.1, 0.2)
-    np.testing.assert_array_equal(other.surface.evaluate(0.1, 0.2), expected)
-    waves = gm.Surface.from_callable(
-        lambda u, v: np.stack([u, v, u * v], axis=-1), ((0, 1), (0, 1))
-    )
-    other = pickle.loads(pickle.dumps(gm.sample(waves, 50, cells=CELLS, on="surface")))
-    assert other.surface is None
-    assert other.on_surface.all()
 
 
 def test_where_the_surface_is_singular_samples_stay_on_the_spline():
@@ -374,7 +296,7 @@ def test_normals_without_a_sample_are_listed(exponent):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("count", [500, 5000])
+@pytest.mark.parametrize("count", [500, pytest.param(5000, marks=pytest.mark.slow)])
 def test_a_count_is_that_of_samples_on_the_surface(count):
     """A torus that crosses itself: its spline rounds the tips, where the surface has no normals."""
     position = ("(3/5 + cos(v))*cos(u)", "(3/5 + cos(v))*sin(u)", "sin(v)")

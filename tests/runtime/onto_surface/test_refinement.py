@@ -107,18 +107,6 @@ def test_samples_of_a_coarse_spline_go_on_across_the_ends_of_a_period(sign: floa
 
 
 @pytest.mark.compiled
-def test_most_samples_of_a_spline_that_is_much_too_coarse_are_moved() -> None:
-    """Of 2,392 points of the spline, some have no place on the surface that is near."""
-    surface = gm.Surface.from_callable(blob, (FULL, LATITUDES), (True, "pole"))
-    samples, _ = refined(surface, (8, 6), gm.fibonacci(2000))
-    found = samples.state == FOUND
-    assert 0.95 < found.mean() < 1.0
-    there = found & (np.abs(samples.uv[:, 1]) < 1.4)
-    off = normals_of(surface, samples.uv[there]) - samples.normals[there]
-    assert np.abs(off).max() < 2.0 * NORMAL_ERROR
-
-
-@pytest.mark.compiled
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize(("amplitude", "frequency"), [(0.2, 3.0), (0.1, 8.0)])
 def test_curvatures_are_those_of_the_stored_parameters(amplitude: float, frequency: float) -> None:
@@ -141,30 +129,6 @@ def test_curvatures_are_those_of_the_stored_parameters(amplitude: float, frequen
     assert np.abs(samples.mean_curvature[there] - H).max() < 1e-14 * largest
     points = surface.evaluate(*samples.uv[there].T)
     np.testing.assert_allclose(samples.points[there], points, rtol=0.0, atol=1e-15)
-
-
-def test_curvatures_of_a_graph() -> None:
-    """K and H of 2z = ax² + by² where its normals are prescribed."""
-    a, b = 1.5, -0.7
-    paraboloid = gm.Surface.from_callable(
-        lambda x, y: np.stack([x, y, 0.5 * (a * x * x + b * y * y)], axis=-1), ((-1, 1), (-1, 1))
-    )
-    normals = np.array([[0.3, 0.1, 1.0], [-0.2, 0.5, 1.0], [0.0, 0.0, 1.0]])
-    target, numbers = refined(paraboloid, (4, 4), normals)
-    assert sorted(numbers) == [0, 1, 2]
-    x, y = -normals[numbers, 0] / a, -normals[numbers, 1] / b
-    np.testing.assert_allclose(target.uv, np.stack([x, y], axis=1), rtol=0.0, atol=1e-14)
-    W = 1.0 + (a * x) ** 2 + (b * y) ** 2
-    H = -(a * (1.0 + (b * y) ** 2) + b * (1.0 + (a * x) ** 2)) / (2.0 * W**1.5)
-    np.testing.assert_allclose(target.gaussian, a * b / W**2, rtol=10 * NORMAL_ERROR)
-    np.testing.assert_allclose(target.mean, H, rtol=10 * NORMAL_ERROR)
-
-
-@pytest.mark.compiled
-def test_curvatures_of_a_sphere() -> None:
-    samples = gm.sample("sphere", normals=gm.fibonacci(500), cells=(24, 24))
-    np.testing.assert_allclose(samples.gaussian_curvature, 1.0, rtol=0.0, atol=1e-13)
-    np.testing.assert_allclose(samples.mean_curvature, 1.0, rtol=0.0, atol=1e-13)
 
 
 @pytest.mark.usefixtures("unproved")

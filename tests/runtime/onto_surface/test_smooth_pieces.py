@@ -115,13 +115,6 @@ def test_the_count_is_exact(count, density):
     assert samples.normal_index.max() < max(samples.report.normals or 0, 1)
 
 
-@pytest.mark.parametrize("factor", [1e-6, 1.0, 1e6])
-def test_flat_pieces_share_a_count_by_their_areas(factor):
-    for density in ("balanced", "uniform", 2.0):
-        samples = gm.sample(roof(factor), 300, density=density, cells=CELLS)
-        assert piece_of(samples, 1.0).sum() == pytest.approx(200, rel=0.05)
-
-
 @covering(factor=[1e-3, 1.0, 1e3], density=["uniform", "balanced", 1.5])
 def test_pieces_of_other_sizes_share_a_count_by_the_target_density(density, factor):
     """Cylinders of radius r: the areas go as r, and the integrals of κ² as 1/r.
@@ -169,18 +162,6 @@ def test_coverage_holds_on_all_pieces():
         assert distances.max() <= report_of(samples).coverage <= 0.5
 
 
-@pytest.mark.slow
-def test_coverage_and_normal_deviation_are_of_all_pieces():
-    samples = gm.sample(barrel(), coverage=0.2, cells=CELLS, on="surface")
-    assert report_of(samples).coverage <= 0.2
-    assert samples.coverage() <= 1.1 * 0.2
-    deviation = samples.normal_deviation()
-    assert 1.0 < deviation.normal_space <= deviation.space * (1.0 + 1e-6)  # as far as searched
-    lower = samples[piece_of(samples, 1.0) == 0]
-    assert lower.coverage() > 0.4
-    assert lower.normal_deviation().normal_space > 60.0
-
-
 def test_samples_of_pieces_have_no_mesh():
     samples = gm.sample(barrel(), 50, cells=CELLS)
     refused(r"of several pieces .* each of surface.pieces\(\)", samples.mesh)
@@ -196,12 +177,6 @@ def test_a_count_that_covers_all_pieces():
     with pytest.warns(gm.GaussmapWarning, match="the coverage is"):
         few = gm.sample(roof(), least // 2, coverage=0.5, cells=CELLS)
     assert len(few) == least // 2
-
-
-def test_gauss_samples_by_count():
-    samples = gm.sample(barrel(), 200, density="gauss", cells=CELLS)
-    assert len(samples) == pytest.approx(200, abs=8)
-    assert (samples.normal_index >= 0).all()
 
 
 def test_the_report_sums_up():

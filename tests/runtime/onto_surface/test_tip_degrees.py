@@ -32,7 +32,7 @@ def lemon(name: str, along_u: bool) -> gm.Surface:
 
 def directions() -> Array:
     rng = np.random.default_rng(1)
-    n = np.concatenate([np.eye(3), -np.eye(3), gm.icosphere(6), rng.normal(size=(300, 3))])
+    n = np.concatenate([np.eye(3), -np.eye(3), gm.icosphere(4), rng.normal(size=(150, 3))])
     return n / np.linalg.norm(n, axis=1, keepdims=True)
 
 

@@ -452,11 +452,7 @@ def test_small_boxes_hold_what_is_not_decided(name: str) -> None:
 
 
 FLAT: dict[str, tuple[str, list[int], list[list[float]]]] = {
-    "monkey saddle": ("u**3 - 3*u*v**2", [-2], []),
-    "of degree 4": ("u**4 - 6*u**2*v**2 + v**4", [-3], []),
-    "minimum": ("u**4 + v**4", [1], []),
     "fold": ("u**3 + v**2", [0], []),
-    "cusp": ("u**4/4 + u**2*v/2 + v**2/3", [1], []),
     "cusp and a point": (
         "u**4/4 + u**2*v/2 + v**2/3 + u**3*v/10",
         [1],
@@ -482,23 +478,6 @@ def test_flat_points_have_an_index(name: str) -> None:
     assert round((turns[-1] - turns[0]) / TAU) == expected[0]
     total = expected[0] + int(found.sign.sum())
     np.testing.assert_array_equal(gm.GaussMap(surface).degree([[0.0, 0.0, 1.0]]), total)
-
-
-@pytest.mark.parametrize(
-    ("name", "normal"),
-    [("plane", (0, 0, 1)), ("cylinder", (1, 0, 0)), ("torus", (0, 0, 1)), ("torus", (0, 0, -1))],
-)
-def test_curves_of_points_are_one_component(name: str, normal: tuple[float, float, float]) -> None:
-    found = index_of(name).query(np.array([normal], dtype=np.float64))
-    assert kinds(found) == {"curve"}
-    assert len(found.numbers) == 0
-    assert len(found.undecided.numbers) == 1
-    u_low, u_high, v_low, v_high = found.undecided.boxes.T
-    (u0, u1), (v0, v1) = surface_of(name).domain
-    assert max((u_high - u_low) / (u1 - u0), (v_high - v_low) / (v1 - v0)) == pytest.approx(1.0)
-    own = normals_at(surface_of(name), *found.undecided.uv.T)
-    np.testing.assert_allclose(own, [normal], rtol=0.0, atol=1e-12)
-    assert found.undecided.border.all() == (name != "torus")
 
 
 def test_other_normals_of_developables_have_no_points() -> None:

@@ -61,17 +61,6 @@ def test_float32_is_float64_rounded_once(dtype):
     assert (samples.elliptic == FULL.elliptic).all()
 
 
-def test_principal_curvatures_of_float32():
-    samples = narrow(("gaussian_curvature", "mean_curvature"), dtype=np.float32)
-    found = samples.principal_curvatures
-    assert found.dtype == np.float32
-    # H² − K has the rounding of both, its root that times the half of its inverse.
-    size = np.abs(FULL.mean_curvature) + np.sqrt(np.abs(FULL.gaussian_curvature))
-    gap = np.ptp(FULL.principal_curvatures, axis=1)
-    error = np.abs(found - FULL.principal_curvatures).max(axis=1)
-    assert (error <= 4 * 2.0**-24 * size * (1 + size / gap)).all()
-
-
 @pytest.mark.parametrize("on", ["surface", "spline"])
 def test_components_are_those_of_prescribed_normals(tmp_path, on):
     torus, codes = gm.surfaces.torus(), [gm.Component.REGULAR] * 2
@@ -154,14 +143,6 @@ def test_types_that_are_none(dtype):
 # --- samples of few fields ------------------------------------------------------------------------
 
 
-def test_text():
-    samples = narrow(("points", "uv"))
-    assert repr(samples) == f"Samples({len(FULL):,} points on torus (points, uv only))"
-    assert samples.summary().split(";")[0] == (
-        f"{len(FULL):,} samples at {len(NORMALS):,} prescribed normals (points, uv only)"
-    )
-
-
 def test_copies_pickles_and_parts():
     samples = narrow(("uv", "normal_index"), dtype=np.float32)
     whole = slice(None)
@@ -190,13 +171,6 @@ def test_concatenation():
             Samples.concatenate(unusable)  # pyright: ignore[reportArgumentType]
 
 
-def test_samples_need_one_array_and_one_type():
-    refused("need at least one array", Samples, report=FULL.report)
-    single = narrow(dtype=np.float32)
-    with pytest.raises(gm.errors.InputError, match="points must be a float64 array"):
-        Samples(points=single.points, normals=FULL.normals, report=FULL.report)
-
-
 # --- files ----------------------------------------------------------------------------------------
 
 
@@ -214,27 +188,6 @@ def test_files_keep_fields_and_types(tmp_path, suffix, dtype, fields):
     for name in fields:
         assert getattr(again, name).dtype == getattr(samples, name).dtype
         assert getattr(again, name).tobytes() == getattr(samples, name).tobytes()
-
-
-def test_text_of_float32_reads_back(tmp_path):
-    samples = narrow(("points", "normals", "normal_index"), dtype=np.float32)
-    samples.write(tmp_path / "a.csv")
-    assert (tmp_path / "a.csv").read_text().startswith("x,y,z,nx,ny,nz,normal_index\n")
-    rows = np.loadtxt(tmp_path / "a.csv", delimiter=",", skiprows=1)
-    assert rows[:, :3].astype(np.float32).tobytes() == samples.points.tobytes()
-    assert (rows[:, 6] == samples.normal_index).all()
-    samples.write(tmp_path / "a.xyz")
-    assert np.loadtxt(tmp_path / "a.xyz", dtype=np.float32)[:, 3:].tobytes() == (
-        samples.normals.tobytes()
-    )
-
-
-def test_vtp_of_few_fields(tmp_path):
-    pyvista = pytest.importorskip("pyvista")
-    narrow(("points", "uv"), dtype=np.float32).write(tmp_path / "a.vtp")
-    cloud = pyvista.read(tmp_path / "a.vtp")
-    assert cloud.points.dtype == np.float32
-    assert list(cloud.point_data) == ["uv"]
 
 
 @pytest.mark.parametrize(
@@ -257,27 +210,6 @@ def test_a_file_that_lacks_what_it_promises(tmp_path):
     ):
         (tmp_path / "b.ply").write_bytes(whole.replace(old, new))
         refused(message, gm.read_samples, tmp_path / "b.ply", error=gm.errors.FileError)
-
-
-# --- the command line -----------------------------------------------------------------------------
-
-
-@pytest.mark.compiled
-def test_command_line(tmp_path, monkeypatch, capsys, main):
-    monkeypatch.chdir(tmp_path)
-    few = ["sample", "torus", "--frequency", "4", "--cells", "12", "8"]
-    assert main([*few, "--fields", "points,uv", "--float32", "-o", "a.npz"]) == 0
-    assert "(points, uv only)" in capsys.readouterr().out
-    samples = gm.read_samples("a.npz")
-    assert (samples.fields, samples.dtype) == (("points", "uv"), np.float32)
-    for fields, output, message in (
-        ("points,colour", "b.npz", "there is no field 'colour'"),
-        ("points,,uv", "b.npz", "there is no field ''"),
-        ("uv", "b.ply", "a .ply file needs 'points'"),
-    ):
-        assert main([*few, "--fields", fields, "-o", output]) == 2
-        assert message in capsys.readouterr().err
-    assert [path.name for path in tmp_path.iterdir()] == ["a.npz"]
 
 
 # --- memory that is used again --------------------------------------------------------------------

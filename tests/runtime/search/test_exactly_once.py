@@ -42,15 +42,13 @@ def check_torus(samples: gm.Samples, normals: Array, axis: Array) -> None:
     assert np.isfinite(samples.gaussian_curvature).all()
 
 
-def rotation_of(quaternion: tuple[float, float, float, float]) -> Array:
+Quaternion = tuple[float, float, float, float]
+
+
+def rotation_of(quaternion: Quaternion) -> Array:
     w, x, y, z = np.array(quaternion) / np.linalg.norm(quaternion)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+    turn = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
+    return np.eye(3) + 2.0 * w * np.array(turn) + 2.0 * np.linalg.matrix_power(turn, 2)
 
 
 quaternions = st.tuples(*[st.floats(-1.0, 1.0)] * 4).filter(lambda q: np.linalg.norm(q) > 0.1)
@@ -79,39 +77,24 @@ def test_patches_that_bend_far(cells: tuple[int, int], normals: Array) -> None:
     assert elliptic.sum() >= len(normals)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("cells", [16, 32, 64, 96])
-def test_torus_fibonacci(cells: int) -> None:
-    normals = gm.fibonacci(10**6)
-    samples = gm.sample(TORUS, normals=normals, cells=(cells, cells), on="spline")
-    check_torus(samples, normals, np.array([0.0, 0.0, 1.0]))
-
-
-@covering(
-    shift=[0.0, 1e6, 1e9], factor=[1.0, 1e9, 1e-9, 1e12, 1e-12, 1e150, 1e-150], turned=[False, True]
+@given(
+    of_surface=quaternions,
+    of_normals=quaternions,
+    factor=st.sampled_from([1.0, 1e9, 1e-9, 1e12, 1e-12, 1e150, 1e-150]),
+    shift=st.sampled_from([0.0, 1e6, 1e9]),
+    cells=st.sampled_from([(16, 16), (32, 20), (96, 96)]),
 )
-def test_torus_moved_and_scaled(shift: float, factor: float, turned: bool) -> None:
-    rotation = rotation_of((0.5, 0.1, -0.7, 0.3)) if turned else np.eye(3)
-    normals = gm.icosphere(10) @ rotation.T
-    for cells in ((16, 16), (40, 24), (96, 96)):
-        surface = moved(TORUS, factor, shift * factor, rotation)
-        check_torus(
-            gm.sample(surface, normals=normals, cells=cells, on="spline"), normals, rotation[:, 2]
-        )
-
-
-@given(of_surface=quaternions, of_normals=quaternions, exponent=st.integers(-9, 9))
-def test_torus_turned_at_random(
-    of_surface: tuple[float, float, float, float],
-    of_normals: tuple[float, float, float, float],
-    exponent: int,
+def test_torus_turned_moved_and_scaled(
+    of_surface: Quaternion,
+    of_normals: Quaternion,
+    factor: float,
+    shift: float,
+    cells: tuple[int, int],
 ) -> None:
     turn = rotation_of(of_surface)
     normals = gm.icosphere(8) @ rotation_of(of_normals).T
-    surface = moved(TORUS, 10.0**exponent, 0.0, turn)
-    check_torus(
-        gm.sample(surface, normals=normals, cells=(32, 20), on="spline"), normals, turn[:, 2]
-    )
+    surface = moved(TORUS, factor, shift * factor, turn)
+    check_torus(gm.sample(surface, normals=normals, cells=cells, on="spline"), normals, turn[:, 2])
 
 
 DEGREES = {"sphere": 1, "ellipsoid": 1, "dupin_cyclide": 0}
@@ -160,16 +143,6 @@ def test_gentle_waves_are_decided_in_floating_point(height: float) -> None:
     assert np.bincount(hits.normal_index, minlength=len(normals)).min() >= 1
 
 
-def test_seam_of_a_moebius_band() -> None:
-    """A normal on the seam belongs to one side, which the other side sees as its opposite."""
-    band = gm.surfaces.moebius_band()
-    for cells in ((16, 5), (64, 64), (33, 12)):
-        samples = gm.sample(
-            band, normals=[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], cells=cells, on="spline"
-        )
-        assert len(samples) == 1
-
-
 @covering(cells=[(16, 16), (40, 24)], frequency=[4, 10, 32])
 def test_klein_bottle(cells: tuple[int, int], frequency: int) -> None:
     """It has no oriented normals, but for every line the signs of K sum to χ = 0."""
@@ -207,7 +180,7 @@ def test_symmetric_ellipsoid_patch(cells: tuple[int, int], frequency: int) -> No
     quaternion=[(1.0, 0.0, 0.0, 0.0), (0.5, 0.1, -0.7, 0.3)],
 )
 def test_developable_surfaces(
-    name: str, shift: float, factor: float, quaternion: tuple[float, float, float, float]
+    name: str, shift: float, factor: float, quaternion: Quaternion
 ) -> None:
     surface = moved(gm.surfaces.surface(name), factor, shift * factor, rotation_of(quaternion))
     with pytest.warns(gm.GaussmapWarning, match="flat or developable"):
@@ -223,20 +196,6 @@ def test_developable_surfaces(
     elliptic, hyperbolic = count_preimages(samples, 10242)
     assert abs(int(elliptic.sum()) - int(hyperbolic.sum())) <= 2
     assert len(samples) <= 0.15 * 10242
-
-
-def test_plain_sign_test_fails_where_this_one_does_not() -> None:
-    """Without the exact decision, normals on patch boundaries are lost or doubled."""
-    normals = gm.icosphere(10)
-    spline = gm.fit(TORUS, (16, 16))
-    claims = np.zeros(len(normals), dtype=int)
-    for index in range(spline.patches):
-        _, U, V, W, _ = forms(spline.control_nets[index], normals)
-        claims += (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
-    exact = np.bincount(gm.sample(spline, normals=normals).normal_index, minlength=len(normals))
-    exact += np.bincount(gm.sample(spline, normals=-normals).normal_index, minlength=len(normals))
-    assert (exact == 4).all()  # two sheets, each seen by n and by −n
-    assert (claims != 4).any()
 
 
 def forms(net: Array, normals: Array) -> tuple[Array, ...]:

@@ -25,18 +25,6 @@ def same(one, other):
 # --- what is stored -------------------------------------------------------------------------------
 
 
-def test_some_samples_are_decided_exactly():
-    assert 0 < len(find(SPLINE, NORMALS).exact) < len(gm.sample(SPLINE, normals=NORMALS))
-
-
-@pytest.mark.parametrize("normals", [NORMALS, NORMALS[::-1].copy()])
-def test_samples_are_in_the_order_of_normals_and_patches(normals):
-    """Also those that are decided exactly, among others of their normal."""
-    samples = gm.sample("torus", normals=normals, cells=(4, 4), on="spline")
-    pairs = list(zip(samples.normal_index.tolist(), samples.patch_index.tolist(), strict=True))
-    assert pairs == sorted(pairs)
-
-
 def test_proved_samples_are_in_the_order_of_normals_and_of_u_and_v():
     samples = gm.sample("torus", normals=NORMALS)
     keys = [
@@ -111,18 +99,6 @@ def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
             assert other.report == first.report
             for array in first.fields:
                 assert getattr(other, array).tobytes() == getattr(first, array).tobytes()
-
-
-@pytest.mark.compiled
-def test_ranges_do_not_show_in_the_result(monkeypatch):
-    whole = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=1)
-    monkeypatch.setattr(search, "RANGE", 7)
-    monkeypatch.setattr(search, "ROOM", 1)
-    monkeypatch.setattr(search, "NORMALS_AT_A_TIME", 100)
-    monkeypatch.setattr(fill, "SAMPLES_AT_A_TIME", 11)
-    pieces = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(16), cells=(24, 24), threads=2)
-    for array in whole.fields:
-        assert getattr(whole, array).tobytes() == getattr(pieces, array).tobytes()
 
 
 @pytest.mark.compiled

@@ -125,14 +125,6 @@ def test_grid_and_callable_agree(name):
     assert difference < 2e-2 * np.abs(np.diff(of_callable.coefficients, axis=0)).max()
 
 
-def test_other_cells_than_the_points_give(rng):
-    surface = gm.Surface.from_grid(grid_of(torus, (True, True), (64, 48)), periodic=(True, True))
-    coarse = gm.fit(surface, (20, 24))
-    assert coarse.cells == (20, 24)
-    u, v = rng.random((2, 200))
-    np.testing.assert_allclose(coarse.evaluate(64 * u, 48 * v), torus(u, v), rtol=0, atol=5e-3)
-
-
 def test_smallest_grids(rng):
     for periodic, shape in [
         ((False, False), (4, 4)),
@@ -182,26 +174,6 @@ def test_elevations_are_a_map(sign, rng):
     assert 2.6 < order(errors) < 4.0
     assert 1.7 < order(slopes) < 2.5
     assert errors[-1] < 5e-6
-
-
-# --- exactness ------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("shape", [(4, 4), (4, 9), (9, 4), (13, 7)])
-def test_quadratics_are_reproduced_up_to_the_border(shape, rng):
-    weights = rng.standard_normal((6, 3))
-
-    def quadratic(u, v):
-        u, v = np.broadcast_arrays(u, v)
-        return np.stack([u * u, u * v, v * v, u, v, np.ones_like(u)], axis=-1) @ weights
-
-    surface = gm.Surface.from_grid(quadratic(np.arange(shape[0])[:, None], np.arange(shape[1])))
-    u = np.append(rng.random(300), [0, 0, 1, 1, 0.3, 0, 1]) * (shape[0] - 1)
-    v = np.append(rng.random(300), [0, 1, 0, 1, 0, 0.3, 1]) * (shape[1] - 1)
-    expected = quadratic(u, v)
-    np.testing.assert_allclose(
-        surface.evaluate(u, v), expected, rtol=0, atol=1e-14 * np.abs(expected).max()
-    )
 
 
 # --- what may be brought --------------------------------------------------------------------------

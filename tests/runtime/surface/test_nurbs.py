@@ -177,10 +177,6 @@ def test_a_seam_on_an_edge_is_open_and_a_seam_on_a_face_is_not():
     assert extruded(CORNERS).boundary[0] == ("open", "open")
 
 
-def test_a_sheet_folded_back_on_its_seam_is_not_periodic():
-    assert extruded([(0, 0), (1, 1), (0, 0)]).boundary[0] == ("open", "open")
-
-
 def test_given_boundary_conditions_come_first():
     points, weights = revolved(0.5 * AROUND + [2.0, 0.0], CIRCLE_WEIGHTS)
     surface = gm.Surface.from_nurbs(
@@ -285,16 +281,6 @@ def test_surfaces_of_geomdl():
     assert ours.name == "theirs"
 
 
-def test_surfaces_of_geomdl_without_weights():
-    surface = geomdl.BSpline.Surface()
-    surface.degree_u = surface.degree_v = 2
-    points = net(3, 4)
-    surface.set_ctrlpts(points.reshape(-1, 3).tolist(), 3, 4)
-    surface.knotvector_u, surface.knotvector_v = [0] * 3 + [1] * 3, [0] * 3 + [0.5] + [1] * 3
-    ours = gm.Surface.from_nurbs(surface)
-    assert np.allclose(ours.evaluate(0.3, 0.8), surface.evaluate_single((0.3, 0.8)), atol=1e-14)
-
-
 @pytest.mark.parametrize("make", [surface_factory.torus, surface_factory.sphere])
 def test_surfaces_of_splipy(make):
     """They are rational, and periodic ones do not repeat control points."""
@@ -303,15 +289,6 @@ def test_surfaces_of_splipy(make):
     u, v = (np.linspace(surface.start(k), surface.end(k), 9) for k in (0, 1))
     assert np.allclose(ours.evaluate(u[:, None], v), surface(u, v), atol=1e-14)
     assert [x[0] == "periodic" for x in ours.boundary] == [surface.periodic(k) for k in (0, 1)]
-
-
-def test_surfaces_of_splipy_without_weights():
-    knots = [0, 0, 0, 1, 2, 2, 2]
-    bases = BSplineBasis(3, knots), BSplineBasis(3, knots, periodic=-1)
-    points = net(4, 4)
-    surface = Surface(*bases, points.transpose(1, 0, 2).reshape(-1, 3))
-    ours = gm.Surface.from_nurbs(surface)
-    assert np.allclose(ours.evaluate(1.2, 0.4), surface(1.2, 0.4), atol=1e-14)
 
 
 def test_smooth_periodic_surfaces_of_splipy():

@@ -432,11 +432,6 @@ def test_symbols_are_real():
     assert surface.derivatives(-0.5, 0.25)[1].tolist() == [1.0, -1.0, 0.0]
 
 
-def test_complex_detours_to_a_real_surface():
-    surface = gm.Surface.from_sympy(("u", "v", sp.re(sp.exp(sp.I * u))), "uv", SQUARE)
-    assert surface.evaluate(0.5, 0.5)[2] == pytest.approx(np.cos(0.5), rel=1e-15)
-
-
 # --- names ----------------------------------------------------------------------------------------
 
 

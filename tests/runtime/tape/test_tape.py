@@ -117,24 +117,7 @@ def tape_of(name: str) -> Tape:
 @covering(name=gm.surfaces.names(), width=WIDTHS)
 def test_bounds_contain_exact_values(name, width):
     surface = gm.surfaces.surface(name)
-    check(tape_of(name), of_catalogue(name), boxes(surface, 150, width, 1))
-
-
-@EACH
-@pytest.mark.slow
-@pytest.mark.parametrize("width", WIDTHS)
-def test_bounds_contain_many_exact_values(name, width):
-    surface = gm.surfaces.surface(name)
-    check(tape_of(name), of_catalogue(name), boxes(surface, 15_000, width, 2))
-
-
-@EACH
-def test_tapes_compute_the_derivatives_of_the_surface(name):
-    surface = gm.surfaces.surface(name)
-    _, _, places = boxes(surface, 3 * LANES + 1, 0.0, 3)
-    jets = surface.jets(*(np.ascontiguousarray(x) for x in places.T))
-    jets /= np.array([1, 1, 1, 2, 1, 2])[:, None]
-    np.testing.assert_allclose(jets_at(tape_of(name), places), jets, rtol=0.0, atol=1e-14)
+    check(tape_of(name), of_catalogue(name), boxes(surface, 50, width, 1))
 
 
 @pytest.mark.parametrize("name", ["torus", "sphere", "catenoid", "wavy_graph", "moebius_band"])

@@ -1,6 +1,5 @@
 """Which surfaces have tapes, and that these compute them."""
 
-import pickle
 from collections.abc import Callable
 from typing import Any
 
@@ -40,18 +39,6 @@ def test_the_catalogue_has_tapes(name):
     assert_is_computed(gm.surfaces.surface(name))
 
 
-def test_parameters_are_numbers_of_the_tape():
-    for surface in (gm.surfaces.torus(2.5, 0.1), gm.surfaces.dupin_cyclide(2.0, 1.9, 1.0)):
-        assert_is_computed(surface)
-
-
-def test_constants_are_computed_once():
-    """√(a² − b²) is one number, and so are what is not there: 1 · x, and 0 + x."""
-    tape = gm.surfaces.ellipsoid(1.0, 0.5, 0.25).tape
-    assert tape is not None
-    assert len(tape.operations) == 2 * 2 + 2 + 2 + 2  # sin, cos; u, v; x; y and z are multiples
-
-
 @pytest.mark.parametrize("moved", [
     gm.surfaces.torus().transformed(TURN),
     gm.surfaces.torus().flipped(),
@@ -61,10 +48,6 @@ def test_constants_are_computed_once():
 ])  # fmt: skip
 def test_moved_and_trimmed_surfaces_have_tapes(moved):
     assert_is_computed(moved)
-
-
-def test_pickled_surfaces_have_tapes():
-    assert_is_computed(pickle.loads(pickle.dumps(gm.surfaces.torus().transformed(TURN))))
 
 
 def test_surfaces_of_points_have_none():
@@ -250,28 +233,6 @@ def test_nurbs_have_tapes(degrees, knots, rational):
         assert_is_computed(each, 1e-10)
         assert_is_computed(each.transformed(TURN), 1e-10)
         assert_is_computed(each.flipped(), 1e-10)
-
-
-def test_closed_nurbs_have_tapes():
-    """A torus of 9 × 9 points, whose parameters may be in any period."""
-    half = np.sqrt(0.5)
-    circle = np.array(
-        [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
-    )
-    weights = np.array([1, half] * 4 + [1])
-    radius, height = 2.0 + 0.5 * circle[:, 0], 0.5 * circle[:, 1]
-    points = np.stack([
-        circle[:, None, 0] * radius, circle[:, None, 1] * radius,
-        np.broadcast_to(height, (9, 9)),
-    ], axis=-1)  # fmt: skip
-    knots = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
-    torus = gm.Surface.from_nurbs((2, 2), (knots, knots), points, np.outer(weights, weights))
-    assert torus.boundary[0] == ("periodic", "periodic")
-    assert_is_computed(torus, 1e-12)
-    assert torus.tape is not None
-    u, v = places(torus)
-    around = jets_of(torus.tape, u + 4.0, v - 8.0)
-    np.testing.assert_allclose(around, jets_of(torus.tape, u, v), atol=1e-11)
 
 
 def test_large_degrees_and_nets_have_none():
