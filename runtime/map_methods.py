@@ -18,4 +18,5 @@ class Methods:
     border_image = Later(CURVES)
     folds = Later(CURVES)
     margin = Later(CURVES)
+    plot = Later("gaussmap.tools.pictures.gauss_map_plot")
     support = Later("gaussmap.tools.support_points")

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 from xml.etree import ElementTree
 
@@ -267,3 +268,20 @@ def test_command_line(
     assert picture(path).shape == SIZE
     assert main(["plot", "torus", "--frequency", "2", "--quiet", "-o", str(path)]) == 0
     assert capsys.readouterr() == ("", "")
+
+
+def test_the_picture_of_a_gauss_map_has_its_folds_and_cusps(parts: ModuleType) -> None:
+    texts = ("u", "v", "u**4/2 + u**2*v/2 + v**2/4")  # a fold with a cusp at (0, 0)
+    bay = gm.GaussMap(gm.Surface.from_sympy(texts, ("u", "v"), ((-1, 1), (-1, 1))))
+    (fold,) = bay.folds()
+    surface, sphere = bay.plot(view=(90, -90)).axes
+    of_surface: Any = surface.lines
+    drawn = [np.stack(x.get_data_3d()[:2], axis=1) for x in of_surface]
+    assert sum(len(x) == len(fold.points) for x in drawn) == 1
+    (cusp,) = (x for x in drawn if len(x) == 1)
+    np.testing.assert_allclose(cusp, [[0.0, 0.0]], atol=1e-8)
+    cusps = [x for x in sphere.lines if x.get_marker() == "o"]
+    assert sum(np.size(x.get_xdata()) for x in cusps) == 1
+    assert surface.figure.texts[0].get_text() == "1 fold with 1 cusp"
+    with pytest.raises(gm.errors.InputError, match="are for surfaces, not for parts"):
+        gm.GaussMap(parts.box()).plot()
