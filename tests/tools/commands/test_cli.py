@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import cycle
 from pathlib import Path
 from typing import Any
@@ -30,12 +30,29 @@ GAUSS = ["--density", "gauss"]
 EIGHT = ["--cells", "8", "8"]
 
 
-def gaussmap(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "gaussmap", *arguments],
-        cwd=cwd, capture_output=True, text=True, encoding="utf-8", check=False,
-        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
-    )  # fmt: skip
+def python(
+    *arguments: str, encoding: str = "utf-8", **how: Any
+) -> subprocess.CompletedProcess[str]:
+    pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | how
+    environment = {**os.environ, "PYTHONIOENCODING": encoding}
+    return subprocess.run([sys.executable, *arguments], text=True, env=environment, **pipes)
+
+
+def gaussmap(*arguments: str, **how: Any) -> subprocess.CompletedProcess[str]:
+    return python("-m", "gaussmap", *arguments, **how)
+
+
+@pytest.fixture
+def failing(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException], None]:
+    """Let the work of `gaussmap sample` raise an error."""
+
+    def fail(error: BaseException) -> None:
+        def sample(*_: object, **__: object) -> None:
+            raise error
+
+        monkeypatch.setattr(sampled, "sample_and_normals", sample)
+
+    return fail
 
 
 @pytest.fixture
@@ -87,149 +104,20 @@ def test_sample_a_surface_by_name() -> None:
 
 
 @compiled
-def test_only_what_is_in_reach_is_sampled(capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["--count", "300", "--reach", "0", "0", "-2", "25", "-o", "a.npz"]
-    assert main(["sample", "torus", *arguments]) == 0
-    assert capsys.readouterr().err == ""
-    samples = gm.read_samples("a.npz")
-    assert len(samples) == 300
-    assert samples.normals[:, 2].max() <= -np.cos(np.radians(25.0)) + 1e-12
-    assert main(["sample", "torus", "--reach", "0", "0", "0", "25", "-o", "b.npz"]) == 2
-    assert "the axis of reach" in capsys.readouterr().err
-
-
-@pytest.fixture
-def hill() -> None:
-    """Elevations in the current folder."""
-    x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
-    np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
-
-
-@compiled
-@pytest.mark.usefixtures("hill")
-def test_sample_elevations(capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["--spacing", "30", "-30", "--count", "5_000", "-o", "terrain.npz"]
-    assert main(["sample", "heights.npy", *arguments]) == 0
-    assert capsys.readouterr().err == ""
-    samples = gm.read_samples("terrain.npz")
-    assert abs(len(samples) - 5000) < 250
-    assert samples.report.surface == "heights.npy"
-    assert samples.points[:, 0].max() <= 49 * 30
-    assert samples.points[:, 1].min() >= -39 * 30
-    assert samples.points[:, 1].max() <= 0.0
-    assert (samples.normals[:, 2] > 0).all()
-
-
-@compiled
-@pytest.mark.usefixtures("hill")
 def test_tolerance_of_data_and_what_the_summary_says_of_them(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
+    x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
+    np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
     arguments = ["--spacing", "30", "30", "--tolerance", "1", "--count", "300", "-o", "a.npz"]
     assert main(["sample", "heights.npy", *arguments]) == 0
     out = capsys.readouterr().out
     assert "; they lie on a spline within 0." in out
     assert "of the data (root mean square 0." in out
-    report = gm.read_samples("a.npz").report
-    assert report.fit_distance is not None
+    report: Any = gm.read_samples("a.npz").report
+    assert report.surface == "heights.npy"
     assert report.fit_distance <= 1.0
-    assert report.patches is not None
     assert report.patches < 4 * 49 * 39
-
-
-@compiled
-def test_missing_elevations_are_left_out() -> None:
-    x, y = np.meshgrid(np.linspace(-1, 1, 30), np.linspace(-1, 1, 30))
-    heights = np.exp(-3 * (x * x + y * y))
-    heights[:, 20:] = -9999.0
-    np.save("heights.npy", heights)
-    arguments = ["--spacing", "1", "1", "--nodata", "-9999", "--count", "300", "-o", "part.npz"]
-    assert main(["sample", "heights.npy", *arguments]) == 0
-    samples = gm.read_samples("part.npz")
-    assert len(samples) == 300
-    assert 15.0 < samples.points[:, 0].max() < 20.0
-    assert samples.points[:, 2].min() > 0.0
-
-
-def test_parameters_and_cells_arrive() -> None:
-    assert (
-        main(["sample", "torus", "--set", "major=2", "--set", "minor=0.5", *FEW, "-o", "a.npz"])
-        == 0
-    )
-    samples = gm.read_samples("a.npz")
-    assert np.hypot(*samples.points[:, :2].T).max() == pytest.approx(2.5, rel=0.05)
-    assert samples.report.patches == 4 * 8 * 8
-
-
-def test_the_normals_of_an_icosphere() -> None:
-    arguments = ["--frequency", "3", "--cells", "8", "8", "-o", "a.npz"]
-    assert main(["sample", "torus", *GAUSS, *arguments]) == 0
-    samples = gm.read_samples("a.npz")
-    assert samples.report.normals == 10 * 3**2 + 2
-    np.testing.assert_array_equal(samples.normals, gm.icosphere(3)[samples.normal_index])
-
-
-@pytest.mark.usefixtures("files")
-@pytest.mark.parametrize("source", ["directions.npy", "both.npz:those"])
-def test_normals_from_a_file(source: str) -> None:
-    np.savez("both.npz", those=5 * gm.icosphere(3), others=np.zeros(3))
-    assert main(["sample", "torus", *GAUSS, "--normals", source, *EIGHT, "-o", "a.npz"]) == 0
-    samples = gm.read_samples("a.npz")
-    np.testing.assert_allclose(
-        samples.normals, gm.icosphere(3)[samples.normal_index], rtol=0, atol=1e-15
-    )
-
-
-def test_a_formula() -> None:
-    """Numbers may be texts, and values may begin with a dash."""
-    texts = ["-u", "v", "u**2-v**2"]
-    domain = ["--domain", "-1", "1", "-1/2", "0.5"]
-    assert main(["sample", "--formula", *texts, *domain, *FEW, "-o", "a.npz"]) == 0
-    surface = gm.Surface.from_sympy(("-u", "v", "u**2 - v**2"), "uv", ((-1, 1), (-0.5, 0.5)))
-    samples = gm.read_samples("a.npz")
-    assert samples.report.surface == "(-u, v, u**2-v**2)"
-    np.testing.assert_array_equal(samples.points, gm.sample(surface, 60, cells=(8, 8)).points)
-
-
-@compiled
-def test_a_periodic_formula() -> None:
-    texts = ["cos(u)*(3+cos(v))", "sin(u)*(3+cos(v))", "sin(v)"]
-    domain = ["--domain", "0", "2*pi", "0", "2*pi", "--periodic", "uv"]
-    assert main(["mesh", "--formula", *texts, *domain, *FEW, "-o", "a.stl"]) == 0
-    triangles = int.from_bytes(Path("a.stl").read_bytes()[80:84], "little")
-    assert triangles == 2 * 60  # closed, of genus 1
-
-
-@pytest.mark.usefixtures("files")
-@pytest.mark.parametrize("source", ["points.npy", "two.npz:points", "./two.npz:points"])
-def test_a_grid_of_points(source: str) -> None:
-    assert main(["sample", source, "--count", "20", "-o", "a.npz"]) == 0
-    samples = gm.read_samples("a.npz")
-    assert samples.report.patches == 4 * 6 * 8
-    assert samples.report.surface in ("points.npy", "two.npz")
-    assert samples.points[:, :2].max() <= 8.0
-
-
-@compiled
-@pytest.mark.parametrize("axis", ["u", "v", "uv"])
-def test_a_periodic_grid(axis: str) -> None:
-    u, v = np.meshgrid(*2 * [2 * np.pi * np.arange(8) / 8], indexing="ij")
-    radius = 3 + np.cos(v)
-    np.save("ring.npy", np.stack([radius * np.cos(u), radius * np.sin(u), np.sin(v)], axis=2))
-    assert main(["sample", "ring.npy", "--periodic", axis, "--frequency", "2", "-o", "a.npz"]) == 0
-    cells = np.prod([8 if letter in axis else 7 for letter in "uv"])
-    assert gm.read_samples("a.npz").report.patches == 4 * cells
-
-
-@pytest.mark.parametrize("suffix", [".npz", ".ply", ".csv", ".xyz"])
-def test_every_file_type(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["sample", "torus", *FEW, "-o", f"a{suffix}"]) == 0
-    out, err = capsys.readouterr()
-    assert re.fullmatch(
-        rf"a{suffix}: 60 samples: \d+ at \d+ prescribed normals, \d+ filling gaps .*\n", out
-    )
-    assert err == ""
-    assert Path(f"a{suffix}").stat().st_size > 1000
 
 
 def test_quiet(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -444,11 +332,8 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus"], r"missing option '-o' / '--output' \(see `gaussmap sample --help`\)"),
         (["sample", "torus", "-o"], "option '-o' requires an argument .*gaussmap sample --help"),
         (["sample", "torus", "--cout", "5", *TO], "no such option '--cout'.*'--count'"),
-        (["sample", "torus", "--coun", "5", *TO], "no such option '--coun'"),
         (["sample", "torus", "--count", "5", "--frequency", "3", *TO], "--frequency is not allow"),
-        (["sample", "torus", "--random", "5", "--healpix", "4", *TO], "not allowed with"),
         (["sample", "torus", "--seed", "5", *TO], "--seed goes with --random COUNT only"),
-        (["sample", "torus", "--seed", "5", "--frequency", "3", *TO], "--seed goes with --random"),
         (["sample", "torus", "--random", "5", "--seed", "-1", *TO], "--seed: .* from 0 to"),
         (["sample", "torus", "--random", "5", "--seed", *TO], "--seed: it must be .*, not '-o'"),
         (["sample", "torus", "--healpix", "3", *TO], "nside must be a power of 2, not 3"),
@@ -472,7 +357,6 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "does not go with coverage; use"),
         (["sample", "torus", "--progressive", "--fields", "uv", *TO], "needs points and normals"),
         (["sample", "torus", "--cells", "8", "0", *TO], "--cells: it must be a whole number"),
-        (["sample", "torus", "--cells", "8", *TO], "--cells: it must be .*, not '-o'"),
         (["sample", "torus", "--cells", "2", "8", *TO], "at least 3 x 3 cells"),
         (["sample", "torus", "--fields", "row", "--on", "spline", *TO], "on a grid only"),
         (["sample", "torus", "--reach", *"0019", "--density", "aligned", *TO], "with a reach use"),
@@ -480,18 +364,15 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         # surfaces by name
         (["sample", "tours", *TO], "no surface 'tours'; did you mean torus.* `gaussmap surfaces`"),
         (["sample", "TORUS", *TO], r"did you mean torus\?"),
-        (["sample", "x" * 50, *TO], "See `gaussmap surfaces` for all names"),
         (["sample", "", *TO], "there is no surface ''"),
         (["sample", "two\nlines", *TO], "there is no surface"),
         (["sample", "torus", "--set", "radius=1", *TO], "torus parameter 'radius'.*major, minor"),
         (["sample", "torus", "--set", "mayor=1", *TO], r"did you mean major\?"),
         (["sample", "torus", "--set", "name=1", *TO], "no torus parameter 'name'"),
         (["sample", "torus", "--set", "minor", *TO], "--set: it must be NAME=VALUE"),
-        (["sample", "torus", "--set", "minor=", *TO], "--set: it must be NAME=VALUE"),
         (["sample", "torus", "--set", "=2", *TO], "--set: it must be NAME=VALUE"),
         (["sample", "torus", "--set", "minor=x", *TO], "--set: it must be a number, not 'x'"),
         (["sample", "torus", "--set", "minor=nan", *TO], "minor of torus must be a positive"),
-        (["sample", "torus", "--set", "minor=-1", *TO], "minor of torus must be a positive"),
         (["sample", "torus", "--set", "minor=1", "--set", "minor=2", *TO], "same parameter twice"),
         (["sample", "torus", "--spacing", "1", "1", *TO], "--spacing is for elevations"),
         (["sample", "torus", "--periodic", "u", *TO], "--periodic is for grids"),
@@ -515,45 +396,39 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "missing.npy", *HEIGHTS], "'missing.npy' cannot be read: No such file"),
         (["sample", "folder.npy", *HEIGHTS], "'folder.npy' cannot be read: Is a directory"),
         (["sample", "heights.txt", *HEIGHTS], "neither a .npy, .npz nor .tif file"),
-        (["sample", "missing.tif", *HEIGHTS], "'missing.tif' cannot be read: No such file"),
         (["sample", "part.stl", *TO], "'part.stl' is a mesh; meshes are not taken.*CAD file"),
         (["sample", "zero.npy", *HEIGHTS], r"shape \(4, 3\): points \(N, 3\) in no order are not"),
         (["sample", "nothing.npy", *HEIGHTS], "'nothing.npy' is damaged"),
-        (["sample", "text.npy", *HEIGHTS], "'text.npy' is damaged"),
         (["sample", "cut.npy", *HEIGHTS], "'cut.npy' is damaged"),
-        (["sample", "cut_header.npy", *HEIGHTS], "'cut_header.npy' is damaged"),
         (["sample", "huge.npy", *HEIGHTS], "'huge.npy' is damaged|not enough memory"),
         (["sample", "objects.npy", *HEIGHTS], "'objects.npy' is damaged, or holds objects"),
         (["sample", "complex.npy", *HEIGHTS], "real numbers, not of type complex128"),
-        (["sample", "text.npz", *HEIGHTS], "'text.npz' is damaged or is no .npz"),
         (["sample", "cut.npz", *HEIGHTS], "'cut.npz' is damaged or is no .npz"),
         (["sample", "two.npz", *HEIGHTS], "2 arrays: heights, points; name .* two.npz:heights"),
         (["sample", "none.npz", *HEIGHTS], "'none.npz' holds 0 arrays;"),
         (["sample", "points.npy:x", *HEIGHTS], "'points.npy' holds one array, without a name"),
         (["sample", "two.npz:point", *HEIGHTS], r"in 'two.npz' 'point'; did you mean points\?"),
         (["sample", "two.npz:x", *HEIGHTS], "in 'two.npz' 'x'; there is heights, points."),
-        (["sample", "missing.npz:x", *HEIGHTS], "'missing.npz' cannot be read"),
         (["sample", "volume.npy", *TO], r"shape \(m, n, 3\), or .* not \(3, 4, 5\)"),
         (["sample", "empty.npy", *HEIGHTS], "empty.npy has"),
         (["sample", "small.npy", *HEIGHTS], "small.npy has 2 x 2 points"),
         (["sample", "nan.npy", *HEIGHTS], "all points of nan.npy are missing"),
         (["sample", "heights.npy", *HEIGHTS, "--nodata", "x"], "--nodata: it must be a number"),
         (["sample", "torus", "--nodata", "1", *TO], "--nodata is for grids in a file"),
+        (["sample", "torus", "--crs", "EPSG:32617", *TO], "--crs is for elevations"),
+        (["sample", "missing.txt", *TO], "does not exist"),
+        (["sample", "missing.step", "--cells", "8", "8", *TO], "--cells is for surfaces"),
+        (["sample", "torus", "--reach", "0", "0", "0", "25", *TO], "the axis of reach"),
         (["sample", "heights.npy", *TO], "elevations .* add --spacing DX DY"),
         (["sample", "heights.npy", "--spacing", "nan", "1", *TO], "spacing must be finite"),
-        (["sample", "heights.npy", "--spacing", "1", "0", *TO], "spacing must be finite"),
-        (["sample", "heights.npy", "--spacing", "1", "y", *TO], "--spacing: it must be a number"),
-        (["sample", "heights.npy", "--spacing", "1", *TO], "--spacing: it must be .*, not '-o'"),
         (["sample", "heights.npy", "--periodic", "u", *HEIGHTS], "cannot be periodic"),
         (["sample", "heights.npy", "--periodic", "w", *HEIGHTS], "--periodic: 'w' is not one of"),
         (["sample", "heights.npy", "--set", "a=1", *HEIGHTS], "--set is for surfaces by name"),
         (["sample", "points.npy", *HEIGHTS], "--spacing is for elevations, and 'points.npy'"),
         # normals in files
-        (["sample", "torus", "--normals", "missing.npy", *TO], "'missing.npy' cannot be read"),
         (["sample", "torus", "--normals", "heights.txt", *TO], "neither a .npy nor a .npz"),
         (["sample", "torus", "--normals", "heights.npy", *TO], r"shape \(S, 3\)"),
         (["sample", "torus", "--normals", "zero.npy", *TO], "zero vector"),
-        (["sample", "torus", "--normals", "cut.npy", *TO], "'cut.npy' is damaged"),
         # the output
         (["sample", "torus", "-o", "a.stl"], "the suffix '.stl' of meshes; use one of .*mesh`"),
         (["sample", "torus", "-o", "a.xlsx"], "'a.xlsx' has the suffix '.xlsx'; use one of .npz,"),
@@ -568,15 +443,12 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "two.npz:points", "-o", "two.npz"], "'two.npz' is read; write to another"),
         (["sample", "torus", "--normals", "two.npz:points", "-o", "./two.npz"], "is read; write"),
         (["plot", "torus", "-o", "a.npz"], "'a.npz' has the suffix '.npz'; use one of .png"),
-        (["plot", "torus", "-o", "missing/a.png"], "'.*missing' does not exist"),
         (["view", "torus", "-o", "a.png"], "'a.png' has the suffix '.png'; use one of .html"),
         (["view", "torus", "--count", "50001", "-o", "a.html"], "at most 50,000 samples"),
-        (["plot", "tours", "-o", "a.png"], "did you mean torus"),
         # lists
         (["surfaces", "tours"], "no surface 'tours'; did you mean torus"),
         (["surfaces", "torus", "sphere"], r"unexpected extra argument \(sphere\)"),
         (["formulas", "support_functoin"], r"no formula 'support_functoin'; did you mean"),
-        (["formulas", "suport"], "did you mean support_function or arc_support_function"),
         (["sample", "patch", *TO], "did you mean ellipsoid_patch"),
         (["formulas", "--tape"], "needs the name of a surface, or --formula X Y Z"),
         (["formulas", "--tape", "tours"], "no surface 'tours'; did you mean torus"),
@@ -599,11 +471,8 @@ def test_an_error_is_one_line(
     assert {path: path.is_file() and path.read_bytes() for path in Path().iterdir()} == before
 
 
-def test_bad_output_is_found_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
-    def work(*_: object, **__: object) -> None:
-        pytest.fail("worked in vain")
-
-    monkeypatch.setattr(sampled, "sample_and_normals", work)
+def test_bad_output_is_found_before_the_work(failing: Callable[[BaseException], None]) -> None:
+    failing(AssertionError("worked in vain"))
     assert main(["sample", "torus", "-o", "a.stl"]) == 2
     assert main(["sample", "torus", "-o", "missing/a.ply"]) == 2
 
@@ -624,20 +493,14 @@ def test_an_error_in_a_process() -> None:
     assert re.fullmatch("gaussmap: error: there is no surface 'tours'; .*\n", done.stderr)
 
 
-def test_no_memory(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    def sample(*_: object, **__: object) -> None:
-        raise MemoryError
-
-    monkeypatch.setattr(sampled, "sample_and_normals", sample)
+def test_no_memory_and_a_bug_that_keeps_its_traceback(
+    capsys: pytest.CaptureFixture[str], failing: Callable[[BaseException], None]
+) -> None:
+    failing(MemoryError())
     assert main(["sample", "torus", *TO]) == 2
     assert re.fullmatch("gaussmap: error: there is not enough memory.*\n", capsys.readouterr().err)
 
-
-def test_a_bug_keeps_its_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
-    def sample(*_: object, **__: object) -> None:
-        raise ZeroDivisionError
-
-    monkeypatch.setattr(sampled, "sample_and_normals", sample)
+    failing(ZeroDivisionError())
     with pytest.raises(ZeroDivisionError):
         main(["sample", "torus", *TO])
 
@@ -690,12 +553,9 @@ def test_interrupted_by_a_signal(tmp_path: Path) -> None:
 def test_a_reader_that_goes_away(command: list[str]) -> None:
     reader, writer = os.pipe()
     os.close(reader)
-    done = subprocess.run(
-        [sys.executable, "-m", "gaussmap", *command],
-        stdout=writer, stderr=subprocess.PIPE, check=False,
-    )  # fmt: skip
+    done = gaussmap(*command, stdout=writer)
     os.close(writer)
-    assert done.stderr == b""
+    assert done.stderr == ""
     assert done.returncode == 141 or command == ["--help"]  # argparse may have swallowed it
 
 
@@ -703,10 +563,7 @@ def test_a_reader_that_goes_away(command: list[str]) -> None:
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 def test_standard_output_is_full() -> None:
     with open("/dev/full", "w") as full:
-        done = subprocess.run(
-            [sys.executable, "-m", "gaussmap", "surfaces"],
-            stdout=full, stderr=subprocess.PIPE, text=True, check=False,
-        )  # fmt: skip
+        done = gaussmap("surfaces", stdout=full)
     assert done.returncode == 2
     assert re.fullmatch("gaussmap: error: standard output cannot be written: .*\n", done.stderr)
 
@@ -714,35 +571,39 @@ def test_standard_output_is_full() -> None:
 @compiled
 def test_an_old_terminal() -> None:
     """One that knows ASCII only, with Python told to be strict."""
-    done = subprocess.run(
-        [sys.executable, "-X", "utf8=0", "-m", "gaussmap", "surfaces"],
-        capture_output=True, check=False, env={**os.environ, "PYTHONIOENCODING": "ascii:strict"},
-    )  # fmt: skip
-    assert (done.returncode, done.stderr) == (0, b"")
-    assert b"x?/a?" in done.stdout
+    done = python("-X", "utf8=0", "-m", "gaussmap", "surfaces", encoding="ascii:strict")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "x?/a?" in done.stdout
 
 
 @compiled
 def test_heavy_imports_are_lazy() -> None:
     code = (
         "import sys, gaussmap.tools.commands.cli, gaussmap.tools.pictures.plot\n"
-        "print({'matplotlib', 'sympy', 'pyvista', 'tqdm'} & set(sys.modules))"
+        "import gaussmap.tools.files.formats\n"
+        "heavy = {'matplotlib', 'sympy', 'pyvista', 'trimesh', 'vtkmodules', 'tqdm'}\n"
+        "print(heavy & set(sys.modules))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "set()\n"
+    assert python("-c", code).stdout == "set()\n"
 
 
 @compiled
-@pytest.mark.parametrize(
-    "arguments", [[], ["--help"], ["sample", "--help"], ["sample", "torus"], ["--version"]]
-)
-def test_help_and_usage_need_no_arrays(arguments: list[str]) -> None:
+def test_help_usage_and_completion_need_no_arrays() -> None:
+    asked = [[], ["--help"], ["sample", "--help"], ["sample", "torus"], ["--version"]]
     code = (
-        f"import sys; from gaussmap.tools.commands.cli import main; main({arguments})\n"
-        "print({'numpy', 'numba', 'scipy', 'sympy'} & set(sys.modules), file=sys.stderr)"
+        "import sys, os; from gaussmap.tools.commands.cli import main\n"
+        f"print([main(arguments) for arguments in {asked}])\n"
+        "for words in ('sample to', 'formulas s', 'sample torus --set m'):\n"
+        "    line = f'gaussmap {words}'\n"
+        "    os.environ.update(COMP_WORDS=line, COMP_CWORD=str(line.count(' ')),"
+        " _GAUSSMAP_COMPLETE='bash_complete')\n"
+        "    assert main([]) == 0\n"
+        "print({'numpy', 'numba', 'scipy', 'sympy'} & set(sys.modules))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stderr.endswith("set()\n")
+    lines = python("-c", code).stdout.splitlines()
+    assert lines[-1] == "set()"
+    expected = {"[0, 0, 0, 2, 0]", "plain,torus", "plain,support_function", "plain,minor="}
+    assert expected <= {*lines}
 
 
 def test_a_bare_call_shows_help(capsys: pytest.CaptureFixture[str]) -> None:
@@ -768,21 +629,6 @@ def test_exit_codes() -> None:
 # ── Completion by shells ─────────────────────────────────────────────────────────────────────────
 
 
-def completed(words: str) -> list[str]:
-    """Return what a shell is offered for the last word."""
-    variables = {
-        "_GAUSSMAP_COMPLETE": "bash_complete",
-        "COMP_WORDS": words,
-        "COMP_CWORD": str(len(words.split(" ")) - 1),
-    }
-    done = subprocess.run(
-        [sys.executable, "-m", "gaussmap"],
-        capture_output=True, text=True, check=True, env={**os.environ, **variables},
-    )  # fmt: skip
-    assert done.stderr == ""
-    return done.stdout.splitlines()
-
-
 COMMANDS = [
     "sample", "mesh", "plot", "view", "batch", "surfaces", "faces", "formulas", "warm", "completion"
 ]  # fmt: skip
@@ -804,26 +650,20 @@ COMMANDS = [
         ("gaussmap mesh torus -o a", ["file:a"]),
     ],
 )
-def test_completion(words: str, offered: list[str]) -> None:
-    lines = [line.partition(",") for line in completed(words)]
+def test_completion(
+    words: str,
+    offered: list[str],
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("_GAUSSMAP_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", words)
+    monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))
+    assert main([]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    lines = [line.partition(",") for line in out.splitlines()]
     assert [x if kind == "plain" else f"{kind}:{x}" for kind, _, x in lines] == offered
-
-
-@compiled
-def test_completion_is_quick() -> None:
-    code = (
-        "import sys, os; from gaussmap.tools.commands.cli import main\n"
-        "for words in ('sample to', 'formulas s', 'sample torus --set m'):\n"
-        "    line = f'gaussmap {words}'\n"
-        "    os.environ.update(COMP_WORDS=line, COMP_CWORD=str(line.count(' ')),"
-        " _GAUSSMAP_COMPLETE='bash_complete')\n"
-        "    assert main([]) == 0\n"
-        "print({'numpy', 'numba', 'scipy', 'sympy'} & set(sys.modules))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    lines = done.stdout.splitlines()
-    assert lines[-1] == "set()"
-    assert {"plain,torus", "plain,support_function", "plain,minor="} <= {*lines}
 
 
 @compiled

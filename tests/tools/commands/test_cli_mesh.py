@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 from gaussmap.tools.commands.cli import main
 
-from ...products import covering
-
 FEW = ["--count", "100", "--cells", "8", "8"]
 
 
@@ -25,19 +23,6 @@ def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> N
     assert err == ""
     mesh = pytest.importorskip("pyvista").read(f"torus.{suffix}")
     assert mesh.n_cells == int(found[2]) == 2 * int(found[1])
-
-
-@pytest.mark.compiled
-@covering(
-    density=["balanced", "aligned"],
-    name=["torus", "ellipsoid_patch", "wavy_graph", "sphere", "catenoid"],
-)
-def test_the_command_and_python_make_the_same_mesh(name: str, density: str) -> None:
-    mesh = gm.sample(name, 300, density=density, cells=(16, 16)).mesh()
-    mesh.write("python.ply")
-    asked = ["--count", "300", "--cells", "16", "16", "--density", density]
-    assert main(["mesh", name, *asked, "-o", "command.ply"]) == 0
-    assert Path("command.ply").read_bytes() == Path("python.ply").read_bytes()
 
 
 @pytest.mark.compiled
@@ -68,18 +53,6 @@ def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
     worst = float(re.findall(r"([\d.]+)° \(worst\)", out)[0])
     assert worst <= 10.0
     assert "edges on the border" in out
-
-
-@pytest.mark.parametrize("prefer", ["shape", "normals"])
-def test_what_triangles_are_preferred(prefer: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["mesh", "torus", *FEW, "--prefer", prefer, "-o", "torus.ply"]) == 0
-    small = float(re.findall(r"angles of at least ([\d.]+)°", capsys.readouterr().out)[0])
-    assert (small > 25.0) == (prefer == "shape")
-
-
-def test_quiet(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["mesh", "torus", *FEW, "--quiet", "-o", "torus.ply"]) == 0
-    assert capsys.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize(

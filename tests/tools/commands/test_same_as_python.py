@@ -1,4 +1,4 @@
-"""Commands and Python functions have the same options, with the same defaults and results."""
+"""Commands and Python have the same options, defaults and results; texts name the same surfaces."""
 
 import inspect
 import sys
@@ -19,7 +19,8 @@ UTM = "EPSG:32617"
 ROWS, COLUMNS = np.indices((9, 11))
 HEIGHTS = 40.0 * np.sin(ROWS / 3.0) * np.cos(COLUMNS / 4.0)
 POINTS = np.stack([np.cos(COLUMNS / 4), np.sin(COLUMNS / 4), ROWS / 3.0], axis=-1)
-SADDLE = ("u", "v", "u**2-v**2")
+SADDLE = "-u v u**2-v**2"  # values may begin with a dash
+TUBE = "cos(v) sin(v) u"
 DEGREES = {"longitude": -83.0 + np.arange(11.0) / 100, "latitude": 36.0 - np.arange(9.0) / 100}
 SMALL: dict[str, Any] = {"cells": (8, 8)}
 
@@ -47,8 +48,8 @@ def grid(**options: Any) -> Made:
     return lambda: gm.sample(gm.Surface.from_grid(POINTS, **options), 60)
 
 
-def saddle(domain: Any) -> Made:
-    return lambda: gm.sample(gm.Surface.from_sympy(SADDLE, "uv", domain), 60)
+def formula(texts: str, *how: Any) -> Made:
+    return lambda: gm.sample(gm.Surface.from_sympy(texts.split(), "uv", *how), 60)
 
 
 # What `gaussmap sample` is asked, its options by name, and the same in Python.
@@ -61,6 +62,7 @@ ASKED: list[tuple[str, Made]] = [
     ("--random 20", torus(normals=gm.directions.random(20))),
     ("--seed 3 --random 20", torus(normals=gm.directions.random(20, seed=3))),
     ("--normals one.npy", torus(normals=[[1.0, 2.0, 3.0]])),
+    ("--normals all.npz:normals", torus(normals=[[3.0, 2.0, 1.0]])),
     ("--normals one.npy --coverage 0.4", torus(normals=[[1.0, 2.0, 3.0]], coverage=0.4)),
     ("--density uniform --count 60", torus(count=60, density="uniform")),
     ("--density 0.5 --count 60", torus(count=60, density=0.5)),
@@ -71,7 +73,8 @@ ASKED: list[tuple[str, Made]] = [
     ("--fields points,uv --count 60", torus(count=60, fields=("points", "uv"))),
     ("--float32 --count 60", torus(count=60, dtype=np.float32)),
     ("--progressive --count 60", lambda: torus(count=60)().progressive()),
-    ("--set minor=.2 --count 60", lambda: gm.sample(gm.surfaces.torus(minor=0.2), 60, **SMALL)),
+    ("--set major=2 --set minor=.2 --count 60",
+     lambda: gm.sample(gm.surfaces.torus(major=2, minor=0.2), 60, **SMALL)),
 ]  # fmt: skip
 OTHERS: list[tuple[str, str, Made]] = [
     (
@@ -98,8 +101,12 @@ OTHERS: list[tuple[str, str, Made]] = [
     ("two.tif", "", lambda: gm.sample(gm.terrain("two.tif"), 60)),
     ("points.npy", "--periodic none", grid()),
     ("points.npy", "--periodic u", grid(periodic=(True, False))),
-    ("--domain -1 1 -2 2", f"--formula {' '.join(SADDLE)}", saddle(((-1, 1), (-2, 2)))),
-    (f"--formula {' '.join(SADDLE)}", "--domain -1 1 -1 1/2", saddle(((-1, 1), (-1, "1/2")))),
+    ("./all.npz:points", "--periodic v", grid(periodic=(False, True))),
+    ("points.npy", "--periodic uv", grid(periodic=(True, True))),
+    ("--domain -1 1 -2 2", f"--formula {SADDLE}", formula(SADDLE, ((-1, 1), (-2, 2)))),
+    (f"--formula {TUBE}", "--domain -1 1 0 2*pi --periodic v",
+     formula(TUBE, ((-1, 1), (0, "2*pi")), (False, True))),
+    (f"--formula {SADDLE}", "--domain -1 1 -1 1/2", formula(SADDLE, ((-1, 1), (-1, "1/2")))),
     ("box.npz", "--edges", lambda: gm.sample(gm.read_part("box.npz"), 60, edges=True)),
     ("box.npz", "--faces 0,3", lambda: gm.sample(gm.read_part("box.npz").select(index=[0, 3]), 60)),
     ("box.npz --kind plane", "--name s*e",
@@ -124,14 +131,8 @@ def _inputs(monkeypatch: pytest.MonkeyPatch, parts: ModuleType) -> None:
     np.save("points.npy", POINTS)
     np.save("one.npy", np.array([[1.0, 2.0, 3.0]]))
     easting, northing = DEGREES.values()
-    np.savez(
-        "all.npz",
-        heights=HEIGHTS,
-        easting=easting,
-        northing=northing,
-        longitude=easting,
-        latitude=northing,
-    )
+    arrays = {"heights": HEIGHTS, "points": POINTS, "normals": np.array([[3.0, 2.0, 1.0]])}
+    np.savez("all.npz", easting=easting, northing=northing, **DEGREES, **arrays)
     parts.box().save("box.npz")
     Path("part.step").write_text("ISO-10303-21;")
     signature = inspect.signature(gm.read_cad)
@@ -191,27 +192,12 @@ def test_commands_share_options_and_defaults(command: str) -> None:
 
 
 @pytest.mark.parametrize("how", [{}, {"angle": 30.0}, {"prefer": "normals"}])
-def test_meshes(how: dict[str, Any]) -> None:
+def test_meshes(how: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
     options = {"angle": "--deviation", "prefer": "--prefer"}
     asked = [str(x) for name, value in how.items() for x in (options[name], value)]
-    assert (
-        main(
-            [
-                "mesh",
-                "torus",
-                "--cells",
-                "8",
-                "8",
-                "--frequency",
-                "6",
-                *asked,
-                "--quiet",
-                "-o",
-                "a.ply",
-            ]
-        )
-        == 0
-    )
+    command = ["mesh", "torus", "--cells", "8", "8", "--frequency", "6", "-o", "a.ply"]
+    assert main([*command, "--quiet", *asked]) == 0
+    assert capsys.readouterr() == ("", "")
     gm.sample("torus", normals=gm.icosphere(6), **SMALL).mesh(**how).write("b.ply")
     assert Path("a.ply").read_bytes() == Path("b.ply").read_bytes()
 
@@ -225,9 +211,12 @@ def test_meshes(how: dict[str, Any]) -> None:
             "ellipsoid_patch", normals=gm.icosphere(4))),
     ],
 )  # fmt: skip
-def test_pictures(options: str, figure: Callable[[], Any]) -> None:
+def test_pictures(
+    options: str, figure: Callable[[], Any], capsys: pytest.CaptureFixture[str]
+) -> None:
     image = pytest.importorskip("matplotlib.image")
     assert main(["plot", *options.split(), "--quiet", "-o", "a.png"]) == 0
+    assert capsys.readouterr() == ("", "")
     figure().savefig("b.png")
     np.testing.assert_array_equal(*(image.imread(x) for x in ("a.png", "b.png")))
 
