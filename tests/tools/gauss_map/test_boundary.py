@@ -168,11 +168,3 @@ def test_a_double_zero_is_one_singular_point_without_a_jump() -> None:
     assert arc.singular_points == pytest.approx((0.3,), abs=1e-7)
     for part in arc.parts:
         np.testing.assert_allclose(part.points(3), np.tile(normal, (3, 1)) / np.sqrt(14), atol=1e-7)
-
-
-def test_folded_plane_has_no_boundary() -> None:
-    """Its normals jump, but through no others: the image is two opposite points."""
-    folded = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]]
-    image = gm.gauss_map.GaussianImage.of_patch(folded)
-    assert image.boundary == ()
-    assert image.kind == "point"

@@ -1,7 +1,6 @@
 """Gaussian images: against definitions in exact arithmetic, quadrature, and topology."""
 
 from fractions import Fraction
-from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -91,7 +90,7 @@ def test_arcs_are_the_normals_of_the_edges_and_lie_on_the_cones() -> None:
             np.testing.assert_allclose(np.linalg.norm(points, axis=1), 1.0, rtol=1e-15)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(6))
 def test_solid_angle_and_area_are_integrals_of_the_curvature(seed: int) -> None:
     """Nearly flat patches: there 60 × 60 nodes are exact up to rounding."""
     net = random_patch(seed, 1.5)
@@ -107,45 +106,13 @@ def test_solid_angle_and_area_are_integrals_of_the_curvature(seed: int) -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_area_is_the_share_of_the_sphere_that_it_contains(seed: int) -> None:
     """Wild patches, with singular points inside: 100 000 normals count the area to 1 %."""
     net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
     image = gm.gauss_map.GaussianImage.of_patch(net)
     share = image.contains(gm.fibonacci(100_000)).mean()
     assert image.area == pytest.approx(4 * np.pi * share, abs=0.01)
-
-
-@pytest.mark.compiled
-@pytest.mark.slow
-def test_solid_angle_is_additive_where_singular_points_are_inside() -> None:
-    """Four quarters of a wild patch are patches, and their images make up that of the whole."""
-    mixed = 0
-    for seed in range(20):
-        net = np.random.default_rng(100 + seed).integers(-9, 10, (6, 3)).astype(float)
-        b200, b020, b002, b110, b101, b011 = net
-        uv, uw, vw = ((x + 2 * y + z) / 4 for x, y, z in (
-            (b200, b110, b020), (b200, b101, b002), (b020, b011, b002)
-        ))  # fmt: skip
-        near_u, near_v, near_w = (
-            (x + y + z + t) / 4
-            for x, y, z, t in (
-                (b200, b110, b101, b011), (b020, b110, b011, b101), (b002, b101, b011, b110)
-            )
-        )  # fmt: skip
-        quarters = [
-            [b200, uv, uw, (b200 + b110) / 2, (b200 + b101) / 2, near_u],
-            [uv, b020, vw, (b020 + b110) / 2, near_v, (b020 + b011) / 2],
-            [uw, vw, b002, near_w, (b002 + b101) / 2, (b002 + b011) / 2],
-            [vw, uw, uv, near_w, near_v, near_u],
-        ]
-        images = [gm.gauss_map.GaussianImage.of_patch(x) for x in (net, *quarters)]
-        mixed += images[0].kind == "bow tie"
-        whole, *parts = (image.solid_angle for image in images)
-        assert whole == pytest.approx(sum(parts), abs=1e-10)
-        whole, *parts = (image.area for image in images)
-        assert whole == pytest.approx(sum(parts), abs=1e-10)
-    assert mixed > 5
 
 
 # --- membership, exactly --------------------------------------------------------------------------
@@ -230,6 +197,7 @@ def test_plane_is_a_point() -> None:
     assert image.contains(asked).tolist() == [True, True, False, False]
     folded = gm.gauss_map.GaussianImage.of_patch(FOLDED_PLANE)
     assert folded.kind == "point"
+    assert folded.boundary == ()  # its normals jump, but through no others
     assert folded.contains([[0, 0, 1], [0, 0, -1], [0, 1, 1]]).tolist() == [True, True, False]
 
 
@@ -277,7 +245,7 @@ def test_developable_patch_with_a_curve_of_singular_points_is_an_arc() -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("factor", [1e-150, 1e-12, 1e12, 1e100])
+@pytest.mark.parametrize("factor", [1e-150, 1e100])
 def test_scale_does_not_matter(factor: float) -> None:
     for seed in range(5):
         net = random_patch(seed)
@@ -300,23 +268,6 @@ def test_translation_costs_only_its_rounding() -> None:
 
 
 # --- all patches of a spline ----------------------------------------------------------------------
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize(
-    "cells", [(16, 16), *(pytest.param(x, marks=pytest.mark.slow) for x in ((33, 17), (64, 64)))]
-)
-@pytest.mark.slow
-def test_closed_surfaces_have_the_solid_angle_of_their_topology(cells: tuple[int, int]) -> None:
-    torus = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), cells)
-    assert torus.solid_angles.sum() == pytest.approx(0.0, abs=1e-11)
-    cyclide = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.dupin_cyclide(), cells)
-    assert cyclide.solid_angles.sum() == pytest.approx(0.0, abs=1e-9)
-    assert cyclide.areas.sum() == pytest.approx(8 * np.pi, rel=0.01)
-    even = (cells[0] + cells[0] % 2, cells[1])
-    for name in ("sphere", "ellipsoid"):
-        images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.surface(name), even)
-        assert images.solid_angles.sum() == pytest.approx(4 * np.pi, abs=1e-11)
 
 
 @pytest.mark.compiled
@@ -405,15 +356,14 @@ def test_other_bad_input() -> None:
     images = gm.gauss_map.GaussianImages.of_spline(spline)
     refused("cells", gm.gauss_map.GaussianImages.of_spline, spline, (4, 4))
     refused("Surface", gm.gauss_map.GaussianImages.of_spline, 5)
-    refused("sign", images.sheets, [[0, 0, 1]], 2)
+    for sign in (np.array([1, 1]), "1", 1.0, True, None, 2):
+        refused("sign must be 1, -1 or 0", images.sheets, [[0, 0, 1]], sign=sign)
     refused("normals", images.sheets, [[0, 0, 0]])
     with pytest.raises(IndexError):
         images[len(images)]
     for count in (1, 0, 2.5, None):
-        with pytest.raises(
-            gm.errors.InputError, match="count must be a whole number of at least 2"
-        ):
-            gm.gauss_map.GaussianImage.of_patch(OCTANT).arcs[0].points(count)  # pyright: ignore[reportArgumentType]
+        arc = gm.gauss_map.GaussianImage.of_patch(OCTANT).arcs[0]
+        refused("count must be a whole number of at least 2", arc.points, count)
 
 
 def test_a_double_parabolic_line_inside_pinches_the_image() -> None:
@@ -423,10 +373,3 @@ def test_a_double_parabolic_line_inside_pinches_the_image() -> None:
     image = gm.gauss_map.GaussianImage.of_patch(points)
     assert [piece.sign for piece in image.pieces] == [-1, -1]
     assert image.kind == "bow tie"
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("sign", [np.array([1, 1]), "1", 1.0, True, None, 2])
-def test_a_sign_is_one_whole_number(sign: Any) -> None:
-    images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.torus(), (8, 8))
-    refused("sign must be 1, -1 or 0", images.sheets, [[0.0, 0.0, 1.0]], sign=sign)
