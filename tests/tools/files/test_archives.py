@@ -90,9 +90,3 @@ def test_names_lead_nowhere(tmp_path):
     with pytest.raises(gm.errors.FileError):
         gm.read_samples(inner / "a.npz")
     assert [x.name for x in tmp_path.rglob("*")] == ["a", "b", "a.npz"]
-
-
-def test_pickles_are_not_read(tmp_path):
-    np.savez(tmp_path / "a.npz", points=np.array([{}, {}]))
-    with pytest.raises(gm.errors.FileError, match="is no array of numbers"):
-        read_array(str(tmp_path / "a.npz"))

@@ -120,17 +120,6 @@ def test_mesh(library):
         np.testing.assert_array_equal(data(theirs, name), getattr(ours, name))
 
 
-@DTYPES
-@pytest.mark.parametrize("count", [0, 5])
-def test_arrays_of_pyvista(dtype, count):
-    pytest.importorskip("pyvista")
-    cloud = samples(count, dtype).to_pyvista()
-    assert cloud.n_points == count
-    data = cloud.GetPointData()
-    assert data.GetNumberOfArrays() == len(FIELDS) - 1
-    assert not count or data.GetNormals().GetName() == "normals"
-
-
 def test_pyvista_has_copies():
     pytest.importorskip("pyvista")
     found, surface = samples(), mesh()
@@ -143,22 +132,6 @@ def test_pyvista_has_copies():
 def test_open3d_without_normals():
     pytest.importorskip("open3d")
     assert not samples(fields=("points",)).to_open3d().has_normals()
-
-
-@pytest.mark.compiled
-def test_a_torus_is_watertight_and_has_its_volume():
-    pytest.importorskip("trimesh")
-    errors = []
-    for count in (1000, 4000):
-        torus = gm.sample(gm.surfaces.torus(major=1, minor=0.35), count=count)
-        theirs = torus.mesh().to_trimesh()
-        assert theirs.is_watertight
-        assert theirs.is_winding_consistent
-        assert theirs.euler_number == 0
-        errors.append(1 - theirs.volume / (2 * np.pi**2 * 0.35**2))
-    # The tube is cut by chords that turn by up to 45°, which lose up to 1 − sin x/x = 0.1; then
-    # the error falls with the number of vertices.
-    assert 0.0 < errors[1] < errors[0] / 2 < 0.05
 
 
 @pytest.mark.parametrize(

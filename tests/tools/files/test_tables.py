@@ -11,7 +11,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
-from gaussmap.tools.files import ply, tables
+from gaussmap.tools.files import tables
 from gaussmap.tools.files.formats import check_samples_target
 
 from ...products import covering
@@ -75,15 +75,6 @@ def test_arrow_keeps_every_bit_types_units_and_the_report(tmp_path, suffix, dtyp
     assert read.schema.field("y").metadata[b"unit"] == b"L"
     assert read.schema.field("gaussian_curvature").metadata[b"unit"] == b"1/L^2"
     assert read.schema.field("v").metadata[b"field"] == b"uv"
-
-
-@pytest.mark.parametrize("suffix", BINARY)
-def test_pandas_reads_it(tmp_path, suffix):
-    pandas = pytest.importorskip("pandas")
-    samples, path = noise(7), tmp_path / f"a{suffix}"
-    samples.write(path)
-    frame = (pandas.read_parquet if suffix == ".parquet" else pandas.read_feather)(path)
-    pandas.testing.assert_frame_equal(frame, samples.to_dataframe())
 
 
 @pytest.mark.parametrize("suffix", BINARY)
@@ -156,17 +147,3 @@ def test_numbers_have_no_digits_more_than_it_takes(monkeypatch, least):
     file, numbers = io.BytesIO(), np.array([10.2, 0.1, 1.0 / 3.0, -250.0])
     tables.write_rows(file, "{},{}\n", [numbers, np.arange(4)])
     assert file.getvalue() == b"10.2,0\n0.1,1\n0.3333333333333333,2\n-250.0,3\n"
-
-
-def test_ply_of_several_blocks(tmp_path, monkeypatch):
-    samples = gm.Samples(
-        points=np.random.default_rng(0).random((10_007, 3)),
-        normal_index=np.arange(10_007),
-        on_surface=np.arange(10_007) % 3 == 0,
-        report=SamplingReport("noise", 0, 10_007, 1, 0.0, 0),
-    )
-    samples.write(tmp_path / "one.ply")
-    monkeypatch.setattr(ply, "ROWS", 1000)
-    samples.write(tmp_path / "blocks.ply")
-    assert (tmp_path / "one.ply").read_bytes() == (tmp_path / "blocks.ply").read_bytes()
-    assert gm.read_samples(tmp_path / "blocks.ply").points.tobytes() == samples.points.tobytes()
