@@ -127,7 +127,7 @@ class Scene:
             return [self]
         small = divided(self.quadrangles[:, :3], self._diameter / PIECES)
         visible = in_front(self.seen(small))
-        layers = (small[x][:, [0, 1, 2, 2]] for x in (~visible, visible))
+        layers = (small[x][:, [0, 1, 2, 2]] for x in (~visible, visible) if x.any())
         return [replace(self, quadrangles=x, faces=None) for x in layers]
 
     @cached_property

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from types import ModuleType
@@ -11,7 +10,6 @@ from types import ModuleType
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.pictures.plot import write_figure
 from gaussmap.tools.pictures.scene import scene_of, view
 
 pytest.importorskip("matplotlib")
@@ -38,17 +36,6 @@ def drawn(figure: Figure) -> np.ndarray:
     """Return the values of the visible samples, that the colours show."""
     (dots,) = figure.findobj(Path3DCollection)
     return np.asarray(dots.get_array())  # pyright: ignore[reportAttributeAccessIssue]
-
-
-@pytest.mark.slow
-def test_it_is_the_picture_of_the_command_line(samples: gm.Samples, tmp_path: Path) -> None:
-    assert isinstance(samples.spline, gm.Spline)
-    write_figure(samples.plot(), tmp_path / "a.png")
-    samples.plot().savefig(tmp_path / "b.png")
-    gm.plot(samples.spline, samples).savefig(tmp_path / "c.png")
-    first, *others = (image.imread(tmp_path / f"{x}.png") for x in "abc")
-    for other in others:
-        assert np.mean(np.abs(first - other).max(axis=2) > 0.1) < 0.002
 
 
 @pytest.mark.slow
@@ -135,15 +122,6 @@ def test_borders_of_faces_are_as_fine_as_their_meshes(parts: ModuleType) -> None
     assert 0.5 * mesh < steps.max() < mesh
 
 
-@pytest.mark.slow
-def test_faces_of_all_kinds_and_their_trims(parts: ModuleType) -> None:
-    scene = scene_of(parts.all_kinds())
-    assert np.isfinite(scene.quadrangles).all()
-    a, b, c, _ = np.moveaxis(scene_of(parts.box()).quadrangles, 1, 0)
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-    assert areas.sum() == pytest.approx(22.0)
-
-
 @pytest.mark.parametrize("is_reversed", [False, True])
 @pytest.mark.parametrize("beyond", [6e-5, 1e-2])
 def test_loops_that_leave_the_surface(beyond: float, is_reversed: bool, parts: ModuleType) -> None:
@@ -176,13 +154,3 @@ def test_errors(samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert len(drawn(read.plot(samples.spline))) > 100
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     refused(r'pip install "gaussmap\[plot\]"', samples.plot, error=gm.errors.MissingExtraError)
-
-
-@pytest.mark.slow
-def test_the_command_draws_parts(
-    tmp_path: Path, main: Callable[..., int], parts: ModuleType
-) -> None:
-    parts.box().save(tmp_path / "box.npz")
-    path = tmp_path / "box.png"
-    assert main(["plot", str(tmp_path / "box.npz"), "--count", "40", "-o", str(path)]) == 0
-    assert image.imread(path).shape == (920, 1800, 4)

@@ -37,13 +37,14 @@ def test_faces_have_colours_and_the_numbers_of_the_file(parts: ModuleType) -> No
     assert len({*map(tuple, drawn.to_rgba(np.asarray(drawn.get_array())))}) == 3
 
 
-def test_of_many_faces_some_have_their_number(parts: ModuleType) -> None:
-    boxes = [parts.box(1.0, 1.0, 1.0 + k).faces[j].surface for k in range(5) for j in range(6)]
-    part = gm.Part([x.transformed(np.diag([1, 1, 1 + k])) for k, x in enumerate(boxes)])
+def test_of_many_faces_some_have_their_number() -> None:
+    shift = np.zeros((4, 4))
+    shift[0, 3] = 3.0
+    part = gm.Part([gm.surfaces.plane().transformed(np.eye(4) + k * shift) for k in range(13)])
     figure = gm.plot(part, gm.sample(part, 300), color="face_index")
     (bar,) = [x for x in figure.axes if x.get_xlabel() == "face in the file"]
     labels = [int(t.get_text()) for t in bar.get_xticklabels()]
-    assert labels == [*range(0, 30, 3)]
+    assert labels == [*range(0, 13, 2)]
 
 
 def drawn_boxes(items: list[Any]) -> list[Any]:
@@ -54,14 +55,12 @@ def drawn_boxes(items: list[Any]) -> list[Any]:
     "surface",
     [
         gm.surfaces.torus().transformed(np.diag([1.0, 1.0, 30.0])),
-        gm.surfaces.wavy_graph().transformed(np.diag([1.0, 16.0, 1.0])),
-        gm.surfaces.torus().transformed(np.diag([6.0, 1.0, 1.0])),
         gm.surfaces.torus().transformed(np.diag([25.0, 1.0, 1.0])),
         gm.surfaces.wavy_graph().transformed(
             np.array([[9e3, 0, 0, 5e5], [0, 9e3, 0, 4.1e6], [0, 0, 300, 900], [0, 0, 0, 1.0]])
         ),
     ],
-    ids=["high", "wide", "long", "longer", "far"],
+    ids=["high", "long", "far"],
 )
 def test_labels_of_ticks_do_not_overlap(surface: gm.Surface) -> None:
     figure = gm.plot(surface, gm.sample(surface, 200, cells=(16, 16)))
