@@ -8,7 +8,7 @@ import inspect
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from fractions import Fraction
-from functools import cached_property, reduce
+from functools import reduce
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -100,72 +100,33 @@ HOSTILE: tuple[Any, ...] = (
 # --- usable arguments -----------------------------------------------------------------------------
 
 
+PATCH = ((3, 0, 0), (0, 3, 0), (0, 0, 3), (2, 2, 1), (2, 1, 2), (1, 2, 2))
+MAKERS: dict[str, Callable[[], Any]] = {
+    "torus": gm.surfaces.torus,
+    "spline": lambda: gm.fit(USABLE.torus, (8, 8)),
+    "map": lambda: gm.GaussMap(USABLE.spline),
+    "samples": lambda: gm.sample(USABLE.torus, count=60, cells=(8, 8)),
+    "mesh": lambda: USABLE.samples.mesh(),
+    "circle": lambda: gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True),
+    "curve_spline": lambda: gm.curves.fit(USABLE.circle, 16),
+    "curve_samples": lambda: gm.curves.sample(USABLE.curve_spline, 10),
+    "curve_support": lambda: gm.curves.SupportFunction.of_spline(USABLE.curve_spline),
+    "support": lambda: gm.SupportFunction.from_sympy("1"),
+    "image": lambda: gm.gauss_map.GaussianImage.of_patch(PATCH),
+    "images": lambda: gm.gauss_map.GaussianImages(USABLE.spline),
+    "arc": lambda: USABLE.image.arcs[0],
+    "part": box,
+    "part_samples": lambda: gm.sample(USABLE.part, 20),
+    "dataset": lambda: gm.open_dataset("dataset"),
+}
+
+
 class Usable:
     """Things of all kinds that are as they should be, made when they are first needed."""
 
-    @cached_property
-    def torus(self) -> gm.Surface:
-        return gm.surfaces.torus()
-
-    @cached_property
-    def spline(self) -> gm.Spline:
-        return gm.fit(self.torus, (8, 8))
-
-    @cached_property
-    def map(self) -> gm.GaussMap:
-        return gm.GaussMap(self.spline)
-
-    @cached_property
-    def samples(self) -> gm.Samples:
-        return gm.sample(self.torus, count=60, cells=(8, 8))
-
-    @cached_property
-    def mesh(self) -> gm.Mesh:
-        return self.samples.mesh()
-
-    @cached_property
-    def circle(self) -> gm.curves.Curve:
-        return gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)
-
-    @cached_property
-    def curve_spline(self) -> gm.curves.CurveSpline:
-        return gm.curves.fit(self.circle, 16)
-
-    @cached_property
-    def curve_samples(self) -> gm.curves.CurveSamples:
-        return gm.curves.sample(self.curve_spline, 10)
-
-    @cached_property
-    def curve_support(self) -> gm.curves.SupportFunction:
-        return gm.curves.SupportFunction.of_spline(self.curve_spline)
-
-    @cached_property
-    def support(self) -> gm.SupportFunction:
-        return gm.SupportFunction.from_sympy("1")
-
-    @cached_property
-    def image(self) -> gm.gauss_map.GaussianImage:
-        return gm.gauss_map.GaussianImage.of_patch(PATCH)
-
-    @cached_property
-    def images(self) -> gm.gauss_map.GaussianImages:
-        return gm.gauss_map.GaussianImages(self.spline)
-
-    @cached_property
-    def arc(self) -> gm.gauss_map.BoundaryArc:
-        return self.image.arcs[0]
-
-    @cached_property
-    def part(self) -> Any:
-        return box()
-
-    @cached_property
-    def part_samples(self) -> gm.Samples:
-        return gm.sample(self.part, 20)
-
-    @cached_property
-    def dataset(self) -> gm.Dataset:
-        return gm.open_dataset("dataset")
+    def __getattr__(self, name: str) -> Any:
+        setattr(self, name, MAKERS[name]())
+        return getattr(self, name)
 
 
 USABLE = Usable()
@@ -199,29 +160,19 @@ def parabola(t: Any) -> Any:
 
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
-PATCH = ((3, 0, 0), (0, 3, 0), (0, 0, 3), (2, 2, 1), (2, 1, 2), (1, 2, 2))
 NORMALS, PLANE_NORMALS = gm.icosphere(1)[:7], gm.directions.circle(5)
 HEIGHTS = np.hypot(*np.meshgrid(np.arange(6.0), np.arange(5.0)))
 KNOTS = ((0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0))
 FLAT = np.array([[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0, 0.5]]])
 # What `self` is, by the class.
 SELF = {
-    "Dataset": Of("dataset"),
-    "GaussMap": Of("map"),
-    "Mesh": Of("mesh"),
-    "Part": Of("part"),
-    "Samples": Of("samples"),
-    "Spline": Of("spline"),
-    "SupportFunction": Of("support"),
-    "Surface": Of("torus"),
-    "curves.Curve": Of("circle"),
-    "curves.CurveSamples": Of("curve_samples"),
-    "curves.CurveSpline": Of("curve_spline"),
-    "curves.SupportFunction": Of("curve_support"),
-    "gauss_map.BoundaryArc": Of("arc"),
-    "gauss_map.GaussianImage": Of("image"),
-    "gauss_map.GaussianImages": Of("images"),
-}
+    "Dataset": Of("dataset"), "GaussMap": Of("map"), "Mesh": Of("mesh"), "Part": Of("part"),
+    "Samples": Of("samples"), "Spline": Of("spline"), "SupportFunction": Of("support"),
+    "Surface": Of("torus"), "curves.Curve": Of("circle"),
+    "curves.CurveSamples": Of("curve_samples"), "curves.CurveSpline": Of("curve_spline"),
+    "curves.SupportFunction": Of("curve_support"), "gauss_map.BoundaryArc": Of("arc"),
+    "gauss_map.GaussianImage": Of("image"), "gauss_map.GaussianImages": Of("images"),
+}  # fmt: skip
 # Usable arguments by the name of the parameter, where callables mean the same by it.
 COMMON: dict[str, Any] = {
     "surface": Of("spline"), "first": Of("spline"), "second": Of("support"), "spline": Of("spline"),
@@ -234,32 +185,32 @@ COMMON: dict[str, Any] = {
     "rotation": np.eye(3), "matrix": np.eye(3), "u": 0.5, "v": 0.5, "t": 0.5, "h": "1 + n_x",
     "domain": SQUARE, "f": saddle, "name": "torus", "source": HEIGHTS,
 }  # fmt: skip
+
+
+def fields(name: str, names: str) -> list[dict[str, Any]]:
+    """Return the fields of a usable thing as arguments of its class."""
+    return [{x: Of(name, x) for x in names.split()}]
+
+
 # Further arguments, and others, by the callable: several of them where one set does not reach all.
 SPECIAL: dict[str, list[dict[str, Any]]] = {
-    "Mesh": [
-        {
-            x: Of("mesh", x)
-            for x in ("vertices", "normals", "uv", "triangles", "sample_index", "name", "sides")
-        }
-    ],
+    "Mesh": fields("mesh", "vertices normals uv triangles sample_index name sides"),
     "Mesh.write": [{"path": "new.ply"}],
     "Part": [{"surfaces": Listed("torus")}],
     "Part.plot": [{"samples": Of("part_samples")}],
     "Part.save": [{"path": "new part.npz"}],
-    "Samples": [
-        {x: Of("samples", x) for x in ("points", "normals", "report", "spline", "surface")}
-    ],
+    "Samples": fields("samples", "points normals report spline surface"),
     "silhouette": [{"direction": (0.0, 0.0, 1.0)}],
     "Samples.view": [{"path": "new.html"}],
     "Samples.write": [{"path": "new.npz"}],
     "Samples[…]": [{"key": 0}],
-    "Spline": [{x: Of("spline", x) for x in ("coefficients", "domain", "boundary", "name")}],
+    "Spline": fields("spline", "coefficients domain boundary name"),
     "Spline.from_nets": [{"nets": np.array([PATCH])}],
     "Spline.in_cells": [{"places": np.array([[0.5, 0.5]])}],
     "Spline.normals_in_cells": [{"cells": np.array([[0.5, 0.5]])}],
     "SupportFunction": [{"_source": Of("support", "_source")}],
     "SupportFunction.of_spline": [{"surface": Of("torus"), "cells": (8, 8)}],
-    "Surface": [{x: Of("torus", x) for x in ("name", "function", "domain", "boundary")}],
+    "Surface": fields("torus", "name function domain boundary"),
     "Surface.from_grid": [
         {"points": HEIGHTS, "spacing": (1.0, 1.0)},
         {"points": saddle(*np.mgrid[:5.0, :5.0]), "periodic": (False, False)},
@@ -272,12 +223,8 @@ SPECIAL: dict[str, list[dict[str, Any]]] = {
     "curves.Curve": [{"name": "c", "function": parabola, "domain": (0.0, 1.0), "periodic": False}],
     "curves.Curve.from_callable": [{"f": parabola, "domain": (0.0, 1.0)}],
     "curves.Curve.from_points": [{"points": parabola(np.arange(6.0))}],
-    "curves.Curve.from_sympy": [
-        {"position": ("t", "t**2"), "parameter": "t", "domain": (0.0, 1.0)}
-    ],
-    "curves.CurveSpline": [
-        {x: Of("curve_spline", x) for x in ("coefficients", "domain", "periodic", "name")}
-    ],
+    "curves.Curve.from_sympy": [{"position": ("t", "t**2"), "parameter": "t", "domain": (0, 1)}],
+    "curves.CurveSpline": fields("curve_spline", "coefficients domain periodic name"),
     "curves.SupportFunction.branches": [{"normals": PLANE_NORMALS}],
     "curves.SupportFunction.translated": [{"shift": (1.0, 2.0)}],
     "curves.fit": [{"pieces": 16}],
@@ -300,14 +247,8 @@ SPECIAL: dict[str, list[dict[str, Any]]] = {
         {"surface": Of("part"), "count": 20, "edges": True},
         {"surface": Of("torus"), "count": 20, "cells": (8, 8), "reach": ((0, 0, 1), 40.0)},
     ],
-    "sample_many": [
-        {"count": 10, "progress": False},
-        {"count": 10, "progress": False, "out": "taken"},
-    ],
-    "sample_stream": [
-        {"count": 10},
-        {"surface": Of("torus"), "normals": NORMALS, "cells": (8, 8)},
-    ],
+    "sample_many": [x | {"count": 10, "progress": False} for x in ({}, {"out": "taken"})],
+    "sample_stream": [{"count": 10}, {"surface": Of("torus"), "normals": NORMALS, "cells": (8, 8)}],
     "terrain": [
         {"spacing": (1.0, 1.0)},
         {"x": np.arange(6.0), "y": np.arange(5.0), "origin": (0.0, 0.0)},
@@ -426,15 +367,11 @@ def no_figures() -> Iterator[None]:
 
 
 @pytest.mark.parametrize("name", ALL, indirect=True)
-def test_usable_arguments_are_usable(name: str) -> None:
-    """Otherwise what is tried beside them is not reached."""
+def test_usable_and_some_other_arguments(name: str) -> None:
+    """What is tried beside usable ones is not reached if these are not usable."""
     for arguments in usable_arguments(name):
         with suppress(*[gm.errors.FileError] * (name in UNUSABLE_FILES)):
             call(name, arguments)
-
-
-@pytest.mark.parametrize("name", ALL, indirect=True)
-def test_some_other_arguments(name: str) -> None:
     try_values(name, STEP)
 
 

@@ -19,7 +19,7 @@ def blocks(language: str, page: str = README) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
 
 
-CELLS = blocks("{code-cell} ipython3", MORE)
+CELLS = blocks("{code-cell} ipython3", MORE)  # which `make docs` runs, too
 
 
 def test_the_readme_is_short() -> None:
@@ -29,7 +29,9 @@ def test_the_readme_is_short() -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("source", [*blocks("python"), *CELLS])
+@pytest.mark.parametrize(
+    "source", [*blocks("python"), *(pytest.param(x, marks=pytest.mark.slow) for x in CELLS)]
+)
 def test_python(source: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     exec(compile(source, "README.md", "exec"), {"__name__": "__main__"})

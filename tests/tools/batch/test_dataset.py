@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import gaussmap as gm
 import numpy as np
@@ -164,27 +163,6 @@ class TestOtherReaders:
         joined = points.join(manifest, on="part").filter(polars.col("name") == "part 2").collect()
         assert len(joined) == made.COUNTS[2]
 
-    def test_duckdb(self, dataset):
-        duckdb = pytest.importorskip("duckdb")
-        points, manifest = (f"'{dataset.folder}/{x}.parquet'" for x in ("points/*", "manifest"))
-        columns = ", ".join(self.expected())
-        table = duckdb.sql(f"SELECT {columns} FROM {points} ORDER BY part, normal_index")
-        for name, column in table.fetchnumpy().items():
-            np.testing.assert_array_equal(column, self.expected()[name])
-        rows = duckdb.sql(
-            f"SELECT m.part, any_value(m.samples), count(p.part), count(p.face_index) "
-            f"FROM {manifest} m LEFT JOIN {points} p USING (part) GROUP BY m.part ORDER BY m.part"
-        ).fetchall()
-        assert rows == [
-            (k, count, count, count * (k % 3 == 2)) for k, count in enumerate(made.COUNTS)
-        ]
-        types = dict(duckdb.sql(f"SELECT * FROM {points}").description and [
-            (x[0], str(x[1])) for x in duckdb.sql(f"DESCRIBE SELECT * FROM {points}").fetchall()
-        ])  # fmt: skip
-        assert types["part"] == "BIGINT"
-        assert types["x"] == "DOUBLE"
-        assert types["on_surface"] == "BOOLEAN"
-
 
 @pytest.mark.parametrize("compression", ["none", "zstd", "snappy"])
 def test_single_precision_and_compression(tmp_path, compression):
@@ -204,8 +182,3 @@ def test_it_is_opened_again_after_pickling(dataset):
     import pickle
 
     assert len(pickle.loads(pickle.dumps(dataset)).manifest()) == PARTS
-
-
-def test_paths_of_all_kinds(dataset, monkeypatch):
-    monkeypatch.chdir(dataset.folder.parent)
-    assert len(gm.open_dataset("set")) == len(gm.open_dataset(Path("set"))) == PARTS

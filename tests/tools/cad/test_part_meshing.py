@@ -75,13 +75,6 @@ def test_a_box(count):
     assert repr(mesh) == f"PartMesh({count:,} vertices, {2 * count - 4:,} triangles on box)"
 
 
-def test_triangles_of_a_box_are_even():
-    mesh = meshed(box(*SIZES), 1000)
-    assert mesh.smallest_angles.min() > 20.0
-    lengths = np.linalg.norm(np.diff(mesh.vertices[mesh.edges], axis=1)[:, 0], axis=1)
-    assert lengths.max() < 4.0 * lengths.min()
-
-
 @pytest.mark.parametrize("count", [200, 2000])
 def test_a_cylinder_is_exact_though_its_circles_have_few_points(count):
     """A circle of a plane is a cubic of nine points; the seam and both circles are shared."""
@@ -487,11 +480,6 @@ def test_trimesh_reads_a_closed_mesh(tmp_path, suffix):
         again = trimesh.load_mesh(path)
     assert (again.is_watertight, len(again.vertices)) == (True, 300)
     assert again.volume == pytest.approx(mesh.volume, rel=1e-5)
-
-
-def test_vtu_files(tmp_path):
-    meshed(CYLINDER, 300).write(tmp_path / "part.vtu")
-    assert (tmp_path / "part.vtu").stat().st_size
 
 
 def test_obj_files_have_a_normal_at_each_corner(tmp_path):

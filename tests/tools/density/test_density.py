@@ -37,12 +37,12 @@ def same(one: gm.Samples, other: gm.Samples) -> None:
 @pytest.mark.compiled
 @pytest.mark.parametrize("density", DENSITIES)
 @pytest.mark.parametrize("name", [*gm.surfaces.names(), "klein bottle"])
-@pytest.mark.quick_for("torus", "sphere", "plane", "monkey_saddle")
+@pytest.mark.quick_for("torus", "plane", "monkey_saddle")
 def test_counts_are_exact(name, density):
     surface = klein_bottle() if name == "klein bottle" else gm.surfaces.surface(name)
     for cells in ((4, 3), (16, 16)):
         spline = gm.fit(surface, cells)
-        for count in (1, 2, 3, 10, 800):
+        for count in (1, 2, 3, 10, 300):
             samples = gm.sample(spline, count=count, density=density)
             assert len(samples) == samples.report.samples == count
             for field in samples.fields:
@@ -85,16 +85,6 @@ def test_samples_on_a_spline_have_its_curvatures(density):
     largest = (H**2 - K).max() + (H**2).max()
     np.testing.assert_allclose(samples.gaussian_curvature, K, rtol=0, atol=1e-9 * largest)
     np.testing.assert_allclose(samples.mean_curvature, H, rtol=0, atol=1e-9 * largest**0.5)
-
-
-@pytest.mark.compiled
-def test_added_samples_have_the_curvatures_of_their_place():
-    """On a sphere, a cylinder and a plane: the spline is of first order in its cells."""
-    for name, K, H in (("sphere", 1.0, 1.0), ("cylinder", 0.0, 0.5), ("plane", 0.0, 0.0)):
-        samples = gm.sample(gm.surfaces.surface(name), count=500, density="uniform")
-        away = np.abs(samples.points[:, 2]) < 0.9  # from the poles of the sphere
-        np.testing.assert_allclose(samples.gaussian_curvature[away], K, rtol=0, atol=0.1)
-        np.testing.assert_allclose(np.abs(samples.mean_curvature[away]), H, rtol=0, atol=0.05)
 
 
 @pytest.mark.compiled
@@ -174,6 +164,7 @@ def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "plane"])
+@pytest.mark.quick_for("torus")
 def test_parts_make_covers_hardly_worse(name, monkeypatch):
     """Parts of 1,000 places meet in borders, where they do not always know of one another."""
     spline = gm.fit(gm.surfaces.surface(name), (32, 32))
@@ -216,17 +207,6 @@ def test_fields_and_types(fields, dtype):
     assert part.report == replace(whole.report, infinite_curvatures=None)
 
 
-@pytest.mark.compiled
-def test_several_surfaces():
-    surfaces = [gm.fit(TORUS, (8, 8)), gm.fit(gm.surfaces.plane(), (4, 4))]
-    found = list(gm.sample_many(surfaces, count=60, progress=False))
-    assert [len(x) for x in found] == [60, 60]
-    for k, (samples, surface) in enumerate(zip(found, surfaces, strict=True)):
-        alone = gm.sample(surface, count=60)
-        same(samples, alone)
-        assert samples.report == replace(alone.report, index=k)
-
-
 # --- how dense ------------------------------------------------------------------------------------
 
 
@@ -260,7 +240,7 @@ def test_density_is_a_power_of_the_curvature(alpha):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("count", [500, 5000, 20_000])
+@pytest.mark.parametrize("count", [500, 5000])
 def test_uniform_goes_by_area(count):
     """Not by parameters: with x = u³, half of the cells have an eighth of the area.
 

@@ -396,7 +396,7 @@ def test_far_viewpoints_are_directions_and_trims_cut() -> None:
 def test_visible_parts_of_a_torus(sight: dict[str, Any]) -> None:
     """Rays to the eye, with the implicit equation; wrong at most next to cusps and junctions."""
     pytest.importorskip("rtree")
-    outline = gm.silhouette(TORUS, count=400, **sight)
+    outline = gm.silhouette(TORUS, count=200, **sight)
     seen = outline.visible(by=gm.sample(TORUS, 4_000).mesh())
     to_eye = VIEWPOINT - outline.points if "viewpoint" in sight else -np.array([sight["direction"]])
     way = outline.points[:, None] + np.linspace(0.02, 1, 2_000)[:, None] * (to_eye + 0.0)[:, None]

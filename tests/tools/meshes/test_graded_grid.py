@@ -180,26 +180,10 @@ class TestOtherSamples:
             assert other.mesh().euler_characteristic == surfaces[name][1]
 
     @compiled
-    def test_a_few_samples_between_few_lines(self):
-        rng = np.random.default_rng(6)
-        samples = on_grid("torus", (12, 15), rng.uniform(0.0, 1.0, (40, 2)))
-        check("torus", samples.mesh())
-
-    @compiled
     def test_too_many_between_the_lines(self):
         rng = np.random.default_rng(2)
         samples = on_grid("graph", (6, 6), rng.uniform(0.0, 1.0, (40, 2)))
         assert samples.mesh().euler_characteristic == 1
-
-    def test_float32_and_files(self, tmp_path):
-        samples = on_grid("torus", (12, 9))
-        samples.write(tmp_path / "samples.npz")
-        with np.load(tmp_path / "samples.npz") as data:
-            arrays = {x: data[x] for x in ("points", "normals", "uv", "row", "column")}
-        for kind in (np.float64, np.float32):
-            typed = {x: y.astype(kind) if y.dtype.kind == "f" else y for x, y in arrays.items()}
-            again = gm.Samples(**typed, report=samples.report)
-            check("torus", again.mesh(samples.spline))
 
 
 def check_nodes(samples):
@@ -270,13 +254,6 @@ class TestAligned:
         assert samples.row is None
         assert samples.report.density is None
         assert samples.mesh().euler_characteristic == 1
-
-    def test_they_are_better_than_balanced_ones(self):
-        meshes = [
-            gm.sample("torus", 1500, density=x, cells=(16, 16)).mesh(prefer="normals")
-            for x in ("aligned", "balanced")
-        ]
-        assert meshes[0].angles.max() < 0.7 * meshes[1].angles.max()
 
     def test_weights_and_offsets(self):
         samples = gm.sample("torus", 700, density="aligned", cells=(16, 16))

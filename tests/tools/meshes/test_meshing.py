@@ -23,7 +23,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 compiled = pytest.mark.compiled
 
 NO_AREA = np.degrees(1e-6)  # of the smallest angle
-CAP = gm.icosphere(60)[gm.icosphere(60)[:, 2] > 0.9]
+CAP = gm.icosphere(24)[gm.icosphere(24)[:, 2] > 0.9]
 
 
 def latitude(u: Any, v: Any) -> Any:
@@ -191,16 +191,6 @@ class TestTopology:
         assert 0 < (mesh.sides == -1).any(axis=1).sum() < len(mesh.triangles) / 4
         assert mesh.angles.max() < 90.0
 
-    def test_every_sample_is_a_vertex(self):
-        samples = gm.sample(gm.surfaces.wavy_graph(), count=500)
-        mesh = samples.mesh(prefer="normals")
-        is_sample = mesh.sample_index >= 0
-        assert sorted(mesh.sample_index[is_sample].tolist()) == list(range(len(samples)))
-        own = mesh.sample_index[is_sample]
-        for ours, theirs in ((mesh.vertices, samples.points), (mesh.normals, samples.normals),
-                             (mesh.uv, samples.uv)):  # fmt: skip
-            np.testing.assert_array_equal(ours[is_sample], theirs[own])
-
     def test_a_pole_is_one_vertex_with_the_normal_of_those_round_it(self):
         samples = gm.sample(gm.surfaces.ellipsoid(a=2, b=1, c=1), count=600, density="gauss")
         mesh = samples.mesh()
@@ -281,7 +271,7 @@ class TestFlips:
     @pytest.mark.quick_for("graph", "moebius")
     def test_no_flip_is_left_that_helps(self, name):
         """Each pair of triangles is compared with the other one, in NumPy."""
-        samples = gm.sample(surfaces[name][0](), count=300)
+        samples = gm.sample(surfaces[name][0](), count=150)
         assert isinstance(samples.spline, gm.Spline)
         state = triangulated(samples, samples.spline)
         assert flip_edges(state, "normals") > 0
@@ -303,30 +293,6 @@ class TestFlips:
         fresh, is_whole = neighbours(state.triangles, anywhere)
         assert is_whole
         np.testing.assert_array_equal(state.neighbours, fresh)
-
-    def test_on_a_sphere_the_angle_is_that_of_the_circumcircle(self):
-        """A plane at the distance d from the centre cuts the unit sphere in the angle acos d."""
-        mesh = mesh_of("sphere", "normals", normals=gm.fibonacci(500))
-        on_sphere = gm.Mesh(
-            mesh.normals, mesh.normals, mesh.uv, mesh.triangles, mesh.sample_index
-        )  # fmt: skip
-        a, b, c = np.moveaxis(mesh.normals[mesh.triangles], 1, 0)
-        normal = np.cross(b - a, c - a)
-        distance = np.einsum("kx,kx->k", a, normal) / np.linalg.norm(normal, axis=1)
-        # acos near 1 turns an error ε into √(2 ε)
-        np.testing.assert_allclose(
-            on_sphere.angles, np.degrees(np.arccos(distance)), atol=np.degrees(3e-8)
-        )
-
-    def test_they_make_the_worst_angle_smaller_and_never_larger(self):
-        samples = gm.sample(gm.surfaces.torus(), count=2000)
-        assert isinstance(samples.spline, gm.Spline)
-        state = triangulated(samples, samples.spline)
-        before = state.mesh(len(samples)).angles
-        flip_edges(state, "normals")
-        after = state.mesh(len(samples)).angles
-        assert after.max() < before.max()
-        assert after.mean() < before.mean()
 
 
 @compiled

@@ -31,6 +31,7 @@ def test_walls_of_holes_block_beyond_their_diameter(bracket):
     assert not centres.unobstructed(6.1).any()  # by the mesh of the part
 
 
+@pytest.mark.slow
 def test_what_is_free_of_the_bracket(bracket):
     free, faces = bracket.unobstructed(1000.0), bracket.surface.faces
     low, high = bracket.surface.bounds

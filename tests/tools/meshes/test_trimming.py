@@ -91,17 +91,6 @@ def test_weights_of_a_disc():
     assert weights @ square == pytest.approx(np.pi * 0.4**4 / 2.0, rel=1e-2)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", PARTS)
-def test_weights_converge(name):
-    surface, _ = PARTS[name]
-    spline = gm.fit(surface, None if name == "grid" else (32, 32))
-    expected = area(spline, 3000)
-    for density in ("balanced", "uniform"):
-        total = gm.sample(spline, 4000, density=density).weights().sum()
-        assert total == pytest.approx(expected, rel=1e-3)
-
-
 def test_borders_are_those_of_all_conditions():
     # Two rectangles that touch, in one loop each: no border between them. And a predicate.
     left = np.array([(0.1, 0.1), (0.5, 0.1), (0.5, 0.9), (0.1, 0.9)])

@@ -106,7 +106,7 @@ def test_length_of_normals_does_not_matter() -> None:
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("exponent", [-150, -12, 12, 150])
+@pytest.mark.parametrize("exponent", [-150, 150])
 def test_scales(exponent: int) -> None:
     s = 10.0**exponent
     branches = given(f"1e{exponent}*({ELLIPSOID})").branches(NORMALS)

@@ -83,13 +83,6 @@ def test_the_region_is_a_few_per_cent_of_a_sphere_at_first() -> None:
     assert 0.02 < np.mean(apart < data["radius"] / 100.0) < 0.05
 
 
-def test_labels_without_a_unit(parts: ModuleType) -> None:
-    part = parts.all_kinds().select(kind="cylinder")
-    part.about["unit"] = ""
-    labels = read_page(module.page(gm.sample(part, 20)))["part"]["labels"]
-    assert labels[0] == "Face 1: cylinder, radius 1"
-
-
 def test_faces_of_a_part_have_colours_labels_and_edges(parts: ModuleType) -> None:
     part = parts.all_kinds().select(kind=("plane", "cylinder", "sphere"))
     samples = gm.sample(part, 100)
@@ -109,6 +102,10 @@ def test_faces_of_a_part_have_colours_labels_and_edges(parts: ModuleType) -> Non
     outward = (a + b + c)[faces == cylinder.index] / 3 * [1.0, 1.0, 0.0]
     assert (np.einsum("kx,kx->k", outward, normals[faces == cylinder.index]) > 0).all()
     assert {re.sub("[0-9a-f]", "", x) for x in found["colours"]} == {"#"}
+    part.about["unit"] = ""
+    assert read_page(module.page(gm.sample(part, 20)))["part"]["labels"][1] == (
+        "Face 1: cylinder, radius 1"
+    )
     edges = np.frombuffer(base64.b64decode(found["edges"]), "<f4").reshape(-1, 3)
     assert np.isnan(edges).any(axis=1).sum() >= len(part)
     assert np.nanmax(np.abs(edges)) <= 0.5 + 1e-6
