@@ -1,6 +1,8 @@
 """The list of signatures, and the kernels that are compiled for it without being called."""
 
 import os
+import subprocess
+import sys
 from collections import namedtuple
 from pathlib import Path
 from typing import Any
@@ -108,6 +110,33 @@ def test_usual_kernels_are_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(signatures, "USUAL", tmp_path / "usual.json")
     signatures.write_usual(reversed(names))
     assert signatures.USUAL.read_bytes() == content
+
+
+USUAL_CALLS = """
+import numpy as np
+import gaussmap as gm
+from gaussmap.benchmarks.cold_start import CALLS, USUAL
+from gaussmap.runtime.machine_code import cache, signatures
+
+asked, load = set(), cache.KernelCache.load_overload
+
+def noted(self, *arguments):
+    asked.add(f"{self._function.__module__}.{self._function.__qualname__}")
+    return load(self, *arguments)
+
+cache.KernelCache.load_overload = noted
+calls = [CALLS[x] for x in USUAL if x in CALLS and "all surfaces" not in x]
+for call in (*calls, "gm.sample('torus', normals=np.eye(3))"):
+    exec(call.replace("10_000", "300"))
+print(len(asked) > 50, asked - {*signatures.usual()})
+"""
+
+
+@pytest.mark.compiled
+def test_usual_calls_ask_for_usual_kernels_only() -> None:
+    """Otherwise they compile where the package was installed: `make kernels`."""
+    done = subprocess.run([sys.executable, "-c", USUAL_CALLS], capture_output=True, text=True)
+    assert done.stdout == "True set()\n", done.stderr
 
 
 @pytest.mark.compiled
