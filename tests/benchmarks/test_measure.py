@@ -49,17 +49,3 @@ def test_a_missing_peer_is_not_prepared():
     found = measure.measure(FORMS[0], Places.of(FORMS[0], 10), peer)
     assert found == measure.Measured(peer, peer.missing)
     assert found.missing
-
-
-# Next to lines with K = 0 a few normals of the spline of the wavy graph are none of its own.
-@pytest.mark.filterwarnings("ignore:.*could not be moved to the surface:gaussmap.GaussmapWarning")
-@FORM
-def test_gaussmap_itself(form, monkeypatch):
-    monkeypatch.setattr(measure, "OWN_ROUNDS", 1)
-    rows = measure.measure_own(form)
-    assert len(rows) == len({(x.call, x.points) for x in rows}) == 4
-    # count=… comes within 5 %, and its normals again give as many
-    assert all(x.points == pytest.approx(2_000, rel=0.05) for x in rows[1:])
-    E, G = measure.judge_own(form, Places.of(form, 300))
-    assert 0.0 < G < 45.0
-    assert E > 0.0

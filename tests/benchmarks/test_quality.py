@@ -7,7 +7,7 @@ from pathlib import Path
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.benchmarks.peers.forms import FORMS, Torus
+from gaussmap.benchmarks.peers.forms import Torus
 from gaussmap.benchmarks.peers.metrics import Errors, Places
 from gaussmap.benchmarks.peers.peer import Peer, Turns
 from gaussmap.benchmarks.peers.untuned import UNTUNED
@@ -20,7 +20,6 @@ from gaussmap.benchmarks.quality import (
 from gaussmap.benchmarks.quality.opening import opening
 
 ROOT = Path(__file__).parents[2]
-FORM = pytest.mark.parametrize("form", [*FORMS, *UNTUNED], ids=lambda x: x.name)
 
 
 def nearest(samples, places):
@@ -48,31 +47,7 @@ def test_the_exact_method_takes_the_normals_of_gauss(form):
     assert np.median(off) < 1e-3
 
 
-@FORM
-def test_icosahedral_normals_come_near_to_the_count(form):
-    """From one refinement to the next the number grows by (2ν + 1)/ν², here at most a quarter."""
-    points, _ = ways.icosahedral(form, 1_500)()
-    assert len(points) == pytest.approx(1_500, rel=0.125)
-
-
-@pytest.mark.compiled
-@pytest.mark.parametrize("way", ways.DENSITIES)
-def test_ways_of_gaussmap(way):
-    points, normals = way.prepare(Torus(), 300)()
-    assert points.shape == normals.shape == (len(points), 3)
-    assert len(points) == pytest.approx(300, rel=0.05)
-
-
-def test_every_way_stands_in_the_table_once():
-    assert len({x.title for x in ways.WAYS}) == len(ways.WAYS)
-    assert len({x.title for x in meshers.MESHERS}) == len(meshers.MESHERS)
-
-
 # --- surfaces -------------------------------------------------------------------------------------
-
-
-def test_judged_surfaces_have_names_of_their_own():
-    assert len({x.name for x in surfaces.JUDGED}) == len(surfaces.JUDGED) >= 10
 
 
 def test_sheared_parameters_give_the_same_torus():
@@ -152,14 +127,6 @@ def test_random_points_are_judged_by_the_median(monkeypatch, random, E):
     assert found.errors.E == E
     assert found.errors == (Errors(4, 2, 3, 8, 1) if random else Errors(1, 1, 5, 7, 1))
     assert (found.points, found.rate, found.times) == (200, 400.0, 12.0)
-
-
-@pytest.mark.compiled
-def test_meshes_have_the_vertices_that_were_asked():
-    """Points on open borders are among them."""
-    vertices, triangles = meshers.through("uniform", "normals")(UNTUNED[0], 1_000)
-    assert len(vertices) == pytest.approx(1_000, rel=0.04)
-    assert len(np.unique(triangles)) == len(vertices)
 
 
 # --- the page -------------------------------------------------------------------------------------

@@ -4,12 +4,6 @@ import pytest
 from gaussmap.benchmarks import scale
 
 
-@pytest.mark.parametrize("power", [0.5, 1.0, 1.05])
-def test_slope_of_a_power(power):
-    pairs = [(10.0**k, 3e-8 * 10.0 ** (k * power)) for k in range(3, 9)]
-    assert scale.slope(pairs) == pytest.approx(power, abs=1e-13)
-
-
 def test_slope_by_least_squares():
     # by hand: x = 0, 1, 2 and y = 0, 0, 3 give Σ(x − 1)(y − 1)/Σ(x − 1)² = 3/2
     assert scale.slope([(1, 1), (10, 1), (100, 1000)]) == pytest.approx(1.5)

@@ -1,12 +1,9 @@
 """What brings the meshes of others to one form, and how meshes are compared with a surface."""
 
-import math
-
 import numpy as np
 import pytest
 from gaussmap.benchmarks.peers.forms import FORMS, Torus
-from gaussmap.benchmarks.peers.mesh_metrics import quality, to_surface
-from gaussmap.benchmarks.peers.metrics import Places
+from gaussmap.benchmarks.peers.mesh_metrics import to_surface
 from gaussmap.benchmarks.peers.triangles import by_grid, joined
 
 
@@ -27,20 +24,6 @@ def test_a_grid_has_the_topology_of_its_surface(form):
     characteristic = len(vertices) - len(np.unique(edges, axis=0)) + len(triangles)
     assert characteristic == (form.name == "wavy_graph")
     assert len(vertices) == pytest.approx(400, rel=0.05)
-
-
-@pytest.mark.slow
-def test_a_grid_on_the_torus_is_off_by_what_theory_says():
-    """Chords of the tube, of m sides, and of the outer circle, of n: R (1 − cos π/n) and so on."""
-    pytest.importorskip("pyvista")
-    form = Torus()
-    found = quality(form, Places.of(form, 20_000), by_grid(form, 2_000))
-    n = math.isqrt(found.vertices)
-    tube = form.minor * (1 - math.cos(math.pi / n))
-    ring = (form.major + form.minor) * (1 - math.cos(math.pi / n))
-    # in the middle of a diagonal both add up, to the order of the next power of 1/n
-    for distance in (found.to_mesh, found.to_surface):
-        assert distance == pytest.approx(tube + ring, rel=0.03)
 
 
 def test_distances_from_the_torus_are_exact():

@@ -1,7 +1,6 @@
 """The pages in docs/ that a script writes are what the script gives."""
 
 import re
-from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -20,27 +19,6 @@ def test_a_false_claim_makes_no_page(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(errata, "NUMERATOR_12", errata.NUMERATOR_12 + errata.n1**3)
     with pytest.raises(ArithmeticError):
         errata.control_points()
-
-
-def test_equality_is_exact():
-    x = sp.Symbol("x")
-    assert errata.equal((x**2 - 1) / (x - 1), x + 1)
-    assert not errata.equal(x + sp.Rational(1, 10**30), x)
-
-
-def test_values_in_all_orders():
-    values = errata.values_in_all_orders(errata.RIGHT_11, (1, 2, 4))
-    assert len(values) == 120
-    assert values[0] == Fraction(85, 14)  # the first order is that of the points
-
-
-def test_one_box_spline():
-    (coefficient,) = {
-        ordinates[Fraction(0), Fraction(0)]
-        for centre, ordinates in errata.box_splines_on(1, 1).items()
-        if centre == (0, 0)
-    }
-    assert coefficient == Fraction(1, 2)
 
 
 def test_lines_are_not_those_of_another_patch():

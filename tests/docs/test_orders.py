@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from gaussmap.docs import markdown, orders, poles
 from gaussmap.docs.exact import angles
-from gaussmap.docs.orders import ANGLES, DERIVATIVES, POSITIONS, QUANTITIES, SUPPORT
+from gaussmap.docs.orders import ANGLES, QUANTITIES, SUPPORT
 
 pytestmark = pytest.mark.compiled
 
@@ -30,12 +30,6 @@ def test_order(measured, name, quantity):
     # terms of the next order are still felt on coarse grids; on cubics there are none
     above = 0.1 if name in CUBIC else 1.2
     assert quantity.order - 0.1 < measured[name].slope(quantity) < quantity.order + above
-
-
-def test_cubics_have_exact_orders(measured):
-    for name in CUBIC:
-        assert measured[name].slope(POSITIONS) == pytest.approx(3.0, abs=1e-3)
-        assert measured[name].slope(DERIVATIVES) == pytest.approx(2.0, abs=1e-3)
 
 
 def test_quadratics_are_reproduced(measured):
@@ -85,17 +79,6 @@ def test_newton_agrees_with_closed_forms():
         assert found.closed_form < 1e-14
 
 
-def test_preimages_have_the_normals():
-    true = orders.TrueSurface("enneper")
-    places = np.array([[0.3, 0.4], [0.7, 0.2]])
-    derivatives = true.derivatives(places[:, 0], places[:, 1], 1)
-    normals = np.cross(derivatives[:, 1], derivatives[:, 2])
-    found = orders.preimages(true, places + 0.02, normals)
-    assert found == pytest.approx(places, abs=1e-12)
-    assert true.inside(places).all()
-    assert not true.inside(places + 1.0).any()
-
-
 def test_the_sum_of_compared_and_left_out_is_all(measured):
     for name in CURVED:
         for cells, found in zip(GRIDS, measured[name].support, strict=True):
@@ -114,17 +97,6 @@ def test_regular_and_singular_surfaces_are_the_catalogue():
         _ = orders.TrueSurface("sphere").largest_curvature
 
 
-def test_tables(measured):
-    names = ["torus", "plane", "cylinder"]
-    chosen = [measured[name] for name in names]
-    for quantity in QUANTITIES:
-        lines = orders.table(quantity, chosen).splitlines()
-        assert [line.split("|")[1].strip(" `") for line in lines[2:]] == names
-        assert len({line.count("|") for line in lines}) == 1
-    assert "exact" in orders.table(POSITIONS, chosen).splitlines()[3]
-    assert orders.table(SUPPORT, chosen).count("–") == 2 * (len(GRIDS) + 4)
-
-
 def test_errors_next_to_poles():
     """Positions have order 3 everywhere, normals order 1 in the first row of a generic surface."""
     errors = {x.name: [poles.measured(x.name, n) for n in GRIDS] for x in poles.surfaces()}
@@ -137,11 +109,6 @@ def test_errors_next_to_poles():
         assert normals[0] == pytest.approx(1.0 if name == "egg" else 2.0, abs=0.1)
         assert max(x.at_pole for x in found) < 1e-5
     assert [x.normals[0] for x in errors["egg"]] == pytest.approx([4.49, 2.18], abs=0.01)
-
-
-def test_tables_of_poles():
-    for quantity in ("positions", "normals"):
-        assert poles.table(GRIDS, quantity).count("| `egg` |") == len(poles.REGIONS)
 
 
 def test_the_page_has_all_tables(measured):

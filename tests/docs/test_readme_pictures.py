@@ -40,21 +40,6 @@ def test_small_copies_of_the_pictures_of_the_demo(name: str) -> None:
     assert (dark(found)[which.ravel()] == in_dark.reshape(-1, 3)).all()
 
 
-def test_pictures_are_reduced_to_few_colours(tmp_path: Path) -> None:
-    random = np.random.default_rng(1)
-    made, written = tmp_path / "made", tmp_path / "written"
-    for folder in (made, written):
-        folder.mkdir()
-    pixels = np.full((30, 40, 3), 255, np.uint8)
-    pixels[10:20, 10:20] = random.integers(0, 256, (10, 10, 3))
-    for name in figures.DEMO:
-        Image.fromarray(pixels).save(made / f"{name}.png")
-    figures.demo(made, written)
-    light = np.asarray(Image.open(written / "torus.png").convert("RGB"))
-    assert (light[:10] == 255).all()
-    assert np.abs(light.astype(int) - pixels).mean() < 2.0
-
-
 def test_each_picture_has_a_dark_one() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     pairs = re.findall(r'dark\)" srcset="([^"]*)"><img src="([^"]*)" alt="[^"]{20,}"', readme)
