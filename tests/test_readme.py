@@ -2,7 +2,6 @@
 
 import re
 import shlex
-from collections.abc import Callable
 from pathlib import Path
 
 import gaussmap as gm
@@ -38,12 +37,7 @@ def test_python(source: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 
 @pytest.mark.compiled
-def test_command_line(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    main: Callable[..., int],
-) -> None:
+def test_command_line(tmp_path, monkeypatch, capsys, main):
     monkeypatch.chdir(tmp_path)
     x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
     np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))

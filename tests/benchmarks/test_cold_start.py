@@ -26,9 +26,7 @@ def test_only_an_empty_cache_compiles(tmp_path: Path) -> None:
     assert first.seconds > first.beyond
 
 
-def test_the_check_fails_if_kernels_are_compiled(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_check_fails_if_kernels_are_compiled(monkeypatch, capsys):
     monkeypatch.setenv("GAUSSMAP_KERNELS", "0")
     assert cold_start.main(["--check"]) == 1
     assert "FAILED `fit`" in capsys.readouterr().out

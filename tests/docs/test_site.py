@@ -37,9 +37,7 @@ def test_every_page_of_docs_is_in_the_site() -> None:
             assert any(path.with_suffix(x).exists() for x in (".md", ".ipynb")), path
 
 
-def test_a_command_that_pages_call_is_missed_at_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_command_that_pages_call_is_missed_at_once(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(ConfigError, match="the command dask is not on PATH"):
         runpy.run_path(str(ROOT / "docs" / "conf.py"))

@@ -1,6 +1,5 @@
 """What users may hand over by mistake, and too much of it: one sentence of a GaussmapError."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -81,9 +80,7 @@ LONE = "\udc80"
     ],
     ids=lambda x: ascii(" ".join(x)),
 )  # fmt: skip
-def test_lone_surrogates_on_the_command_line(
-    arguments: list[str], capsys: pytest.CaptureFixture[str], main: Callable[..., int]
-) -> None:
+def test_lone_surrogates_on_the_command_line(arguments, capsys, main):
     """A byte that is no UTF-8 arrives as a lone surrogate."""
     assert main(arguments) == 2
     message = capsys.readouterr().err

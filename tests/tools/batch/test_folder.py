@@ -25,6 +25,7 @@ from gaussmap.tools.batch.folder import (
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow
 from gaussmap.tools.batch.part_files import row_of, write_part
 
+from ...refusals import refused
 from . import made
 
 pytest.importorskip("pyarrow")
@@ -151,12 +152,9 @@ def test_other_settings(tmp_path: Path, change: dict[str, Any], what: str) -> No
 @pytest.mark.parametrize("overwrite", [False, True])
 def test_folders_of_something_else(tmp_path: Path, overwrite: bool) -> None:
     (tmp_path / "a").write_text("b")
-    with pytest.raises(gm.errors.FileError, match="new or empty folder"):
-        begin(tmp_path, overwrite)
-    with pytest.raises(gm.errors.FileError, match="is a file"):
-        begin(tmp_path / "a", overwrite)
-    with pytest.raises(gm.errors.FileError, match="no data set"):
-        read_settings(tmp_path)
+    refused("new or empty folder", begin, tmp_path, overwrite, error=gm.errors.FileError)
+    refused("is a file", begin, tmp_path / "a", overwrite, error=gm.errors.FileError)
+    refused("no data set", read_settings, tmp_path, error=gm.errors.FileError)
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"format": 99}', "\0"])
@@ -165,8 +163,7 @@ def test_damaged_settings(tmp_path: Path, text: str) -> None:
     (tmp_path / "dataset.json").write_text(text)
     before = contents(tmp_path)
     for overwrite, match in ((False, "cannot be used"), (True, "not of gaussmap")):
-        with pytest.raises(gm.errors.FileError, match=match):
-            begin(tmp_path, overwrite)
+        refused(match, begin, tmp_path, overwrite, error=gm.errors.FileError)
     assert contents(tmp_path) == before
 
 
@@ -174,8 +171,7 @@ def test_damaged_settings(tmp_path: Path, text: str) -> None:
 def test_one_run_at_a_time(tmp_path: Path, overwrite: bool) -> None:
     with opened(tmp_path, KNOWN):
         write_part(tmp_path, KNOWN, made.row_of(made.BROKEN, 0))
-        with pytest.raises(gm.errors.FileError, match="another run"):
-            begin(tmp_path, overwrite)
+        refused("another run", begin, tmp_path, overwrite, error=gm.errors.FileError)
         assert parts_in(tmp_path)
     begin(tmp_path, overwrite)
     assert bool(parts_in(tmp_path)) is not overwrite
@@ -224,8 +220,7 @@ def test_links_are_refused(tmp_path: Path, name: str, overwrite: bool) -> None:
         (folder / name).rename(target)
     (folder / name).symlink_to(target)
     before = contents(tmp_path)
-    with pytest.raises(gm.errors.FileError, match=f"{name}' is a symbolic link"):
-        begin(folder, overwrite)
+    refused(f"{name}' is a symbolic link", begin, folder, overwrite, error=gm.errors.FileError)
     assert contents(tmp_path) == before
 
 
@@ -249,7 +244,5 @@ def test_the_folder_itself_may_be_a_link(tmp_path: Path) -> None:
         (1, "x" * 1000, f"000001-{'x' * 60}.ply"),
     ],
 )
-def test_names_of_files_are_harmless_and_stay_in_their_folder(
-    part: int, name: str, expected: str
-) -> None:
+def test_names_of_files_are_harmless_and_stay_in_their_folder(part, name, expected):
     assert file_name(part, name, ".ply") == expected

@@ -1,13 +1,10 @@
 """What is shown of a run that takes long."""
 
-import pytest
 from gaussmap.tools.batch import making
 from gaussmap.tools.batch.workers import Tally
 
 
-def test_a_log_has_few_lines(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_log_has_few_lines(capsys, monkeypatch):
     for interval, count in ((10.0, 1), (0.0, 6)):
         monkeypatch.setattr(making, "INTERVAL", interval)
         tallies = [Tally(ok=50 - failed, failed=failed) for failed in (0, 0, 1, 0)]

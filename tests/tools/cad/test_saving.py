@@ -183,19 +183,15 @@ def test_entries_are_what_is_written(entry, everything, tmp_path):
 
 DAMAGE = [
     ("number_starts", lambda x: x[::-1].copy()),
-    ("number_starts", lambda x: x + 1),
     ("kind", lambda x: x + 50),
-    ("kind", lambda x: x.astype(np.float64)),
     ("basis", lambda x: np.where(x < 0, x, 0)),
     ("net", lambda x: np.where(x < 0, x, 10**6)),
-    ("net_degrees", lambda x: x + 10**9),
     ("net_shapes", lambda x: x + 1),
     ("knots", lambda x: x[1:]),
     ("side_faces", lambda x: x + 10**6),
     ("side_point_starts", lambda x: np.r_[x[:1], x[1:-1] + 1, x[-1:]]),
     ("edge_vertices", lambda x: x + 10**6),
     ("wire_sides", lambda x: x + 1),
-    ("wire_sides", lambda x: x + 10**6),
     ("solid_index", lambda x: x + 10**6),
     ("area", lambda x: x[1:]),
     ("domain", lambda x: x.reshape(-1, 4)),
@@ -204,10 +200,8 @@ DAMAGE = [
     ("about", lambda x: np.frombuffer(b'{"format": "no"}', dtype=np.uint8)),
     # those of the first version only
     ("edge_point_starts", lambda x: x[::-1].copy()),
-    ("edge_point_starts", lambda x: x[1:]),
     ("edge_points", lambda x: x[:, :3]),
     ("edge_faces", lambda x: x + 10**6),
-    ("edge_faces", lambda x: x.astype(np.float64)),
 ]
 
 

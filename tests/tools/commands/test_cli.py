@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import cycle
 from pathlib import Path
 from typing import Any
@@ -104,9 +104,7 @@ def test_sample_a_surface_by_name() -> None:
 
 
 @compiled
-def test_tolerance_of_data_and_what_the_summary_says_of_them(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_tolerance_of_data_and_what_the_summary_says_of_them(capsys):
     x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
     np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
     arguments = ["--spacing", "30", "30", "--tolerance", "1", "--count", "300", "-o", "a.npz"]
@@ -217,9 +215,7 @@ def test_the_tape_of_a_formula(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize("name", gm.surfaces.names())
-def test_the_tape_that_is_shown_computes_the_surface(
-    name: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_tape_that_is_shown_computes_the_surface(name, capsys):
     """Each operation is that of NumPy of the same name, or one of `own`."""
     surface = gm.surfaces.surface(name)
     own: dict[str, Any] = {
@@ -257,9 +253,7 @@ def test_the_tape_that_is_shown_computes_the_surface(
         (["formulas", "--help"], ["LaTeX"]),
     ],
 )
-def test_help(
-    arguments: list[str], words: Sequence[str], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_help(arguments, words, capsys):
     assert main(arguments) == 0
     out, err = capsys.readouterr()
     assert err == ""
@@ -269,9 +263,7 @@ def test_help(
 
 
 @pytest.mark.parametrize("command", ["sample", "mesh", "plot", "view", "batch"])
-def test_help_fits_on_a_screen(
-    command: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_help_fits_on_a_screen(command, capsys, monkeypatch):
     """It names all options, and says how they are explained."""
     monkeypatch.setenv("COLUMNS", "100")
     assert main([command, "--help"]) == 0
@@ -285,9 +277,7 @@ def test_help_fits_on_a_screen(
     assert "explained by --help-all" in brief
 
 
-def test_a_terminal_gets_wrapped_lines(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_terminal_gets_wrapped_lines(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "70")
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     assert main(["surfaces"]) == 0
@@ -458,9 +448,7 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["formulas", "--tape", "--formula", "u", "v", "Abs(u)"], "has no tape"),
     ],
 )  # fmt: skip
-def test_an_error_is_one_line(
-    command: list[str], message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_error_is_one_line(command, message, capsys):
     before = {path: path.is_file() and path.read_bytes() for path in Path().iterdir()}
     assert main(command) == 2
     out, err = capsys.readouterr()
@@ -478,9 +466,7 @@ def test_bad_output_is_found_before_the_work(failing: Callable[[BaseException], 
 
 
 @compiled
-def test_healpix_that_is_not_installed(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_healpix_that_is_not_installed(capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "astropy_healpix", None)
     assert main(["sample", "torus", "--healpix", "4", *TO]) == 2
     assert 'run: pip install "gaussmap[spheres]"' in capsys.readouterr().err
@@ -493,9 +479,7 @@ def test_an_error_in_a_process() -> None:
     assert re.fullmatch("gaussmap: error: there is no surface 'tours'; .*\n", done.stderr)
 
 
-def test_no_memory_and_a_bug_that_keeps_its_traceback(
-    capsys: pytest.CaptureFixture[str], failing: Callable[[BaseException], None]
-) -> None:
+def test_no_memory_and_a_bug_that_keeps_its_traceback(capsys, failing):
     failing(MemoryError())
     assert main(["sample", "torus", *TO]) == 2
     assert re.fullmatch("gaussmap: error: there is not enough memory.*\n", capsys.readouterr().err)
@@ -505,9 +489,7 @@ def test_no_memory_and_a_bug_that_keeps_its_traceback(
         main(["sample", "torus", *TO])
 
 
-def test_interrupted_in_a_callback(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_interrupted_in_a_callback(capsys, monkeypatch):
     """As by LLVM: the interrupt is lost, and the compiler then fails."""
 
     class Unraisable:
@@ -650,12 +632,7 @@ COMMANDS = [
         ("gaussmap mesh torus -o a", ["file:a"]),
     ],
 )
-def test_completion(
-    words: str,
-    offered: list[str],
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_completion(words, offered, capsys, monkeypatch):
     monkeypatch.setenv("_GAUSSMAP_COMPLETE", "bash_complete")
     monkeypatch.setenv("COMP_WORDS", words)
     monkeypatch.setenv("COMP_CWORD", str(words.count(" ")))

@@ -36,9 +36,7 @@ def test_samples_that_are_left_out_are_counted(capsys: pytest.CaptureFixture[str
     assert f", {mesh.left_out} of the samples left out, " in capsys.readouterr().out
 
 
-def test_a_missing_library_is_told_at_once(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_library_is_told_at_once(monkeypatch, capsys):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     assert main(["mesh", "torus", "-o", "torus.glb"]) == 2
     assert 'run: pip install "gaussmap[trimesh]"' in capsys.readouterr().err
@@ -68,9 +66,7 @@ def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
     ],
 )
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
-def test_errors_are_lines(
-    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_errors_are_lines(arguments, message, capsys):
     assert main(["mesh", *arguments]) == 2
     out, err = capsys.readouterr()
     assert out == ""

@@ -211,9 +211,7 @@ def test_meshes(how: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None
             "ellipsoid_patch", normals=gm.icosphere(4))),
     ],
 )  # fmt: skip
-def test_pictures(
-    options: str, figure: Callable[[], Any], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_pictures(options, figure, capsys):
     image = pytest.importorskip("matplotlib.image")
     assert main(["plot", *options.split(), "--quiet", "-o", "a.png"]) == 0
     assert capsys.readouterr() == ("", "")

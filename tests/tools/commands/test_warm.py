@@ -62,17 +62,13 @@ def test_nothing_is_left_to_compile(tmp_path: Path, parts: ModuleType) -> None:
     assert compiled(tmp_path) == ahead
 
 
-def test_nothing_can_be_compiled(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nothing_can_be_compiled(capsys, monkeypatch):
     monkeypatch.setattr(warm.config, "DISABLE_JIT", 1)
     assert main(["warm"]) == 2
     assert "NUMBA_DISABLE_JIT is set" in capsys.readouterr().err
 
 
-def test_a_folder_that_cannot_be_written(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_folder_that_cannot_be_written(capsys, monkeypatch):
     monkeypatch.setattr(warm.config, "DISABLE_JIT", 0)
     monkeypatch.setattr(warm, "kept_folder", lambda: None)
     assert main(["warm"]) == 2
@@ -80,9 +76,7 @@ def test_a_folder_that_cannot_be_written(
 
 
 @pytest.mark.compiled
-def test_what_is_compiled_is_counted(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_compiled_is_counted(capsys, monkeypatch):
     """One compilation of a kernel whose machine code nobody has, for the types on the list."""
     kernel: Any = numba.njit(lambda array: array.size)
     monkeypatch.setattr(warm.signatures, "read", lambda: {"kernel": [["float64 1 C"]]})

@@ -85,10 +85,3 @@ def test_normals_of_inflections_and_cusps_are_undecided() -> None:
     samples = gm.curves.sample(cusp, normals=[[0.3, -1.0], [1.0, 0.0]])
     assert samples.report.proved == 0
     assert samples.report.undecided == (0, 1)
-
-
-def test_a_straight_line_has_no_samples() -> None:
-    line = Curve.from_sympy(("t", "2*t"), "t", (0, 1), name="line")
-    with pytest.warns(gm.errors.GaussmapWarning, match="100 % of its length is straight"):
-        samples = gm.curves.sample(line, normals=gm.directions.circle(7))
-    assert len(samples) == 0

@@ -96,11 +96,6 @@ def test_reversing_twice_is_the_curve():
     assert np.abs((opposite.points * opposite.normals).sum(axis=1) - opposite.support).max() < 1e-15
 
 
-def test_straight_parts_have_no_branch():
-    line = Curve.from_sympy(("t", "2*t"), "t", (0, 1))
-    assert len(of_spline(line).branches(NORMALS)) == 0
-
-
 @pytest.mark.parametrize(
     ("call", "words"),
     [

@@ -22,9 +22,6 @@ def test_lengths_and_angles_that_are_none(value):
     refused("coverage must be a positive number, not", coverage=value)
     refused("angle must be a positive number of at most 90 degrees, not", angle=value)
     refused("coverage must be a positive number", count=5, coverage=value)
-
-
-def test_an_angle_that_is_too_large():
     refused("at most 90 degrees, not 90.1", angle=90.1)
 
 
@@ -34,16 +31,8 @@ def test_powers_that_are_none(value):
 
 
 def test_densities_that_are_unknown():
-    refused(
-        "no density 'gaus'.* did you mean gauss",
-        gm.errors.UnknownNameError,
-        count=5,
-        density="gaus",
-    )
-    refused("no density ''", gm.errors.UnknownNameError, count=5, density="")
-
-
-def test_the_name_of_an_earlier_version():
+    unknown = "no density 'gaus'.* did you mean gauss"
+    refused(unknown, gm.errors.UnknownNameError, count=5, density="gaus")
     said = '^density "isotropic" has another name: write "balanced".$'
     refused(said, gm.errors.UnknownNameError, count=5, density="isotropic")
 

@@ -102,9 +102,7 @@ def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
     ("factor", "shift", "seeds", "error"),
     [(1e-150, 0.0, range(10), 1e-9), (1e100, 0.0, range(10), 1e-9), (1 / 3, 1e6, [1], 1e-7)],
 )
-def test_scale_does_not_matter_and_translation_costs_its_rounding(
-    factor: float, shift: float, seeds: Sequence[int], error: float
-) -> None:
+def test_scale_does_not_matter_and_translation_costs_its_rounding(factor, shift, seeds, error):
     for seed in seeds:
         net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
         moved = gm.gauss_map.parabolic_lines(net * factor + shift)

@@ -4,7 +4,6 @@ import importlib.util
 import re
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -158,9 +157,7 @@ def test_no_pyplot(tmp_path: Path) -> None:
 # ── Errors ───────────────────────────────────────────────────────────────────────────────────────
 
 
-def test_nothing_half_written(
-    torus: gm.Spline, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nothing_half_written(torus, tmp_path, monkeypatch):
     path = tmp_path / "a.png"
     path.write_text("old")
 
@@ -208,12 +205,7 @@ def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
     assert not path.exists()
 
 
-def test_without_matplotlib(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    main: Callable[..., int],
-) -> None:
+def test_without_matplotlib(tmp_path, monkeypatch, capsys, main):
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[plot\]"'):
         check_target(tmp_path / "a.png")
@@ -221,9 +213,7 @@ def test_without_matplotlib(
     assert 'pip install "gaussmap[plot]"' in capsys.readouterr().err
 
 
-def test_command_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], main: Callable[..., int]
-) -> None:
+def test_command_line(tmp_path, capsys, main):
     path = tmp_path / "a.png"
     assert main(["plot", "plane", "--count", "50", "--cells", "8", "8", "-o", str(path)]) == 0
     out, err = capsys.readouterr()

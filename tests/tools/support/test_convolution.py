@@ -65,18 +65,6 @@ def test_spheres() -> None:
     assert repr(sums).startswith("Convolution(Samples(400 points on SupportFunction(h = ")
 
 
-@pytest.mark.compiled
-def test_spheres_that_are_splines() -> None:
-    """Points are of third order."""
-    one, two = gm.surfaces.sphere(radius=1.0), gm.surfaces.sphere(radius=2.0)
-    errors = []
-    for cells in (16, 32, 64):
-        samples = gm.convolve(one, two, gm.icosphere(8), cells=(cells, cells)).samples
-        assert (np.bincount(samples.normal_index) == 1).all()
-        errors.append(np.abs(np.linalg.norm(samples.points, axis=1) - 3.0).max())
-    assert (np.diff(np.log2(errors)) < -2.5).all()
-
-
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 BODY = gm.surfaces.ellipsoid(a=1.0, b=0.75, c=0.5)
 PLACE = np.eye(4)[[1, 2, 0, 3]]

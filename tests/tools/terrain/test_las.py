@@ -107,13 +107,7 @@ def test_commands(folder: Path, main: Callable[..., int]) -> None:
         (("missing.tif",), "cannot be read"),
     ],
 )
-def test_commands_that_are_refused(
-    folder: Path,
-    capsys: pytest.CaptureFixture[str],
-    main: Callable[..., int],
-    arguments: tuple[str, ...],
-    said: str,
-) -> None:
+def test_commands_that_are_refused(folder, capsys, main, arguments, said):
     names = {"tif": folder / "dem.tif", "npz": folder / "dem.npz"}
     command = [x.format(**names) for x in arguments]
     assert main(["sample", *command, "-o", str(folder / "no.ply")]) == 2
@@ -122,9 +116,7 @@ def test_commands_that_are_refused(
     assert text.count("\n") == 1
 
 
-def test_files_that_are_read_are_spared(
-    folder: Path, capsys: pytest.CaptureFixture[str], main: Callable[..., int]
-) -> None:
+def test_files_that_are_read_are_spared(folder, capsys, main):
     link = folder / "dem.ply"
     link.symlink_to(folder / "dem.tif")
     assert main(["sample", str(folder / "dem.tif"), "-o", str(link)]) == 2

@@ -193,9 +193,7 @@ def test_bands_masks_and_units(tmp_path: Path) -> None:
     [(2314, "foot", True), (2229, "foot", True), (29371, "metre", False)],
     ids=["Clarke's foot", "US survey foot", "German legal metre"],
 )
-def test_units_that_differ_by_more_than_digits_are_two(
-    crs: int, unit: str, is_one: bool, tmp_path: Path
-) -> None:
+def test_units_that_differ_by_more_than_digits_are_two(crs, unit, is_one, tmp_path):
     """They are 9e-6, 2e-6 and 14e-6 away from a foot and a metre."""
     placed = PLACED | {"crs": f"EPSG:{crs}"}
     path = write(tmp_path / "dem.tif", HEIGHTS[None], tags={"units": (unit,)}, **placed)

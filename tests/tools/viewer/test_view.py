@@ -4,7 +4,6 @@ import base64
 import json
 import re
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -135,9 +134,7 @@ def test_text_of_users_is_text(samples: gm.Samples) -> None:
     assert "<script>alert" not in text
 
 
-def test_the_command(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], main: Callable[..., int], parts: ModuleType
-) -> None:
+def test_the_command(tmp_path, capsys, main, parts):
     path = tmp_path / "part.html"
     parts.box().save(tmp_path / "part.npz")
     assert main(["view", str(tmp_path / "part.npz"), "--count", "60", "-o", str(path)]) == 0
@@ -148,9 +145,7 @@ def test_the_command(
     assert not (tmp_path / "x.html").exists()
 
 
-def test_what_is_refused(
-    samples: gm.Samples, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_refused(samples, tmp_path, monkeypatch):
     refused(r"\.html", samples.view, tmp_path / "torus.png", error=gm.errors.UnknownNameError)
     refused("no samples to view", samples[:0].view, tmp_path / "none.html")
     with pytest.raises(gm.errors.InputError, match=r"at most 50,000 samples, not 64,000"):
