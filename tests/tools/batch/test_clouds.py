@@ -28,10 +28,12 @@ def dataset(tmp_path_factory) -> gm.Dataset:
 
 def points_by_part(batches) -> dict[int, np.ndarray]:
     found: dict[int, np.ndarray] = {}
-    for points, *_, numbers in batches:
-        for part, cloud in zip(numbers.tolist(), points, strict=True):
+    for points, normals, numbers in batches:
+        for part, cloud, n in zip(numbers.tolist(), points, normals, strict=True):
             assert part not in found
             assert (cloud[:, PART] == part).all()
+            known = made.samples_of(part, made.COUNTS[part])
+            np.testing.assert_array_equal(n, known.normals[cloud[:, ROW].astype(int)])
             found[part] = cloud
     return found
 
@@ -61,13 +63,6 @@ def test_shuffled_every_part_comes_once(dataset):
         assert {*rows.values()} <= {least, least + 1} - {0}
         assert len(rows) == min(45, made.COUNTS[part])
         assert sum(x == least + 1 for x in rows.values()) == rest if least else True
-
-
-def test_points_belong_to_their_normals(dataset):
-    for points, normals, numbers in dataset.batches(20, 4, shuffle=1):
-        for cloud, n, part in zip(points, normals, numbers.tolist(), strict=True):
-            known = made.samples_of(part, made.COUNTS[part])
-            np.testing.assert_array_equal(n, known.normals[cloud[:, ROW].astype(int)])
 
 
 def test_the_same_seed_gives_the_same_batches(dataset):

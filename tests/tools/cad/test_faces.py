@@ -3,7 +3,6 @@
 # pyright: reportOptionalMemberAccess=false
 
 import math
-import pickle
 
 import gaussmap as gm
 import numpy as np
@@ -264,18 +263,6 @@ def test_reversed_faces_have_opposite_normals(name):
     assert np.array_equal(forward.trim.contains(uv), back.trim.contains(other))
     assert np.allclose(own_parameters(back, other, is_reversed=True), uv, atol=1e-14)
     assert own_parameters(forward, uv, is_reversed=False) is uv
-
-
-@pytest.mark.parametrize("name", ["plane", "nurbs", "revolution"])
-def test_surfaces_of_faces_are_pickled(name):
-    geometry, domain = GEOMETRIES[name]
-    triangle = np.array([(0.5, 1), (1.5, 1), (1, 1.5)])
-    surface = face_surface(geometry, domain, [triangle], is_reversed=True)
-    uv = places(domain)
-    surface.jets(*uv.T)
-    copy = pickle.loads(pickle.dumps(surface))
-    assert np.array_equal(copy.jets(*uv.T), surface.jets(*uv.T))
-    assert np.array_equal(copy.trim.contains(uv), surface.trim.contains(uv))
 
 
 @pytest.mark.parametrize(

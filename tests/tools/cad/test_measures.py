@@ -3,7 +3,7 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.examples import all_kinds, box, box_edges, box_faces
+from gaussmap.tools.cad.examples import all_kinds, box_edges, box_faces
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import NO_AREA, FaceRecord, Geometry
 
@@ -96,18 +96,3 @@ def test_bounds_at_a_border(slanted):
     floor = np.hypot(x, y)
     low = np.minimum(2 * z - np.hypot(x + z / 2, y), -floor)
     np.testing.assert_allclose(slanted.bounds, [low, np.maximum(roof, floor)], atol=1e-5)
-
-
-@pytest.mark.parametrize("given", [box(), all_kinds()], ids=lambda x: x.name)
-def test_samples_are_within_the_bounds(given):
-    points, (low, high) = gm.sample(given, 2_000).points, given.bounds
-    assert (points >= low - 1e-9).all()
-    assert (points <= high + 1e-9).all()
-    assert (np.ptp(points, axis=0) >= 0.9 * (high - low)).all()
-
-
-def test_plot():
-    pytest.importorskip("matplotlib")
-    figure, other = (f(box(), gm.sample(box(), 50)) for f in (Part.plot, gm.plot))
-    assert [type(x) for x in figure.axes] == [type(x) for x in other.axes]
-    assert len(figure.texts) == len(other.texts) > 0

@@ -522,11 +522,3 @@ def test_3mf_files_have_a_unit(mesh_of_box, tmp_path, unit, written, factor):
     assert np.array_equal(corners, mesh.triangles)
     (item,) = model.iter(f"{core}item")
     assert item.get("objectid") == next(model.iter(f"{core}object")).get("id")
-
-
-def test_command_line(tmp_path, monkeypatch, capsys, main):
-    monkeypatch.chdir(tmp_path)
-    box().save("box.npz")
-    assert main(["mesh", "box.npz", "--count", "300", "-o", "box.stl"]) == 0
-    assert "300 vertices, 596 triangles, closed" in capsys.readouterr().out
-    assert (tmp_path / "box.stl").stat().st_size == 84 + 50 * 596

@@ -380,6 +380,7 @@ def test_where_the_side_of_an_offset_is_open_is_said():
             assert any(holds) == (count == 0)
 
 
+@pytest.mark.slow
 def test_a_triangular_face():
     """Its side u = 1 is a point, where x_u × x_v vanishes: only normals beside it are undecided."""
     points = POINTS.copy()
@@ -450,7 +451,7 @@ def test_what_has_no_bounds_is_estimated():
 
 
 def test_answers_do_not_depend_on_earlier_calls():
-    kinds, normals = all_kinds(), random_normals(300)
+    kinds, normals = all_kinds(), random_normals(80)
     known = gm.GaussMap(kinds)
     first = known.points(normals)
     gm.sample(kinds, 100)

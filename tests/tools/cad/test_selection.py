@@ -114,12 +114,6 @@ def test_open_ends_of_solids_have_no_volume():
     refused("enclose no solids", lambda: whole.select(kind="plane").volume, error=error)
 
 
-def test_a_selection_is_saved(tmp_path):
-    path = tmp_path / "part.npz"
-    box().select(index=[1, 4]).save(path)
-    assert indices(gm.read_part(path)) == [1, 4]
-
-
 @pytest.mark.parametrize("bad", ["no list", ["a", "b"], [1], [1.5, 2], {"1": 2}])
 def test_source_indices_of_files_are_checked(tmp_path, bad):
     some = box().select(index=[1, 4])

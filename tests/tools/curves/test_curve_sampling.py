@@ -323,18 +323,6 @@ def test_a_straight_line_has_no_samples(angle: float, shift: float) -> None:
         assert len(gm.curves.sample(line, count=50)) == 0
 
 
-@pytest.mark.parametrize("pieces", [4, 5])
-def test_curves_that_stop_or_come_back(pieces: int) -> None:
-    for f in (lambda t: np.full((*t.shape, 2), 3.0), lambda t: np.stack([t * t, 0 * t], axis=-1)):
-        with pytest.warns(gm.GaussmapWarning, match="100 % of its length is straight"):
-            samples = gm.curves.sample(
-                gm.curves.Curve.from_callable(f, (-1.0, 1.0)),
-                normals=gm.directions.circle(12),
-                pieces=pieces,
-            )
-        assert len(samples) == 0
-
-
 def test_points_of_a_square() -> None:
     """A C¹ spline through the corners and middles of a square rounds the corners."""
     corners = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]]

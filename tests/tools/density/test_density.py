@@ -145,6 +145,7 @@ def test_covers_alone_answer_no_normals(density):
             {"angle": 9.0},
             {"count": 900, "coverage": 0.12},
             {"count": 700, "density": "uniform"},
+            {"count": 700, "density": "aligned"},
             {"count": 500, "density": 0.7},
             {"coverage": 0.1},
             {"normals": gm.icosphere(5), "density": "balanced"},

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import gaussmap as gm
@@ -14,21 +13,15 @@ from gaussmap.tools.meshes.meshing import triangulated
 from ...products import covering
 from ...refusals import refused
 from .test_meshing import NO_AREA, PREFER, TURN, components, is_one_fan_at_each_vertex, latitude
+from .test_meshing import surfaces as all_surfaces
 
 pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 compiled = pytest.mark.compiled
 
 
-def octant(u: Any, v: Any) -> Any:
-    """An eighth of the unit sphere: the side v = π/2 is one point, an apex."""
-    return latitude(u, v)
-
-
 QUARTER = (0.0, np.pi / 2)
-surfaces: dict[str, tuple[Callable[[], gm.Surface], int, int]] = {
+surfaces = {x: all_surfaces[x] for x in ("torus", "ellipsoid", "graph", "belt, v closes")} | {
     # surface, Euler characteristic, number of borders
-    "torus": (gm.surfaces.torus, 0, 0),
-    "ellipsoid": (gm.surfaces.ellipsoid, 2, 0),
     "ellipsoid, v closes": (
         lambda: gm.Surface.from_callable(
             lambda u, v: latitude(v, u) * [2.0, 1.0, 1.0],
@@ -42,16 +35,9 @@ surfaces: dict[str, tuple[Callable[[], gm.Surface], int, int]] = {
             (TURN, (0.0, 1.0)), (True, False),
         ), 1, 1,
     ),
-    "graph": (gm.surfaces.wavy_graph, 1, 1),
-    "belt, v closes": (
-        lambda: gm.Surface.from_callable(
-            lambda u, v: latitude(v, u), ((-1.0, 1.0), TURN), (False, True)
-        ), 0, 2,
-    ),
-    "octant": (lambda: gm.Surface.from_callable(octant, (QUARTER, QUARTER), (False, False)), 1, 1),
+    # An eighth of the unit sphere: the side v = π/2 is one point, an apex.
+    "octant": (lambda: gm.Surface.from_callable(latitude, (QUARTER, QUARTER)), 1, 1),
 }  # fmt: skip
-CONE = pytest.param("cone", marks=compiled)  # Python raises at an apex, where kernels divide by 0
-EACH = pytest.mark.parametrize("name", [x if x != "cone" else CONE for x in surfaces])
 # Without compilation a few are enough.
 UNCOMPILED = ("torus", "octant")
 FEW_UNCOMPILED = pytest.mark.parametrize(

@@ -14,7 +14,6 @@ Both are reported, and judged within 2 %.
 # pyright: reportMissingImports=false
 
 import itertools
-import os
 import warnings
 from pathlib import Path
 from types import SimpleNamespace
@@ -60,12 +59,6 @@ SIDE, TURN = 60.0, 5.0
 # Where places are on each edge: evenly, and close to its ends.
 NEAR_ENDS = 10.0 ** -np.arange(2.5, 7.0)
 ON_EDGE = np.concatenate([np.linspace(0.0, 1.0, 101), NEAR_ENDS, 1.0 - NEAR_ENDS])
-# The parts of the folder are not in here; docs/cad.md says where they come from.
-FILES = (
-    *("screw.step", "CrankArm.brep", "bottle.brep"),
-    *("hammer.iges", "as1-tu-203.stp", "frame.step"),
-)
-
 
 # --- parts ----------------------------------------------------------------------------------------
 
@@ -261,11 +254,3 @@ def test_guarantees_hold(name, angle, coverage, tmp_path):
 def test_guarantees_hold_on_all_made_up_parts(name, tmp_path):
     path = written(SHAPES[name](), tmp_path / "part.brep")
     check(path, tmp_path, (5.0, 2.0, 1.0), (0.05, 0.02))
-
-
-@pytest.mark.slow
-@pytest.mark.skipif("GAUSSMAP_PARTS" not in os.environ, reason="GAUSSMAP_PARTS names no folder")
-@pytest.mark.parametrize("name", FILES)
-def test_guarantees_hold_on_parts_of_others(name, tmp_path):
-    path = Path(os.environ["GAUSSMAP_PARTS"]) / name
-    check(path, tmp_path, (5.0, 2.0, 1.0), (0.1, 0.05, 0.02))

@@ -2,9 +2,6 @@
 
 # pyright: reportMissingImports=false, reportAttributeAccessIssue=false
 
-import os
-from pathlib import Path
-
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -53,27 +50,6 @@ def test_solids_are_closed_by_normals(name, part_with):
     assert (mesh.closed, mesh.euler_characteristic) == (True, characteristic)
     assert mesh.volume == pytest.approx(volume_of(make()), rel=1e-2)
     assert mesh.angles.mean() < 0.9 * even.angles.mean()
-
-
-# Files that are not part of gaussmap, see docs/cad.md: their Euler characteristics.
-FOLDER = Path(os.environ.get("GAUSSMAP_PARTS", "none"))
-FILES = {
-    "screw.step": 2, "CrankArm.brep": -4, "bottle.brep": 2, "as1-tu-203.stp": -8,
-    "frame.step": -48, "hammer.iges": 2,
-}  # fmt: skip
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(not FOLDER.is_dir(), reason="needs the folder GAUSSMAP_PARTS")
-@pytest.mark.parametrize("prefer", ["shape", "normals"])
-@pytest.mark.parametrize("name", FILES)
-def test_no_triangle_of_files_points_inward(name, prefer):
-    mesh = gm.sample(gm.read_cad(FOLDER / name), 8000).mesh(prefer=prefer)
-    made = len(mesh.vertices), mesh.closed, mesh.euler_characteristic
-    assert made == (8000, True, FILES[name])
-    a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
-    across = np.cross(b - a, c - a)
-    assert (np.einsum("tx,tkx->t", across, mesh.corner_normals) > 0.0).all()
 
 
 def test_shells_that_share_edges_are_open(part_with):
