@@ -162,10 +162,10 @@ def mesh(
           samples allow. A sample so close to others that a smallest angle stays below 5° is
           left out, and further ones until 95 % of the smallest angles are 25° at least, or
           until a tenth of the others would be left out (`Mesh.left_out` counts all). That
-          happens where samples are so few that their distances change by a factor of two from
-          one to the next, as beside a narrow bend: no triangles of theirs have large angles. Of
-          a closed surface with enough samples of ``density="balanced"``, none is left out. A
-          grid, or a part of one, keeps its samples, in long cells, too.
+          happens where distances change by a factor of two from one sample to the next: no
+          triangles of theirs have large angles. Of a closed surface with a count of samples of
+          ``density="balanced"``, none is left out beside most narrow bends, and up to 8 %
+          beside the sharpest. A grid, or a part of one, keeps its samples, in long cells, too.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction
           only, and one sample is left out where a triangle would have no area. Of a CAD part:

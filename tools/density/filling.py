@@ -170,7 +170,8 @@ class Filling:
         if request.density in BY_CURVATURE:
             if request.count is None:
                 return self._by_radius()
-            cover = self._by_count(self.balanced(capped=True), request.count)
+            space = self.balanced(capped=True).graded(request.count)
+            cover = self._by_count(space, request.count)
             asked = request.coverage
             if asked is None or self.reached(cover) <= asked * self.space.unit:
                 return cover

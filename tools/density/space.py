@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Self
@@ -27,6 +27,7 @@ from .cells import (
     RADIUS,
     Cells,
     by_piece,
+    grouped,
     halved,
     into_parts,
     merged,
@@ -34,6 +35,7 @@ from .cells import (
     points_of,
     runs,
 )
+from .grading import Sources, bounds_of, growth_for
 from .kernels.cells import evaluate_cells
 from .kernels.sizing import TargetDensity
 from .piece import Piece
@@ -75,7 +77,8 @@ class Space:
 
     Lengths are multiplied by `unit`, and points are relative to `centre`, in L. The target density
     of `first` has no floor and no ceiling, so that spaces that differ only in these share it. On
-    the `developable` pieces, K is rounding error, and its powers count as 0.
+    the `developable` pieces, K is rounding error, and its powers count as 0. Sizes, 1/√w for the
+    target density w, are bounded by the `sources` of each piece that has some.
     """
 
     label: str
@@ -83,6 +86,7 @@ class Space:
     target: TargetDensity
     threads: int | None
     developable: frozenset[int] = frozenset()
+    sources: Mapping[int, Sources] = field(default_factory=dict)
     _held: dict[str, Any] = field(default_factory=dict, repr=False)
 
     # --- the surface as a whole -------------------------------------------------------------------
@@ -195,7 +199,7 @@ class Space:
         first = replace(self.first, rows=self.first.rows.copy())
         first.rows[:, 6] = 0.0
         target, held = TargetDensity(floor=1.0), {"first": first}
-        space = replace(self, target=target, developable=frozenset(), _held=held)
+        space = replace(self, target=target, developable=frozenset(), sources={}, _held=held)
         space.__dict__.update(self._shared)
         return space
 
@@ -226,6 +230,30 @@ class Space:
         """Return the same space with another floor and ceiling of the target density."""
         made = replace(self, target=self.target._replace(floor=floor, ceiling=ceiling))
         made.__dict__.update(self._shared)
+        return made
+
+    def graded(self, count: int) -> Self:
+        """Return the same space with sizes that grow slowly, for a number of samples.
+
+        Where few samples are distributed by curvature, their spacing may halve from one to the
+        next, beside a narrow bend.
+        """
+        growth, sizes = growth_for(count, self.integral), self.densities**-0.5
+        found = {
+            k: bounds_of(self.first.rows[cells, :3], sizes[cells], growth)
+            for k, cells in by_piece(self.first)
+        }
+        sources = {k: x for k, x in found.items() if x is not None}
+        return self.with_sources(sources) if sources else self
+
+    def with_sources(self, sources: Mapping[int, Sources]) -> Self:
+        """Return the same space with bounds of sizes, and its cells and boundaries."""
+        first = replace(self.first, rows=self.first.rows.copy())
+        borders = replace(self.borders, rows=self.borders.rows.copy())
+        made = replace(self, sources=sources, _held={"first": first, "borders": borders})
+        made.__dict__.update(self._shared)
+        made.grade(first.pieces, first.rows)
+        made.grade(np.repeat(borders.pieces, np.diff(borders.starts)), borders.rows)
         return made
 
     @property
@@ -447,10 +475,25 @@ class Space:
         list(over_ranges(work, len(groups), len(groups) // RANGES + 1, self.threads))
         rows, numbers = (np.isfinite(x).all(axis=1) for x in (cells.rows, cells.numbers))
         finite = np.asarray(rows & numbers)
+        self.grade(cells.pieces, cells.rows)
         if keep:
             cells.rows[~finite] = 0.0
             return cells
         return cells if finite.all() else cells[finite]
+
+    def grade(self, pieces: Indices, rows: Array, *, far: bool = False) -> Array:
+        """Raise densities in rows (M, 8) of pieces (M,); return bounds (M,) of the size.
+
+        Bounds that are too large to matter are inf, unless `far`.
+        """
+        sizes = np.full(len(rows), np.inf)
+        if self.sources:
+            for k, here in grouped(pieces):
+                if sources := self.sources.get(k):
+                    reach = math.inf if far else sources.reach
+                    sizes[here] = sources.sizes_at(rows[here, :3], reach)
+            rows[:, 6] = np.maximum(rows[:, 6], np.minimum(sizes**-2.0, self.target.ceiling))
+        return sizes
 
     def _groups(self, cells: Cells) -> list[list[tuple[int, slice]]]:
         """Return groups of cells to evaluate at a time: pieces, with the rows of each.
