@@ -15,7 +15,7 @@ from .directions.regions import Cap
 from .directions.unit import as_normals
 from .map_methods import Methods
 from .onto_surface.at_tips import samples_at
-from .onto_surface.on_spline import OnPatches, OnSpline
+from .onto_surface.on_spline import OnPatches
 from .onto_surface.on_surface import checked_place
 from .onto_surface.proved import ProvedSurface
 from .onto_surface.reach import in_reach
@@ -254,13 +254,13 @@ class GaussMap(Methods):
         special = found.component != Component.REGULAR
         signs[special] = 0.0
         sums = np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
-        which = np.unique(found.normal_index[found.component == Component.ISOLATED])
+        known = np.isin(found.component, (Component.ISOLATED, Component.TIP))
+        which = np.unique(found.normal_index[known])
         whole = self._surface
         for face in whole._space(threads).pieces if isinstance(whole, Whole) else ():
             sums[which] += face.component_degrees(directions[which])
         for piece in self._pieces:
-            if piece.has_tips and isinstance(geometry := piece.fitted, OnSpline):
-                sums += tip_degrees(geometry, directions)
+            sums += tip_degrees(piece, directions)
             if isinstance(piece, ProvedSurface):
                 sums[which] += piece.component_degrees(directions[which])
         for place in found.report.undecided or ():

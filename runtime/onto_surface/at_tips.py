@@ -13,7 +13,7 @@ from ..samples.fields import COLUMNS, Component, dtype_of
 from ..samples.samples import Samples
 from .on_spline import Fields, OnPatches, OnSpline, in_turn
 from .proved import ProvedSurface
-from .tip_degrees import Tip, tips_on
+from .tip_degrees import Pinch, Tip, tips_on
 
 __all__ = ["samples_at", "samples_in_turn"]
 
@@ -56,14 +56,14 @@ def samples_in_turn(
 
 
 def _with_tips(
-    geometry: Geometry, at_tips: Sequence[tuple[OnSpline, Tip, Indices]], normals: Array,
+    geometry: Geometry, at_tips: Sequence[tuple[Tip | Pinch, Indices]], normals: Array,
     fields: Sequence[str], dtype: DTypeLike, progress: bool, density: float | None,
 ) -> Samples:  # fmt: skip
     """Return the samples at unit normals (S, 3), including those at the given tips."""
     wanted = list(dict.fromkeys([*fields, "normal_index"]))
     found = geometry.samples_at(normals, wanted, dtype, progress, density)
     parts = [found.arrays()]
-    parts += [_fields(*at_tip, normals, wanted, dtype) for at_tip in at_tips]
+    parts += [_fields(geometry, *at_tip, normals, wanted, dtype) for at_tip in at_tips]
     index = np.concatenate([x["normal_index"] for x in parts])
     order = np.argsort(index, kind="stable")
     arrays = {x: np.concatenate([part[x] for part in parts])[order] for x in fields}
@@ -73,24 +73,23 @@ def _with_tips(
     )
 
 
-def _at_tips(geometry: Geometry, normals: Array) -> list[tuple[OnSpline, Tip, Indices]]:
+def _at_tips(geometry: Geometry, normals: Array) -> list[tuple[Tip | Pinch, Indices]]:
     """Return the tips that have some of the normals (S, 3), with the indices of these."""
-    fitted = geometry.fitted if geometry.has_tips else None
-    if not isinstance(fitted, OnSpline):
-        return []
-    tips = [(x, x.degrees(normals) != 0) for x in tips_on(fitted.whole or fitted)]
-    if fitted.reach is not None:
-        tips = [(x, has & fitted.reach.contains(normals)) for x, has in tips]
-    return [(fitted, x, np.flatnonzero(has)) for x, has in tips if has.any()]
+    tips = [(x, x.degrees(normals) != 0) for x in tips_on(geometry)]
+    if geometry.reach is not None:
+        tips = [(x, has & geometry.reach.contains(normals)) for x, has in tips]
+    return [(x, np.flatnonzero(has)) for x, has in tips if has.any()]
 
 
 def _fields(
-    geometry: OnSpline, tip: Tip, numbers: Indices, normals: Array, fields: Sequence[str],
-    dtype: DTypeLike,
+    geometry: Geometry, tip: Tip | Pinch, numbers: Indices, normals: Array,
+    fields: Sequence[str], dtype: DTypeLike,
 ) -> Fields:  # fmt: skip
     """Return fields of the samples at a tip, for the normals with the given indices."""
     given, zero = normals[numbers], np.zeros(1)
-    there = geometry.at_parameters(tip.uv[None], given[:1], zero, ("patch_index",), dtype)
+    there: Fields = {}
+    if isinstance(geometry, OnSpline):
+        there = geometry.at_parameters(tip.uv[None], given[:1], zero, ("patch_index",), dtype)
     known = there | {
         "points": tip.point,
         "normals": given,

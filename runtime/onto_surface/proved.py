@@ -25,7 +25,6 @@ from ..samples.report import SamplingReport, UndecidedNormal, count_infinite
 from ..samples.samples import Samples
 from ..search.search import developable_patches
 from ..spline.spline import Spline
-from ..spline.tips import are_one
 from ..surface.closing import closed_points
 from ..surface.collapsed import with_found_sides
 from ..surface.derivatives import power_of_two
@@ -68,8 +67,7 @@ class ProvedSurface:
 
     The `surface` has the poles that were found at its sides. On the surface times `scale`,
     neighbouring points of a grid are about 1 apart; `largest` is the largest of their coordinates.
-    `has_tips` says whether an open side is one point. The spline, which densities need, is fitted
-    with `cells` at first access.
+    The spline, which densities need, is fitted with `cells` at first access.
     """
 
     on: ClassVar[str] = "surface"
@@ -80,7 +78,6 @@ class ProvedSurface:
     scale: float
     largest: float
     apexes: int
-    has_tips: bool
     threads: int | None = None
     reach: Cap | None = None
 
@@ -92,14 +89,9 @@ class ProvedSurface:
         if index is None:
             return None
         points = closed_points(surface, CELLS)
-        size = float(np.ptp(points, axis=(0, 1)).max())
-        has_tips = any(
-            surface.boundary[axis][end] == "open" and are_one(points.take(-end, axis), size)
-            for axis, end in np.ndindex(2, 2)
-        )
         step = max(float(np.abs(np.diff(points, axis=axis)).max()) for axis in (0, 1))
         largest = float(np.abs(points).max())
-        return cls(surface, index, cells, scale_to_one(step), largest, apexes, has_tips)
+        return cls(surface, index, cells, scale_to_one(step), largest, apexes)
 
     @property
     def fitted(self) -> OnSurface:

@@ -12,7 +12,7 @@ two of them: n·ray has an extreme value near 0 there. The ray next to it is mov
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -20,10 +20,16 @@ from numpy.typing import NDArray
 
 from ..base.aliases import Array
 from ..base.kept import kept
-from ..spline.tips import collapsed_sides
-from .on_spline import OnSpline
+from ..domain.domain import Boundary, Domain
+from ..domain.trim import Trim
+from ..spline.tips import are_one, collapsed_sides
+from ..tape.tapes import jets_of
+from .on_spline import OnPatches, OnSpline
+from .proved import ProvedSurface
 
-__all__ = ["Tip", "tip_degrees", "tips_on"]
+__all__ = ["Pinch", "Tip", "Tipped", "tip_degrees", "tips_on"]
+
+Jets = Callable[[Array, Array], Array]
 
 # The least number of rays of a tip of a surface.
 RAYS = 1 << 11
@@ -32,6 +38,10 @@ RAYS = 1 << 11
 PARTS, TIMES = 32, 4
 PRODUCTS_AT_A_TIME = 1 << 20
 ROUNDING = 1e-9
+# The number of points of a side that are compared.
+ALONG = 65
+# A tip is inside of a trim if the line at this distance from it is, relative to the domain.
+BESIDE = 1e-6
 
 
 class Tip(NamedTuple):
@@ -96,7 +106,32 @@ class Tip(NamedTuple):
         return rays
 
 
-def tip_degrees(geometry: OnSpline, normals: Array) -> NDArray[np.int64]:
+class Pinch(NamedTuple):
+    """A line inside of the domain that is one point: a tip `above` it and one `below`.
+
+    The surface near it is no disk but an annulus, with the Euler characteristic 0 and not 2: the
+    degree is the sum of those of both tips, less 1.
+    """
+
+    above: Tip
+    below: Tip
+
+    @property
+    def point(self) -> Array:
+        """The point (3,)."""
+        return self.above.point
+
+    @property
+    def uv(self) -> Array:
+        """One of its parameter pairs (2,)."""
+        return self.above.uv
+
+    def degrees(self, normals: Array) -> NDArray[np.int64]:
+        """Return the degrees (S,) at unit normals (S, 3)."""
+        return self.above.degrees(normals) + self.below.degrees(normals) - 1
+
+
+def tip_degrees(geometry: OnPatches | ProvedSurface, normals: Array) -> NDArray[np.int64]:
     """Return the sums (S,) of the degrees of all tips of a surface at unit normals (S, 3)."""
     found = np.zeros(len(normals), np.int64)
     for tip in tips_on(geometry):
@@ -104,55 +139,102 @@ def tip_degrees(geometry: OnSpline, normals: Array) -> NDArray[np.int64]:
     return found
 
 
-def tips_on(geometry: OnSpline) -> list[Tip]:
-    """Return the tips with a degree, which are kept with the spline; none if it is trimmed."""
-    return kept(geometry.spline, f"tips, {geometry.on}", lambda: _tips(geometry))
+def tips_on(geometry: OnPatches | ProvedSurface) -> list[Tip | Pinch]:
+    """Return the tips with a degree, which are kept with the spline or the index."""
+    if isinstance(geometry, ProvedSurface):
+        surface, index = geometry.surface, geometry.index
+        lines = [(x.axis, x.end) for x in index.apexes if x.inside]
+
+        def jets(u: Array, v: Array) -> Array:
+            return jets_of(index.tape, u, v)
+
+        around = Tipped(jets, surface.domain, surface.boundary, surface.trim)
+        return kept(index, "tips", lambda: around.tips(around.sides(), lines))
+    if not geometry.has_tips or not isinstance(geometry, OnSpline):
+        return []
+    whole = geometry.whole or geometry
+    spline = whole.spline
+    least = RAYS if whole.on == "surface" else 1
+    parts = [x * math.ceil(least / x) for x in spline.cells]
+    around = Tipped(whole.jets, spline.domain, spline.boundary, spline.trim, (parts[0], parts[1]))
+    return kept(spline, f"tips, {whole.on}", lambda: around.tips(collapsed_sides(spline)))
 
 
-def _tips(geometry: OnSpline) -> list[Tip]:
-    found, spline = list[Tip](), geometry.spline
-    for axis, end in [] if spline.trim is not None else collapsed_sides(spline):
-        if spline.boundary[1 - axis][0] != "periodic":
-            continue
-        if (tip := _tip(geometry, axis, end)) is not None:
-            found.append(tip)
-    return found
+class Tipped(NamedTuple):
+    """A surface that may have tips: its 2-jets, domain and trim, and the numbers of rays."""
 
+    jets: Jets
+    domain: Domain
+    boundary: Boundary
+    trim: Trim | None
+    parts: tuple[int, int] = (RAYS, RAYS)
 
-def _tip(geometry: OnSpline, axis: int, end: int) -> Tip | None:
-    """Return the tip at one end of the domain along an axis, if there are rays all around it."""
-    spline = geometry.spline
-    parts = spline.cells[1 - axis]
-    if geometry.on == "surface":
-        parts *= math.ceil(RAYS / parts)
-    (low, high), place = spline.domain[1 - axis], spline.domain[axis][end]
+    def sides(self) -> list[tuple[int, int]]:
+        """Return the axis and the end, 0 or 1, of each open side that is a single point."""
+        points, steps = list[Array](), np.linspace(0.0, 1.0, ALONG)
+        for axis, end in np.ndindex(2, 2):
+            low, high = self.domain[1 - axis]
+            places = np.full(ALONG, self.domain[axis][end]), low + (high - low) * steps
+            points.append(self.jets(*(places if axis == 0 else places[::-1]))[:, 0])
+        size = float(np.ptp(points, axis=(0, 1)).max())
+        return [
+            (axis, end)
+            for axis, end in np.ndindex(2, 2)
+            if self.boundary[axis][end] == "open" and are_one(points[2 * axis + end], size)
+        ]
 
-    def uv_at(numbers: Array) -> Array:
-        """Return parameters at fractional indices of rays, all anticlockwise or all clockwise."""
-        turns = (numbers if axis == end else parts - 1.0 - numbers) / parts
-        along = low + (high - low) * (turns % 1.0)
-        fixed = np.full_like(along, place)
-        return np.stack((fixed, along) if axis == 0 else (along, fixed), axis=1)
+    def tips(
+        self, sides: Sequence[tuple[int, int]], lines: Sequence[tuple[int, float]] = ()
+    ) -> list[Tip | Pinch]:
+        """Return the tips at sides of the domain, and at lines inside, where u or v is a number."""
+        found: list[Tip | Pinch | None] = [
+            self._tip(axis, self.domain[axis][end], end) for axis, end in sides
+        ]
+        for axis, place in lines:
+            above, below = (self._tip(axis, place, end) for end in (0, 1))
+            found.append(Pinch(above, below) if above and below else None)
+        return [x for x in found if x is not None]
 
-    def ray_at(numbers: Array) -> Array:
-        jets = geometry.jets(*uv_at(numbers).T.copy())
-        return _unit(jets[:, 1 + axis] * (1.0, -1.0)[end])
+    def _tip(self, axis: int, place: float, end: int) -> Tip | None:
+        """Return the tip at a line, if there are rays all around it.
 
-    rays = ray_at(np.arange(parts, dtype=np.float64))
-    if not rays.any(axis=1).all():
-        return None
-    second = np.roll(rays, 1, axis=0) - 2.0 * rays + np.roll(rays, -1, axis=0)
-    bends = np.linalg.norm(second, axis=1)
-    normals = _unit(np.cross(rays, np.roll(rays, -1, axis=0)))
-    normals = normals[normals.any(axis=1)]
-    mean = _unit(normals.sum(axis=0)[None])
-    cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
-    # A cap smaller than a half-sphere contains all normals at the tip, and the arcs between them.
-    cosine = cosine if cosine > 0.0 else -math.inf
-    outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
-    uv = uv_at(np.zeros(1) if axis == end else np.full(1, parts - 1.0))
-    point = geometry.jets(*uv.T.copy())[0, 0]
-    return Tip(point, uv[0], rays, bends, ray_at, mean[0], cosine, outside)
+        The surface is above the line if `end` is 0, and below if it is 1.
+        """
+        if self.boundary[1 - axis][0] != "periodic":
+            return None
+        parts, (low, high), way = self.parts[1 - axis], self.domain[1 - axis], (1.0, -1.0)[end]
+
+        def uv_at(numbers: Array, away: float = 0.0) -> Array:
+            """Return parameters at fractional indices of rays, all anticlockwise or all clockwise.
+
+            They are `away` from the line, relative to the domain.
+            """
+            turns = (numbers if axis == end else parts - 1.0 - numbers) / parts
+            along = low + (high - low) * (turns % 1.0)
+            fixed = np.full_like(along, place + way * away * np.ptp(self.domain[axis]))
+            return np.stack((fixed, along) if axis == 0 else (along, fixed), axis=1)
+
+        def ray_at(numbers: Array) -> Array:
+            return _unit(self.jets(*uv_at(numbers).T.copy())[:, 1 + axis] * way)
+
+        numbers = np.arange(parts, dtype=np.float64)
+        if self.trim is not None and not self.trim.contains(uv_at(numbers, BESIDE)).all():
+            return None
+        rays = ray_at(numbers)
+        if not rays.any(axis=1).all():
+            return None
+        second = np.roll(rays, 1, axis=0) - 2.0 * rays + np.roll(rays, -1, axis=0)
+        bends = np.linalg.norm(second, axis=1)
+        normals = _unit(np.cross(rays, np.roll(rays, -1, axis=0)))
+        normals = normals[normals.any(axis=1)]
+        mean = _unit(normals.sum(axis=0)[None])
+        cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
+        # A cap smaller than a half-sphere contains all normals at the tip, and the arcs between.
+        cosine = cosine if cosine > 0.0 else -math.inf
+        outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
+        uv = uv_at(np.zeros(1) if axis == end else np.full(1, parts - 1.0))
+        point = self.jets(*uv.T.copy())[0, 0]
+        return Tip(point, uv[0], rays, bends, ray_at, mean[0], cosine, outside)
 
 
 def _unit(vectors: Array) -> Array:

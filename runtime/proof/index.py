@@ -201,7 +201,7 @@ class ProvedIndex:
         index = Index(both, len(cut.place), joints)
         pieces = _pieces_of(index)
         lists = listed(pieces.cones)
-        apexes = apexes_of(tape, domain)
+        apexes = apexes_of(tape, domain, box[4:])
         return cls(tape, box, index, pieces, lists, poles.discs, poles.caps, apexes, unbounded)
 
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:

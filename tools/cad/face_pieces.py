@@ -24,10 +24,12 @@ from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import geometry_of
 from ...runtime.onto_surface.proved import CODE, proof_of, with_components
 from ...runtime.onto_surface.reach import in_reach
+from ...runtime.onto_surface.tip_degrees import Pinch, Tip, Tipped
 from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, Component, bytes_of, dtype_of
 from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.kernels.jets import evaluate_jets
+from ...runtime.surface.collapsed import with_found_sides
 from ...runtime.surface.derivatives import normals_of_jets
 from ...runtime.surface.surface import Surface
 from ..density.piece import Piece, boxes_between
@@ -156,16 +158,30 @@ class FacePiece(Piece):
         if index is None:
             return None
         found = index.query(normals, threads)
-        nothing = not len(found.numbers) and not len(found.undecided.numbers)
+        nothing = not len(found.numbers) and not len(found.undecided.numbers) and not self.tips
         return [] if nothing else [self._samples(normals, found)]
+
+    @property
+    def tips(self) -> Sequence[Tip | Pinch]:
+        """The tips at sides that are one point, with the whole of their neighbourhood."""
+        if not any(self.surface.assumed_open):
+            return ()
+
+        def found() -> Sequence[Tip | Pinch]:
+            surface = with_found_sides(self.surface)[0]
+            around = Tipped(self.jets, surface.domain, surface.boundary, surface.trim)
+            return around.tips(around.sides())
+
+        return kept(self.surface, Tipped, found)
 
     def component_degrees(self, normals: Array) -> Indices:
         """Return the sums of the degrees of components with a sample, but for regular points."""
-        index = kept(self.surface, face_index, self._index)
-        if index is None:
-            return np.zeros(len(normals), np.int64)
-        found = components_in(self.trim, index.query(normals).undecided, normals, self.jets)[0]
-        degrees = np.bincount(found.numbers, np.nan_to_num(found.degree), len(normals))
+        index, degrees = kept(self.surface, face_index, self._index), np.zeros(len(normals))
+        for tip in self.tips:
+            degrees += tip.degrees(normals)
+        if index is not None:
+            found = components_in(self.trim, index.query(normals).undecided, normals, self.jets)[0]
+            degrees += np.bincount(found.numbers, np.nan_to_num(found.degree), len(normals))
         return degrees.astype(np.int64)
 
     def _samples(self, normals: Array, found: FacePlaces) -> Samples:
@@ -174,6 +190,14 @@ class FacePiece(Piece):
         places = np.column_stack([found.uv, found.radius, found.sign, 0.0 * found.sign])[inside]
         components, open_ = components_in(self.trim, found.undecided, normals, self.jets)
         numbers, places = with_components(found.numbers[inside], places, components)
+        for tip in self.tips:  # comes after the other points with a normal
+            has = tip.degrees(normals) != 0
+            (rows,) = np.nonzero(has if self.reach is None else has & self.reach.contains(normals))
+            row = [*tip.uv, 0.0, 0.0, 1.0, 0.0, Component.TIP]
+            numbers = np.concatenate([numbers, rows])
+            places = np.concatenate([places, np.tile(row, (len(rows), 1))])
+            order = np.argsort(numbers, kind="stable")
+            numbers, places = numbers[order], places[order]
         check_memory("stored", len(numbers), bytes_of(ARRAY_NAMES_OF_PART, np.float64))
         given, uv, codes = normals[numbers], places[:, :2], places[:, CODE].astype(np.uint8)
         fields = self.fields_at(uv, uv, ARRAY_NAMES_OF_PART, np.float64)
@@ -182,8 +206,9 @@ class FacePiece(Piece):
             beside = uv[lost] + BESIDE * (self.middle.T - uv[lost])
             for name, values in self.fields_at(beside, beside, CURVATURES, np.float64).items():
                 fields[name][lost] = values
-        K = np.where(codes == Component.REGULAR, fields["gaussian_curvature"], 0.0)
-        fields["gaussian_curvature"] = np.copysign(K, places[:, 4])
+        fields["gaussian_curvature"][codes != Component.REGULAR] = 0.0
+        fields["mean_curvature"][codes == Component.TIP] = 0.0
+        fields["gaussian_curvature"] = np.copysign(fields["gaussian_curvature"], places[:, 4])
         proof = proof_of(normals, open_, self.face.index)
         report = SamplingReport(
             self.label, len(normals), len(uv), None, None, None, **proof._asdict()

@@ -62,6 +62,47 @@ def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, alo
 
 
 @pytest.mark.compiled
+@pytest.mark.parametrize("along_u", [False, True])
+def test_lines_inside_of_the_domain_are_tips(along_u: bool) -> None:
+    """A torus that crosses its axis: of normals across it there are two points, and two tips."""
+    texts = ("(3/5 + cos(v))*cos(u)", "(3/5 + cos(v))*sin(u)", "sin(v)")
+    turn = (0, "2*pi")
+    axes = ("v", "u") if along_u else ("u", "v")
+    surface, n = gm.Surface.from_sympy(texts, axes, (turn, turn), (True, True)), directions()
+    image = gm.GaussMap(surface)
+    points = image.points(n)
+    assert (points.report.proved, points.report.undecided) == (len(n), ())
+    np.testing.assert_array_equal(image.degree(n), 0)
+    tips = points[points.component == gm.Component.TIP]
+    steep = np.abs(n[:, 2]) > 0.8  # of normals perpendicular to (4, 0, 3)
+    np.testing.assert_array_equal(np.bincount(tips.normal_index, minlength=len(n)), 2 * ~steep)
+    np.testing.assert_allclose(np.abs(tips.points), [[0, 0, 0.8]] * len(tips), atol=1e-15)
+    axis = np.abs(n[:, 2]) == 1.0  # a circle
+    np.testing.assert_array_equal(image.count(n), np.where(axis, 1, np.where(steep, 2, 4)))
+    half = surface.trimmed(within=lambda u, v: (u if along_u else v) < 3.0)
+    trimmed = gm.GaussMap(half).points(n)
+    assert (trimmed.component == gm.Component.TIP).sum() == len(tips) / 2
+
+
+@pytest.mark.compiled
+def test_faces_and_trimmed_surfaces_have_tips() -> None:
+    surface, n = lemon("star", False), directions()[:50]
+    part = gm.GaussMap(gm.Part([surface]))
+    np.testing.assert_array_equal(part.degree(n), 1)
+    found = []
+    for points in (part.points(n), gm.GaussMap(surface).points(n)):
+        rows = np.column_stack([
+            points.normal_index, np.asarray(points.component), points.points
+        ])  # fmt: skip
+        found.append(rows[np.lexsort(rows.round(9).T)])
+    np.testing.assert_allclose(found[0], found[1], rtol=0.0, atol=1e-13)
+    for low, tips in ((-9.0, True), (0.1, False)):  # with a slit
+        cut = surface.trimmed([[(low, 0.5), (6.2, 0.5), (6.2, 9.0), (low, 9.0)]])
+        components = np.unique(np.asarray(gm.GaussMap(cut).points(n).component))
+        assert components.tolist() == [gm.Component.REGULAR, gm.Component.TIP][: 1 + tips]
+
+
+@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["round", "star"])
 def test_normals_beside_those_of_a_tip(name: str) -> None:
     """They are nearer to its cone than that through some rays: π²/2048² / 2 is 1.2e-6."""
