@@ -61,6 +61,9 @@ CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
 CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
 # Cells without a cone of normals, which are in all bins, are at most this part of the domain.
 MOST_OPEN = 0.25
+# How far mirrored parameters go on: far more than rounding, for both sides of a seam must agree on
+# the half of it where one of them ends and the other begins.
+BEYOND = 2.0**-30
 NO_PAIRS = np.empty((0, 2), np.int64)
 
 
@@ -128,8 +131,9 @@ class ProvedIndex:
     """The index of a surface: immutable, and shared by threads.
 
     `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v, 0 if there is none. A mirrored
-    parameter has no period here: normals change their sides at its ends. Nothing is known in the
-    boxes `unbounded` (m, 4) of parameters, u₀, u₁, v₀, v₁: derivatives have no bounds there.
+    parameter, of an axis in `seams`, has no period here: normals change their sides at its ends. It
+    goes on beyond the upper one by BEYOND times its length. Nothing is known in the boxes
+    `unbounded` (m, 4) of parameters, u₀, u₁, v₀, v₁: derivatives have no bounds there.
     """
 
     tape: Tape
@@ -141,6 +145,7 @@ class ProvedIndex:
     caps: tuple[Cap, ...]
     apexes: tuple[Apex, ...]
     unbounded: NDArray[np.float64]
+    seams: tuple[int, ...]
     _rooms: deque[Rooms] = field(default_factory=deque, repr=False)
 
     @classmethod
@@ -174,6 +179,12 @@ class ProvedIndex:
             The index; None if more than a share MOST_OPEN of the cells has no cone of normals.
 
         """
+        seams = tuple(k for k in (0, 1) if boundary[k][0] == "mirrored")
+        u, v = (
+            (low, high + BEYOND * (high - low)) if k in seams else (low, high)
+            for k, (low, high) in enumerate(domain)
+        )
+        domain = u, v
         periods = (
             high - low if ends[0] == "periodic" else 0.0
             for (low, high), ends in zip(domain, boundary, strict=True)
@@ -202,7 +213,9 @@ class ProvedIndex:
         pieces = _pieces_of(index)
         lists = listed(pieces.cones)
         apexes = apexes_of(tape, domain, box[4:])
-        return cls(tape, box, index, pieces, lists, poles.discs, poles.caps, apexes, unbounded)
+        return cls(
+            tape, box, index, pieces, lists, poles.discs, poles.caps, apexes, unbounded, seams
+        )
 
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
         """Return all points with unit normals (S, 3).
@@ -224,7 +237,24 @@ class ProvedIndex:
             open_ = apex.decided(open_, normals)
         if len(open_.numbers) > 0:
             open_ = with_kinds(open_, self._around(open_, normals), places, self.domain)
+        if self.seams:
+            places = self._once_at_seams(places)
         return ProvedPlaces(*places, open_)
+
+    def _once_at_seams(self, places: Sorted) -> Sorted:
+        """Return places without those at the lower ends of mirrored parameters.
+
+        They are beyond the upper ends, too, for the opposite normals. Those are moved to the ends.
+        """
+        keep, rows = np.ones(len(places.numbers), np.bool_), places.places
+        for axis in self.seams:
+            low, high = self.domain[2 * axis : 2 * axis + 2]
+            beyond = BEYOND / (1.0 + BEYOND) * (high - low)
+            u = rows[:, axis]
+            keep &= (u >= low + beyond / 2.0) & (u < high - beyond / 2.0)
+            out = np.maximum(u - (high - beyond), 0.0)
+            rows[:, axis], rows[:, 2 + axis] = u - out, rows[:, 2 + axis] + out
+        return Sorted(places.numbers[keep], rows[keep])
 
     def _around(self, open_: Undecided, normals: NDArray[np.float64]) -> Array:
         """Return winding numbers around boxes, and the boxes of their paths (k, 5)."""
