@@ -24,7 +24,7 @@ from .interface import CALLABLES, CLASSES
 
 LONGEST_MESSAGE = 300
 # Quick tests try one of so many values, other ones for each parameter.
-STEP = 13
+STEP = 26
 
 # Warnings are answers, too.
 pytestmark = [

@@ -1,16 +1,17 @@
 """What is emitted computes the formulas, exactly; generated/ is up to date."""
 
 import ast
-import math
 import os
 import random
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from fractions import Fraction
-from types import SimpleNamespace
+from itertools import islice
 from typing import Any
 
+import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
@@ -19,12 +20,7 @@ from gaussmap.symbolic import (
     emit,
     files,
     formulas,
-    gaussian_image,
-    jet,
     loops,
-    mesh,
-    patch,
-    proved,
     support,
     surfaces,
 )
@@ -38,7 +34,9 @@ PYTHON_FILES = sorted(path.name for path in files.GENERATED.glob("*.py"))
 POSITIONS = {name: position(surface) for name, surface in surfaces.CATALOGUE.items()}
 
 
-# --- running source on exact numbers --------------------------------------------------------------
+# --- running source on long numbers ---------------------------------------------------------------
+
+DIGITS = 60
 
 
 class ExactLiterals(ast.NodeTransformer):
@@ -57,20 +55,9 @@ class ExactLiterals(ast.NodeTransformer):
         return self.generic_visit(node)
 
 
-def exact_root(value: Fraction) -> Fraction:
-    """Return the root of the square of a fraction."""
-    root = Fraction(math.isqrt(abs(value.numerator)), math.isqrt(value.denominator))
-    assert root**2 == value, (
-        f"this test computes with fractions, and the square root of {value} is no fraction: "
-        "have `exact_inputs` return inputs of this formula for which all square roots are rational"
-    )
-    return root
-
-
-PI = Fraction(256, 81)  # stands for π, and has a rational root
 TYPES = {name: getattr(vectors, name) for name, _ in emit.KINDS.values()}
 TYPES |= {x.__name__: x for x in (vectors.Arc, vectors.Hessian, vectors.Patch)}
-EXACT = {"Number": Fraction, "math": SimpleNamespace(sqrt=exact_root, pi=PI), **TYPES}
+LONG = {"Number": lambda x: mp.mpmathify(Fraction(x)), "math": mp, **TYPES}
 
 
 def function_of(file: str, name: str, names: dict[str, Any]) -> Any:
@@ -83,79 +70,16 @@ def function_of(file: str, name: str, names: dict[str, Any]) -> Any:
     return namespace[name]
 
 
-def exact_inputs(formula, seed: int) -> dict[str, Fraction]:
-    """Return random fractions for the inputs of a formula."""
+def inputs_of(formula, seed: int) -> dict[str, Any]:
+    """Return random numbers for the inputs of a formula."""
     generator = random.Random(seed)
-    inputs = {
-        symbol.name: Fraction(generator.randint(-40, 40) * 2 + 1, generator.randint(1, 30))
-        for symbol in formula.in_components().inputs
-    }
-    if formula is patch.LARGEST_CURVATURE:  # of principal curvatures that differ by 2 K
-        return inputs | {"K": inputs["H"] ** 2 - inputs["K"] ** 2}
-    if formula is gaussian_image.SOLID_ANGLE:
-        return inputs | {
-            f"n_{axis}": Fraction(x, 5) for axis, x in zip("xyz", (2, -3, 6), strict=True)
-        }
-    if formula is gaussian_image.ARC_ZEROS:  # of 3 (1 - t)² + 10 t (1 - t) + 3 t²
-        axes = {"q_x": Fraction(1), "q_y": Fraction(0), "q_z": Fraction(0)}
-        return inputs | axes | {"N0_x": Fraction(3), "N1_x": Fraction(5), "N2_x": Fraction(3)}
-    if formula is jet.AT_JET:
-        return inputs | with_rational_normal(inputs)
-    # triangles in a plane with a rational normal
-    if formula in (mesh.CORNER_PRODUCTS, mesh.CORNER_COTANGENTS):
-        return inputs | in_a_plane(inputs)
-    if formula.name == "asin_taylor":  # 1 − x² is a square
-        q = abs(inputs["x"])
-        return inputs | {"x": (1 - q**2) / (1 + q**2)}
-    if formula is mesh.BORDER_SPACING:  # ρ = 2 k/(π r²) = (63/(8 r))²
-        return inputs | {"k": Fraction(98)}
-    if formula is proved.FOLD_EXTREME:
-        return inputs | with_rational_root(formula, inputs)
-    return inputs | rational_length(inputs) if formula is patch.MEASURE else inputs
-
-
-def with_rational_root(formula, inputs: dict[str, Fraction]) -> dict[str, Fraction]:
-    """Return Q and c2 > 0 for which g² + 2 c2 (|Q| + h) is the square of g + t."""
-    values = {scalar(x): sp.Rational(y.numerator, y.denominator) for x, y in inputs.items()}
-    for symbol, value in formula.definitions[:3]:
-        values[symbol] = value.xreplace(values)
-    g, h = (Fraction(str(values[scalar(x)])) for x in "gh")
-    c2 = abs(inputs["c2"])
-    t = 4 * (abs(g) + (c2 + 1) * (abs(h) + 1))
-    return {"c2": c2, "Q": (2 * g * t + t**2) / (2 * c2) - h}
-
-
-def rational_length(inputs: dict[str, Fraction]) -> dict[str, Fraction]:
-    """Return d and e for which p_u and p_v are orthogonal, with the lengths 3 |u| and 3 |v|."""
-    u, v = inputs["u"], inputs["v"]
-    result = {}
-    for axis, p_u, p_v in zip("xyz", (1, 2, 2), (2, 1, -2), strict=True):
-        a, b, c = (inputs[f"{name}_{axis}"] for name in "abc")
-        result[f"d_{axis}"] = u * p_u - a * u - b * v
-        result[f"e_{axis}"] = v * p_v - b * u - c * v
-    return result
-
-
-def with_rational_normal(inputs: dict[str, Fraction]) -> dict[str, Fraction]:
-    """Return orthogonal tangents d and e of rational lengths."""
     return {
-        f"{name}_{axis}": inputs[f"{name}_x"] * x
-        for name, direction in (("d", (1, 2, 2)), ("e", (2, 1, -2)))
-        for axis, x in zip("xyz", direction, strict=True)
+        x.name: mp.mpf(2 * generator.randint(-40, 40) + 1) / (2 * generator.randint(1, 15))
+        for x in formula.in_components().inputs
     }
 
 
-def in_a_plane(inputs: dict[str, Fraction]) -> dict[str, Fraction]:
-    """Return corners p1 and p2 whose edges from p0 are along orthogonal vectors of length 3."""
-    return {
-        f"p{i}_{axis}": inputs[f"p0_{axis}"] + length * x
-        for i, edge in ((1, (1, 2, 2)), (2, (2, 1, -2)))
-        for length in [inputs[f"p{i}_x"]]
-        for axis, x in zip("xyz", edge, strict=True)
-    }
-
-
-def grouped(formula, inputs: dict[str, Fraction]) -> dict[str, Any]:
+def grouped(formula, inputs: dict[str, Any]) -> dict[str, Any]:
     """Return the arguments of the function of a formula, vectors as named tuples."""
 
     def value(symbol: sp.Symbol) -> Any:
@@ -181,15 +105,26 @@ def flat(result: Any) -> list[Any]:
     return [x for y in result for x in flat(y)] if isinstance(result, tuple) else [result]
 
 
-def expected(formula, inputs: dict[str, Fraction]) -> list[Fraction]:
+def expected(formula, inputs: dict[str, Any]) -> list[Any]:
     """Evaluate the undecomposed expressions of the outputs in SymPy."""
-    numbers = {
-        symbol: sp.Rational(inputs[symbol.name].numerator, inputs[symbol.name].denominator)
-        for symbol in formula.in_components().inputs
-    }
-    numbers[sp.pi] = sp.Rational(PI.numerator, PI.denominator)
-    values = [value.xreplace(numbers) for value in formula.expanded().values()]
-    return [Fraction(int(value.p), int(value.q)) for value in values]
+    plain = formula.in_components().inputs
+    numbers = {x: sp.Float(str(inputs[x.name]), DIGITS) for x in plain}
+    values = [sp.N(x.xreplace(numbers), DIGITS) for x in formula.expanded().values()]
+    return [mp.mpmathify(x) for x in values]
+
+
+def are_same(found: list[Any], wanted: list[Any]) -> bool:
+    pairs = zip(found, wanted, strict=True)
+    return all(abs(x - y) <= mp.mpf(10) ** -40 * (1 + abs(y)) for x, y in pairs)
+
+
+def real_cases(formula) -> Iterator[tuple[dict[str, Any], list[Any]]]:
+    """Yield inputs for which all roots are real, and the outputs."""
+    for seed in range(200):
+        inputs = inputs_of(formula, seed)
+        values = expected(formula, inputs)
+        if not any(isinstance(x, mp.mpc) for x in values):
+            yield inputs, values
 
 
 def emitted_functions() -> list[Any]:
@@ -207,10 +142,12 @@ def emitted_functions() -> list[Any]:
 @pytest.mark.parametrize(("file", "name"), emitted_functions())
 def test_generated_functions_are_exact(file, name):
     formula = formulas[name]
-    function = function_of(file, name, EXACT)
-    for seed in range(2):
-        inputs = exact_inputs(formula, seed)
-        assert flat(function(**grouped(formula, inputs))) == expected(formula, inputs)
+    function = function_of(file, name, LONG)
+    with mp.workdps(DIGITS):
+        cases = [*islice(real_cases(formula), 2)]
+        assert len(cases) == 2
+        for inputs, values in cases:
+            assert are_same(flat(function(**grouped(formula, inputs))), values)
 
 
 def filled(formula, function, inputs: list[dict[str, Any]], over) -> list[list[Any]]:
@@ -242,14 +179,16 @@ def filled(formula, function, inputs: list[dict[str, Any]], over) -> list[list[A
 def test_loops_over_normals_are_exact(formula):
     """One patch, and five rows of what the loop is over."""
     over = support.LOOPS[formula]
-    function = function_of("support_function.py", formula.name, EXACT)
+    function = function_of("support_function.py", formula.name, LONG)
     looped = {x.name for symbol in over for x in getattr(symbol, "components", (symbol,))}
-    first = exact_inputs(formula, 0)
-    inputs = [
-        first | {x: y for x, y in exact_inputs(formula, seed).items() if x in looped}
-        for seed in range(5)
-    ]
-    assert filled(formula, function, inputs, over) == [expected(formula, x) for x in inputs]
+    with mp.workdps(DIGITS):
+        first = inputs_of(formula, 0)
+        inputs = [
+            first | {x: y for x, y in inputs_of(formula, seed).items() if x in looped}
+            for seed in range(5)
+        ]
+        for row, x in zip(filled(formula, function, inputs, over), inputs, strict=True):
+            assert are_same(row, expected(formula, x))
 
 
 @pytest.mark.kernels

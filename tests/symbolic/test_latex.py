@@ -63,26 +63,16 @@ def test_text_says_the_same(formula):
 @pytest.mark.parametrize(
     ("name", "bold", "latex"),
     [
-        ("A", False, "A"),
-        ("n", True, r"\mathbf{n}"),
-        ("p_u", True, r"\mathbf{p}_{u}"),
-        ("p_u_x", False, "p_{u,x}"),
-        ("b200", True, r"\mathbf{b}_{200}"),
-        ("D111", False, "D_{111}"),
-        ("mu", False, r"\mu"),
-        ("mu_sw", True, r"\boldsymbol{\mu}_{\mathrm{sw}}"),
-        ("H_xy", False, "H_{xy}"),
-        ("K_offset", False, r"K_{\mathrm{offset}}"),
-        ("dU", True, r"\nabla U"),
-        ("dh", True, r"\nabla h"),
-        ("dh_S", True, r"\nabla_S h"),
-        ("dA", False, r"\mathit{dA}"),
-        ("abc", False, r"[\mathbf{abc}]"),
-        ("major", False, r"\mathit{major}"),
-        ("half_width", False, r"\mathit{half\_width}"),
-        ("slope_u", False, r"\mathit{slope}_u"),
+        ("A", False, "A"), ("n", True, r"\mathbf{n}"), ("p_u", True, r"\mathbf{p}_{u}"),
+        ("p_u_x", False, "p_{u,x}"), ("b200", True, r"\mathbf{b}_{200}"),
+        ("D111", False, "D_{111}"), ("mu", False, r"\mu"),
+        ("mu_sw", True, r"\boldsymbol{\mu}_{\mathrm{sw}}"), ("H_xy", False, "H_{xy}"),
+        ("K_offset", False, r"K_{\mathrm{offset}}"), ("dU", True, r"\nabla U"),
+        ("dh", True, r"\nabla h"), ("dh_S", True, r"\nabla_S h"), ("dA", False, r"\mathit{dA}"),
+        ("abc", False, r"[\mathbf{abc}]"), ("major", False, r"\mathit{major}"),
+        ("half_width", False, r"\mathit{half\_width}"), ("slope_u", False, r"\mathit{slope}_u"),
     ],
-)
+)  # fmt: skip
 def test_names(name, bold, latex):
     assert latex_name(name, bold=bold) == latex
 

@@ -17,7 +17,7 @@ u, v, t = sp.symbols("u v t", real=True)
 n: Any = sp.Matrix(sp.symbols("n_x n_y n_z", real=True))
 x, y, z = n
 
-# (12) of the paper, and the control points that give it; those of (11), which do not
+# (12) of the paper, and the control points that give it
 FORMULA_12 = (
     5 * (x**3 + y**3 + z**3)
     + 4 * (x**2 * y + x**2 * z + x * y**2 + x * z**2 + z * y**2 + z**2 * y)
@@ -26,7 +26,6 @@ FORMULA_12 = (
 POINTS_12 = [
     ["3/2", 0, 0], [0, "3/2", 0], [0, 0, "3/2"], [1, 1, "1/2"], [1, "1/2", 1], ["1/2", 1, 1]
 ]  # fmt: skip
-POINTS_11 = [[2, 0, 0], [0, 2, 0], [0, 0, 2], ["3/2", 0, 0], [0, "3/2", 0], [0, 0, "3/2"]]
 
 CYLINDER = [[1, 0, 1], [0, 1, 0], [0, 0, 0], ["1/2", "1/2", 0], ["1/2", 0, 0], [0, "1/2", 0]]
 FOLDED_PLANE = [[1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 1, 0], [1, 0, 0]]
@@ -126,18 +125,6 @@ def test_it_prints_as_the_paper_prints_it():
     assert repr(triangle).startswith("BezierTriangle([(3/2, 0, 0), (0, 3/2, 0)")
     plane = [[2, 0, 0], [0, 2, 0], [0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]
     assert BezierTriangle(plane)._repr_latex_() is None
-
-
-@pytest.mark.parametrize(
-    "points", [POINTS_11, [[1, 2, 0], [0, 1, 1], [3, 0, 2], [1, 1, 4], [2, 0, 0], [0, 5, 1]]]
-)
-def test_groups_are_only_another_writing(points):
-    triangle = BezierTriangle(points)
-    x, y, z = triangle.normal
-    point = [sp.diff(triangle.support_function, by) for by in triangle.normal]
-    at: Any = {x: 3, y: -1, z: sp.Rational(1, 2)}
-    assert [value.subs(at) for value in point] == [value.subs(at) for value in triangle.gradient]
-    assert sp.cancel(triangle.support_function - triangle._cubic_over_quadratic) == 0
 
 
 @pytest.mark.slow

@@ -92,21 +92,14 @@ def test_offset_is_the_sphere_and_adds_to_the_radii():
 @pytest.mark.parametrize(
     ("h", "answer"),
     [
-        (3 * x + 4 * z, True),
-        (sp.Integer(0), True),
-        (LENGTH, True),
-        (FUNCTIONS["ellipsoid"] + 2 * LENGTH, True),
-        (FUNCTIONS["rational"], True),
-        (sp.Abs(x) + sp.Abs(y - z), True),
-        ((x**4 + y**4 + z**4) ** sp.Rational(1, 4), True),
-        (sp.Integer(1), False),
-        (x**3, False),
-        (x * y, False),
-        (FUNCTIONS["not homogeneous"], False),
-        (LENGTH + sp.Rational(1, 10**9) * x**2, False),
+        (3 * x + 4 * z, True), (sp.Integer(0), True), (LENGTH, True),
+        (FUNCTIONS["ellipsoid"] + 2 * LENGTH, True), (FUNCTIONS["rational"], True),
+        (sp.Abs(x) + sp.Abs(y - z), True), ((x**4 + y**4 + z**4) ** sp.Rational(1, 4), True),
+        (sp.Integer(1), False), (x**3, False), (x * y, False),
+        (FUNCTIONS["not homogeneous"], False), (LENGTH + sp.Rational(1, 10**9) * x**2, False),
         (LENGTH + sp.Rational(1, 10**25) * x**2, False),
     ],
-)
+)  # fmt: skip
 def test_homogeneous_of_degree_1(h, answer):
     assert is_homogeneous(h) is answer
 

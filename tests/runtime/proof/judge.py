@@ -102,6 +102,20 @@ def new_index(surface: gm.Surface, **options: Any) -> ProvedIndex:
     return index
 
 
+@cache
+def nurbs(degree: int, repeated: int) -> tuple[gm.Surface, ProvedIndex]:
+    """Return a graph over the unit square, whose inner knots 1/4, 1/2, 3/4 are repeated."""
+    inner = np.repeat([0.25, 0.5, 0.75], repeated)
+    knots = np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)])
+    count = len(knots) - degree - 1
+    places = np.array([knots[k + 1 : k + degree + 1].mean() for k in range(count)])
+    x, y = np.meshgrid(places, places, indexing="ij")
+    z = 0.15 * np.random.default_rng(13).normal(size=x.shape)
+    net = np.stack([x, y, z], axis=-1)
+    surface = gm.Surface.from_nurbs((degree, degree), (knots, knots), net)
+    return surface, new_index(surface, cells=(32, 32))
+
+
 def unit(vectors: Any) -> Array:
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 

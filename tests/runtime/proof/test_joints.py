@@ -10,9 +10,8 @@ from typing import NamedTuple
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.proof.index import ProvedIndex
 
-from .judge import Array, counts, jets_at, near, new_index, normals_at, unit
+from .judge import Array, counts, jets_at, near, new_index, normals_at, nurbs, unit
 
 pytestmark = pytest.mark.compiled
 
@@ -125,25 +124,6 @@ def test_points_on_joints_are_found_once(name: str) -> None:
     assert (np.sort(found.radius[:, 0])[:-4] < 1e-6).all()  # those of poles are any angle
 
 
-class Spline(NamedTuple):
-    """A graph over the unit square, whose inner knots 1/4, 1/2, 3/4 are repeated, and its index."""
-
-    surface: gm.Surface
-    known: ProvedIndex
-
-    @classmethod
-    def of(cls, degree: int, repeated: int) -> Spline:
-        inner = np.repeat([0.25, 0.5, 0.75], repeated)
-        knots = np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)])
-        count = len(knots) - degree - 1
-        places = np.array([knots[k + 1 : k + degree + 1].mean() for k in range(count)])
-        x, y = np.meshgrid(places, places, indexing="ij")
-        z = 0.15 * np.random.default_rng(13).normal(size=x.shape)
-        net = np.stack([x, y, z], axis=-1)
-        surface = gm.Surface.from_nurbs((degree, degree), (knots, knots), net)
-        return cls(surface, new_index(surface, cells=(32, 32)))
-
-
 def sign_of_curvature(surface: gm.Surface, u: Array, v: Array) -> Array:
     _, x_u, x_v, *second = jets_at(surface, u, v)
     n = np.cross(x_u, x_v)
@@ -157,7 +137,7 @@ def test_points_on_knots(degree: int, repeated: int) -> None:
 
     There the surface has a fold along the knot: none, one or two points have the normal, all near.
     """
-    surface, known = Spline.of(degree, repeated)
+    surface, known = nurbs(degree, repeated)
     rng = np.random.default_rng(15)
     u, v = rng.choice([0.25, 0.5, 0.75], 100), rng.uniform(0.01, 0.99, 100)
     u[70:90], v[70:90] = v[70:90].copy(), u[70:90].copy()

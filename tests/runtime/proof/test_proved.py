@@ -24,6 +24,7 @@ from .judge import (
     near,
     new_index,
     normals_at,
+    nurbs,
     position_of,
     random_normals,
     surface_of,
@@ -108,20 +109,6 @@ def beside_a_mirrored_seam() -> Places:
     (u0, u1), (v0, v1) = surface.domain
     v = np.tile(np.linspace(0.9 * v0, 0.9 * v1, 40), 2)
     return Places.on("moebius_band", np.repeat([u0 + 1e-6, u1 - 1e-6], 40), v)
-
-
-@cache
-def nurbs(degree: int, repeated: int) -> tuple[gm.Surface, ProvedIndex]:
-    """Return a graph over the unit square, whose inner knots 1/4, 1/2, 3/4 are repeated."""
-    inner = np.repeat([0.25, 0.5, 0.75], repeated)
-    knots = np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)])
-    count = len(knots) - degree - 1
-    places = np.array([knots[k + 1 : k + degree + 1].mean() for k in range(count)])
-    x, y = np.meshgrid(places, places, indexing="ij")
-    z = 0.15 * np.random.default_rng(13).normal(size=x.shape)
-    net = np.stack([x, y, z], axis=-1)
-    surface = gm.Surface.from_nurbs((degree, degree), (knots, knots), net)
-    return surface, new_index(surface, cells=(32, 32))
 
 
 def in_spline(degree: int, repeated: int) -> Places:

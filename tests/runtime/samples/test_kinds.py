@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ...products import covering
+from ...shapes import moved
 
 ROTATION = np.linalg.qr(np.array([[0.7, 0.3, -0.5], [0.2, 0.8, 0.6], [-0.4, 0.5, 0.9]]))[0]
 ROTATION *= np.linalg.det(ROTATION)
@@ -20,11 +21,8 @@ ROTATION *= np.linalg.det(ROTATION)
     cells=[(16, 16), (48, 100)],
 )
 def test_planes_and_cylinders_are_parabolic(name, shift, factor, cells):
-    surface = gm.surfaces.surface(name)
-    moved = gm.Surface.from_callable(
-        lambda u, v: factor * (surface.evaluate(u, v) @ ROTATION.T + shift), surface.domain
-    )
-    samples = gm.sample(gm.fit(moved, cells), 100)
+    surface = moved(gm.surfaces.surface(name), factor, factor * shift, ROTATION)
+    samples = gm.sample(gm.fit(surface, cells), 100)
     assert samples.parabolic.all()
     assert "(100 with K = 0)" in samples.summary()
     assert (samples.elliptic ^ samples.hyperbolic).all()
@@ -32,10 +30,7 @@ def test_planes_and_cylinders_are_parabolic(name, shift, factor, cells):
 
 @pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9, 1e-100])
 def test_curved_surfaces_are_not(factor):
-    torus = gm.surfaces.torus()
-    scaled = gm.Surface.from_callable(
-        lambda u, v: factor * torus.evaluate(u, v), torus.domain, (True, True)
-    )
+    scaled = moved(gm.surfaces.torus(), factor)
     samples = gm.sample(gm.fit(scaled, (16, 16)), 200)
     assert not samples.parabolic.any()
     assert "flat" not in samples.summary()

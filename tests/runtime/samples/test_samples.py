@@ -126,29 +126,15 @@ class TestReport:
     def test_numpy_numbers_become_plain(self):
         numbers: Any = np.int64(3), np.int32(2), np.uint8(1), np.float32(0.5), 0
         more: Any = {
-            "coverage": np.float32(2),
-            "angle": np.int64(3),
-            "infinite_curvatures": np.int8(4),
-            "on": "surface",
-            "unrefined": np.uint8(2),
-            "proved": np.int16(0),
+            "coverage": np.float32(2), "angle": np.int64(3), "infinite_curvatures": np.int8(4),
+            "on": "surface", "unrefined": np.uint8(2), "proved": np.int16(0),
             "undecided": [(np.int64(0), np.arange(4), np.str_("open"), np.bool_(True))],
-            "fit_distance": np.float32(1),
-            "fit_rms": np.int8(1),
-            "fit_angle": np.float64(1),
-            "apexes": np.int16(1),
-            "index": np.int64(7),
-            "density": "aligned",
-            "faces": np.int32(3),
-            "empty_faces": np.uint8(1),
-            "estimated_faces": np.int64(1),
-            "oriented": True,
-            "edge_samples": np.int64(2),
-            "reach": (0, np.int8(0), 3, np.float32(60.0)),
-            "unit": np.str_("mm"),
-            "crs": "EPSG:32633",
-            "origin": np.array([1, 2.0]),
-        }
+            "fit_distance": np.float32(1), "fit_rms": np.int8(1), "fit_angle": np.float64(1),
+            "apexes": np.int16(1), "index": np.int64(7), "density": "aligned", "faces": np.int32(3),
+            "empty_faces": np.uint8(1), "estimated_faces": np.int64(1), "oriented": True,
+            "edge_samples": np.int64(2), "reach": (0, np.int8(0), 3, np.float32(60.0)),
+            "unit": np.str_("mm"), "crs": "EPSG:32633", "origin": np.array([1, 2.0]),
+        }  # fmt: skip
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, int, tuple,

@@ -247,15 +247,6 @@ def test_a_crease_on_a_part_of_a_line_is_found():
     assert len(surface.pieces()) == 4
 
 
-def test_pieces_cover_the_surface_and_are_smooth():
-    surface = extruded([(1, 0), *CORNERS, (1, 0)])
-    for piece in surface.pieces():
-        assert piece.pieces() == (piece,)
-        low, high = piece.domain[0]
-        u = np.linspace(low, high, 7)
-        assert np.array_equal(piece.evaluate(u, 0.3)[1:-1], surface.evaluate(u, 0.3)[1:-1])
-
-
 # --- objects --------------------------------------------------------------------------------------
 
 

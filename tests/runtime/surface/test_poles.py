@@ -146,34 +146,6 @@ def test_every_one_of_many_normals_counts_once(shape: str):
 
 
 @pytest.mark.compiled
-@pytest.mark.parametrize("shape", SHAPES)
-def test_poles_at_the_ends_of_u(shape: str):
-    """Exchanged parameters give the same samples with the opposite orientation."""
-    surface = moved(shape, ROTATION)
-    other = gm.Surface.from_callable(
-        lambda u, v: surface.evaluate(v, u), SPHERE[::-1], ("pole", True), name=shape
-    )
-    spline, swapped = gm.fit(surface, (20, 16)), gm.fit(other, (16, 20))
-    there = spline.coefficients.swapaxes(0, 1)
-    np.testing.assert_allclose(swapped.coefficients, there, rtol=0, atol=1e-7)
-    assert np.isnan(swapped.normals(SPHERE[1][0], [0.0, 1.0])).all()
-    normals = gm.fibonacci(300)
-    counts = signed_counts(swapped, -normals)
-    assert (counts == 1).all()
-    samples, opposite = gm.sample(spline, normals=normals), gm.sample(swapped, normals=-normals)
-    once = [
-        np.bincount(x.normal_index, minlength=len(normals))[x.normal_index] == 1
-        for x in (samples, opposite)
-    ]
-    assert min(x.sum() for x in once) > 250
-    first, second = (
-        x.points[k][np.argsort(x.normal_index[k])]
-        for x, k in zip((samples, opposite), once, strict=True)
-    )
-    np.testing.assert_allclose(first, second, rtol=0, atol=1e-6)
-
-
-@pytest.mark.compiled
 @pytest.mark.parametrize("count", [24, 25])
 @pytest.mark.parametrize("axis", [0, 1])
 def test_poles_of_points(count: int, axis: int):

@@ -1,5 +1,7 @@
 """Surfaces of callables and of SymPy expressions; what is no surface is refused in one sentence."""
 
+from typing import Any
+
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -158,24 +160,15 @@ def test_the_callable_gets_arrays_of_its_own():
 @pytest.mark.parametrize(
     ("returned", "complaint"),
     [
-        (
-            lambda u, v: np.stack([u, v, u]),
-            r"returned the shape \(3, 16\).*must return \(16, 3",
-        ),
-        (lambda u, v: (u, v, u), r"returned the shape \(3, 16\)"),
+        (lambda u, v: (u, v, u), r"returned the shape \(3, 16\).*must return \(16, 3"),
         (lambda u, v: saddle(u, v)[..., :2], r"returned the shape \(16, 2\)"),
         (lambda u, v: saddle(u, v).reshape(-1, 3), r"returned the shape \(20, 3\)"),
         (lambda u, v: np.zeros(3), r"returned the shape \(3,\)"),
-        (lambda u, v: 0.0, r"returned the shape \(\)"),
         (lambda u, v: (u, v, 0), r"coordinates of the shapes .* join them by numpy\.stack"),
         (lambda u, v: None, "array of real numbers, not of type object"),
-        (lambda u, v: saddle(u, v).astype(object), "not of type object"),
-        (lambda u, v: saddle(u, v).astype(str), "not of type <U"),
         (lambda u, v: saddle(u, v) + 0j, "not of type complex128"),
         (lambda u, v: np.ma.masked_less(saddle(u, v), 0.5), "masked entries"),
         (lambda u, v: 1 / 0, "raised ZeroDivisionError: division by zero"),
-        (lambda u, v: [][1], "raised IndexError"),
-        (lambda u: u, "raised TypeError"),
         (lambda u, v: int("several\nlines"), "raised ValueError: .*several"),
         (lambda u, v: saddle(np.where(u < 0.5, u, np.nan), v), "not finite at u = 0.625, v = 0.1:"),
         (lambda u, v: saddle(u, np.where(v < 0.5, v, np.inf)), "not finite at u = 0.125, v = 0.5:"),
@@ -189,17 +182,13 @@ def test_callables_that_return_no_surface(returned, complaint):
     refused("mine", gm.sample, surface, count=10, cells=(4, 5), error=gm.errors.SurfaceError)
 
 
-def test_the_error_of_a_callable_is_kept():
-    surface = gm.Surface.from_callable(lambda u, v: 1 / 0, SQUARE)
-    with pytest.raises(gm.errors.SurfaceError) as caught:
-        gm.fit(surface)
-    assert isinstance(caught.value.__cause__, ZeroDivisionError)
-
-
-def test_interrupts_go_through():
+def test_errors_of_a_callable_are_kept_and_interrupts_go_through():
     def interrupted(u, v):
         raise KeyboardInterrupt
 
+    with pytest.raises(gm.errors.SurfaceError) as caught:
+        gm.fit(gm.Surface.from_callable(lambda u, v: 1 / 0, SQUARE))
+    assert isinstance(caught.value.__cause__, ZeroDivisionError)
     with pytest.raises(KeyboardInterrupt):
         gm.fit(gm.Surface.from_callable(interrupted, SQUARE))
 
@@ -226,8 +215,6 @@ def test_parameters_that_are_none(u, v, complaint):
     ("f", "domain", "periodic", "complaint"),
     [
         (saddle, SQUARE, (True, False), "does not close along u"),
-        (saddle, SQUARE, (False, True), "does not close along v"),
-        (tube, ((0, np.pi), (0, 2 * np.pi)), (True, True), "does not close along u"),
         (tube, ((0, 6.28), (0, 2 * np.pi)), (True, True), "does not close along u"),
         (tube, TURN, ("mirrored", False), "does not close along u: .* mirrored"),
         (tube, TURN, (False, "mirrored"), "does not close along v: .* mirrored"),
@@ -260,16 +247,12 @@ def test_ends_close_up_to_a_millionth_of_the_size(gap, closes):
 
 @covering(factor=[1.0, 1e-200, 1e200], shift=[0.0, 1e6, 1e12])
 def test_ends_close_up_to_rounding(factor, shift):
-    surface = gm.Surface.from_callable(
-        lambda u, v: factor * (tube(u, v) + shift), TURN, (True, True)
-    )
-    gm.fit(surface, (8, 9))
-    half = gm.Surface.from_callable(
-        lambda u, v: factor * (bowl(u, v) + shift),
-        ((0, 2 * np.pi), (0, 1)),
-        (True, ("open", "pole")),
-    )
-    gm.fit(half, (8, 9))
+    half: Any = bowl, ((0, 2 * np.pi), (0, 1)), (True, ("open", "pole"))
+    for f, domain, ends in ((tube, TURN, (True, True)), half):
+        surface = gm.Surface.from_callable(
+            lambda u, v, f=f: factor * (f(u, v) + shift), domain, ends
+        )
+        gm.fit(surface, (8, 9))
 
 
 def test_ends_close_up_to_rounding_far_from_the_origin():
@@ -325,33 +308,20 @@ def test_constants_and_functions_of_one_parameter():
 @pytest.mark.parametrize(
     ("position", "complaint"),
     [
-        (("u", "v"), "position must be three SymPy expressions"),
-        (("u", "v", "u", "v"), "position must be three SymPy expressions"),
-        (None, "position must be three SymPy expressions"),
-        (5, "position must be three SymPy expressions"),
-        (("u", "v", "w"), "neither parameter nor number: w"),
+        *((x, "position must be three SymPy expressions") for x in (("u", "v"), (*"uvuv",), 5)),
         (("u", "a*v", "b"), "neither parameter nor number: a, b"),
-        (("u", "v", "u +"), "'u [+]' is not a SymPy expression"),
-        (("u", "v", "u("), "is not a SymPy expression"),
-        (("u", "v", "u.x"), "is not a SymPy expression"),
-        (("u", "v", ""), "is not a SymPy expression"),
-        (("u", "v", "lambda"), "is not a SymPy expression"),
-        (("u", "v", "u < 1"), "is not a SymPy expression"),
-        (("u", "v", "cos"), "uses the function cos without arguments"),
         (("u", "v", "gamma"), "neither parameter nor number: gamma"),
         (("u", "v", "x" * 10_000), "neither parameter nor number: x+…"),
-        (("u", "v", sp.Matrix([u])), "is not a SymPy expression"),
-        (("u", "v", [u]), "is not a SymPy expression"),
-        (("u", "v", None), "is not a SymPy expression"),
-        (("u", "v", saddle), "is not a SymPy expression"),
+        (("u", "v", "u +"), "'u [+]' is not a SymPy expression"),
+        *((("u", "v", x), "is not a SymPy expression") for x in (
+            "u(", "u.x", "", "lambda", "u < 1", sp.Matrix([u]), [u], None, saddle,
+        )),
         (("u", "v", "1/0"), "not real or not finite"),
         (("u", "v", sp.nan), "it is not finite"),
-        (("u", "v", "elliptic_k(u)"), "uses elliptic_k, which kernels cannot compute"),
         (("u", "v", sp.elliptic_k(u)), "uses elliptic_k, which kernels cannot compute"),
         (("u", "v", sp.Function("f")(u)), "uses f, which kernels cannot compute"),
-        (("u", "v", sp.Integral(u, u)), "uses Integral, which kernels cannot compute"),
     ],
-)
+)  # fmt: skip
 def test_expressions_that_are_none(position, complaint):
     refused(complaint, gm.Surface.from_sympy, position, ("u", "v"), SQUARE)
 
