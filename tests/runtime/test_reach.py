@@ -41,6 +41,7 @@ def test_every_request_keeps_to_the_reach_and_its_guarantee(name: str) -> None:
         {"count": 300, "density": "gauss"},
         {"coverage": 0.06},
         {"angle": 4.0},
+        *[{"count": 300, "density": 0.5}, {"angle": 6.0, "coverage": 0.1}] * (name == "ellipsoid"),
     ]
     for how in requests:
         samples = gm.sample(surface, reach=(AXIS, ANGLE), **how)

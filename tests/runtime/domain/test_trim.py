@@ -9,6 +9,7 @@ import shapely
 from gaussmap.runtime.domain.domain import Boundary
 from gaussmap.runtime.domain.loops import checked_loops
 from gaussmap.runtime.domain.trim import Trim
+from scipy.ndimage import binary_dilation
 from scipy.spatial import KDTree
 
 from ...products import covering
@@ -56,6 +57,19 @@ def graph():
 
 def torus():
     return gm.surfaces.torus()
+
+
+def test_cells_of_a_border():
+    """All that it passes, also those of which it cuts a corner, and none two cells away."""
+    polygon = np.random.default_rng(8).uniform(0.0, 1.0, (8, 2))
+    found = checked_loops([polygon], UNIT, OPEN).cells_of_border(UNIT, (40, 30))
+    along = np.linspace(0.0, 1.0, 20_000, endpoint=False)[:, None, None]
+    border = (polygon + along * (np.roll(polygon, -1, axis=0) - polygon)).reshape(-1, 2)
+    passed = np.zeros((40, 30), dtype=bool)
+    passed[tuple((border * (40, 30)).astype(int).T)] = True
+    assert found[passed].all()
+    near = np.asarray(binary_dilation(passed, np.ones((3, 3))), dtype=np.bool_)
+    assert not (found & ~near).any()
 
 
 def test_an_open_side_is_outside_a_loop_beside_it():

@@ -3,7 +3,7 @@ from __future__ import annotations
 import copy
 import pickle
 import warnings
-from dataclasses import fields, replace
+from dataclasses import FrozenInstanceError, fields, replace
 from itertools import product
 from typing import Any
 
@@ -113,6 +113,14 @@ class TestConstruction:
         result = getattr(torus(**{name: strided}), name)
         assert result.flags.c_contiguous
         np.testing.assert_array_equal(result, good)
+
+    def test_they_are_frozen_not_copied_and_equal_to_themselves_only(self):
+        samples = torus()
+        assert torus(support=samples.support).support is samples.support
+        assert samples == samples
+        assert samples != torus()
+        with pytest.raises(FrozenInstanceError):
+            samples.support = np.zeros(12)  # pyright: ignore[reportAttributeAccessIssue]
 
     def test_copies_and_pickles(self):
         samples = torus()
