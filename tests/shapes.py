@@ -47,6 +47,31 @@ def moved(
     return gm.Surface(surface.name, evaluate, surface.domain, surface.boundary)
 
 
+# Control points and weights of a circle of four conics.
+CIRCLE = np.array(
+    [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)], np.float64
+)
+WEIGHTS = np.array([1.0, np.sqrt(0.5)] * 4 + [1.0])
+MERIDIAN, HALF = CIRCLE[[6, 7, 0, 1, 2]], WEIGHTS[:5]
+
+
+def conics(points: Any) -> Any:
+    """Return the knots of joined conics, over 0, 1, …"""
+    arcs = len(points) // 2
+    return np.repeat(np.arange(arcs + 1.0), [3] + [2] * (arcs - 1) + [3])
+
+
+def revolved(
+    profile: Any, weights: Any, scales: Any = 1.0, shift: Any = 0.0, **named: Any
+) -> gm.Surface:
+    """Return conics (r, z) that go round the z axis as u, scaled and translated, as a NURBS."""
+    points = np.array([[(r * x, r * y, z) for r, z in profile] for x, y in CIRCLE])
+    knots = conics(CIRCLE), conics(profile)
+    return gm.Surface.from_nurbs(
+        (2, 2), knots, scales * points + shift, np.outer(WEIGHTS, weights), **named
+    )
+
+
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 
 

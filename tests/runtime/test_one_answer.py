@@ -7,14 +7,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ..shapes import CIRCLE, MERIDIAN, WEIGHTS
+
 Array = NDArray[np.float64]
 
-R = np.sqrt(0.5)
-CIRCLE = np.array(
-    [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)], np.float64
-)
-WEIGHTS = np.array([1, R, 1, R, 1, R, 1, R, 1])
-HALF = np.array([(0, -1), (1, -1), (1, 0), (1, 1), (0, 1)], np.float64)
 TURN = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
 
 
@@ -46,7 +42,7 @@ def revolved(profile: Array, scale: Array, degree: int) -> gm.Surface:
 
 
 SURFACES: dict[str, Callable[[int], gm.Surface]] = {
-    "ellipsoid": lambda degree: revolved(HALF, np.array([3.0, 2.0, 1.0]), degree),
+    "ellipsoid": lambda degree: revolved(MERIDIAN, np.array([3.0, 2.0, 1.0]), degree),
     "torus": lambda degree: revolved(0.7 * CIRCLE + (2, 0), np.ones(3), degree),
 }
 # Maps that keep normals outward, and how they change these.

@@ -12,7 +12,7 @@ from gaussmap.runtime.onto_surface.newton import FOUND, Target, evaluate_on_surf
 from gaussmap.runtime.onto_surface.repeats import kept_once
 from numpy.typing import NDArray
 
-from ...shapes import egg, klein
+from ...shapes import HALF, MERIDIAN, egg, klein, revolved
 
 Array = NDArray[np.float64]
 NORMAL_ERROR = 1e-12  # radians
@@ -459,18 +459,7 @@ def test_curvatures_at_poles() -> None:
 def test_curvature_at_any_distance_from_a_pole() -> None:
     """A NURBS is an ellipsoid 5 from the origin: its derivatives by the angle are differences."""
     a, b, c = 1.0, 0.7, 1.3
-    diagonal = math.sqrt(0.5)
-    circle = np.array(
-        [[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]]
-    )
-    x, y = circle.T[:, :, None]
-    r, z = circle[[6, 7, 0, 1, 2]].T[:, None]
-    points = np.stack(np.broadcast_arrays(a * x * r + 5.0, b * y * r, c * z), axis=-1)
-    corner = np.where(np.arange(9) % 2, diagonal, 1.0)
-    ellipsoid = gm.Surface.from_nurbs(
-        (2, 2), ([0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], [0, 0, 0, 1, 1, 2, 2, 2]), points,
-        corner[:, None] * corner[:5], periodic=(True, "pole"),
-    )  # fmt: skip
+    ellipsoid = revolved(MERIDIAN, HALF, [a, b, c], [5.0, 0.0, 0.0], periodic=(True, "pole"))
     away = 2.0 ** -np.arange(4.0, 50.0)
     uv = np.stack([np.full(len(away), 0.7), 2.0 - away], axis=1)
     _, normals, K, _ = evaluate_on_surface(ellipsoid, gm.fit(ellipsoid, (16, 16)), uv)

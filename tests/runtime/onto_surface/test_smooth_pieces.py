@@ -10,12 +10,10 @@ from gaussmap.runtime.onto_surface.smooth_pieces import cells_of_piece
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import revolved
 
 CELLS = (24, 24)
 ROOT = math.sqrt(0.5)
-AROUND = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)])
-CIRCLE_WEIGHTS = np.array([1, ROOT] * 4 + [1])
-CIRCLE_KNOTS = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
 # From 15° to 60° above the equator of a unit sphere, the upper part of the barrel.
 LOW, HIGH = math.radians(15.0), math.radians(60.0)
 
@@ -32,12 +30,8 @@ def barrel():
         (math.cos(LOW), math.sin(LOW)),
     ]) - [0.0, math.sin(LOW)]  # fmt: skip
     profile = np.concatenate([arc * [1, -1], arc[-2::-1]])
-    points = np.empty((9, 5, 3))
-    points[:, :, :2] = AROUND[:, None] * profile[:, 0, None]
-    points[:, :, 2] = profile[:, 1]
-    weights = CIRCLE_WEIGHTS[:, None] * [1, math.cos(half), 1, math.cos(half), 1]
-    knots = CIRCLE_KNOTS, [0, 0, 0, 1, 1, 2, 2, 2]
-    return gm.Surface.from_nurbs((2, 2), knots, points, weights, name="barrel")
+    weights = [1, math.cos(half), 1, math.cos(half), 1]
+    return revolved(profile, weights, name="barrel")
 
 
 def roof(factor=1.0):
@@ -227,12 +221,7 @@ def test_poles_and_apexes_of_pieces():
     half = math.radians(45.0)
     arc = [(0, -1), (math.tan(half), -1), (1, 0)]
     profile = np.array([*arc, (0.5, 0.5), (0, 1)])
-    points = np.empty((9, 5, 3))
-    points[:, :, :2] = AROUND[:, None] * profile[:, 0, None]
-    points[:, :, 2] = profile[:, 1]
-    weights = CIRCLE_WEIGHTS[:, None] * [1, math.cos(half), 1, 1, 1]
-    knots = CIRCLE_KNOTS, [0, 0, 0, 1, 1, 2, 2, 2]
-    buoy = gm.Surface.from_nurbs((2, 2), knots, points, weights)
+    buoy = revolved(profile, [1, math.cos(half), 1, 1, 1])
     samples = gm.sample(buoy, 200, cells=CELLS)
     assert len(samples) == 200
     assert report_of(samples).apexes == 1

@@ -13,6 +13,7 @@ import pytest
 import sympy as sp
 
 from ...products import covering
+from ...shapes import CIRCLE, WEIGHTS, revolved
 
 REGULAR, ISOLATED, CURVE = gm.Component.REGULAR, gm.Component.ISOLATED, gm.Component.CURVE
 Z, X = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
@@ -48,11 +49,7 @@ def enneper(order: int) -> gm.Surface:
 
 def nurbs_torus() -> gm.Surface:
     """Return a torus whose circles of z = ±0.4 are knot lines."""
-    ring = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
-    weights = [1.0, math.sqrt(0.5)] * 4 + [1.0]
-    knots = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
-    net = [[((1 + 0.4 * a) * x, (1 + 0.4 * a) * y, 0.4 * b) for a, b in ring] for x, y in ring]
-    return gm.Surface.from_nurbs((2, 2), (knots, knots), net, np.outer(weights, weights))
+    return revolved(0.4 * CIRCLE + [1.0, 0.0], WEIGHTS)
 
 
 def on_top(x: Any, y: Any, z: Any) -> Any:

@@ -11,13 +11,11 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+from ...shapes import CIRCLE, MERIDIAN, WEIGHTS, conics
 from .judge import Array, counts, jets_at, near, new_index, normals_at, nurbs, unit
 
 pytestmark = pytest.mark.compiled
 
-HALF = np.sqrt(0.5)
-CIRCLE = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)])
-MERIDIAN = np.array([(0, -1), (1, -1), (1, 0), (1, 1), (0, 1)])
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 AROUND = unit(np.concatenate([gm.icosphere(8), AXES]))
 
@@ -36,12 +34,9 @@ def turned(profile: Array, scales: Array, digits: int) -> gm.Surface:
 
     Weights have some digits. Since products of weights are rounded, arcs meet in creases.
     """
-    points = [[(r * x, r * y, z) for r, z in profile] for x, y in CIRCLE]
-    weights = [np.where(np.arange(len(x)) % 2 == 0, 1.0, HALF) for x in (CIRCLE, profile)]
-    arcs = [len(x) // 2 for x in (CIRCLE, profile)]
-    knots = [np.repeat(np.arange(k + 1.0), [3] + [2] * (k - 1) + [3]) for k in arcs]
-    net = np.round(np.outer(*weights), digits)
-    return gm.Surface.from_nurbs((2, 2), knots, np.array(points) * scales, net)
+    points = np.array([[(r * x, r * y, z) for r, z in profile] for x, y in CIRCLE]) * scales
+    net = np.round(np.outer(WEIGHTS, WEIGHTS[: len(profile)]), digits)
+    return gm.Surface.from_nurbs((2, 2), (conics(CIRCLE), conics(profile)), points, net)
 
 
 def ellipsoid(digits: int) -> Asked:

@@ -14,6 +14,7 @@ import sympy as sp
 from gaussmap.runtime.proof import index as proved
 from gaussmap.runtime.proof.index import ProvedIndex
 
+from ...shapes import CIRCLE, HALF, MERIDIAN, WEIGHTS, conics
 from .judge import (
     Array,
     check,
@@ -232,12 +233,6 @@ def test_radii_hold_the_exact_parameters(name: str) -> None:
 
 # --- poles ----------------------------------------------------------------------------------------
 
-HALF = np.sqrt(0.5)
-SQUARE = np.array(
-    [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)], float
-)
-CIRCLE_KNOTS = np.repeat([0.0, 0.25, 0.5, 0.75, 1.0], [3, 2, 2, 2, 3])
-
 
 def rotation() -> Array:
     q, _ = np.linalg.qr(np.random.default_rng(17).normal(size=(3, 3)))
@@ -250,12 +245,11 @@ def ball(scales: tuple[float, ...], shift: float) -> tuple[gm.Surface, Array]:
 
     Its parameters are those of circles, rational, and its angles and arcs are not linear in them.
     """
-    meridian = np.array([(0, -1), (1, -1), (1, 0), (1, 1), (0, 1)], float)
-    points = np.array([[[r * x, r * y, z] for r, z in meridian] for x, y in SQUARE])
-    weights = np.outer([1, HALF] * 4 + [1], [1, HALF, 1, HALF, 1])
     matrix = rotation() @ np.diag(scales)
-    knots = CIRCLE_KNOTS, np.repeat([0.0, 0.5, 1.0], [3, 2, 3])
-    surface = gm.Surface.from_nurbs((2, 2), knots, points @ matrix.T + shift, weights)
+    points = np.array([[(r * x, r * y, z) for r, z in MERIDIAN] for x, y in CIRCLE])
+    knots = conics(CIRCLE) / 4, conics(MERIDIAN) / 2
+    net, weights = points @ matrix.T + shift, np.outer(WEIGHTS, HALF)
+    surface = gm.Surface.from_nurbs((2, 2), knots, net, weights)
     return replace(surface, boundary=(("periodic", "periodic"), ("pole", "pole"))), matrix
 
 

@@ -16,36 +16,17 @@ from splipy.surface import Surface
 from splipy.volume import Volume
 
 from ...refusals import refused
+from ...shapes import CIRCLE, HALF, MERIDIAN, WEIGHTS, revolved
 
 RNG = np.random.default_rng(8)
 
-# A circle of four quarters, of degree 2: directions of its control points, and their weights.
-AROUND = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)])
-ROOT = math.sqrt(0.5)
-CIRCLE_WEIGHTS = np.array([1, ROOT] * 4 + [1])
-CIRCLE_KNOTS = [0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4]
-HALF_KNOTS = [0, 0, 0, 1, 1, 2, 2, 2]
 
-
-def revolved(profile, weights):
-    """Return control points and weights of a profile (r, z) that goes round the z axis as u."""
-    profile = np.asarray(profile, dtype=float)
-    points = np.empty((len(AROUND), len(profile), 3))
-    points[:, :, :2] = AROUND[:, None] * profile[:, 0, None]
-    points[:, :, 2] = profile[:, 1]
-    return points, CIRCLE_WEIGHTS[:, None] * weights
-
-
-def torus(major=2.0, minor=0.5):
-    profile = minor * AROUND + [major, 0.0]
-    points, weights = revolved(profile, CIRCLE_WEIGHTS)
-    return gm.Surface.from_nurbs((2, 2), (CIRCLE_KNOTS, CIRCLE_KNOTS), points, weights)
+def torus(major=2.0, minor=0.5, **named):
+    return revolved(minor * CIRCLE + [major, 0.0], WEIGHTS, **named)
 
 
 def sphere():
-    profile = AROUND[[6, 7, 0, 1, 2]]
-    points, weights = revolved(profile, CIRCLE_WEIGHTS[:5])
-    return gm.Surface.from_nurbs((2, 2), (CIRCLE_KNOTS, HALF_KNOTS), points, weights)
+    return revolved(MERIDIAN, HALF)
 
 
 def nurbs_of(surface) -> Any:
@@ -117,10 +98,7 @@ def test_the_largest_degree():
 
 def test_far_from_the_origin_derivatives_keep_their_digits():
     surface = torus()
-    data = nurbs_of(surface).control_points, np.outer(CIRCLE_WEIGHTS, CIRCLE_WEIGHTS)
-    moved = gm.Surface.from_nurbs(
-        (2, 2), (CIRCLE_KNOTS, CIRCLE_KNOTS), data[0] + [1e6, -1e7, 3e6], data[1]
-    )
+    moved = revolved(0.5 * CIRCLE + [2.0, 0.0], WEIGHTS, shift=[1e6, -1e7, 3e6])
     u, v = random_parameters(surface, 100)
     difference = np.abs(surface.jets(u, v) - moved.jets(u, v))[:, 1:]
     assert difference.max() < 1e3 * np.spacing(1e7)  # the rounding of the moved control points
@@ -130,10 +108,7 @@ def test_far_from_the_origin_derivatives_keep_their_digits():
 @pytest.mark.parametrize("factor", [1e-290, 1e290])
 def test_only_the_ratios_of_weights_count(factor):
     surface = torus()
-    weights = np.outer(CIRCLE_WEIGHTS, CIRCLE_WEIGHTS) * factor
-    other = gm.Surface.from_nurbs(
-        (2, 2), (CIRCLE_KNOTS, CIRCLE_KNOTS), nurbs_of(surface).control_points, weights
-    )
+    other = revolved(0.5 * CIRCLE + [2.0, 0.0], WEIGHTS * factor)
     u, v = random_parameters(surface, 20)
     assert np.allclose(surface.jets(u, v), other.jets(u, v), rtol=1e-12, atol=1e-12)
 
@@ -178,10 +153,7 @@ def test_a_seam_on_an_edge_is_open_and_a_seam_on_a_face_is_not():
 
 
 def test_given_boundary_conditions_come_first():
-    points, weights = revolved(0.5 * AROUND + [2.0, 0.0], CIRCLE_WEIGHTS)
-    surface = gm.Surface.from_nurbs(
-        (2, 2), (CIRCLE_KNOTS, CIRCLE_KNOTS), points, weights, periodic=(True, False)
-    )
+    surface = torus(periodic=(True, False))
     assert surface.boundary == (("periodic", "periodic"), ("open", "open"))
 
 
