@@ -58,13 +58,6 @@ def test_type_checkers_see_the_public_names() -> None:
     assert all(x.name == x.asname for x in names)
 
 
-def test_import_loads_nothing_heavy() -> None:
-    heavy = "('numba', 'numpy', 'sympy', 'matplotlib', 'pyvista', 'tqdm')"
-    code = f"import sys, gaussmap; print([x for x in {heavy} if x in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
-
-
 def test_sampling_loads_no_other_tools_and_no_heavy_libraries() -> None:
     """The map loads none; methods of samples that tools define are loaded when called."""
     code = """

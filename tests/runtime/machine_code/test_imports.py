@@ -8,7 +8,7 @@ import pytest
 # Numba loads the last two, and parts of SciPy, with its compiler.
 LARGE = (
     "contourpy", "matplotlib", "pandas", "pyarrow", "scipy.linalg", "scipy.spatial",
-    "scipy.ndimage", "scipy.stats", "sympy",
+    "scipy.ndimage", "scipy.stats", "sympy", "pyvista", "tqdm",
     "numba.np.arraymath", "numba.np.linalg",
 )  # fmt: skip
 EXPECTED = {"numba", "numpy"}

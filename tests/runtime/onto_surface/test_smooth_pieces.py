@@ -6,7 +6,6 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.onto_surface.smooth_pieces import cells_of_piece
 
 from ...products import covering
 from ...refusals import refused
@@ -207,13 +206,6 @@ def test_many_pieces_are_refused():
 
 def test_streams_are_of_one_piece():
     refused(r"2 smooth pieces .*surface.pieces\(\)", gm.sample_stream, barrel(), 100)
-
-
-def test_cells_of_pieces():
-    surface = roof()
-    assert [cells_of_piece(surface, x, (12, 30)) for x in surface.pieces()] == [(12, 10), (12, 20)]
-    assert cells_of_piece(surface, surface.pieces()[0], None) is None
-    assert cells_of_piece(surface, surface.pieces()[0], (3, 3)) == (4, 4)
 
 
 def test_poles_and_apexes_of_pieces():

@@ -7,9 +7,8 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.search import exact, patch_index, search
+from gaussmap.runtime.search import exact, search
 from gaussmap.runtime.search import hits as fill
-from gaussmap.runtime.search.search import find
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
 SPLINE, NORMALS = gm.fit(gm.surfaces.torus(), (12, 8)), gm.icosphere(6)
@@ -31,28 +30,6 @@ def test_proved_samples_are_in_the_order_of_normals_and_of_u_and_v():
         (k, *x) for k, x in zip(samples.normal_index.tolist(), samples.uv.tolist(), strict=True)
     ]
     assert keys == sorted(keys)
-
-
-def test_nothing_is_filled_that_is_not_wanted(monkeypatch):
-    hits = find(SPLINE, NORMALS)
-    wanted = ("uv", "patch_index")
-    assert set(fill.fill(SPLINE, NORMALS, hits, fields=wanted)) == set(wanted)
-
-    def filled(*arguments):
-        raise AssertionError("what was decided exactly has its indices already")
-
-    monkeypatch.setattr(fill, "fill_known", filled)
-    samples = gm.sample(SPLINE, normals=NORMALS, fields=("patch_index",))
-    assert samples.fields == ("patch_index",)
-
-
-@pytest.mark.parametrize("size", [0.25, 64])
-def test_how_many_normals_share_a_bin_does_not_matter(size, monkeypatch):
-    for normals in (gm.fibonacci(20_000), gm.directions.cap(gm.icosphere(60), (1, 0, 1), 20)):
-        usual = gm.sample(SPLINE, normals=normals)
-        with monkeypatch.context() as patch:
-            patch.setattr(patch_index, "NORMALS_PER_BIN", size)
-            same(gm.sample(SPLINE, normals=normals), usual)
 
 
 def test_samples_of_one_patch_and_of_the_next_have_their_normals():

@@ -45,15 +45,6 @@ def test_closed_nets_have_closed_meshes(name: str, characteristic: int, parts: i
     assert mesh.summary().startswith(f"{len(mesh.vertices):,} vertices, {len(mesh.triangles):,} tr")
 
 
-def test_more_parts_are_nearer_to_the_spline() -> None:
-    """Volumes converge as 1 / parts², angles between triangles and normals as 1 / parts."""
-    spline = of_fit("torus")
-    meshes = [spline.mesh(n) for n in (4, 8, 16)]
-    first, second = np.diff([x.volume for x in meshes])
-    assert first == pytest.approx(4.0 * second, rel=0.01)
-    assert meshes[2].angles.max() == pytest.approx(0.5 * meshes[1].angles.max(), rel=0.05)
-
-
 @pytest.mark.parametrize("parts", PARTS)
 def test_normals_are_those_of_the_surface(parts: int) -> None:
     """Those of a fitted torus are off by its misfit."""

@@ -97,17 +97,6 @@ def test_normals_stay_on_the_same_side():
         assert (np.sum(spokes * normals(moved.flipped(), -u, v), axis=-1) < 0.0).all()
 
 
-def test_transforms_compose():
-    torus, far = gm.surfaces.torus(), np.eye(4)
-    far[:3, 3] = 1e9, -1e9, 3.0
-    u, v = inside(torus)
-    back = torus.transformed(far).flipped().transformed(np.linalg.inv(far)).flipped()
-    assert (back.evaluate(u, v) == torus.evaluate(u, v)).all()
-    twice = torus.transformed(MAPS["sheared"]).transformed(MAPS["mirrored"])
-    once = torus.transformed(MAPS["mirrored"] @ MAPS["sheared"])
-    np.testing.assert_allclose(twice.jets(u, v), once.jets(u, v), rtol=0, atol=1e-14)
-
-
 @pytest.mark.parametrize(
     "periodic", [(False, False), (True, True), ("mirrored", False), (True, "mirrored")]
 )
