@@ -34,10 +34,6 @@ def torus(exponent: int) -> gm.Surface:
     return sized(gm.surfaces.torus(), exponent)
 
 
-def saddle(exponent: int) -> gm.Surface:
-    return sized(gm.surfaces.monkey_saddle(), exponent)
-
-
 def spline(exponent: int) -> gm.Spline:
     return gm.fit(torus(exponent), (12, 12))
 
@@ -80,38 +76,13 @@ def grids(exponent: int) -> list[Any]:
     return rows(gm.sample(grid, 100), exponent)
 
 
-def orders(exponent: int) -> list[Any]:
-    return rows(gm.sample(spline(exponent), 200).progressive(), exponent)
-
-
 def meshes(exponent: int) -> list[Any]:
     """Meshes of a closed surface, and of an open one, to whose border points are added."""
-    samples = [gm.sample(spline(exponent), 200), gm.sample(saddle(exponent), 200, cells=(8, 8))]
+    open_one = sized(gm.surfaces.monkey_saddle(), exponent)
+    samples = [gm.sample(spline(exponent), 200), gm.sample(open_one, 200, cells=(8, 8))]
     found = [x.mesh() for x in samples]
     coverages = [np.ldexp(x.coverage(), -exponent) for x in samples]
     return [[np.ldexp(x.vertices, -exponent), x.triangles, x.angles] for x in found] + coverages
-
-
-def parabolic_points(exponent: int) -> list[Any]:
-    """Parabolic points of surfaces and of splines; there are some."""
-    found = []
-    for surface in (torus(exponent), spline(exponent), saddle(exponent)):
-        points = gm.gauss_map.parabolic_points(surface, tolerance=1e-3)
-        assert points.curves or points.isolated
-        found += [[np.ldexp(x.points, -exponent), x.uv, x.closed] for x in points.curves]
-        # Products of parameters next to 0 underflow.
-        found += [
-            [np.round(y, 15) for y in (np.ldexp(x.point, -exponent), x.uv, x.box)]
-            for x in points.isolated
-        ]
-        found += [points.flat, points.developable]
-    return found
-
-
-def gaussian_images(exponent: int) -> list[Any]:
-    images = gm.gauss_map.GaussianImages(spline(exponent))
-    classes = gm.gauss_map.classify_patches(spline(exponent))
-    return [images[5].area, images[5].contains(NORMALS), classes, *spline(exponent).measure]
 
 
 def support_functions(exponent: int) -> list[Any]:
@@ -138,30 +109,6 @@ def support_functions(exponent: int) -> list[Any]:
     ]  # fmt: skip
 
 
-def curves(exponent: int) -> list[Any]:
-    def f(t: Any) -> Any:
-        return np.ldexp(
-            np.stack([4.0 + 2.0 * np.cos(t) + np.cos(3.0 * t) / 3.0, 4.0 + np.sin(t)], axis=-1),
-            exponent,
-        )
-
-    places = np.arange(9.0)
-    zigzag = np.ldexp(np.stack([places, places**2 % 5.0], axis=-1) / 8.0 + 2.0, exponent)
-    found = []
-    for curve in (
-        gm.curves.Curve.from_callable(f, (0.0, 2.0 * np.pi), True),
-        gm.curves.Curve.from_points(zigzag),
-    ):
-        fitted = gm.curves.fit(curve)
-        samples = gm.curves.sample(fitted, count=50)
-        distances = gm.curves.polygon_distance(samples.points, zigzag)
-        found += [
-            np.ldexp(samples.points, -exponent), samples.normals, fitted.inflections,
-            np.ldexp(samples.curvature, exponent), np.ldexp(distances, -exponent),
-        ]  # fmt: skip
-    return found
-
-
 CASES: dict[str, Case] = {
     "normals": of_sampling(normals=NORMALS),
     "count": of_sampling(count=300),
@@ -170,32 +117,16 @@ CASES: dict[str, Case] = {
     "angle": of_sampling(angle=20.0),
     "coverage": of_sampling(coverage=0.25),
     "coverage beside a count": of_sampling(count=300, coverage=0.5),
-} | {
-    x.__name__: x
-    for x in (
-        stream, silhouettes, grids, orders, meshes, parabolic_points, gaussian_images,
-        support_functions, curves,
-    )
-}  # fmt: skip
-LONG = ["parabolic_points"]
-
-
-def check_case(case: Case, exponents: list[int]) -> None:
-    expected = case(0)
-    for exponent in exponents:
-        np.testing.assert_equal(case(exponent), expected)
+    **{x.__name__: x for x in (stream, silhouettes, grids, meshes, support_functions)},
+}
 
 
 @pytest.mark.parametrize("name", CASES)
-@pytest.mark.quick_for("normals", "count", "uniform", "angle", "coverage", "grids", "curves")
+@pytest.mark.quick_for("normals", "count", "uniform", "angle", "coverage", "grids")
 def test_results_are_those_of_size_one_scaled(name: str) -> None:
-    check_case(CASES[name], [-997, 997] if name in LONG else EXPONENTS)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", LONG)
-def test_results_are_those_of_size_one_scaled_by_all_factors(name: str) -> None:
-    check_case(CASES[name], EXPONENTS)
+    expected = CASES[name](0)
+    for exponent in EXPONENTS:
+        np.testing.assert_equal(CASES[name](exponent), expected)
 
 
 @pytest.mark.parametrize("exponent", MODERATE)

@@ -51,13 +51,6 @@ def test_components_of_products():
     )
 
 
-def test_components_of_a_vector_expression():
-    value = (s * a - 2 * Cross(a, b)) / t + Dot(a, b) * b
-    expected = (s * a.column - 2 * a.column.cross(b.column)) / t
-    expected += dot(a.column, b.column) * b.column
-    assert [sp.expand(x) for x in components(value)] == [sp.expand(x) for x in expected.flat()]
-
-
 def test_vectors_of_the_plane():
     r, q = PlaneVector("r"), PlaneVector("q")
     (r_x, r_y), (q_x, q_y) = r.components, q.components
@@ -107,18 +100,6 @@ def test_build_tells_vectors_from_scalars():
     assert formula.outputs == (VectorSymbol("x"), scalar("y"))
     assert formula.source == BEYOND_THE_PAPER
     assert formula.sentence == "A sentence."
-
-
-def test_in_components():
-    plain = built().in_components()
-    assert plain.inputs == (a_x, a_y, a_z, b_x, b_y, b_z, s)
-    assert plain.outputs == VectorSymbol("x").components
-    assert [value for _, value in plain.definitions] == [
-        s * a_x + b_x,
-        s * a_y + b_y,
-        s * a_z + b_z,
-    ]
-    assert plain.in_components() == plain
 
 
 def test_components_of_a_defined_vector_can_be_used():
@@ -188,15 +169,6 @@ def test_compose_feeds_the_later_parts_and_drops_what_is_not_needed():
     assert both.inputs == (a, s, t)
     assert [symbol.name for symbol, _ in both.definitions] == ["r", "h"]
     assert both.expanded() == {"h": s * dot(a.column, a.column) * t}
-
-
-def test_compose_keeps_a_vector_of_which_one_component_is_needed():
-    first = Formula.build("first", "", inputs=[a, s], outputs=[("x", s * a)])
-    second = Formula.build(
-        "second", "", inputs=[VectorSymbol("x")], outputs=[("h", VectorSymbol("x").components[2])]
-    )
-    both = compose("both", "", [first, second], source="x", outputs=[scalar("h")])
-    assert both.expanded() == {"h": s * a_z}
 
 
 def test_compose_refuses_two_meanings_of_a_term():

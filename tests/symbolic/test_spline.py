@@ -104,34 +104,6 @@ def net_of_cell(mu, turn: int) -> dict[str, Fraction]:
     return {x.name[1:]: spline.fraction(y.xreplace(values)) for x, y in NET.items()}
 
 
-def averaged(mu, place) -> Fraction:
-    """Return a Bézier point of the central cell by local averaging."""
-    x, y = place
-
-    def edge(x, y):
-        """Return the Bézier point in the middle of an edge between two cells."""
-        i, j = (int(2 * x), int(2 * y))
-        return (mu[0, 0] + mu[i, j]) / 2
-
-    def half_diagonal(x, y):
-        return (edge(2 * x, Fraction(0)) + edge(Fraction(0), 2 * y)) / 2
-
-    if (x, y) == (0, 0):
-        quarter = Fraction(1, 4)
-        return (half_diagonal(quarter, quarter) + half_diagonal(-quarter, -quarter)) / 2
-    if abs(x) == abs(y) == HALF:
-        i, j = int(2 * x), int(2 * y)
-        return (mu[0, 0] + mu[i, 0] + mu[0, j] + mu[i, j]) / 4
-    return half_diagonal(x, y) if x and y else edge(x, y)
-
-
-@pytest.mark.parametrize("turn", range(4))
-def test_net_is_local_averaging(numbers, turn):
-    mu = {(i, j): numbers() for i, j in product((-1, 0, 1), repeat=2)}
-    for key, value in net_of_cell(mu, turn).items():
-        assert value == averaged(mu, spline.quarter_turns(spline.SOUTH[key], turn))
-
-
 def test_triangle_is_the_power_form_of_the_net():
     """Its vectors are those of POWER_FORM times SCALE, the point p relative to the coefficient."""
     values: dict[Any, Any] = dict(spline.TRIANGLE.definitions)

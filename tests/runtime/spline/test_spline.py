@@ -414,11 +414,3 @@ def test_domains_of_odd_sizes(domain):
     np.testing.assert_allclose(
         odd.evaluate(at_u, at_v), plain.evaluate(0.3125, 0.4375), rtol=0, atol=1e-10
     )
-
-
-def test_a_spline_is_one_line_at_a_prompt():
-    assert repr(gm.fit(TORUS, (8, 6))) == f"Spline(8 × 6 cells of {TORUS.name})"
-    surface = gm.Surface.from_sympy(("u", "v", "u*v"), ("u", "v"), SQUARE, name="long\n" * 50)
-    assert len(repr(gm.fit(surface, (4, 4)))) < 80
-    curve = gm.curves.Curve.from_points([[0, 0], [1, 0], [2, 1], [3, 3]], name="hook")
-    assert repr(gm.curves.fit(curve, pieces=5)) == "CurveSpline(5 pieces of hook)"

@@ -37,15 +37,16 @@ def relative_errors(found, expected):
     return np.abs(found - expected).max(axis=(0, 2)) / np.abs(expected).max()
 
 
-@pytest.mark.parametrize("name", ["torus", "wavy_graph"])
+@pytest.mark.parametrize("name", CATALOGUE)
 def test_derivatives_of_the_catalogue(name):
     surface = gm.surfaces.surface(name)
     u, v = places(surface.domain)
     found = surface.derivatives(u, v)
     assert found.shape == (len(u), 6, 3)
     assert np.array_equal(found, surface.jets(u, v))
-    np.testing.assert_allclose(found, exact_jets(CATALOGUE[name])(u, v), rtol=0, atol=1e-14)
-    assert np.allclose(found[:, 0], surface.evaluate(u, v), rtol=0, atol=1e-15)
+    exact, ulp = exact_jets(CATALOGUE[name])(u, v), np.spacing(np.abs(found).max())
+    np.testing.assert_allclose(found, exact, rtol=0, atol=50 * ulp)
+    assert np.allclose(found[:, 0], surface.evaluate(u, v), rtol=0, atol=8 * ulp)
     assert surface.derivatives(u[:, None], v[:7]).shape == (len(u), 7, 6, 3)
     assert surface.derivatives(0.5, 0.25).shape == (6, 3)
 
