@@ -85,6 +85,7 @@ def test_rows_of_what_is_sampled_and_what_fails(tmp_path):
     assert [row["status"] for row in rows] == [*["ok"] * 2, *["failed"] * 3, *["ok"] * 2]
     assert [row["samples"] for row in rows] == [100, 100, 0, 0, 0, 100, 100]
     assert [row["parameters"] for row in rows] == ["", '{"major": 1.0, "minor": 0.35}', *5 * [""]]
+    assert {row["angle"] for row in rows} == {None}  # it is not measured
     assert [row["unit_of_length"] for row in rows] == [*6 * [""], "mm"]
     assert "by hand" in rows[2]["error"]
     assert "damaged" in rows[3]["error"]

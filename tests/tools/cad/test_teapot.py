@@ -60,6 +60,7 @@ def test_the_tip_of_the_lid_is_no_point(teapot):
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_it_is_sampled_and_meshed(teapot):
     samples = gm.sample(teapot, 3000)
     faces = np.asarray(samples.face_index).tolist()

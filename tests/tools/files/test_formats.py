@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import builtins
 import errno
 import json
 import os
@@ -238,17 +237,6 @@ def test_npz_with_numpy(tmp_path):
             assert_bits(archive[name], getattr(samples, name))
 
 
-@pytest.mark.parametrize("count", [1, 12])
-def test_ply_with_pyvista(tmp_path, count):
-    pv = pytest.importorskip("pyvista")
-    # VTK hands on only some of the vertices' properties, and those in single precision.
-    points = np.arange(3.0 * count).reshape(count, 3)
-    write_samples(make(count, points=points, normals=-points), tmp_path / "file.ply")
-    cloud = pv.read(tmp_path / "file.ply")
-    np.testing.assert_array_equal(cloud.points, points)
-    np.testing.assert_array_equal(cloud.point_data["Normals"], -points)
-
-
 @pytest.mark.parametrize("count", [0, 12])
 def test_ply_with_trimesh(tmp_path, count):
     write_samples(make(count), tmp_path / "file.ply")
@@ -471,25 +459,6 @@ def test_the_message_is_one_sentence_with_advice(tmp_path):
     with open(path, "wb") as file:
         np.save(file, np.ones(3))
     refused(path, r"is damaged or is no \.npz file")
-
-
-@every_readable
-def test_the_file_is_closed(tmp_path, suffix, monkeypatch):
-    opened = []
-    real = builtins.open
-
-    def spy(*args: Any, **options: Any) -> Any:
-        opened.append(real(*args, **options))
-        return opened[-1]
-
-    write_samples(make(), tmp_path / f"good{suffix}")
-    (tmp_path / f"bad{suffix}").write_bytes((tmp_path / f"good{suffix}").read_bytes()[:-9])
-    monkeypatch.setattr(builtins, "open", spy)
-    read_samples(tmp_path / f"good{suffix}")
-    refused(tmp_path / f"bad{suffix}")
-    monkeypatch.undo()
-    assert len(opened) == 2
-    assert all(file.closed for file in opened)
 
 
 # --- what is in .npz files ------------------------------------------------------------------------

@@ -123,6 +123,7 @@ def test_mesh(library):
 def test_pyvista_has_copies():
     pytest.importorskip("pyvista")
     found, surface = samples(), mesh()
+    assert samples(0).to_pyvista().n_points == 0
     found.to_pyvista().points.fill(100.0)
     found.to_pyvista().point_data["uv"].fill(100.0)
     surface.to_pyvista().points.fill(100.0)

@@ -22,37 +22,7 @@ BOX = given("2*sqrt(n_x**2 + 1/16) + sqrt(n_y**2 + 1/16) + sqrt(n_z**2 + 1/16)")
 BEAM = given("sqrt((n_x + n_y)**2 + 1/9) + sqrt((n_x - n_y)**2 + 1/9) + 3*sqrt(n_z**2 + 1/9)")
 
 
-def smooth_box(edges: Array, roundness: float) -> gm.Surface:
-    """Return the boundary of Σ √((n·e)² + r²), e being the rows of `edges`: its exact envelope."""
-
-    def f(u: Array, v: Array) -> Array:
-        n = np.stack([np.cos(u) * np.cos(v), np.sin(u) * np.cos(v), np.sin(v)], axis=-1)
-        along = n @ edges.T
-        lengths = np.sqrt(along**2 + roundness**2)
-        share = (1 / lengths).sum(axis=-1, keepdims=True)
-        return (along / lengths) @ edges + roundness**2 * n * share
-
-    domain = ((0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2))
-    return gm.Surface.from_callable(f, domain, (True, "pole"), name="smooth box")
-
-
 # --- exact sums -----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("body", [ELLIPSOID, TURNED, BOX], ids=["ellipsoid", "turned", "box"])
-def test_with_a_sphere_it_is_the_offset(body: gm.SupportFunction) -> None:
-    offset = body.offset(0.25).branches(NORMALS)
-    for pair in ((body, given("1/4")), (given("1/4"), body)):
-        samples = gm.convolve(*pair, NORMALS).samples
-        assert (samples.normal_index == np.arange(len(NORMALS))).all()
-        assert (samples.normals == NORMALS).all()
-        assert np.abs(samples.points - offset.points).max() <= 16 * EPS * 4
-        assert np.abs(samples.support - offset.support).max() <= 16 * EPS * 4
-        # radii from 1/9 on, from Hessians of up to 9: K has twice their relative error
-        np.testing.assert_allclose(
-            samples.gaussian_curvature, offset.gaussian_curvature, rtol=1024 * EPS
-        )
-        np.testing.assert_allclose(samples.mean_curvature, offset.mean_curvature, rtol=1024 * EPS)
 
 
 def test_spheres() -> None:
@@ -175,24 +145,6 @@ def test_against_the_hull_of_all_sums(pair: tuple[Any, Any]) -> None:
     largest = sum(x.branches(gm.fibonacci(20_000)).principal_radii.max() for x in pair)
     assert (distances <= h + 32 * EPS * size).all()
     assert (h - distances <= 1.01 * largest * (1 - np.cos(angle))).all()
-
-
-@pytest.mark.compiled
-def test_surfaces_against_the_hull_and_the_exact_sum() -> None:
-    """The support function of splines is of third order, and no point is deeper in the hull."""
-    edges = np.diag([2.0, 1.0, 1.0]), np.array([[1.0, 1, 0], [1, -1, 0], [0, 0, 3]]) / 3
-    boxes = smooth_box(edges[0], 0.5), smooth_box(edges[1], 0.5)
-    errors = []
-    for cells in (48, 96):
-        sums = gm.convolve(*boxes, NORMALS, cells=(cells, cells))
-        assert (sums.samples.normal_index == np.arange(len(NORMALS))).all()
-        assert sums.samples.elliptic.all()
-        exact = sum(np.sqrt((NORMALS @ e.T) ** 2 + 0.25).sum(axis=1) for e in edges)
-        errors.append(np.abs(sums.samples.support - exact).max())
-        hull = ConvexHull(pairwise(sums.first.points, sums.second.points))
-        outside = hull.equations[:, :3] @ sums.samples.points.T + hull.equations[:, 3:]
-        assert np.abs(outside.max(axis=0)).max() <= 2 * errors[-1] + 1e-12
-    assert np.log2(errors[0] / errors[1]) > 2.5
 
 
 def test_a_sum_with_the_reflected_body() -> None:

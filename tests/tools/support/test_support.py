@@ -71,24 +71,6 @@ def test_linear_is_a_point() -> None:
     assert np.isnan(branches.mean_curvature).all()
 
 
-def test_odd_polynomial() -> None:
-    """By hand: x = 3 n_x² e − 2 n_x³ n and Hess = 6 n_x t tᵀ − 2 n_x³ (1 − n nᵀ), t = e − n_x n."""
-    branches = given("n_x**3").branches(NORMALS)
-    x, e = NORMALS[:, :1], np.array([1.0, 0.0, 0.0])
-    close(branches.points, 3 * x**2 * e - 2 * x**3 * NORMALS, 3.0)
-    t = e - x * NORMALS
-    tangential = np.eye(3) - NORMALS[:, :, None] * NORMALS[:, None, :]
-    hessian = 6 * x[..., None] * t[:, :, None] * t[:, None, :] - 2 * x[..., None] ** 3 * tangential
-    close(branches.hessian, hessian, 6.0)
-    close(branches.support, NORMALS[:, 0] ** 3, 1.0)
-    product = -2 * x[:, 0] ** 3 * (6 * x[:, 0] * (1 - x[:, 0] ** 2) - 2 * x[:, 0] ** 3)
-    far = np.abs(product) > 1e-3
-    assert (branches.elliptic == (product > 0))[far].all()
-    opposite = given("n_x**3").branches(-NORMALS)
-    close(opposite.points, branches.points, 3.0)  # an odd h has the same point at n and at −n
-    close(opposite.support, -branches.support, 1.0)
-
-
 def test_an_extension_off_the_sphere_changes_nothing() -> None:
     """n_x² + n_y² is 1 − n_z² on the sphere; |n| may be put anywhere."""
     first, second = (given(h) for h in ("n_x**2 + n_y**2", "1 - n_z**2"))
@@ -189,19 +171,6 @@ def test_spline_has_the_branches_that_sampling_finds(torus: gm.Spline, normals: 
 
 
 @pytest.mark.compiled
-def test_sum_rule_on_the_torus(torus: gm.Spline) -> None:
-    """Σ sign K = χ/2 = 0 for every normal, and each away from ±z has two branches."""
-    support = gm.SupportFunction.of_spline(torus)
-    for normals in (gm.icosphere(20), gm.fibonacci(10_000), gm.icosphere(5)[:, [2, 0, 1]]):
-        branches = support.branches(normals)
-        signs = np.where(branches.elliptic, 1.0, -1.0)
-        assert not np.bincount(branches.normal_index, signs, minlength=len(normals)).any()
-        away = np.abs(normals[:, 2]) < np.cos(np.radians(2.0))
-        assert (support.sheets(normals)[away] == 2).all()
-        assert support.contains(normals).all()
-
-
-@pytest.mark.compiled
 def test_hessian_of_a_spline_is_that_of_its_curvatures(torus: gm.Spline) -> None:
     """Hess n = 0; trace and determinant on the tangent plane are those of K and H."""
     branches = gm.SupportFunction.of_spline(torus).branches(gm.fibonacci(5000))
@@ -218,28 +187,6 @@ def test_hessian_of_a_spline_is_that_of_its_curvatures(torus: gm.Spline) -> None
     eigenvalues = np.sort(np.linalg.eigvalsh(branches.hessian[away]), axis=1)
     expected = np.sort(np.column_stack([radii, np.zeros(len(radii))]), axis=1)
     assert (np.abs(eigenvalues - expected) <= error[:, None]).all()
-
-
-@pytest.mark.compiled
-def test_spline_of_an_ellipsoid_against_the_expression() -> None:
-    """Sect. 3.2: supports of surface and spline differ by O(h³), points by O(h²)."""
-    normals = gm.fibonacci(2000)
-    normals = normals[np.abs(normals[:, 2]) < 0.8]  # ellipsoid_patch ends at latitude π/3
-    exact = given("sqrt(n_x**2 + 0.36*n_y**2 + 0.09*n_z**2)")
-    inside = np.abs(0.3 * normals[:, 2]) < np.sin(0.9) * exact(normals)
-    normals = normals[inside]
-    errors = []
-    for cells in (24, 48):
-        support = gm.SupportFunction.of_spline(gm.surfaces.ellipsoid_patch(), (cells, cells))
-        errors.append(
-            [
-                np.abs(support(normals) - exact(normals)).max(),
-                np.linalg.norm(support.envelope(normals) - exact.envelope(normals), axis=1).max(),
-            ]
-        )
-    of_support, of_points = np.log2(np.divide(*errors))
-    assert of_support > 2.6
-    assert of_points > 1.6
 
 
 @pytest.mark.compiled

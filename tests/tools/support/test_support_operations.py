@@ -167,14 +167,6 @@ def test_offset_of_a_spline(torus: gm.Spline, distance: float) -> None:
 
 
 @pytest.mark.compiled
-def test_offset_keeps_the_sum_rule_at_parabolic_normals(torus: gm.Spline) -> None:
-    normals = np.concatenate([gm.icosphere(10), [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]])
-    branches = of_spline(torus).offset(0.1).branches(normals)
-    signs = np.where(branches.elliptic, 1.0, -1.0)
-    assert not np.bincount(branches.normal_index, signs, minlength=len(normals)).any()
-
-
-@pytest.mark.compiled
 def test_offset_of_a_point_is_a_sphere() -> None:
     branches = given("n_x - 2*n_y").offset(-3.0).branches(NORMALS)
     assert np.abs(branches.points - [1.0, -2.0, 0.0] + 3 * NORMALS).max() <= 8 * EPS
@@ -202,14 +194,6 @@ def test_convolution_of_ellipsoids() -> None:
     assert np.isnan(convolution.uv).all()
 
 
-def test_envelope_operator_is_linear() -> None:
-    """Eq. (7) for functions that are not homogeneous: E(2 f − 3 g) = 2 E(f) − 3 E(g)."""
-    f, g = given("n_x**3 + n_y"), given("exp(n_z) + n_x*n_y")
-    together = given("2*n_x**3 + 2*n_y - 3*exp(n_z) - 3*n_x*n_y").envelope(NORMALS)
-    apart = (f.scaled(2) + g.scaled(-3)).envelope(NORMALS)
-    assert np.abs(together - apart).max() <= 64 * EPS * 20
-
-
 @pytest.mark.compiled
 def test_convolution_with_a_sphere_is_the_offset(torus: gm.Spline) -> None:
     for support in (of_spline(torus), given(ELLIPSOIDS[0]), gm.SupportFunction.of_patch(MIXED)):
@@ -229,21 +213,6 @@ def test_convolution_with_a_point_is_the_translation(torus: gm.Spline) -> None:
     translated = of_spline(torus).translated([2.0, 0.0, -1.0]).branches(NORMALS)
     assert (moved.points == translated.points).all()
     assert (moved.hessian == translated.hessian).all()
-
-
-@pytest.mark.compiled
-def test_all_pairs_of_branches(torus: gm.Spline) -> None:
-    """Two tori: four branches of every normal, each the sum of a pair."""
-    other = of_spline(torus).scaled(0.5).rotated(rotation([1, 0, 0], 0.7))
-    one, two = of_spline(torus).branches(NORMALS), other.branches(NORMALS)
-    sums = (of_spline(torus) + other).branches(NORMALS)
-    assert ((of_spline(torus) + other).sheets(NORMALS) == 4).all()
-    rows = np.arange(len(NORMALS))
-    expected = [one.points[2 * rows + i] + two.points[2 * rows + j] for i in (0, 1) for j in (0, 1)]
-    assert (sums.points == np.stack(expected, axis=1).reshape(-1, 3)).all()
-    assert (sums.normal_index == np.repeat(rows, 4)).all()
-    assert (sums.patch_index == -1).all()
-    assert np.isnan(sums.uv).all()
 
 
 def test_sums_have_the_common_domain() -> None:

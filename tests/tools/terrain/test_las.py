@@ -1,7 +1,6 @@
 """Samples of terrain as point clouds, read again by laspy; and elevations on the command line."""
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 
 import gaussmap as gm
@@ -73,22 +72,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         lon=-84.4 + 1e-3 * np.arange(17), lat=36.7 - 1e-3 * np.arange(14),
     )  # fmt: skip
     return folder
-
-
-def run(main: Callable[..., int], folder: Path, *arguments: str) -> gm.Samples:
-    output = str(folder / "x.npz")
-    assert main(["sample", *arguments, "--count", "60", "--quiet", "-o", output]) == 0
-    return gm.read_samples(output)
-
-
-def test_commands(folder: Path, main: Callable[..., int]) -> None:
-    tif, npz = str(folder / "dem.tif"), str(folder / "dem.npz:heights")
-    origin = "--origin", "500000", "4100000"
-    of_tif = run(main, folder, tif, *origin)
-    of_npz = run(main, folder, npz, "--x", "x", "--y", "y", "--crs", "EPSG:32617", *origin)
-    np.testing.assert_array_equal(of_tif.points, of_npz.points)
-    assert of_tif.report.crs == of_npz.report.crs == "EPSG:32617"
-    assert run(main, folder, npz, "--x", "lon", "--y", "lat").report.crs == "EPSG:32616"
 
 
 @pytest.mark.parametrize(
