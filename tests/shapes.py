@@ -72,6 +72,14 @@ def revolved(
     )
 
 
+def same(one: gm.Samples, other: gm.Samples) -> None:
+    """Check that all fields are there again, in all bits."""
+    assert one.fields == other.fields
+    for name, array in one.arrays().items():
+        found = getattr(other, name)
+        assert (found.dtype, found.tobytes()) == (array.dtype, array.tobytes()), name
+
+
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
 
 

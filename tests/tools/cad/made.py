@@ -171,13 +171,6 @@ def is_on(surface, uv, points, normals, *, of_normals: float = 1e-13) -> None:
     np.testing.assert_allclose(normals_of(jets), normals.reshape(-1, 3), atol=of_normals)
 
 
-def identical(one: gm.Samples, other: gm.Samples) -> None:
-    """Check that all fields are there again, in all bits."""
-    assert one.fields == other.fields
-    for name, array in one.arrays().items():
-        assert array.tobytes() == getattr(other, name).tobytes(), name
-
-
 def face_normals(mesh) -> np.ndarray:
     """Return the normals (k, 3) of triangles, whose lengths are their areas."""
     a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))

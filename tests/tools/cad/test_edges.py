@@ -16,7 +16,8 @@ from gaussmap.tools.cad.records import EdgeRecord
 from scipy.spatial import cKDTree
 
 from ...refusals import refused
-from .made import FAILED, TURN, cylinder_faces, face, identical, is_on, part, placement
+from ...shapes import same
+from .made import FAILED, TURN, cylinder_faces, face, is_on, part, placement
 
 SIZES = np.array([1.0, 2.0, 3.0])
 
@@ -189,7 +190,7 @@ def test_corners_of_solids_that_touch_are_two():
 
 
 def test_threads_give_the_same(cylinder):
-    identical(*(gm.sample(cylinder, 80, threads=x, edges=True) for x in (1, 3)))
+    same(*(gm.sample(cylinder, 80, threads=x, edges=True) for x in (1, 3)))
 
 
 def test_some_fields(tmp_path):

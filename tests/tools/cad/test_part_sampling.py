@@ -19,8 +19,9 @@ from scipy.spatial import ConvexHull, cKDTree
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import same
 from . import made
-from .made import HALF, KINDS, UNIT, circle, cylinder_faces, face, identical, noted, part
+from .made import HALF, KINDS, UNIT, circle, cylinder_faces, face, noted, part
 
 
 @pytest.fixture(scope="module")
@@ -254,8 +255,8 @@ def test_weights_add_up_to_the_areas(plates):
 
 def test_threads_and_repeats_give_the_same(plates):
     one = gm.sample(plates, 250, threads=1)
-    identical(one, gm.sample(plates, 250, threads=3))
-    identical(one, gm.sample(pickle.loads(pickle.dumps(plates)), 250))
+    same(one, gm.sample(plates, 250, threads=3))
+    same(one, gm.sample(pickle.loads(pickle.dumps(plates)), 250))
 
 
 @pytest.mark.parametrize(
@@ -342,7 +343,7 @@ def test_samples_are_in_files(kind, name, dtype, tmp_path):
     samples.write(tmp_path / name)
     again = gm.read_samples(tmp_path / name)
     assert (again.report, again.dtype) == (samples.report, dtype)
-    identical(samples, again)
+    same(samples, again)
 
 
 def test_other_methods(cylinder):

@@ -16,7 +16,8 @@ from gaussmap.tools.cad.examples import all_kinds
 from gaussmap.tools.cad.records import FaceRecord, Geometry
 
 from ...products import covering
-from .made import KINDS, TURN, UNIT, circle, face, identical, net, nurbs, part, placement
+from ...shapes import same
+from .made import KINDS, TURN, UNIT, circle, face, net, nurbs, part, placement
 
 
 def random_normals(count: int, seed: int = 0) -> np.ndarray:
@@ -456,9 +457,9 @@ def test_answers_do_not_depend_on_earlier_calls():
     first = known.points(normals)
     gm.sample(kinds, 100)
     with pytest.warns(gm.GaussmapWarning, match="is flat"):
-        identical(first, gm.sample(kinds, normals=normals))
-    identical(first, known.points(normals, threads=3))
-    identical(first, gm.GaussMap(pickle.loads(pickle.dumps(kinds))).points(normals))
+        same(first, gm.sample(kinds, normals=normals))
+    same(first, known.points(normals, threads=3))
+    same(first, gm.GaussMap(pickle.loads(pickle.dumps(kinds))).points(normals))
     single = np.concatenate([known.points(n[None]).uv for n in normals])
     order = np.lexsort((first.face_index, first.normal_index))
     assert single.tobytes() == first.uv[order].tobytes()

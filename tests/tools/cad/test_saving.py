@@ -19,7 +19,8 @@ from gaussmap.tools.cad.records import EdgeRecord, FaceRecord, Geometry, Net
 from gaussmap.tools.cad.saving import write_arrays
 
 from ...refusals import refused
-from .made import FAILED, UNIT, cylinder_faces, identical, net, part, rectangle
+from ...shapes import same as identical
+from .made import FAILED, UNIT, cylinder_faces, net, part, rectangle
 
 CURVE = net([[1.0, 0, 0], [1, 0, 2]], knots=[0.0, 0.0, 1.0, 1.0])
 

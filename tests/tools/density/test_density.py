@@ -11,7 +11,7 @@ from gaussmap.tools.density import candidates, space
 from gaussmap.tools.density.methods import space_on
 
 from ...products import covering
-from ...shapes import klein_bottle
+from ...shapes import klein_bottle, same
 
 DENSITIES = ["balanced", "uniform", 0.5, 1.0, 3.0]
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
@@ -23,12 +23,6 @@ DENTS = gm.Surface.from_callable(
 
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
-
-
-def same(one: gm.Samples, other: gm.Samples) -> None:
-    assert one.fields == other.fields
-    for name in one.fields:
-        assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
 
 
 # --- how many -------------------------------------------------------------------------------------

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from gaussmap.tools.sampling import stream
 
+from ...shapes import same
+
 TORUS = gm.fit(gm.surfaces.torus(), (12, 8))
 
 
@@ -20,13 +22,6 @@ def torus_part(u0, u1, v0, v1):
 
 # The borders of this part lie in planes of symmetry, as many vertices of the icosahedron do.
 QUARTER = gm.fit(torus_part(0.0, np.pi, -np.pi / 2, np.pi / 2), (12, 8))
-
-
-def same(one, other):
-    assert one.fields == other.fields
-    for name in one.fields:
-        assert getattr(one, name).dtype == getattr(other, name).dtype
-        assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
 
 
 # --- the same samples in the same order -----------------------------------------------------------
