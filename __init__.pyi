@@ -7,6 +7,7 @@ from .runtime.base.errors import GaussmapError as GaussmapError
 from .runtime.base.errors import GaussmapWarning as GaussmapWarning
 from .runtime.directions import fibonacci as fibonacci
 from .runtime.directions import icosphere as icosphere
+from .runtime.directions.regions import Reach as Reach
 from .runtime.fitting.fit import fit as fit
 from .runtime.map import GaussMap as GaussMap
 from .runtime.samples.fields import Component as Component

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from .base.checks import pair_of_cells
 from .base.errors import InputError, in_memory, shown
 from .base.threads import thread_count
-from .directions.regions import Cap
+from .directions.regions import Reach
 from .directions.unit import as_normals
 from .map_methods import Methods
 from .onto_surface.at_tips import samples_at
@@ -111,7 +111,7 @@ class GaussMap(Methods):
         """The geometries that densities use, each piece with its spline."""
         return tuple(x.fitted for x in self._pieces)
 
-    def _with_fit(self, samples: Samples, reach: Cap | None = None) -> Samples:
+    def _with_fit(self, samples: Samples, reach: Reach | None = None) -> Samples:
         """Return samples with their spline, and with the entries on it in their report.
 
         They are in a `reach`, if it is not None.
@@ -276,7 +276,7 @@ class GaussMap(Methods):
         threads: int | None = None,
         progress: bool = False,
         out: Samples | None = None,
-        reach: Cap | None = None,
+        reach: Reach | None = None,
     ) -> Samples:
         """Return the points with unit normals (S, 3); with a `reach`, only at normals in it."""
         if not isinstance(out, Samples | None):

@@ -44,7 +44,7 @@ def check_finite(
 
     Those at parameters (j, 2) for which `needed` returns False may be NaN or infinite.
     """
-    bad = ~np.isfinite(values).all(axis=-1)
+    bad: NDArray[np.bool_] = np.any(~np.isfinite(values), axis=-1)
     if needed is not None and bad.any():
         bad[bad] = needed(
             np.stack([np.broadcast_to(x, bad.shape)[bad] for x in parameters.values()], axis=-1)

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.checks import finite_number, positive_number
+from ..base.checks import finite_array, finite_number, positive_number
 from ..base.errors import InputError, shown
 from ..base.memory import check_memory
 from ..base.tolerances import TRIPLE_PRODUCT_ERROR
 from .unit import as_normals, unit_vector
 
-__all__ = ["Cap", "angles_between", "cap", "checked_reach", "polygon"]
+__all__ = ["Cap", "Reach", "angles_between", "cap", "checked_reach", "polygon"]
+
+
+UP = np.array([0.0, 0.0, 1.0])
 
 
 class Cap(NamedTuple):
@@ -33,19 +37,105 @@ class Cap(NamedTuple):
         return normals.any(axis=1) & (angles_between(normals, self.axis) <= self.angle)
 
 
-def checked_reach(reach: Any) -> Cap | None:  # noqa: ANN401
-    """Return a pair of an axis and an angle as a cap; InputError if it is none."""
-    if reach is None:
-        return None
+class Reach:
+    """The normals that samples may have: within an angle of an axis, of some slopes and aspects.
+
+    Parameters
+    ----------
+    axis : (3,) array_like, default (0, 0, 1)
+        The direction of a probe, a camera or a printer.
+    angle : float, default 180
+        The largest angle between a normal and the axis, in degrees.
+    slope : (float, float), optional
+        The least and the largest angle between a normal and +z, in degrees.
+    aspect : (float, float), optional
+        For terrain: the direction that a slope faces, in degrees clockwise from north, and how far
+        it may be from that to either side, at most 90. Level ground is included.
+
+    Raises
+    ------
+    InputError
+        For an unusable axis, and for angles out of range.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> south = gm.Reach(slope=(5, 20), aspect=(180, 45))
+    >>> samples = gm.sample("wavy_graph", 200, reach=south)
+    >>> bool((samples.normals[:, 1] < 0).all()), samples.slope.max().round(1)
+    (True, np.float64(20.0))
+
+    """
+
+    def __init__(
+        self,
+        axis: ArrayLike = (0.0, 0.0, 1.0),
+        angle: float = 180.0,
+        *,
+        slope: Sequence[float] | None = None,
+        aspect: Sequence[float] | None = None,
+    ) -> None:
+        degrees = positive_number(angle, "the angle of reach", " degrees", most=180.0)
+        caps = [Cap(unit_vector(axis, "the axis of reach"), degrees)]
+        if slope is not None:
+            least, most = _pair(slope, "slope", 180.0)
+            caps += [Cap(UP, most), Cap(-UP, 180.0 - least)]
+        if aspect is not None:
+            middle, half = _pair(aspect, "aspect", 90.0)
+            turned = np.radians([middle + half - 90.0, middle - half + 90.0])
+            sides = np.stack([np.sin(turned), np.cos(turned), 0.0 * turned], axis=1)
+            caps += [Cap(side, 90.0) for side in sides]
+        # The whole sphere needs no test beside other caps.
+        self.caps = tuple(x for x in caps if x.angle < 180.0 or len(caps) == 1)
+
+    @classmethod
+    def of(cls, numbers: Sequence[float]) -> Reach:
+        """Return the reach with the `numbers` of another one."""
+        found = cls()
+        rows = np.array(numbers, dtype=np.float64).reshape(-1, 4)
+        found.caps = tuple(cap for x in rows for cap in cls(x[:3], float(x[3])).caps)
+        return found
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """The unit vector of the axis and the angle of each cap, one after the other."""
+        return tuple(x for cap in self.caps for x in (*cap.axis.tolist(), cap.angle))
+
+    @property
+    def smallest(self) -> Cap:
+        """The smallest of the caps whose intersection is the reach."""
+        return min(self.caps, key=lambda cap: cap.angle)
+
+    def contains(self, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return which unit normals (N, 3) are in reach; rows of NaN or 0 are not."""
+        return np.logical_and.reduce([cap.contains(normals) for cap in self.caps])
+
+    def __repr__(self) -> str:
+        caps = (f"{cap.angle:g}° of {cap.axis.round(3).tolist()}" for cap in self.caps)
+        return f"Reach(within {', '.join(caps)})"
+
+
+def _pair(values: Sequence[float], name: str, most: float) -> tuple[float, float]:
+    """Return two numbers in degrees; InputError if the second is beyond `most` or out of order."""
+    first, second = finite_array(values, (2,), name).tolist()
+    if not 0.0 < second <= most or (name == "slope" and not 0.0 <= first < second):
+        form = "the least and the largest angle" if name == "slope" else "a direction and an angle"
+        raise InputError(f"{name} must be {form}, at most {most:g} degrees, not {shown(values)}.")
+    return first, second
+
+
+def checked_reach(reach: Any) -> Reach | None:  # noqa: ANN401
+    """Return a Reach, or a pair of an axis and an angle, as a Reach; InputError if it is none."""
+    if reach is None or isinstance(reach, Reach):
+        return reach
     try:
         axis, angle = reach
     except Exception:  # iteration may raise anything
         raise InputError(
-            f"reach must be an axis and an angle in degrees, such as ((0, 0, 1), 60.0), not "
-            f"{shown(reach)}."
+            f"reach must be an axis and an angle in degrees, such as ((0, 0, 1), 60.0), or a "
+            f"Reach, not {shown(reach)}."
         ) from None
-    degrees = positive_number(angle, "the angle of reach", " degrees", most=180.0)
-    return Cap(unit_vector(axis, "the axis of reach"), degrees)
+    return Reach(axis, angle)
 
 
 def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64]:

@@ -21,7 +21,7 @@ from ...generated.spline import SCALE
 from ..base.aliases import Array
 from ..base.memory import check_memory
 from ..base.threads import over_ranges
-from ..directions.regions import Cap
+from ..directions.regions import Reach
 from ..domain.trim import samples_inside, with_uv
 from ..fitting.fit import check_range
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field, regular
@@ -37,7 +37,7 @@ from ..spline.nets import AnySpline, on_grid
 from ..spline.spline import Spline
 from ..spline.tips import tips_of
 from ..surface.surface import Surface
-from .reach import InReach, reached
+from .reach import reached
 
 __all__ = [
     "Fields",
@@ -92,7 +92,7 @@ class OnPatches:
     threads: int | None = None
     surface: Surface | None = None
     memory: Mapping[str, NDArray[Any]] = field(default_factory=dict)
-    reach: Cap | None = None
+    reach: Reach | None = None
 
     @property
     def fitted(self) -> OnPatches:
@@ -109,7 +109,7 @@ class OnPatches:
         """Whether there are patches at a tip."""
         return tips_of(self.spline) is not None
 
-    def within(self, reach: Cap | None) -> Self:
+    def within(self, reach: Reach | None) -> Self:
         """Return self; InputError for nets with a `reach`, as they have no grid to cut."""
         if reach is not None:
             on_grid(self.spline)
@@ -267,11 +267,11 @@ class OnSpline(OnPatches):
     spline: Spline
     whole: OnSpline | None = None
 
-    def within(self, reach: Cap | None) -> Self:
-        """Return the part whose normals are in a cap; all of it for None."""
+    def within(self, reach: Reach | None) -> Self:
+        """Return the part whose normals are in a reach; all of it for None."""
         if reach is None:
             return self
-        spline = reached(self.spline, InReach(self.normals, reach))
+        spline = reached(self.spline, self.normals, reach)
         surface = self.surface and replace(self.surface, trim=spline.trim)
         return replace(self, spline=spline, surface=surface, reach=reach, whole=self)
 

@@ -15,7 +15,7 @@ from ..base.kept import kept
 from ..base.memory import check_memory
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
-from ..directions.regions import Cap
+from ..directions.regions import Reach
 from ..domain.trim import samples_inside, with_uv
 from ..fitting.fit import check_range
 from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
@@ -79,7 +79,7 @@ class ProvedSurface:
     largest: float
     apexes: int
     threads: int | None = None
-    reach: Cap | None = None
+    reach: Reach | None = None
 
     @classmethod
     def of(cls, surface: Surface, cells: tuple[int, int] | None) -> ProvedSurface | None:
@@ -121,7 +121,7 @@ class ProvedSurface:
         check_range(self.surface.name, self.largest, dtype)
         return self if threads == self.threads else replace(self, threads=threads)
 
-    def within(self, reach: Cap | None) -> ProvedSurface:
+    def within(self, reach: Reach | None) -> ProvedSurface:
         """Return the part whose normals are in a cap; all of it for None."""
         return self if reach is None else replace(self, reach=reach)
 

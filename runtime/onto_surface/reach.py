@@ -1,4 +1,4 @@
-"""The reach, the part of a surface whose normals are within an angle of an axis, as a trim."""
+"""The reach, a part of a surface that is given by its normals, as a trim."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
-from ..directions.regions import Cap
+from ..directions.regions import Cap, Reach
 from ..domain.domain import Domain
 from ..domain.trim import trimmed
 from ..spline.spline import Spline
 from ..surface.derivatives import normals_of_jets
 from ..surface.surface import Surface
 
-__all__ = ["InReach", "in_reach", "reached"]
+__all__ = ["in_reach", "reached"]
 
 Whole = TypeVar("Whole", Spline, Surface)
 
@@ -67,17 +67,18 @@ class InReach:
         return (normals @ self.cap.axis).reshape(len(u), len(v))
 
 
-def reached(whole: Whole, condition: InReach) -> Whole:
-    """Return the part of a spline or a surface that fulfils a condition on normals."""
-    return replace(whole, trim=trimmed(whole.trim, whole.domain, whole.boundary, condition))
+def reached(whole: Whole, normals: Callable[[Array], Array], reach: Reach) -> Whole:
+    """Return the part of a spline or a surface whose `normals` are in a reach."""
+    conditions = [InReach(normals, cap) for cap in reach.caps]
+    return replace(whole, trim=trimmed(whole.trim, whole.domain, whole.boundary, *conditions))
 
 
-def in_reach(surface: Surface | None, reach: Cap | None) -> Surface | None:
-    """Return a surface of several pieces, trimmed to the points with normals in a cap."""
+def in_reach(surface: Surface | None, reach: Reach | None) -> Surface | None:
+    """Return a surface of several pieces, trimmed to the points with normals in a reach."""
     if surface is None or reach is None:
         return surface
 
     def normals(uv: Array) -> Array:
         return normals_of_jets(surface.jets(*uv.T.copy()))
 
-    return reached(surface, InReach(normals, reach))
+    return reached(surface, normals, reach)

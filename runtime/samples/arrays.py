@@ -257,6 +257,18 @@ class SampleArrays:
             both = np.stack([np.maximum(far, near), np.minimum(far, near)], axis=1)
             return both.astype(self.dtype, copy=False)
 
+    @property
+    def slope(self) -> NDArray[np.floating]:
+        """(N,) float64: the angles between the normals and +z, in degrees; 0 is level."""
+        x, y, z = self.normals.T
+        return np.degrees(np.arctan2(np.hypot(x, y), z))
+
+    @property
+    def aspect(self) -> NDArray[np.floating]:
+        """(N,) float64: where slopes face, in degrees clockwise from north, +y; NaN if level."""
+        x, y, _ = self.normals.T
+        return np.where(np.hypot(x, y) > 0.0, np.degrees(np.arctan2(x, y)) % 360.0, np.nan)
+
     def __len__(self) -> int:
         return len(next(iter(self.arrays().values())))
 

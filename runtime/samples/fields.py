@@ -152,6 +152,8 @@ DERIVED: dict[str, tuple[str, ...]] = {
     "parabolic": ("gaussian_curvature",),
     "kind": ("normal_index",),
     "principal_curvatures": ("gaussian_curvature", "mean_curvature"),
+    "slope": ("normals",),
+    "aspect": ("normals",),
 }
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..base.checks import as_float, known_name, text, whole_number
 from ..base.errors import GaussmapWarning, InputError, shown
 from ..base.georeference import checked_origin
-from ..directions.regions import Cap, checked_reach
+from ..directions.regions import Reach
 from ..spline.developable import CellMeasure
 from ..spline.nets import AnySpline
 
@@ -68,17 +68,15 @@ def _number(value: Any, name: str, most: float = math.inf) -> float:  # noqa: AN
     return min(max(number, 0.0), most)
 
 
-def _reach(values: Any) -> tuple[float, float, float, float]:  # noqa: ANN401
-    """Return the unit vector of an axis and an angle, as plain floats."""
+def _reach(values: Any) -> tuple[float, ...]:  # noqa: ANN401
+    """Return the unit vectors of axes, and an angle after each, as plain floats."""
     try:
-        x, y, z, angle = (float(value) for value in values)
+        return Reach.of([float(value) for value in values]).numbers
     except Exception:  # iteration may raise anything
         raise InputError(
-            f"reach must be an axis and an angle, four numbers, not {shown(values)}."
+            f"reach must be an axis and an angle, four numbers, or some of these, not "
+            f"{shown(values)}."
         ) from None
-    cap = checked_reach(((x, y, z), angle))
-    assert cap is not None
-    return *cap.axis.tolist(), cap.angle
 
 
 class UndecidedNormal(NamedTuple):
@@ -214,9 +212,10 @@ class SamplingReport:
         For a CAD part: whether its normals are known to point out of solids.
     edge_samples : int or None
         For a CAD part with ``edges=True``: the number of samples on sharp edges.
-    reach : (float, float, float, float) or None
+    reach : tuple of float or None
         For a CAD part with ``reach=(axis, angle)``: the unit vector of the axis, and the angle in
-        degrees. `Samples.coverage`, `normal_deviation` and `weights` refer to the points in reach.
+        degrees; for a `Reach`, four such numbers for each condition. `Samples.coverage`,
+        `normal_deviation` and `weights` refer to the points in reach.
     unit : str or None
         For a CAD part: the unit of lengths, such as "mm", if it is known.
     crs : str or None
@@ -284,7 +283,7 @@ class SamplingReport:
     estimated_faces: int | None = None
     oriented: bool | None = None
     edge_samples: int | None = None
-    reach: tuple[float, float, float, float] | None = None
+    reach: tuple[float, ...] | None = None
     unit: str | None = None
     crs: str | None = None
     origin: tuple[float, float, float] | None = None
@@ -300,9 +299,8 @@ class SamplingReport:
                 object.__setattr__(self, name, plain)
 
     @property
-    def _cap(self) -> Cap | None:
-        """The reach as a cap."""
-        return None if self.reach is None else checked_reach((self.reach[:3], self.reach[3]))
+    def _in_reach(self) -> Reach | None:
+        return None if self.reach is None else Reach.of(self.reach)
 
     def __repr__(self) -> str:
         known = ((x.name, getattr(self, x.name)) for x in fields(self))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 if TYPE_CHECKING:
-    from ..directions.regions import Cap
+    from ..directions.regions import Reach
 
 __all__ = ["FaceColumn", "NormalDeviation", "Whole"]
 
@@ -69,7 +69,7 @@ class Whole:
         """Return all points that have one of the unit normals (S, 3)."""
         raise NotImplementedError
 
-    def _space(self, threads: int | None, *, reach: Cap | None = None) -> Any:  # noqa: ANN401
+    def _space(self, threads: int | None, *, reach: Reach | None = None) -> Any:  # noqa: ANN401
         """Return the `Space` of the whole, or of its points in a `reach`."""
         raise NotImplementedError
 

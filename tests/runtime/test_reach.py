@@ -131,3 +131,38 @@ def test_nothing_in_reach() -> None:
 
 def test_grids_have_no_reach() -> None:
     refused('use "balanced"', gm.sample, "torus", 100, density="aligned", reach=((0, 0, 1), 30.0))
+
+
+def test_slopes_and_aspects_are_sectors_of_normals() -> None:
+    waves = gm.surfaces.wavy_graph()
+    reach = gm.Reach(slope=(5.0, 20.0), aspect=(200.0, 60.0))
+    samples = gm.sample(waves, 400, reach=reach, density="uniform")
+    turn = (samples.aspect - 200.0 + 180.0) % 360.0 - 180.0
+    assert len(samples) == 400
+    assert samples.slope.min() >= 5.0 - ROUNDING
+    assert samples.slope.max() <= 20.0 + ROUNDING
+    assert np.abs(turn).max() <= 60.0 + ROUNDING
+    # The whole sector is sampled: places of a grid in it have a sample that is as near as
+    # elsewhere.
+    side = (np.arange(300) + 0.5) / 150.0 - 1.0
+    u, v = (x.ravel() for x in np.meshgrid(side, side))
+    x, y, z = waves.normals(u, v).T
+    slope, aspect = np.degrees(np.arccos(z)), np.degrees(np.arctan2(x, y))
+    inside = (slope > 5.0) & (slope < 20.0) & (abs((aspect + 340.0) % 360.0 - 180.0) < 60.0)
+    area = inside.mean() * 4.0
+    farthest = KDTree(samples.points[:, :2]).query(np.stack([u, v], axis=1)[inside])[0].max()
+    assert farthest <= 2.0 * np.sqrt(area / 400.0)
+    assert gm.Reach.of(reach.numbers).numbers == reach.numbers
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"slope": (20, 10)}, "slope must be the least and the largest angle, at most 180"),
+        ({"aspect": (180, 120)}, "aspect must be a direction and an angle, at most 90"),
+        ({"slope": 20}, "slope"),
+        ({"angle": 0}, "the angle of reach"),
+    ],
+)
+def test_unusable_slopes_and_aspects(given: dict[str, Any], message: str) -> None:
+    refused(message, gm.Reach, **given)

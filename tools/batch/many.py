@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, DTypeLike
 from ...runtime.base.checks import known_name, yes_or_no
 from ...runtime.base.errors import GaussmapError, GaussmapWarning, InputError, shown
 from ...runtime.base.threads import seen
+from ...runtime.directions.regions import Reach
 from ...runtime.onto_surface.on_surface import checked_place
 from ...runtime.samples.fields import checked_dtype, checked_fields
 from ...runtime.samples.samples import Samples
@@ -40,7 +41,7 @@ class _How(TypedDict, total=False):
     angle: float | None
     coverage: float | None
     density: str | float | None
-    reach: tuple[ArrayLike, float] | None
+    reach: tuple[ArrayLike, float] | Reach | None
     cells: Sequence[int] | None
     on: str | None
     fields: Sequence[str] | None
@@ -114,7 +115,7 @@ def sample_many(
     angle: float | None = None,
     coverage: float | None = None,
     density: str | float | None = None,
-    reach: tuple[ArrayLike, float] | None = None,
+    reach: tuple[ArrayLike, float] | Reach | None = None,
     cells: Sequence[int] | None = None,
     on: str | None = None,
     fields: Sequence[str] | None = None,

@@ -98,7 +98,7 @@ def plan_of(
         "angle": request.angle,
         "coverage": request.coverage,
         "density": request.density,
-        "reach": None if reach is None else [reach.axis.tolist(), reach.angle],
+        "reach": None if reach is None else list(reach.numbers),
         "cells": None if cells is None else list(pair_of_cells(cells)),
         "on": checked_place(on),
     }

@@ -17,7 +17,7 @@ from ...runtime.base.errors import GaussmapError, GaussmapWarning
 from ...runtime.base.kept import kept
 from ...runtime.base.memory import check_memory
 from ...runtime.base.scales import scale_to_one
-from ...runtime.directions.regions import Cap
+from ...runtime.directions.regions import Reach
 from ...runtime.domain.domain import Domain
 from ...runtime.onto_surface.cut_components import components_in
 from ...runtime.onto_surface.on_spline import OnSpline, on_grids
@@ -77,10 +77,10 @@ class FacePiece(Piece):
 
     face: Face
     surface: Surface
-    reach: Cap | None = None
+    reach: Reach | None = None
 
     @classmethod
-    def of(cls, face: Face, reach: Cap | None = None) -> FacePiece:
+    def of(cls, face: Face, reach: Reach | None = None) -> FacePiece:
         """Return a face as a piece; GaussmapError if it has no surface."""
         surface, indices = face.surface, {"face_index": face.index, "solid_index": face.solid_index}
         trim = (in_reach(surface, reach) or surface).trim
@@ -268,7 +268,7 @@ class FacePiece(Piece):
 
 
 def pieces_of(
-    faces: tuple[Face, ...], reach: Cap | None = None
+    faces: tuple[Face, ...], reach: Reach | None = None
 ) -> tuple[list[FacePiece], dict[int, str]]:
     """Return the faces that can be sampled, and for each other face, by its index, the reason.
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import MissingFieldError, SurfaceError
 from ...runtime.base.kept import kept
 from ...runtime.base.trees import tree_of
-from ...runtime.directions.regions import Cap
+from ...runtime.directions.regions import Reach
 from ...runtime.samples.samples import Samples
 from ..density.cells import AREA, by_piece
 from ..density.kernels.sizing import TargetDensity
@@ -37,7 +37,7 @@ class PartSpace(Space):
 
 
 def space_of(
-    part: Part, threads: int | None, target: TargetDensity | None = None, reach: Cap | None = None
+    part: Part, threads: int | None, target: TargetDensity | None = None, reach: Reach | None = None
 ) -> PartSpace:
     """Return the space of a part, or of its normals in a `reach`; SurfaceError if it is empty.
 
@@ -52,7 +52,8 @@ def space_of(
     if not pieces:
         if reach is not None and len(failed) < len(part.faces):
             raise SurfaceError(
-                f"no normal of part {part.name!r} is within the {reach.angle:g}° of the reach; "
+                f"no normal of part {part.name!r} is within the {reach.smallest.angle:g}° of the "
+                "reach; "
                 "those of the wall of a bore are at 90° to its axis."
             )
         reason = f": {next(iter(failed.values()))}" if failed else "."
@@ -76,7 +77,7 @@ def weights_of(part: Part, samples: Samples) -> Array:
         )
     on_edge = samples.other_face_index
     inner = samples._regular if on_edge is None else samples._regular & (on_edge < 0)
-    space = space_of(part, None, reach=samples.report._cap)
+    space = space_of(part, None, reach=samples.report._in_reach)
     points = space.scaled_points(samples.points)
     cells = space.uniform.cut(math.sqrt(space.area / (CELLS_A_SAMPLE * max(len(samples), 1))))
     for k, rows in by_piece(cells):

@@ -187,8 +187,8 @@ def _sample() -> Command:
         "gaps between these, as where the surface is flat or developable.",
         *_sampling(default_count=10_000),
         _output(
-            ".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .las or .laz; with --format "
-            "-, which is standard output"
+            ".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .gpkg, .geojson, .las or "
+            ".laz; with --format -, which is standard output"
         ),
         Option("--format FORMAT", format_, click.Choice(("csv", "xyz", "ply", "npy")), main=True),
         Option("--edges", edges, group="the surface"),
@@ -434,6 +434,19 @@ def _distribution() -> list[Option]:
             "--reach X Y Z ANGLE",
             "Only where the normal is within ANGLE degrees of the direction X Y Z, from which a "
             "probe, a camera or a printer comes.",
+            number,
+            group="how dense",
+        ),
+        Option(
+            "--slope LEAST MOST",
+            "Only where the normal is between LEAST and MOST degrees from +z.",
+            number,
+            group="how dense",
+        ),
+        Option(
+            "--aspect DIRECTION ANGLE",
+            "Only slopes that face within ANGLE degrees (90 at most) of a DIRECTION, in degrees "
+            "clockwise from north.",
             number,
             group="how dense",
         ),

@@ -14,6 +14,7 @@ from ...runtime import directions
 from ...runtime.base.compiling import NOTICE
 from ...runtime.base.errors import InputError
 from ...runtime.base.progress import busy
+from ...runtime.directions.regions import Reach
 from ...runtime.samples.samples import Samples
 from ..cad.part import Part
 from ..density.request import Request, checked_request
@@ -50,7 +51,10 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
     normals = _named_normals(options)
     asked = normals, options.count, options.angle, options.coverage
     count = default_count if all(x is None for x in asked) else options.count
-    reach = None if options.reach is None else (options.reach[:3], options.reach[3])
+    reach, slope, aspect = options.reach, options.slope, options.aspect
+    if any(x is not None for x in (reach, slope, aspect)):
+        cap = () if reach is None else (reach[:3], reach[3])
+        reach = Reach(*cap, slope=slope, aspect=aspect)
     how = options.density, vars(options).get("threads"), reach
     return checked_request(normals, count, options.angle, options.coverage, *how)
 

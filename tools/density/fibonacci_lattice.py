@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.directions.regions import Cap
+from ...runtime.directions.regions import Reach
 from ...runtime.directions.sets import part_of_fibonacci, spiral_angle
 from ...runtime.directions.unit import in_pieces, perpendicular
 from ...runtime.search.kernels.pieces import least_cosine
@@ -28,15 +28,15 @@ class Lattice:
     cosine: float
 
     @classmethod
-    def around(cls, spline: AnySpline, reach: Cap | None = None) -> Lattice:
+    def around(cls, spline: AnySpline, reach: Reach | None = None) -> Lattice:
         """Return the lattice on the smallest cap around the mean normal that contains every normal.
 
-        It is on the `reach` instead if that cap is smaller.
+        It is on the smallest cap of a `reach` instead if that is smaller.
         """
         found = cls._around_all(spline)
-        if reach is not None and reach.angle < 90.0:
-            cosine = math.cos(math.radians(reach.angle)) - 1e-12
-            return cls(reach.axis, cosine) if cosine > found.cosine else found
+        if reach is not None and (cap := reach.smallest).angle < 90.0:
+            cosine = math.cos(math.radians(cap.angle)) - 1e-12
+            return cls(cap.axis, cosine) if cosine > found.cosine else found
         return found
 
     @classmethod

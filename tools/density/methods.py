@@ -158,7 +158,7 @@ def _space_of(samples: Samples, spline: AnySpline | None, threads: int | None) -
     """Return the sampled space; without a spline, all pieces of the surface with an area."""
     surface = samples.surface
     if isinstance(surface, Whole):
-        return surface._space(threads, reach=samples.report._cap)
+        return surface._space(threads, reach=samples.report._in_reach)
     if spline is None and samples.spline is None and surface is not None:
         return space_of([OnSurface(fit(x), threads, x) for x in surface.pieces()], threads)
     return space_on(spline_or(samples, spline), surface, threads)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...runtime.base.checks import checked_count, known_name, positive_number
 from ...runtime.base.errors import InputError, UnknownNameError
 from ...runtime.base.threads import thread_count
-from ...runtime.directions.regions import Cap, checked_reach
+from ...runtime.directions.regions import Reach, checked_reach
 from ...runtime.directions.sets import frequency_within, icosphere
 from ...runtime.directions.unit import as_normals
 
@@ -41,7 +41,7 @@ class Request:
     angle: float | None
     coverage: float | None
     density: str | float
-    reach: Cap | None = None
+    reach: Reach | None = None
 
     @property
     def cost(self) -> str:
@@ -51,7 +51,7 @@ class Request:
     @property
     def solid_angle(self) -> float:
         """The solid angle of the normals that may have samples."""
-        return 4 * math.pi if self.reach is None else self.reach.solid_angle
+        return 4 * math.pi if self.reach is None else self.reach.smallest.solid_angle
 
     @property
     def directions(self) -> NDArray[np.float64]:

@@ -14,6 +14,7 @@ from ...runtime.samples.samples import Samples
 from .content import report_to_json
 from .lengths import unit_of, units_of
 from .of_faces import columns_of_faces
+from .of_terrain import columns_of_terrain
 
 __all__ = ["write_arrow", "write_parquet"]
 
@@ -46,6 +47,9 @@ def _table(samples: Samples, path: Path) -> Any:  # noqa: ANN401
         for column in COLUMNS[name]
     ]
     columns = [arrow.array(np.ascontiguousarray(x)) for x in columns_of(samples.arrays()).values()]
+    for name, array in columns_of_terrain(samples).items():
+        fields.append(arrow.field(name, arrow.from_numpy_dtype(array.dtype)))
+        columns.append(arrow.array(array))
     kinds = {int: arrow.int64(), float: arrow.float64(), str: arrow.string()}
     for x in columns_of_faces(samples):
         field = arrow.field(x.name, kinds[x.dtype])

@@ -14,6 +14,7 @@ from ...runtime.samples.samples import Samples
 from .arrow import write_arrow, write_parquet
 from .las import write_las
 from .npz import read_npz, write_npz
+from .of_terrain import write_points
 from .paths import (
     PathLike,
     atomic_path,
@@ -64,6 +65,8 @@ OF_SAMPLES = {
     ".parquet": Format(write_parquet, (), "pyarrow", "tables"),
     ".arrow": Format(write_arrow, (), "pyarrow", "tables"),
     ".feather": Format(write_arrow, (), "pyarrow", "tables"),
+    ".gpkg": Format(write_points, ("points",), "pyogrio", "gis"),
+    ".geojson": Format(write_points, ("points",), "pyogrio", "gis"),
     ".las": Format(write_las, ("points",), "laspy", "gis"),
     ".laz": Format(write_las, ("points",), "lazrs", "gis"),
 }

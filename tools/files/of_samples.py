@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ...runtime.base.extras import from_extra
 from ...runtime.samples.fields import columns_of
 from .of_faces import columns_of_faces
+from .of_terrain import columns_of_terrain
 
 if TYPE_CHECKING:
     import open3d  # pyright: ignore[reportMissingImports]
@@ -43,7 +44,7 @@ def to_dataframe(self: Samples) -> pandas.DataFrame:
     (200, ['x', 'y', 'z', 'nx'])
 
     """
-    columns = columns_of(self.arrays())
+    columns = columns_of(self.arrays()) | columns_of_terrain(self)
     pandas = from_extra("pandas", "pandas", "this")
     table = pandas.DataFrame({name: column.copy() for name, column in columns.items()})
     for x in columns_of_faces(self):

@@ -16,6 +16,7 @@ from ...runtime.samples.fields import columns_of
 from ...runtime.samples.samples import Samples
 from .lengths import names_with_units
 from .of_faces import columns_of_faces, texts_of
+from .of_terrain import columns_of_terrain
 
 __all__ = ["write_csv", "write_rows", "write_xyz"]
 
@@ -29,6 +30,9 @@ WORTH_AN_IMPORT, ROWS_OF_POLARS = 20_000, 1 << 18
 def write_csv(samples: Samples, path: Path) -> None:
     """Write a line of names, with known units of length, then a line for each sample."""
     columns, names = [*columns_of(samples.arrays()).values()], names_with_units(samples)
+    for name, column in columns_of_terrain(samples).items():
+        columns.append(column)
+        names.append(f"{name} [deg]")
     for x in columns_of_faces(samples):
         columns.append(texts_of(x, samples))
         names.append(f"{x.name} [{x.unit}]" if x.unit else x.name)

@@ -14,6 +14,7 @@ from ...runtime.base.errors import InputError, in_memory
 from ...runtime.base.georeference import warn_of_rounding
 from ...runtime.base.memory import check_memory
 from ...runtime.base.progress import busy
+from ...runtime.directions.regions import Reach
 from ...runtime.map import check_part, kept_map
 from ...runtime.onto_surface.on_spline import OnPatches, OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import place_of_samples
@@ -49,7 +50,7 @@ def sample(
     angle: float | None = None,
     coverage: float | None = None,
     density: str | float | None = None,
-    reach: tuple[ArrayLike, float] | None = None,
+    reach: tuple[ArrayLike, float] | Reach | None = None,
     cells: Sequence[int] | None = None,
     on: str | None = None,
     fields: Sequence[str] | None = None,
@@ -84,10 +85,10 @@ def sample(
         prescribed normals. "balanced", the default otherwise, also fills the gaps between these.
         "aligned" is a grid along parameter lines, "uniform" is constant, and a number α means
         |K|^α; see Notes. Splines of nets (`Spline.from_nets`) have "gauss" only.
-    reach : (axis, angle), optional
+    reach : (axis, angle) or Reach, optional
         Only points whose normal is within an angle, in degrees, of a direction (3,) are sampled,
-        such as that of a probe, a camera or a printer. Count, angle and coverage refer to these
-        points. Not with ``density="aligned"``.
+        such as that of a probe, a camera or a printer; a `Reach` also knows slopes and aspects.
+        Count, angle and coverage refer to these points. Not with ``density="aligned"``.
     cells : (int, int), optional
         The numbers of cells along u and v of the spline that approximates the surface, see `fit`.
     on : {"surface", "spline"}, optional

@@ -104,3 +104,26 @@ def test_files_that_are_read_are_spared(folder, capsys, main):
     link.symlink_to(folder / "dem.tif")
     assert main(["sample", str(folder / "dem.tif"), "-o", str(link)]) == 2
     assert "is read; write to another file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("suffix", [".gpkg", ".geojson"])
+def test_points_for_geographic_information_systems(samples, suffix, tmp_path):
+    raw = pytest.importorskip("pyogrio.raw")
+    path = tmp_path / f"hills{suffix}"
+    samples.write(path)
+    about, _, shapes, columns = raw.read(path)
+    found = dict(zip(about["fields"].tolist(), columns, strict=True))
+    assert about["geometry_type"] == "Point Z"
+    assert about["crs"] == "EPSG:32617"
+    places = np.array([np.frombuffer(x[-24:]) for x in shapes])
+    world = samples.points + np.array(samples.report.origin)
+    np.testing.assert_allclose(places, world, rtol=1e-12)
+    np.testing.assert_allclose(found["slope"], samples.slope, rtol=1e-12)
+    np.testing.assert_allclose(found["aspect"], samples.aspect, rtol=1e-12)
+    columns = samples.to_dataframe()
+    assert np.array_equal(columns["slope"], samples.slope)
+    # A slope that rises to the north-east faces south-west.
+    x, y = np.meshgrid(np.arange(8.0), np.arange(8.0))
+    ramp = gm.sample(gm.terrain(0.1 * (x + y), x=x[0], y=y[:, 0], origin=(0, 0)), coverage=1.0)
+    np.testing.assert_allclose(ramp.aspect, 225.0, atol=1e-6)
+    np.testing.assert_allclose(ramp.slope, np.degrees(np.arctan(0.1 * 2**0.5)), atol=1e-6)
