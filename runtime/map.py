@@ -254,7 +254,7 @@ class GaussMap(Methods):
         special = found.component != Component.REGULAR
         signs[special] = 0.0
         sums = np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
-        known = np.isin(found.component, (Component.ISOLATED, Component.TIP))
+        known = np.isin(found.arrays()["component"], (Component.ISOLATED, Component.TIP))
         which = np.unique(found.normal_index[known])
         whole = self._surface
         for face in whole._space(threads).pieces if isinstance(whole, Whole) else ():

@@ -11,8 +11,9 @@ import gaussmap as gm
 import pytest
 
 NAMES = (
-    "Component Dataset GaussMap Mesh Part Samples Spline SupportFunction Surface GaussmapError "
-    "GaussmapWarning fit sample sample_many sample_stream read_cad read_part read_samples "
+    "Component Dataset GaussMap Mesh Part Reach Samples Spline SupportFunction Surface "
+    "GaussmapError GaussmapWarning fit sample sample_many sample_stream read_cad read_part "
+    "read_samples "
     "open_dataset icosphere fibonacci convolve silhouette plot terrain curves directions errors "
     "gauss_map surfaces formulas symbolic"
 )

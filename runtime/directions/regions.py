@@ -86,32 +86,50 @@ class Reach:
             sides = np.stack([np.sin(turned), np.cos(turned), 0.0 * turned], axis=1)
             caps += [Cap(side, 90.0) for side in sides]
         # The whole sphere needs no test beside other caps.
-        self.caps = tuple(x for x in caps if x.angle < 180.0 or len(caps) == 1)
+        self._caps = tuple(x for x in caps if x.angle < 180.0 or len(caps) == 1)
 
     @classmethod
-    def of(cls, numbers: Sequence[float]) -> Reach:
+    def _of(cls, numbers: Sequence[float]) -> Reach:
         """Return the reach with the `numbers` of another one."""
         found = cls()
         rows = np.array(numbers, dtype=np.float64).reshape(-1, 4)
-        found.caps = tuple(cap for x in rows for cap in cls(x[:3], float(x[3])).caps)
+        found._caps = tuple(cap for x in rows for cap in cls(x[:3], float(x[3]))._caps)
         return found
 
     @property
-    def numbers(self) -> tuple[float, ...]:
+    def _numbers(self) -> tuple[float, ...]:
         """The unit vector of the axis and the angle of each cap, one after the other."""
-        return tuple(x for cap in self.caps for x in (*cap.axis.tolist(), cap.angle))
+        return tuple(x for cap in self._caps for x in (*cap.axis.tolist(), cap.angle))
 
     @property
-    def smallest(self) -> Cap:
+    def _smallest(self) -> Cap:
         """The smallest of the caps whose intersection is the reach."""
-        return min(self.caps, key=lambda cap: cap.angle)
+        return min(self._caps, key=lambda cap: cap.angle)
 
     def contains(self, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return which unit normals (N, 3) are in reach; rows of NaN or 0 are not."""
-        return np.logical_and.reduce([cap.contains(normals) for cap in self.caps])
+        """Return which unit normals are in reach.
+
+        Parameters
+        ----------
+        normals : (N, 3) float64 array
+            Unit normals; rows of NaN or 0 are not in reach.
+
+        Returns
+        -------
+        (N,) bool array
+            Whether all conditions hold.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> gm.Reach((0, 0, 1), 100).contains(gm.icosphere(1)).sum()
+        np.int64(8)
+
+        """
+        return np.logical_and.reduce([cap.contains(normals) for cap in self._caps])
 
     def __repr__(self) -> str:
-        caps = (f"{cap.angle:g}° of {cap.axis.round(3).tolist()}" for cap in self.caps)
+        caps = (f"{cap.angle:g}° of {cap.axis.round(3).tolist()}" for cap in self._caps)
         return f"Reach(within {', '.join(caps)})"
 
 

@@ -69,7 +69,7 @@ class InReach:
 
 def reached(whole: Whole, normals: Callable[[Array], Array], reach: Reach) -> Whole:
     """Return the part of a spline or a surface whose `normals` are in a reach."""
-    conditions = [InReach(normals, cap) for cap in reach.caps]
+    conditions = [InReach(normals, cap) for cap in reach._caps]
     return replace(whole, trim=trimmed(whole.trim, whole.domain, whole.boundary, *conditions))
 
 

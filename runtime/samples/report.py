@@ -71,7 +71,7 @@ def _number(value: Any, name: str, most: float = math.inf) -> float:  # noqa: AN
 def _reach(values: Any) -> tuple[float, ...]:  # noqa: ANN401
     """Return the unit vectors of axes, and an angle after each, as plain floats."""
     try:
-        return Reach.of([float(value) for value in values]).numbers
+        return Reach._of([float(value) for value in values])._numbers
     except Exception:  # iteration may raise anything
         raise InputError(
             f"reach must be an axis and an angle, four numbers, or some of these, not "
@@ -300,7 +300,7 @@ class SamplingReport:
 
     @property
     def _in_reach(self) -> Reach | None:
-        return None if self.reach is None else Reach.of(self.reach)
+        return None if self.reach is None else Reach._of(self.reach)
 
     def __repr__(self) -> str:
         known = ((x.name, getattr(self, x.name)) for x in fields(self))

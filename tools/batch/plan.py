@@ -98,7 +98,7 @@ def plan_of(
         "angle": request.angle,
         "coverage": request.coverage,
         "density": request.density,
-        "reach": None if reach is None else list(reach.numbers),
+        "reach": None if reach is None else list(reach._numbers),
         "cells": None if cells is None else list(pair_of_cells(cells)),
         "on": checked_place(on),
     }

@@ -50,7 +50,7 @@ def sample_part(
     found = fields_of(cover, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)
     report = _report(part, space, cover, found, request)
     if request.reach is not None:
-        report = replace(report, reach=request.reach.numbers)
+        report = replace(report, reach=request.reach._numbers)
     arrays: dict[str, Any] = {name: found[name] for name in on_faces}
     if edges:
         assert isinstance(cover.space, PartSpace)

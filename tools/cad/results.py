@@ -52,7 +52,7 @@ def space_of(
     if not pieces:
         if reach is not None and len(failed) < len(part.faces):
             raise SurfaceError(
-                f"no normal of part {part.name!r} is within the {reach.smallest.angle:g}° of the "
+                f"no normal of part {part.name!r} is within the {reach._smallest.angle:g}° of the "
                 "reach; "
                 "those of the wall of a bore are at 90° to its axis."
             )

@@ -34,7 +34,7 @@ class Lattice:
         It is on the smallest cap of a `reach` instead if that is smaller.
         """
         found = cls._around_all(spline)
-        if reach is not None and (cap := reach.smallest).angle < 90.0:
+        if reach is not None and (cap := reach._smallest).angle < 90.0:
             cosine = math.cos(math.radians(cap.angle)) - 1e-12
             return cls(cap.axis, cosine) if cosine > found.cosine else found
         return found

@@ -51,7 +51,7 @@ class Request:
     @property
     def solid_angle(self) -> float:
         """The solid angle of the normals that may have samples."""
-        return 4 * math.pi if self.reach is None else self.reach.smallest.solid_angle
+        return 4 * math.pi if self.reach is None else self.reach._smallest.solid_angle
 
     @property
     def directions(self) -> NDArray[np.float64]:

@@ -70,6 +70,10 @@ ASKED: list[tuple[str, Made]] = [
     ("--density 0.5 --count 60", torus(count=60, density=0.5)),
     ("--density balanced --frequency 2", torus(normals=gm.icosphere(2), density="balanced")),
     ("--reach 1 0 1 40 --count 60", torus(count=60, reach=((1, 0, 1), 40.0))),
+    (
+        "--slope 20 60 --aspect 180 45 --count 60",
+        torus(count=60, reach=gm.Reach(slope=(20, 60), aspect=(180, 45))),
+    ),
     ("--on spline --count 60", torus(count=60, on="spline")),
     ("--threads 1 --count 60", torus(count=60, threads=1)),
     ("--fields points,uv --count 60", torus(count=60, fields=("points", "uv"))),
