@@ -9,11 +9,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
-from numpy.typing import NDArray
 
 from ...refusals import refused
 
-Array = NDArray[np.float64]
 EPS = 2.0**-52
 MAJOR, MINOR = 2.0, 0.5
 FIELDS = ("points", "support", "gaussian_curvature", "mean_curvature")
