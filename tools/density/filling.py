@@ -40,8 +40,9 @@ GREEDY = 1.85
 # Balanced: the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
 # Balanced: the floor of the target density, relative to the mean of κ². For a count or a coverage,
-# the ceiling of κ, relative to the root of the floor.
-FLOOR, MOST_CURVED = 0.8, 20.0
+# the ceiling of κ, relative to the root of the floor. For an angle, that of a narrow face needs no
+# samples as close as its radius: with 20, a wing with a round trailing edge takes 6 times as many.
+FLOOR, MOST_CURVED, MOST_FOR_NORMALS = 0.8, 20.0, 10.0
 # For an angle, the mean of κ² is that of the capped κ: mean and ceiling are iterated until the
 # ratio of consecutive means exceeds this.
 SETTLED = 0.9
@@ -198,10 +199,12 @@ class Filling:
         floor = self._floor(math.inf)
         if not capped:
             return self.space.between(floor)
-        lower = self._floor(MOST_CURVED**2 * floor)
-        while self.request.angle is not None and lower < SETTLED * floor:
-            floor, lower = lower, self._floor(MOST_CURVED**2 * lower)
-        return self.space.between(floor, MOST_CURVED**2 * floor)
+        if self.request.angle is None:
+            return self.space.between(floor, MOST_CURVED**2 * floor)
+        lower = self._floor(MOST_FOR_NORMALS**2 * floor)
+        while lower < SETTLED * floor:
+            floor, lower = lower, self._floor(MOST_FOR_NORMALS**2 * lower)
+        return self.space.between(floor, MOST_FOR_NORMALS**2 * floor)
 
     def _floor(self, ceiling: float) -> float:
         """Return the floor of "balanced" for a target density with a ceiling."""

@@ -155,7 +155,8 @@ def test_an_angle_holds_in_narrow_tips(tip, angle):
 
 
 @pytest.mark.parametrize(
-    ("kind", "radius"), [("cylinder", 1e-3), ("cylinder", 1e-4), ("sphere", 1e-4)]
+    ("kind", "radius"),
+    [("cylinder", 3e-3), ("cylinder", 1e-3), ("cylinder", 1e-4), ("sphere", 1e-4)],
 )
 def test_an_angle_takes_few_samples_of_tiny_faces(kind, radius):
     """They took 66,000 samples of the larger fillet, most of them on the plane.

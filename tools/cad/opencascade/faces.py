@@ -16,7 +16,7 @@ from OCP.TopoDS import TopoDS
 
 from ..records import NO_AREA, FaceRecord, Geometry
 from .curves import UnusableError
-from .loops import EdgeCurves, gap_of, loops_of, wires_of
+from .loops import EdgeCurves, loops_of, wires_of
 from .shapes import Key
 from .solids import CLOSE
 from .surfaces import basis_of, geometry_of, periods_of
@@ -86,13 +86,13 @@ class FaceReader:
         key = Key(face, placed=False)
         known = self._known.get(key)
         if known is None:
-            known = loops_of(_forward(face), self.wires), area_of(face)
+            loops, gap = loops_of(_forward(face), self.wires)
+            known = loops, area_of(face)
             if not np.isfinite(known[1]):
                 raise UnusableError("its area is not finite")
             if known[1] < LEAST_AREA:
                 raise UnusableError(NO_AREA)
             self._known[key] = known
-            gap = gap_of(BRep_Tool.Surface_s(face), self.wires(_forward(face)))
             self.gaps += [gap] if gap > CLOSE else []
         return known
 

@@ -9,16 +9,17 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
 from OCP.BRepTools import BRepTools, BRepTools_WireExplorer
 from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
 from OCP.TopoDS import TopoDS
 
 from ..records import NO_AREA
 from .curves import UnusableError
-from .p_curves import PCurve, curve_of
+from .p_curves import CONFUSION, PCurve, curve_of
 from .shapes import parts_of
 
-__all__ = ["EdgeCurves", "gap_of", "loops_of", "wires_of"]
+__all__ = ["EdgeCurves", "loops_of", "wires_of"]
 
 Array = NDArray[np.float64]
 # The edges of each wire of a face and their p-curves, one after another.
@@ -27,7 +28,7 @@ EdgeCurves = list[list[tuple[Any, PCurve]]]
 # The largest distance of polygons from the curves, relative to the (u, v) box of the face and to
 # its mean width in it, but not less than the last.
 OF_BOX, OF_WIDTH, LEAST = 1e-4, 1e-3, 1e-7
-# The largest gap between consecutive curves, relative to the box.
+# The largest gap between consecutive curves, relative to the box, if edges do not allow it.
 GAP = 1e-2
 # Points are equal up to this distance, relative to the box.
 SAME = 1e-12
@@ -37,10 +38,11 @@ FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs
 EDGE, WIRE = TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_WIRE
 
 
-def loops_of(face: Any, wires_of: Callable[[Any], EdgeCurves]) -> list[Array]:  # noqa: ANN401
-    """Return the closed polygons of a face; UnusableError with the reason if there are none.
+def loops_of(face: Any, wires_of: Callable[[Any], EdgeCurves]) -> tuple[list[Array], float]:  # noqa: ANN401
+    """Return the closed polygons of a face, and the largest gap that they close, in mm.
 
-    The face is oriented forward, so that it lies to the left of its curves.
+    Raises UnusableError with the reason if there are none. The face is oriented forward, so that it
+    lies to the left of its curves.
     """
     u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
     bounds = np.array([(u0, v0), (u1, v1)])
@@ -49,25 +51,24 @@ def loops_of(face: Any, wires_of: Callable[[Any], EdgeCurves]) -> list[Array]:  
     size = bounds[1] - bounds[0]
     if not (size > 0.0).all():
         raise UnusableError(NO_AREA)
-    wires = [[curve for _, curve in wire] for wire in wires_of(face)]
+    edges = wires_of(face)
+    wires = [[curve for _, curve in wire] for wire in edges]
     if not wires:
-        return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])]
+        return [np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])], 0.0
+    gap = _gap_of(BRep_Tool.Surface_s(face), edges, size)
     loops = _polygons(wires, size, OF_BOX)
     width = _mean_width(loops, size)
     if width * OF_WIDTH < OF_BOX:
         loops = _polygons(wires, size, max(width * OF_WIDTH, LEAST))
     if not loops:
         raise UnusableError(NO_AREA)
-    return loops
+    return loops, gap
 
 
 def _polygons(wires: list[list[PCurve]], size: Array, tolerance: float) -> list[Array]:
     polygons = []
     for curves in wires:
         lines = [x.polyline(tolerance * size) for x in curves]
-        ends = np.array([x[-1] for x in lines[-1:] + lines[:-1]])
-        if (np.abs(ends - [x[0] for x in lines]) > GAP * size).any():
-            raise UnusableError("its boundary is not closed")
         polygon = np.concatenate(lines)
         step = np.abs(polygon - np.concatenate([polygon[-1:], polygon[:-1]]))
         polygon = polygon[(step > SAME * size).any(axis=1)]
@@ -76,14 +77,23 @@ def _polygons(wires: list[list[PCurve]], size: Array, tolerance: float) -> list[
     return polygons
 
 
-def gap_of(surface: Any, wires: EdgeCurves) -> float:  # noqa: ANN401
-    """Return the largest distance between consecutive curves of wires on a surface."""
+def _gap_of(surface: Any, wires: EdgeCurves, size: Array) -> float:  # noqa: ANN401
+    """Return the largest distance between consecutive curves of wires on a surface.
+
+    Raises UnusableError if it is more than their edges allow, and large relative to the box.
+    """
     gap = 0.0
     for wire in wires:
-        ends = [(x.chord[::-1] if x.reversed else x.chord).tolist() for _, x in wire]
-        for (_, last), (first, _) in zip(ends[-1:] + ends[:-1], ends, strict=True):
-            if last != first:
-                gap = max(gap, surface.Value(*last).Distance(surface.Value(*first)))
+        ends = [x.chord[::-1] if x.reversed else x.chord for _, x in wire]
+        for k, (first, _) in enumerate(ends):
+            last = ends[k - 1][1]
+            if (last != first).any():
+                distance = surface.Value(*last.tolist()).Distance(surface.Value(*first.tolist()))
+                allowed = CONFUSION + sum(BRep_Tool.Tolerance_s(wire[n][0]) for n in (k - 1, k))
+                is_wide = (np.abs(last - first) > GAP * size).any()
+                if is_wide and distance > allowed:
+                    raise UnusableError("its boundary is not closed")
+                gap = max(gap, distance)
     return gap
 
 

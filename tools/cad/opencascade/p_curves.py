@@ -21,7 +21,7 @@ from OCP.TopAbs import TopAbs_Orientation
 
 from .polylines import one_sided
 
-__all__ = ["PCurve", "curve_of"]
+__all__ = ["CONFUSION", "PCurve", "curve_of"]
 
 Array = NDArray[np.float64]
 
