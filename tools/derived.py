@@ -300,8 +300,10 @@ def weights(
     Σ w f(points) approximates the integral of f over the surface: its area for f = 1, the volume of
     a closed surface for f = support / 3, 2π times the Euler characteristic for f =
     gaussian_curvature. The error falls with the square of the distance between samples, that is as
-    1 / N; the error of the area as 1 / N², down to that of the spline. The weights come from the
-    mesh of the samples, whose triangles are curved according to the normals.
+    1 / N; the error of the area as 1 / N², down to that of the spline (1,000 samples of a NURBS
+    ellipsoid: 2e-5), and as 1 / N where a boundary is curved (a disc: 4e-4). The weights come from
+    the mesh of the samples, whose triangles are curved according to the normals, and whose
+    boundary is a polygon.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ class SampleArrays:
     gaussian_curvature: NDArray[np.float64] = _NOT_ASKED
     mean_curvature: NDArray[np.float64] = _NOT_ASKED
     normal_index: NDArray[np.int64] = _NOT_ASKED
-    patch_index: NDArray[np.int64] = _NOT_ASKED
+    patch_index: NDArray[np.int64] | None = None
     on_surface: NDArray[np.bool_] | None = None
     uv_radius: NDArray[np.float64] | None = None
     component: NDArray[np.uint8] | None = None
@@ -82,12 +82,13 @@ class SampleArrays:
         for name, array in arrays.items():
             shape, dtype = (count, *row_shape(name)), dtype_of(name, floating)
             object.__setattr__(self, name, checked_array(name, array, shape, dtype))
-        for name in ARRAY_NAMES:
-            if name not in arrays:
-                object.__delattr__(self, name)  # an empty slot, so that __getattr__ raises
         for name, (kind, allowed) in _KINDS.items():
             if not isinstance(value := getattr(self, name), kind):
                 raise InputError(f"{name} must be {allowed}, not {type(value).__name__}.")
+        no_patches = self.report.proved is not None or isinstance(self.surface, Whole)
+        for name in ARRAY_NAMES:
+            if name not in arrays and not (no_patches and name == "patch_index"):
+                object.__delattr__(self, name)  # an empty slot, so that __getattr__ raises
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401
         if name in COLUMNS or name in DERIVED:

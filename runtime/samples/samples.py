@@ -54,9 +54,9 @@ class Samples(SampleArrays, Methods):
         Mean curvature H, in 1/L, positive for a sphere with outward normals.
     normal_index : (N,) int64 array
         Rows of the prescribed normals; −1 for a sample that fills a gap.
-    patch_index : (N,) int64 array
-        Patches of the spline in which the samples were found. Points that are proved to be all with
-        prescribed normals are found on the surface itself, and have none.
+    patch_index : (N,) int64 array or None
+        Patches of the spline in which the samples were found. None if points are proved to be all
+        with prescribed normals, which are found on the surface itself, and on CAD parts.
     on_surface : (N,) bool array or None
         Whether the sample is on the surface, with the normal of the surface up to 1e-9. False at
         singular points, and for a sample of a silhouette that could not be moved there from the

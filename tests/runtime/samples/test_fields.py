@@ -143,6 +143,16 @@ def test_types_that_are_none(dtype):
 # --- samples of few fields ------------------------------------------------------------------------
 
 
+@pytest.mark.compiled
+def test_proved_samples_can_be_replaced():
+    """They have no patches of a spline."""
+    samples = gm.sample("torus", normals=gm.fibonacci(20))
+    assert samples.report.proved == 20
+    moved = replace(samples, points=samples.points + 1.0)
+    assert samples.patch_index is moved.patch_index is None
+    assert moved.fields == samples.fields
+
+
 def test_copies_pickles_and_parts():
     samples = narrow(("uv", "normal_index"), dtype=np.float32)
     whole = slice(None)
