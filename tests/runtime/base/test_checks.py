@@ -70,15 +70,11 @@ def test_too_large_for_float64_is_infinite_without_a_warning():
 @pytest.mark.parametrize(
     ("values", "complaint"),
     [
-        (np.ones(3) * 1j, "not of type complex128"),
         (np.ones(3, complex), "not of type complex128"),  # even if the imaginary part is zero
         (["1", "2"], "not of type <U1"),
         (b"12", "not of type .S2"),
-        (np.ones(3, object), "not of type object"),
         ([Decimal(1)], "not of type object"),
-        ([None, 1.0], "not of type object"),
         (None, "not of type object"),
-        ({}, "not of type object"),
         (iter([1.0]), "not of type object"),
         (np.zeros(2, "M8[s]"), "not of type datetime64"),
         ([[1.0, 2.0], [3.0]], "with equal rows"),

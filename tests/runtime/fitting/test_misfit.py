@@ -1,7 +1,5 @@
 """The misfit of a spline beside independent measurements, on smooth and hard surfaces."""
 
-from typing import Any
-
 import gaussmap as gm
 import numpy as np
 import pytest
@@ -9,17 +7,11 @@ from numpy.typing import NDArray
 
 from ...products import covering
 from ...shapes import egg_surface
+from .test_fitting import fillet as profile
+from .test_fitting import graph, misfit_of
 
 Array = NDArray[np.float64]
 GENERATOR = np.random.default_rng(3)
-
-
-def misfit_of(spline: gm.Spline) -> Any:
-    return spline.misfit
-
-
-def points_of(surface: gm.Surface) -> Any:
-    return surface.grid
 
 
 def torus(scale: float = 1.0, shift: float = 0.0, calls: list[int] | None = None) -> gm.Surface:
@@ -42,17 +34,9 @@ def angles(first: Array, second: Array) -> Array:
     return np.degrees(2.0 * np.arcsin(np.linalg.norm(first - second, axis=-1) / 2.0))
 
 
-def fillet(along: int, width: float = 0.01, place: float = 0.437) -> gm.Surface:
-    """Return two planes at 60° with a circular fillet over `width` of the domain between them."""
-
-    def f(u: Array, v: Array) -> Array:
-        t = (u, v)[along] - place
-        # The slope goes from 0 to tan 60° over the width.
-        inside = np.clip(t + width / 2, 0.0, width)
-        z = np.tan(np.radians(60.0)) * (inside**2 / (2 * width) + np.maximum(t - width / 2, 0.0))
-        return np.stack([u, v, z], axis=-1)
-
-    return gm.Surface.from_callable(f, ((0.0, 1.0), (0.0, 1.0)), name="fillet")
+def fillet(along: int) -> gm.Surface:
+    """Return two planes at 60° with a fillet over 1 % of the domain between them."""
+    return graph(profile if along == 0 else lambda u, v: profile(v, u), name="fillet")
 
 
 @pytest.mark.parametrize("cells", [(16, 16), (64, 64), (150, 37)])

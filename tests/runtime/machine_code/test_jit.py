@@ -207,14 +207,6 @@ def test_a_failed_compilation_keeps_no_lock(folder: Path, monkeypatch: pytest.Mo
 
 
 @pytest.mark.compiled
-@pytest.mark.skipif(os.name == "nt", reason="Windows has other permissions")
-def test_machine_code_is_for_the_user_alone(folder: Path) -> None:
-    assert compiled_when(jit.jit(triple)) == 1
-    (path,) = folder.glob("*.kernel")
-    assert path.stat().st_mode & 0o777 == 0o600
-
-
-@pytest.mark.compiled
 def test_machine_code_that_cannot_be_saved(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError("No space left on device")
