@@ -22,7 +22,7 @@ __all__ = ["Sources", "bounds_of", "growth_for"]
 # with .1, more samples leave other places than these need.
 GROWTH = 0.15
 # The number of nearest cells whose sizes bound that of a cell.
-NEAREST = 16
+NEAREST = 8
 # Twice the area of a triangle of edges 1.
 TWO_TRIANGLES = math.sqrt(3.0) / 2.0
 
