@@ -33,18 +33,21 @@ class Function(NamedTuple):
 
     `values` are the value y of the function and, for some, a second one, w; `named` are terms that
     several derivatives share. If terms of derivatives cancel, the sums of their absolute values are
-    at most `cancelling`.
+    at most `cancelling`. If their extrema are not known, `slopes` bound the derivatives of the
+    function and of its Taylor coefficients.
     """
 
     of: Any
     values: Mapping[Any, Any] = {}
     named: Mapping[str, Any] = {}
     cancelling: Any = sp.S.Zero
+    slopes: tuple[Any, ...] = ()
 
     @property
     def coefficients(self) -> list[Any]:
-        """The function and its Taylor coefficients f1, f2, f3 at x."""
-        return [sp.diff(self.of, x, k) / sp.factorial(k) for k in range(HIGHEST + 1)]
+        """The function and its Taylor coefficients f1, f2, f3 at x, except at jumps."""
+        found = (sp.diff(self.of, x, k) / sp.factorial(k) for k in range(HIGHEST + 1))
+        return [f.replace(sp.DiracDelta, lambda *_: sp.S.Zero) for f in found]
 
 
 FUNCTIONS = {
@@ -65,7 +68,13 @@ FUNCTIONS = {
     ),
     # Rounding x² adds x² units to w: the sums of moduli, times 1 + x², are at most 2/√π.
     "erf": Function(sp.erf(x), {sp.exp(-(x**2)): w}, cancelling=sp.Rational(8, 7)),
-}
+    # It is the integral of cos(t x) over t from 0 to 1. Terms are those for |x| ≥ 1.
+    "sinc": Function(
+        sp.sin(x) / x, {sp.sin(x): x * y, sp.cos(x): w}, cancelling=sp.Integer(3),
+        slopes=tuple(1 / (sp.factorial(k) * (k + 2)) for k in range(HIGHEST + 1)),
+    ),
+    "sign": Function(sp.sign(x)),
+}  # fmt: skip
 # The codes of the operations of tapes.
 # A spline writes four rows, its own and those of three coordinates after it.
 BASIC = (
@@ -112,8 +121,12 @@ def _critical(function: Function) -> tuple[float, list[float]]:
 
     The period is the distance of the zeros of sin and cos. Singularities count as extrema.
     """
+    if function.slopes:
+        return 0.0, []
     if function.of.has(sp.sin, sp.cos):
         return float(sp.pi / 2), []
+    if function.of.has(sp.sign):
+        return 0.0, [0.0]
     # SymPy does not know that the integral of exp(-x²) is continuous wherever that is.
     of = sp.diff(function.of, x) if function.of.has(sp.erf) else function.of
     domain = sp.calculus.util.continuous_domain(of, x, sp.S.Reals).interior
@@ -148,8 +161,10 @@ def _roundings(expression: Any, known: Mapping[Any, int]) -> int:  # noqa: ANN40
 
 def _roundings_of(function: Function, formula: Formula) -> list[int]:
     """Return the roundings of the value of a function and of its Taylor coefficients."""
-    exact = function.of.is_Pow  # except for the roundings of products, quotients and roots
-    value = _roundings(function.of, {x: 0}) if exact else LIBRARY
+    exact = function.of.is_Pow or function.of.has(
+        sp.sign
+    )  # except for the roundings of products, quotients and roots
+    value = _roundings(function.of, {x: 0}) if exact else LIBRARY + bool(function.slopes)
     known = {x: 0, y: value, w: value}
     for symbol, term in formula.definitions:
         known[symbol] = _roundings(term, known)
@@ -178,6 +193,12 @@ def constants() -> str:
             "# and where there are extremes: at multiples of this distance, and at these places.",
             f"SPACING = np.array({[distance for distance, _ in critical]})",
             f"EXTREMES = np.array([{', '.join(f'[{z}]' for z in rows)}])",
+            "# Bounds of the slopes of a function and of f1, f2, f3 where they have others.",
+            *(
+                f"{name.upper()}_SLOPES = np.array({list(map(float, z.slopes))})"
+                for name, z in FUNCTIONS.items()
+                if z.slopes
+            ),
         ]
     )
 
@@ -210,7 +231,17 @@ def _horner(function: Any, first: int, last: int, result: Any = sp.S.Zero) -> An
     return result
 
 
+def _sinc_series(order: int) -> Any:  # noqa: ANN401
+    """Return the coefficient of an order of sin(x)/x as a series in x and z = x²."""
+    result: Any = sp.S.Zero
+    for power in range(LAST, order - 1, -2):
+        coefficient = (-1) ** (power // 2) * sp.binomial(power, order) / sp.factorial(power + 1)
+        result = coefficient + z * result
+    return result * x if order % 2 else result
+
+
 k, z = scalar("k"), scalar("z")
+LAST = 20  # the power of x at which the series of sin(x)/x and of its derivatives end
 FIRST_PART, SECOND_PART, LAST_PART = _parts_of_quarter()
 REDUCED = Formula.build(
     "reduced_angle",
@@ -237,4 +268,16 @@ SINE_AND_COSINE = Formula.build(
     ],
     outputs=[("y", x + scalar("a") * scalar("y_2")), ("w", 1 + z * scalar("b"))],
 )
-FORMULAS = (*(_formula(*item) for item in FUNCTIONS.items()), REDUCED, SINE_AND_COSINE)
+SINC_SERIES = Formula.build(
+    "sinc_series",
+    "The function $y$ = sin($x$)/$x$ and its Taylor coefficients for $|x|$ up to 1: their series.",
+    inputs=[x],
+    terms=[("z", x**2)],
+    outputs=[(name, _sinc_series(order)) for order, name in enumerate(("y", "f1", "f2", "f3"))],
+)
+FORMULAS = (
+    *(_formula(*item) for item in FUNCTIONS.items() if any(item[1].coefficients[1:])),
+    REDUCED,
+    SINE_AND_COSINE,
+    SINC_SERIES,
+)

@@ -22,7 +22,7 @@ Step = tuple[Any, ...]
 
 DIGITS = 40  # of constants, before they are rounded
 SLACK = sp.Rational(1001, 1000)  # exceeds the rounding of a radius
-KNOWN = {function.of.func: name for name, function in FUNCTIONS.items() if not function.of.is_Pow}
+KNOWN = {function.of.func: name for name, function in FUNCTIONS.items() if function.of.is_Function}
 REWRITTEN: Mapping[Any, Callable[[Any], sp.Expr]] = {
     sp.tan: lambda x: sp.sin(x) / sp.cos(x),
     sp.cot: lambda x: sp.cos(x) / sp.sin(x),
@@ -37,6 +37,7 @@ REWRITTEN: Mapping[Any, Callable[[Any], sp.Expr]] = {
     sp.acosh: lambda x: sp.log(x + sp.sqrt(x**2 - 1)),
     sp.atanh: lambda x: sp.log((1 + x) / (1 - x)) / 2,
     sp.erfc: lambda x: 1 - sp.erf(x),
+    sp.Abs: lambda x: sp.sign(x) * x,
 }
 
 
@@ -106,9 +107,9 @@ class _Steps:
         if expression.is_Pow:
             return self._power(*cast(tuple[sp.Expr, sp.Expr], expression.args))
         kind = expression.func
-        if kind in KNOWN:
+        if kind in KNOWN or kind is sp.sinc:
             (argument,) = cast(tuple[sp.Expr], expression.args)
-            return self._write(KNOWN[kind], self.step_of(argument))
+            return self._write(KNOWN.get(kind, "sinc"), self.step_of(argument))
         if kind in REWRITTEN:
             return self.step_of(REWRITTEN[kind](*expression.args))
         raise NoTapeError(f"a tape has no {kind.__name__}")

@@ -1,6 +1,6 @@
 """Callables of SymPy expressions: points and derivatives; pickled as the expressions.
 
-Derivatives are those of a tape if there is one; otherwise they are symbolic, as for |u|.
+Derivatives are those of a tape if there is one; otherwise they are symbolic, as for Max(u, v).
 """
 
 from __future__ import annotations

@@ -91,6 +91,14 @@ def coefficients(code, x):
     if code == elementary.ERF:
         f1, f2, f3 = elementary.erf_taylor(x, math.exp(-x * x))
         return math.erf(x), f1, f2, f3
+    if code == elementary.SIGN:  # 0 where it jumps
+        return math.copysign(1.0, x) if x != 0.0 else 0.0, 0.0, 0.0, 0.0
+    if code == elementary.SINC:
+        if abs(x) < 1.0:
+            return elementary.sinc_series(x)
+        y = math.sin(x) / x
+        f1, f2, f3 = elementary.sinc_taylor(x, y, math.cos(x))
+        return y, f1, f2, f3
     f1, f2, f3 = elementary.atan_taylor(x)
     return math.atan(x), f1, f2, f3
 
@@ -107,7 +115,8 @@ def error_of_rounding(code, order, size):
 def include(code, x, f):
     """Extend the lowest and highest coefficients f (2, 4) by those at x."""
     found = coefficients(code, x)
-    if not abs(found[0]) + abs(found[1]) + abs(found[2]) + abs(found[3]) < math.inf:
+    jumps = code == elementary.SIGN and x == 0.0
+    if jumps or not abs(found[0]) + abs(found[1]) + abs(found[2]) + abs(found[3]) < math.inf:
         for k in range(4):
             f[0, k], f[1, k] = -math.inf, math.inf
     for k, y in enumerate(found):
@@ -119,14 +128,23 @@ def include(code, x, f):
 def ranges(code, low, high, f):
     """Write midpoints and radii (2, 4) of the Taylor coefficients on an interval.
 
-    They are monotone between their extrema, so that the values at extrema and ends bound them.
+    They are monotone between their extrema, so that the values at extrema and ends bound them; or
+    they are bounded by the values in the middle and by slopes.
     Radii are infinite if the function has a singularity in the interval, or if no bound is known.
     """
     function = code - elementary.RECIPROCAL
     for k in range(4):
         f[0, k], f[1, k] = math.inf, -math.inf
-    include(code, low, f)
-    include(code, high, f)
+    if code == elementary.SINC:
+        middle = 0.5 * low + 0.5 * high
+        half = (0.5 * (high - low) + UNIT * (abs(low) + abs(high))) * (1.0 + 8.0 * UNIT)
+        include(code, middle, f)
+        for k in range(4):
+            f[0, k] -= half * elementary.SINC_SLOPES[k]
+            f[1, k] += half * elementary.SINC_SLOPES[k]
+    else:
+        include(code, low, f)
+        include(code, high, f)
     for k in range(elementary.EXTREMES.shape[1]):
         x = elementary.EXTREMES[function, k]
         if low < x < high:

@@ -172,7 +172,7 @@ leaves = st.one_of(
     st.sampled_from([sp.pi, sp.sqrt(2), sp.Float(0.1)]),
 )
 FUNCTIONS = (sp.sin, sp.cos, sp.tan, sp.exp, sp.sinh, sp.cosh, sp.tanh, sp.atan, sp.log, sp.sqrt,
-             sp.asin, sp.acos, sp.erf, lambda x: 1 / x)  # fmt: skip
+             sp.asin, sp.acos, sp.erf, sp.sinc, lambda x: 1 / x)  # fmt: skip
 
 
 def larger(parts: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
@@ -243,7 +243,17 @@ def test_bounds_contain_exact_values_of_any_expression(position, s, t, width):
 
 @pytest.mark.compiled
 @pytest.mark.parametrize(
-    "text", ["1/u", "sqrt(u)", "log(u)", "asin(10*u)", "u**(1/3)", "tan(10*u)", "exp(1000*u**-2)"]
+    "text",
+    [
+        "1/u",
+        "sign(u)",
+        "sqrt(u)",
+        "log(u)",
+        "asin(10*u)",
+        "u**(1/3)",
+        "tan(10*u)",
+        "exp(1000*u**-2)",
+    ],
 )
 def test_radii_are_infinite_where_there_is_a_singularity(text):
     tape = gm.Surface.from_sympy(("u", "v", text), ("u", "v"), ((-1, 1), (-1, 1))).tape
