@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.domain.domain import Domain
 from ...runtime.onto_surface.proved import index_of
 from ...runtime.proof.ball import Ball
-from ...runtime.proof.index import KINDS, ProvedIndex, Undecided
+from ...runtime.proof.index import KINDS, ProvedIndex, ProvedPlaces, Undecided
 from ...runtime.surface.collapsed import with_found_sides
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.kernels.points import Tape
@@ -33,7 +33,12 @@ CELLS = (4, 4)
 # A side of the domain may be one point if the distance of its ends is less than this part of the
 # largest such distance.
 CLOSE = 1e-3
+# A side is measured at this number of places.
+PLACES = 5
 OPEN_BOX = KINDS.index("open")
+# Normals of faces that meet smoothly are between those of both at the gap that the digits of a file
+# leave. So the surfaces of files are searched beyond open sides by this part of the domain.
+GAP = 1e-9
 # The indices of Taylor coefficients in bounds.
 U1, V1, U2, U1V1, V2 = range(1, 6)
 
@@ -46,7 +51,7 @@ def face_index(
     if simple.kind in ROUND:
         return RoundFace.of(simple, surface.domain, is_reversed=is_reversed)
     if simple.kind != "offset" or simple.basis is None:
-        return SmoothPieces.of(surface)
+        return SmoothPieces.of(surface, 0.0 if simple.surface is not None else GAP)
     basis = face_surface(simple.basis, domain, is_reversed=is_reversed)
     index = face_index(simple.basis, basis, domain, is_reversed=is_reversed)
     if index is None or basis.tape is None:
@@ -59,28 +64,27 @@ def face_index(
 class SmoothPieces:
     """The indices of the smooth pieces of a surface."""
 
-    pieces: Sequence[ProvedIndex]
+    pieces: Sequence[tuple[ProvedIndex, Surface]]
 
     @classmethod
-    def of(cls, surface: Surface) -> SmoothPieces | None:
-        """Return the indices of a surface; None if one of its pieces has none."""
+    def of(cls, surface: Surface, gap: float) -> SmoothPieces | None:
+        """Return the indices of a surface; None if one of its pieces has none.
+
+        Open sides that are no point are at a `gap` from those of the search.
+        """
         found = []
         for piece in surface.pieces():
             if _has_corners_that_meet(piece):
                 piece = with_found_sides(piece)[0]
-            index = index_of(piece, cells=CELLS)
+            index = index_of(_wider(piece, gap), cells=CELLS)
             if index is None:
                 return None
-            found.append(index)
+            found.append((index, piece))
         return cls(found)
 
     def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
         """Return all points with unit normals (S, 3)."""
-        found = [x.query(normals, threads) for x in self.pieces]
-        return joined([
-            FacePlaces(x.numbers, x.uv, x.radius, x.sign.astype(np.float64), x.undecided)
-            for x in found
-        ])  # fmt: skip
+        return joined([_inside(x.query(normals, threads), piece) for x, piece in self.pieces])
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,6 +145,43 @@ class Offset:
         ]
         patch = Patch._make([*vectors, Vector(0.0, 0.0, 0.0)])
         return python_function(offset_side)(patch, vector(normals), self.distance)
+
+
+def _wider(surface: Surface, gap: float) -> Surface:
+    """Return a surface over a domain whose open sides are farther away, except for points."""
+    sides = list(np.ndindex(2, 2)) if gap > 0.0 else []
+    sizes = [np.ptp(_on_side(surface, *x), axis=0).max() for x in sides]
+    domain = [list(x) for x in surface.domain]
+    for (axis, end), size in zip(sides, sizes, strict=True):
+        if surface.boundary[axis][end] == "open" and size > CLOSE * max(sizes):
+            domain[axis][end] += (-gap, gap)[end] * float(np.ptp(surface.domain[axis]))
+    (u0, u1), (v0, v1) = domain
+    return replace(surface, domain=((u0, u1), (v0, v1)), trim=None)
+
+
+def _on_side(surface: Surface, axis: int, end: int) -> Array:
+    """Return some points (PLACES, 3) on a side."""
+    low, high = surface.domain[1 - axis]
+    places = np.full(PLACES, surface.domain[axis][end]), np.linspace(low, high, PLACES)
+    return surface.jets(*(places if axis == 0 else places[::-1]))[:, 0]
+
+
+def _inside(found: ProvedPlaces, piece: Surface) -> FacePlaces:
+    """Return what was found, moved into the open sides of a piece; radii are those around it.
+
+    Boxes beyond them are left out.
+    """
+    is_open = np.array(piece.boundary) == "open"
+    low, high = np.where(is_open, piece.domain, [-np.inf, np.inf]).T
+    uv, open_ = np.clip(found.uv, low, high), found.undecided
+    sides = open_.boxes.reshape(-1, 2, 2)
+    within = ((sides[:, :, 0] < high) & (sides[:, :, 1] > low)).all(axis=1)
+    open_, sides = Undecided._make(x[within] for x in open_), sides[within]
+    boxes = np.clip(sides, low[:, None], high[:, None])
+    return FacePlaces(
+        found.numbers, uv, found.radius + np.abs(found.uv - uv), found.sign.astype(np.float64),
+        open_._replace(boxes=boxes.reshape(-1, 4), uv=np.clip(open_.uv, low, high)),
+    )  # fmt: skip
 
 
 def _has_corners_that_meet(surface: Surface) -> bool:
