@@ -124,6 +124,8 @@ class Samples(SampleArrays, Methods):
     True
     >>> bool((K[samples.hyperbolic] < 0).all())
     True
+    >>> samples[:1].slope.shape, bool((samples.aspect < 360.0).all())
+    ((1,), True)
     >>> samples.fields
     ('points', 'normals', 'uv', 'support', ..., 'patch_index', 'on_surface')
     >>> bool(abs(samples.support).max() < 1.36), bool(samples.patch_index.max() < 1024)
