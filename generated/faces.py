@@ -8,7 +8,7 @@ from .vectors import Vector, inline
 
 @inline
 def revolution_jet(c, c_v, c_vv, x, y):
-    """The point p and the derivatives of a surface of revolution round the z axis, from those
+    """The point p and the derivatives of a surface of revolution around the z axis, from those
     of the curve c(v) that is turned; x and y are the cosine and the sine of the angle u.
 
         p_x = c_x*x - c_y*y

@@ -204,8 +204,9 @@ def boundary_arc(N0, N1, N2, t):
 @inline
 def boundary_arc_zeros(N0, N1, N2, q, s):
     """The two zeros of the component along q of the normals of a boundary arc. At a singular
-    point, where the normal vanishes, it is zero for every q. s is the sign of z1, which avoids
-    cancellation. A negative discriminant, the rounded value of a double zero, counts as zero.
+    point the normal vanishes, and so does the component along every q. s is the sign of z1,
+    which avoids cancellation. A negative discriminant, the rounded value of a double zero,
+    counts as zero.
 
         z0 = q·N0
         z1 = q·N1

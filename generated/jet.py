@@ -12,8 +12,8 @@ from .vectors import Vector, inline
 def at_jet(patch):
     """The length L of the normal N of a surface, the unit normal, the Gaussian and the mean
     curvature, from its 2-jet: a = x_uu, b = x_uv, c = x_vv, d = x_u, e = x_v. The mean
-    curvature is half the sum of the principal curvatures −II/I, positive on a sphere with outer
-    normals.
+    curvature is half the sum of the principal curvatures −II/I, positive on a sphere with
+    outward normals.
 
         N = d × e
         A = N·a
@@ -55,9 +55,9 @@ def at_jet(patch):
 
 @inline
 def forms_at_jet(patch):
-    """The first fundamental form E, F, G of a surface, its third one e_1, f_1, g_1, of the
-    derivatives of the unit normal, and D, which has the sign of the Gaussian curvature, from
-    its 2-jet.
+    """The first fundamental form E, F, G of a surface, its third fundamental form e_1, f_1, g_1
+    (of the derivatives of the unit normal), and D, which has the sign of the Gaussian
+    curvature, from its 2-jet.
 
         N = d × e
         A = N·a
@@ -103,9 +103,9 @@ def forms_at_jet(patch):
 
 @inline
 def newton(patch, n):
-    """The step u, v of Newton's method for P = Q = 0, the preimage of the unit normal n on the
-    patch that osculates the surface; the squared sine s of the angle between n and the normal N
-    of the surface, with n × N = q, and m with the sign of its cosine.
+    """The step u, v of Newton's method for P = Q = 0: the preimage of the unit normal n on the
+    patch that osculates the surface. s is the squared sine of the angle between n and the
+    normal N of the surface, q = n × N, and m has the sign of the cosine.
 
         A = n·a
         B = n·b
@@ -187,7 +187,7 @@ def contour(patch, w):
 @inline
 def polar_chart(patch, r, x, y):
     """The 2-jet in the regular chart s = r x, t = r y at a pole, from derivatives by the polar
-    angle (once d, twice a), by angle and distance (b) and by the distance r > 0; x and y are
+    angle (first d, second a), by angle and distance (b) and by the distance r > 0; x and y are
     the cosine and the sine of the angle.
 
         o = d/r
@@ -251,8 +251,8 @@ def polar_chart(patch, r, x, y):
 
 @inline
 def at_pole(e0, c0, c1, e2, c2):
-    """The 2-jet at a pole itself, in the chart, from the first and second derivatives e and c
-    by the distance from it, along the directions of 0, 45 and 90 degrees.
+    """The 2-jet at a pole, in its chart, from the first and second derivatives e and c by the
+    distance from it, along the directions of 0, 45 and 90 degrees.
 
         X_ss = c0
         X_st = c1 - c0/2 - c2/2
@@ -293,9 +293,9 @@ def at_pole(e0, c0, c1, e2, c2):
 
 @inline
 def graph_slopes(o1, o2, e1, e2, h1, h2):
-    """The inverse i11, … of the matrix of o and e, derivatives of the coordinates q1, q2 of a
-    plane by u, over r, and by r; and the first derivatives G1, G2 of a graph h by q1, q2, from
-    h1 by u, over r, and h2 by r.
+    """The inverse i11, … of the matrix of o and e: the derivatives of coordinates q1, q2 of a
+    plane by u, divided by r, and by r. Also the first derivatives G1, G2 of a graph h by q1,
+    q2, from h1 by u, divided by r, and h2 by r.
 
         d = 1/(e2*o1 - e1*o2)
         i11 = d*e2
@@ -320,9 +320,10 @@ def graph_slopes(o1, o2, e1, e2, h1, h2):
 @inline
 def graph_at_pole(i11, i12, i21, i22, G1, G2, a1, a2, b1, b2, c1, c2, h11, h12, h22, r):
     """The second derivatives H11, H12, H22 of a graph h by the coordinates q1, q2 of its
-    tangent plane, near a pole with the parameters u around it and r, 0 at it. With i11, … and
-    G1, G2, those of `graph_slopes` over r; the second derivatives of q1, q2: a by u, over r, b
-    by both, c by r; and those of h: h11 by u, over r^2, h12 by both, over r, h22 by r.
+    tangent plane, near a pole with the parameters u around it and r = 0 at it. Inputs are i11,
+    … and G1, G2 of `graph_slopes`, the latter divided by r; the second derivatives of q1, q2: a
+    by u, divided by r, b by both, c by r; and those of h: h11 by u, divided by r^2, h12 by
+    both, divided by r, h22 by r.
 
         A = h11 - G1*a1 - G2*a2
         B = h12 - G1*b1 - G2*b2

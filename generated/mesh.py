@@ -85,8 +85,8 @@ def corner_cotangents(p0, p1, p2):
 
 @inline
 def border_spacing(r, k):
-    """Spacing of boundary points where the k-th nearest sample is at the distance r: that of
-    samples of which k fill half a disk of radius r.
+    """The spacing of boundary points where the distance to the k-th nearest sample is r: the
+    spacing of samples of which k fill half a disk of radius r.
 
         rho = 2*k/(pi*r**2)
         d = 1/sqrt(rho)

@@ -80,7 +80,7 @@ def linear_normals(n_0, n_1, n_2, s, t, patch):
 @inline
 def spherical_field(e_1, e_2, e_3, s, t):
     """A field of normals whose length q is a polynomial: the stereographic projection, with
-    respect to an orthonormal basis. It gives every direction but -e_3.
+    respect to an orthonormal basis. It gives every direction except -e_3.
 
         n = 2*e_1*s + 2*e_2*t + e_3*(1 - s**2 - t**2)
         q = s**2 + t**2 + 1

@@ -70,7 +70,7 @@ def power_form(b200, b020, b002, b110, b101, b011):
 @inline
 def forms(patch, n):
     """Eliminating u, v from eq. (9) leaves three quadratic forms in n, with u = U/D, v = V/D
-    and w = W/D. The patch has the normal n where U, V, W have one sign, which is then that of D
+    and w = W/D. The patch has the normal n where U, V, W have the same sign, which is that of D
     = U + V + W; U = 0, V = 0, W = 0 are the three boundary cones of its Gaussian image.
 
         A = n·a
@@ -697,7 +697,7 @@ def parabolic_cubic(patch):
 
 @inline
 def measure(patch, u, v):
-    """Area of the patch and of its Gaussian image (signed: negative where the patch is
+    """Area of the patch and signed area of its Gaussian image (negative where the patch is
     hyperbolic), both per area of the parameter plane.
 
         p_u = a*u + b*v + d

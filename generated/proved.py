@@ -10,8 +10,8 @@ from .vectors import Vector, inline
 
 @inline
 def model_at(A, B, C, P, Q, T0, T1, T2, T3, s, t):
-    """The linear forms at s, t of the cubic polynomial with those at the origin and the third
-    derivatives T0, …, T3.
+    """The linear forms at s, t of a cubic polynomial with the given linear forms at the origin
+    and the third derivatives T0, …, T3.
 
         A_m = A + T0*s + T1*t
         B_m = B + T1*s + T2*t
@@ -50,9 +50,9 @@ def remainders(T0, T1, T2, T3):
 
 @inline
 def excesses(A, B, C, P, Q, R, S):
-    """Four numbers; if one is positive, no point of the cell has the normal n: the derivatives
-    of the height along n, or their combinations with one parameter eliminated, are larger at
-    the centre than their change over the cell. R and S bound the remainders beyond a quadratic
+    """Four numbers; if one is positive, no point of the cell has the normal n. Each compares a
+    derivative of the height along n at the centre, or a combination of both with one parameter
+    eliminated, with its change over the cell. R and S bound the remainders beyond a quadratic
     patch.
 
         D = A*C - B**2
@@ -78,9 +78,9 @@ def excesses(A, B, C, P, Q, R, S):
 @inline
 def contraction(A, B, C, T0, T1, T2, T3, R0, R1, R2, R3):
     """The inverse y11, y12, y22 of the Hessian A, B, C at the centre, and bounds q1 and q2 of
-    the rows of its product with the change of the Hessian over the cell; the third derivatives
-    are T0, …, T3 up to R0, …, R3. If both are below 1 then at most one point of the cell has
-    the normal n or -n.
+    the rows of its product with the change of the Hessian over the cell, whose third
+    derivatives are T0, …, T3 up to R0, …, R3. If both bounds are below 1, at most one point of
+    the cell has the normal n or -n.
 
         D = A*C - B**2
         y11 = C/D
@@ -132,7 +132,7 @@ def contraction(A, B, C, T0, T1, T2, T3, R0, R1, R2, R3):
 
 @inline
 def normal_ordinates(patch):
-    """The Bernstein ordinates over the cell of x_s × x_t of a patch: its normals lie in the
+    """The Bernstein ordinates of x_s × x_t of a patch over the cell: its normals lie in the
     cone that they span.
 
         N0 = a × b + a × c - a × e + b × c - b × e - d × b - d × c + d × e
@@ -278,8 +278,8 @@ def normal_ordinates(patch):
 
 @inline
 def turned(T0, T1, T2, T3, R0, R1, R2, R3, x, y):
-    """The third derivatives T0, …, T3 by s and t, up to R0, …, R3, as those by i and j in
-    turned coordinates, s = x i - y j, t = y i + x j.
+    """The third derivatives by i and j in turned coordinates, s = x i - y j, t = y i + x j,
+    from those by s and t: T0, …, T3 up to R0, …, R3.
 
         M0 = T0*x**3 + 3*T1*x**2*y + 3*T2*x*y**2 + T3*y**3
         M1 = T1*x**3 - T0*x**2*y - 2*T1*x*y**2 + 2*T2*x**2*y - T2*y**3 + T3*x*y**2
@@ -351,11 +351,11 @@ def turned_forms(A, B, C, P, Q, x, y):
 @inline
 def fold_curve(A, P, G0, G1, G2, h, W, o1, o2):
     """The curve i(j) on which the derivative by i of the height along n vanishes, in a
-    rectangle with the half widths h and W: m > 0 bounds the second derivative by i from below,
-    k bounds the slope of the curve, and g how much the second derivative of the other equation
-    along the curve differs from the third derivative by j. The curve reaches from -W to W if z
-    < 0. A and P are derivatives by i at the centre, where that by i and j vanishes; G0, G1, G2
-    bound third derivatives, and o1, o2 the rounding of first and second ones.
+    rectangle with the half widths h and W. m > 0 bounds the second derivative by i from below,
+    and k the slope of the curve. g bounds the difference between the second derivative of the
+    other equation along the curve and the third derivative by j. The curve reaches from -W to W
+    if z < 0. A and P are derivatives by i at the centre, where that by i and j vanishes; G0,
+    G1, G2 bound third derivatives, and o1, o2 the rounding of first and second ones.
 
         m = Abs(A) - G0*h - G1*W - o2
         k = (G1*h + G2*W + o2)/m
@@ -373,9 +373,9 @@ def fold_curve(A, P, G0, G1, G2, h, W, o1, o2):
 
 @inline
 def fold_extreme(A, B, C, P, Q, G0, G1, G2, k, m, c2, o1, o2):
-    """At a place near the extreme of the other equation along the curve of `fold_curve`: if |Q|
-    > r and Q has the sign of its second derivative, at least c2 in absolute value, then it has
-    no zero. Else zeros are at most y away by j, and z by i.
+    """A test of the other equation near its extreme value along the curve of `fold_curve`,
+    where its second derivative is at least c2 in absolute value: it has no zero if |Q| > r and
+    Q has the sign of this derivative. Otherwise zeros are at most y away by j, and z by i.
 
         o3 = (o1 + Abs(P))/m
         g = o2*(k + 1)**2 + o3*(G0*k**2 + 2*G1*k + G2) + Abs(C - B**2/A)

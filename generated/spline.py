@@ -214,7 +214,7 @@ def coefficient_from_vertices(f0, f1, f2, f3, g0, g1, g2, g3, g4, g5, g6, g7):
 
 @inline
 def edge_point(f, g0, g1):
-    """The middle Bézier point of an edge on the border from the values at its middle (f) and
+    """The middle Bézier point of an edge on the boundary from the values at its middle (f) and
     its ends (g): exact on all quadratics.
 
         mu = 2*f - g0/2 - g1/2
@@ -227,8 +227,8 @@ def edge_point(f, g0, g1):
 
 @inline
 def edge_point_from_vertices(f0, f1, g0, g1):
-    """The middle Bézier point of an edge on the border from the values at its ends (f) and at
-    the next vertices along the border (g): exact on all quadratics.
+    """The middle Bézier point of an edge on the boundary from the values at its ends (f) and at
+    the next vertices along the boundary (g): exact on all quadratics.
 
         mu = 5*f0/8 + 5*f1/8 - g0/8 - g1/8
 
@@ -240,8 +240,8 @@ def edge_point_from_vertices(f0, f1, g0, g1):
 
 @inline
 def beyond_edge(f, mu_c):
-    """The coefficient beyond an edge of the border from that of its cell and the middle Bézier
-    point f of the edge.
+    """The coefficient beyond an edge of the boundary from that of its cell and the middle
+    Bézier point f of the edge.
 
         mu_s = 2*f - mu_c
 
@@ -253,7 +253,7 @@ def beyond_edge(f, mu_c):
 
 @inline
 def beyond_corner(f, mu_s, mu_w, mu_c):
-    """The coefficient beyond a corner of the domain from the three others round it and the
+    """The coefficient beyond a corner of the domain from the other three around it and the
     value f there, which the spline interpolates.
 
         mu_sw = 4*f - mu_c - mu_s - mu_w
@@ -266,7 +266,7 @@ def beyond_corner(f, mu_s, mu_w, mu_c):
 
 @inline
 def extrapolation(f1, f2, f3):
-    """A value one step outside the domain from the three next inside: exact on all quadratics.
+    """A value one step outside the domain from the next three inside: exact on all quadratics.
 
         f0 = 3*f1 - 3*f2 + f3
 

@@ -132,7 +132,8 @@ def offset(R, n):
 @inline
 def offset_curvature(K, H, R):
     """Gaussian and mean curvature of the offset at the distance R; principal radii may be
-    infinite. s is the factor of the product of the radii, 0 where one of them becomes 0.
+    infinite. s is the factor by which the product of the radii grows, 0 where one of them
+    becomes 0.
 
         s = 2*H*R + K*R**2 + 1
         K_offset = K/s

@@ -7,8 +7,8 @@ import math
 
 
 def torus(major, minor, u_values, v_values, points):
-    """The torus round the z axis, u being the angle round the axis and v the angle round the
-    tube, from its outer equator upwards, with normals pointing out of the tube.
+    """The torus around the z axis; u is the angle around the axis, v the angle around the tube,
+    from its outer equator upwards. Normals point out of the tube.
 
         x_x = (major + minor*cos(v))*cos(u)
         x_y = (major + minor*cos(v))*sin(u)
@@ -30,8 +30,8 @@ def torus(major, minor, u_values, v_values, points):
 
 
 def ellipsoid(a, b, c, u_values, v_values, points):
-    """The whole ellipsoid x²/a² + y²/b² + z²/c² = 1, with the longitude u, the latitude v
-    (angles on the unit sphere that is stretched), poles at z = ±c, and outward normals.
+    """The whole ellipsoid x²/a² + y²/b² + z²/c² = 1 with the longitude u and the latitude v of
+    the sphere that is stretched, poles at z = ±c, and outward normals.
 
         x_x = a*cos(u)*cos(v)
         x_y = b*sin(u)*cos(v)
@@ -53,7 +53,7 @@ def ellipsoid(a, b, c, u_values, v_values, points):
 
 
 def ellipsoid_patch(a, b, c, u_values, v_values, points):
-    """The belt of the ellipsoid between the latitudes v = ±π/3, so without its poles, with the
+    """The belt of the ellipsoid between the latitudes v = ±π/3, without its poles, with the
     longitude u and outward normals.
 
         x_x = a*cos(u)*cos(v)
@@ -76,7 +76,7 @@ def ellipsoid_patch(a, b, c, u_values, v_values, points):
 
 
 def sphere(radius, u_values, v_values, points):
-    """The whole sphere round the origin, with the longitude u, the latitude v, poles on the z
+    """The whole sphere around the origin, with the longitude u, the latitude v, poles on the z
     axis, and outward normals.
 
         x_x = radius*cos(u)*cos(v)
@@ -99,8 +99,8 @@ def sphere(radius, u_values, v_values, points):
 
 
 def hyperboloid(a, b, c, u_values, v_values, points):
-    """The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1, u going
-    round the z axis and v along it, with normals pointing away from the axis.
+    """The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1; u goes
+    around the z axis, v along it. Normals point away from the axis.
 
         x_x = a*cos(u)*cosh(v)
         x_y = b*sin(u)*cosh(v)
@@ -211,8 +211,8 @@ def enneper(scale, u_values, v_values, points):
 
 
 def catenoid(radius, u_values, v_values, points):
-    """The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius, u being
-    the angle round the z axis and v = z/radius, with normals pointing away from the axis.
+    """The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius; u is the
+    angle around the z axis, v = z/radius. Normals point away from the axis.
 
         x_x = radius*cos(u)*cosh(v)
         x_y = radius*sin(u)*cosh(v)
@@ -234,8 +234,8 @@ def catenoid(radius, u_values, v_values, points):
 
 
 def helicoid(pitch, u_values, v_values, points):
-    """One turn of the right-handed helicoid, u being the signed distance from the z axis and v
-    the angle, with normals pointing upwards where u > 0 and downwards where u < 0.
+    """One turn of the right-handed helicoid; u is the signed distance from the z axis, v the
+    angle. Normals point upwards where u > 0 and downwards where u < 0.
 
         x_x = u*cos(v)
         x_y = u*sin(v)
@@ -256,9 +256,9 @@ def helicoid(pitch, u_values, v_values, points):
 
 
 def moebius_band(radius, half_width, u_values, v_values, points):
-    """The Möbius band round the z axis, u being the angle round the axis and v running across,
-    upright at u = 0 with its normal there pointing away from the axis, and with the opposite
-    normal after one turn.
+    """The Möbius band around the z axis; u is the angle around the axis, v runs across. It is
+    upright at u = 0, where its normal points away from the axis; after one turn the normal is
+    opposite.
 
         x_x = (half_width*v*sin(u/2) + radius)*cos(u)
         x_y = (half_width*v*sin(u/2) + radius)*sin(u)
@@ -332,8 +332,8 @@ def wavy_graph(amplitude, frequency, u_values, v_values, points):
 
 
 def cylinder(radius, height, u_values, v_values, points):
-    """The circular cylinder round the z axis, u being the angle and v = z/height, with normals
-    pointing away from the axis.
+    """The circular cylinder around the z axis; u is the angle, v = z/height. Normals point away
+    from the axis.
 
         x_x = radius*cos(u)
         x_y = radius*sin(u)
@@ -354,8 +354,8 @@ def cylinder(radius, height, u_values, v_values, points):
 
 
 def cone(bottom, top, height, u_values, v_values, points):
-    """The frustum of a circular cone round the z axis, which does not reach the apex, u being
-    the angle and v = z/height, with normals pointing away from the axis.
+    """The frustum of a circular cone around the z axis, without its apex; u is the angle, v =
+    z/height. Normals point away from the axis.
 
         x_x = (bottom + v*(top - bottom))*cos(u)
         x_y = (bottom + v*(top - bottom))*sin(u)
@@ -400,7 +400,7 @@ def plane(slope_u, slope_v, u_values, v_values, points):
 CATALOGUE = {
     "torus": {
         "position": torus,
-        "sentence": "The torus round the z axis, u being the angle round the axis and v the angle round the tube, from its outer equator upwards, with normals pointing out of the tube.",
+        "sentence": "The torus around the z axis; u is the angle around the axis, v the angle around the tube, from its outer equator upwards. Normals point out of the tube.",
         "parameters": {
             "major": (1.0, True, "The radius of the circle in the middle of the tube."),
             "minor": (
@@ -414,7 +414,7 @@ CATALOGUE = {
     },
     "ellipsoid": {
         "position": ellipsoid,
-        "sentence": "The whole ellipsoid x²/a² + y²/b² + z²/c² = 1, with the longitude u, the latitude v (angles on the unit sphere that is stretched), poles at z = ±c, and outward normals.",
+        "sentence": "The whole ellipsoid x²/a² + y²/b² + z²/c² = 1 with the longitude u and the latitude v of the sphere that is stretched, poles at z = ±c, and outward normals.",
         "parameters": {
             "a": (1.0, True, "The semi-axis along x."),
             "b": (0.6, True, "The semi-axis along y."),
@@ -425,7 +425,7 @@ CATALOGUE = {
     },
     "ellipsoid_patch": {
         "position": ellipsoid_patch,
-        "sentence": "The belt of the ellipsoid between the latitudes v = ±π/3, so without its poles, with the longitude u and outward normals.",
+        "sentence": "The belt of the ellipsoid between the latitudes v = ±π/3, without its poles, with the longitude u and outward normals.",
         "parameters": {
             "a": (1.0, True, "The semi-axis along x."),
             "b": (0.6, True, "The semi-axis along y."),
@@ -436,14 +436,14 @@ CATALOGUE = {
     },
     "sphere": {
         "position": sphere,
-        "sentence": "The whole sphere round the origin, with the longitude u, the latitude v, poles on the z axis, and outward normals.",
+        "sentence": "The whole sphere around the origin, with the longitude u, the latitude v, poles on the z axis, and outward normals.",
         "parameters": {"radius": (1.0, True, "The radius.")},
         "domain": ((0, 2 * math.pi), (-0.5 * math.pi, 0.5 * math.pi)),
         "boundary": (("periodic", "periodic"), ("pole", "pole")),
     },
     "hyperboloid": {
         "position": hyperboloid,
-        "sentence": "The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1, u going round the z axis and v along it, with normals pointing away from the axis.",
+        "sentence": "The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1; u goes around the z axis, v along it. Normals point away from the axis.",
         "parameters": {
             "a": (1.0, True, "The semi-axis of the waist along x."),
             "b": (0.8, True, "The semi-axis of the waist along y."),
@@ -488,21 +488,21 @@ CATALOGUE = {
     },
     "catenoid": {
         "position": catenoid,
-        "sentence": "The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius, u being the angle round the z axis and v = z/radius, with normals pointing away from the axis.",
+        "sentence": "The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius; u is the angle around the z axis, v = z/radius. Normals point away from the axis.",
         "parameters": {"radius": (1.0, True, "The radius of the waist.")},
         "domain": ((0, 2 * math.pi), (-1, 1)),
         "boundary": (("periodic", "periodic"), ("open", "open")),
     },
     "helicoid": {
         "position": helicoid,
-        "sentence": "One turn of the right-handed helicoid, u being the signed distance from the z axis and v the angle, with normals pointing upwards where u > 0 and downwards where u < 0.",
+        "sentence": "One turn of the right-handed helicoid; u is the signed distance from the z axis, v the angle. Normals point upwards where u > 0 and downwards where u < 0.",
         "parameters": {"pitch": (0.5, True, "The rise per radian.")},
         "domain": ((-1, 1), (-math.pi, math.pi)),
         "boundary": (("open", "open"), ("open", "open")),
     },
     "moebius_band": {
         "position": moebius_band,
-        "sentence": "The Möbius band round the z axis, u being the angle round the axis and v running across, upright at u = 0 with its normal there pointing away from the axis, and with the opposite normal after one turn.",
+        "sentence": "The Möbius band around the z axis; u is the angle around the axis, v runs across. It is upright at u = 0, where its normal points away from the axis; after one turn the normal is opposite.",
         "parameters": {
             "radius": (1.0, True, "The radius of the circle in the middle of the band."),
             "half_width": (0.4, True, "Half the width of the band, less than radius."),
@@ -533,14 +533,14 @@ CATALOGUE = {
     },
     "cylinder": {
         "position": cylinder,
-        "sentence": "The circular cylinder round the z axis, u being the angle and v = z/height, with normals pointing away from the axis.",
+        "sentence": "The circular cylinder around the z axis; u is the angle, v = z/height. Normals point away from the axis.",
         "parameters": {"radius": (1.0, True, "The radius."), "height": (2.0, True, "The height.")},
         "domain": ((0, 2 * math.pi), (0, 1)),
         "boundary": (("periodic", "periodic"), ("open", "open")),
     },
     "cone": {
         "position": cone,
-        "sentence": "The frustum of a circular cone round the z axis, which does not reach the apex, u being the angle and v = z/height, with normals pointing away from the axis.",
+        "sentence": "The frustum of a circular cone around the z axis, without its apex; u is the angle, v = z/height. Normals point away from the axis.",
         "parameters": {
             "bottom": (1.0, True, "The radius at z = 0."),
             "top": (0.5, True, "The radius at z = height."),

@@ -6,28 +6,28 @@ Written by `make generate`, SymPy 1.14.0, float64, no fast-math: do not edit, ch
 from ..runtime.surface.surface import Surface
 
 def torus(major: float = 1.0, minor: float = 0.35) -> Surface:
-    """The torus round the z axis, u being the angle round the axis and v the angle round the
-    tube, from its outer equator upwards, with normals pointing out of the tube.
+    """The torus around the z axis; u is the angle around the axis, v the angle around the tube,
+    from its outer equator upwards. Normals point out of the tube.
     """
 
 def ellipsoid(a: float = 1.0, b: float = 0.6, c: float = 0.3) -> Surface:
-    """The whole ellipsoid x²/a² + y²/b² + z²/c² = 1, with the longitude u, the latitude v
-    (angles on the unit sphere that is stretched), poles at z = ±c, and outward normals.
+    """The whole ellipsoid x²/a² + y²/b² + z²/c² = 1 with the longitude u and the latitude v of
+    the sphere that is stretched, poles at z = ±c, and outward normals.
     """
 
 def ellipsoid_patch(a: float = 1.0, b: float = 0.6, c: float = 0.3) -> Surface:
-    """The belt of the ellipsoid between the latitudes v = ±π/3, so without its poles, with the
+    """The belt of the ellipsoid between the latitudes v = ±π/3, without its poles, with the
     longitude u and outward normals.
     """
 
 def sphere(radius: float = 1.0) -> Surface:
-    """The whole sphere round the origin, with the longitude u, the latitude v, poles on the z
+    """The whole sphere around the origin, with the longitude u, the latitude v, poles on the z
     axis, and outward normals.
     """
 
 def hyperboloid(a: float = 1.0, b: float = 0.8, c: float = 1.0) -> Surface:
-    """The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1, u going
-    round the z axis and v along it, with normals pointing away from the axis.
+    """The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1; u goes
+    around the z axis, v along it. Normals point away from the axis.
     """
 
 def elliptic_paraboloid(a: float = 1.0, b: float = 1.5) -> Surface:
@@ -49,19 +49,19 @@ def enneper(scale: float = 1.0) -> Surface:
     """
 
 def catenoid(radius: float = 1.0) -> Surface:
-    """The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius, u being
-    the angle round the z axis and v = z/radius, with normals pointing away from the axis.
+    """The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius; u is the
+    angle around the z axis, v = z/radius. Normals point away from the axis.
     """
 
 def helicoid(pitch: float = 0.5) -> Surface:
-    """One turn of the right-handed helicoid, u being the signed distance from the z axis and v
-    the angle, with normals pointing upwards where u > 0 and downwards where u < 0.
+    """One turn of the right-handed helicoid; u is the signed distance from the z axis, v the
+    angle. Normals point upwards where u > 0 and downwards where u < 0.
     """
 
 def moebius_band(radius: float = 1.0, half_width: float = 0.4) -> Surface:
-    """The Möbius band round the z axis, u being the angle round the axis and v running across,
-    upright at u = 0 with its normal there pointing away from the axis, and with the opposite
-    normal after one turn.
+    """The Möbius band around the z axis; u is the angle around the axis, v runs across. It is
+    upright at u = 0, where its normal points away from the axis; after one turn the normal is
+    opposite.
     """
 
 def dupin_cyclide(a: float = 1.0, b: float = 0.96, d: float = 0.5) -> Surface:
@@ -75,13 +75,13 @@ def wavy_graph(amplitude: float = 0.2, frequency: float = 3.0) -> Surface:
     """
 
 def cylinder(radius: float = 1.0, height: float = 2.0) -> Surface:
-    """The circular cylinder round the z axis, u being the angle and v = z/height, with normals
-    pointing away from the axis.
+    """The circular cylinder around the z axis; u is the angle, v = z/height. Normals point away
+    from the axis.
     """
 
 def cone(bottom: float = 1.0, top: float = 0.5, height: float = 1.0) -> Surface:
-    """The frustum of a circular cone round the z axis, which does not reach the apex, u being
-    the angle and v = z/height, with normals pointing away from the axis.
+    """The frustum of a circular cone around the z axis, without its apex; u is the angle, v =
+    z/height. Normals point away from the axis.
     """
 
 def plane(slope_u: float = 0.0, slope_v: float = 0.0) -> Surface:

@@ -5,5 +5,5 @@
 
 import lazy_loader
 
-# The names are in __init__.pyi: to read a text of a user takes no derivation.
+# The names are in __init__.pyi: reading a user's text takes no derivation.
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

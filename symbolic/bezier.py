@@ -39,10 +39,9 @@ class BezierTriangle:
     b011; u belongs to b200, v to b020. Coordinates are numbers, SymPy expressions, or strings of
     these. A float is taken at its exact binary value, a string such as "0.1" at its decimal one.
 
-    Results are expressions in the components of `normal`, by default n_1, n_2, n_3 as in the paper
-    (real symbols, available as `patch.normal`), or the three given symbols. It need not have length
-    1. Results that need the support function raise ValueError if the patch is developable, and so
-    has none.
+    Results are expressions in the components of `normal`, of any length: by default n_1, n_2, n_3
+    as in the paper (real symbols, available as `patch.normal`), or the three given symbols. Results
+    that need the support function raise ValueError if the patch is developable, and so has none.
     """
 
     def __init__(
@@ -208,7 +207,7 @@ def written_in_groups(quotient: sp.Expr, variables: Sequence[sp.Symbol]) -> sp.E
     """Write a quotient of polynomials with rational coefficients as the paper writes (12).
 
     Terms of the numerator with equal coefficients are in brackets, largest groups of the highest
-    powers first, and the common factor of the denominator precedes it.
+    powers first; the common factor of the denominator precedes it.
     """
     above, below = (sp.Poly(x, *variables) for x in sp.fraction(quotient))
     if not all(x.is_Rational for x in (*above.coeffs(), *below.coeffs())):

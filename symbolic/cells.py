@@ -53,7 +53,7 @@ def turning(corners: Sequence[Corner], place: Corner) -> sp.Expr:
 
 
 def legs() -> tuple[sp.Expr, sp.Expr]:
-    """Return the sides, along x and y, of the rectangle of given area in which normals turn least.
+    """Return the sides, along x and y, of the rectangle of area A in which normals turn least.
 
     They turn most between the middle and a corner.
     """
@@ -75,11 +75,11 @@ def _hexagon() -> sp.Expr:
     return found
 
 
-# The angle in the best rectangle over sqrt(κ₁ κ₂ A), which is also the angle between the normals of
-# the two triangles into which a diagonal cuts it, and the normals at their corners.
+# The angle in the best rectangle over sqrt(κ₁ κ₂ A). It is also the angle between the normal of a
+# triangle, half of the rectangle, and the normals at its corners.
 ALIGNED = _aligned()
-# The angle in a regular hexagon over κ₁ sqrt(A), where κ₁ = κ₂. Equilateral triangles, of which two
-# have the area A, have the same circumradius.
+# The angle in a regular hexagon over κ₁ sqrt(A), where κ₁ = κ₂. Equilateral triangles of the area
+# A/2 have the same circumradius.
 HEXAGON = _hexagon()
 # The distance between patch and equilateral triangle over κ₁ A, where κ₁ = κ₂: R²/2 at its centre.
 CHORD = HEXAGON**2 / 2
@@ -88,7 +88,7 @@ CHORD = HEXAGON**2 / 2
 def turned_triangle(first: sp.Expr, second: sp.Expr) -> list[tuple[sp.Expr, sp.Expr]]:
     """Return a triangle that is equilateral in the metric first² dx² + second² dy².
 
-    Its circumradius in this metric is R, and it is turned by θ.
+    Its circumradius in this metric is R; it is turned by θ.
     """
     turns = [theta + 2 * sp.pi * k / 3 for k in range(3)]
     return [(radius * sp.cos(x) / first, radius * sp.sin(x) / second) for x in turns]

@@ -2,11 +2,11 @@
 
     p(t) = ½ a t² + b t + c,     a, b, c ∈ R²
 
-The normal is the tangent p_t turned clockwise by 90°: outward on a circle that is run through
-counter-clockwise. The curvature is positive there, like the mean curvature of a sphere with outward
-normals, and negative where a curve bends towards its normal.
+The normal is the tangent p_t turned clockwise by 90°: it points outward on a counter-clockwise
+circle. The curvature is positive there, like the mean curvature of a sphere with outward normals,
+and negative where a curve bends towards its normal.
 
-The spline has a piece between any two neighbouring integers and one coefficient for each piece, the
+The spline has a piece between any two neighbouring integers and one coefficient per piece, the
 middle control point of its arc; so its functional is that of an edge on the boundary of a surface
 (`edge_point`, `edge_point_from_vertices`).
 """
@@ -55,7 +55,7 @@ POWER_FORM = _power_form()
 
 
 def eliminate() -> tuple[sp.Expr, sp.Expr]:
-    """Solve n·p_t = 0 for t; return t and the support function less n·c, in A = n·a, B = n·b."""
+    """Solve n·p_t = 0 for t; return t, and the support function minus n·c, in A = n·a, B = n·b."""
     h = A * t**2 / 2 + B * t
     (solution,) = sp.solve(sp.diff(h, t), t)
     return solution, sp.cancel(substitute(h, {t: solution}))

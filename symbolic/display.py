@@ -171,7 +171,7 @@ def _rows(
 def _signed_terms(printer: TextPrinter | MathPrinter, value: sp.Expr) -> list[str]:
     """Print the terms of a sum; terms with the same coefficient, up to sign, in brackets.
 
-    Two of several terms are not bracketed: brackets would hide more than they save.
+    Groups of two terms among several are not bracketed: brackets would hide more than they save.
     """
     groups: dict[sp.Expr, list[sp.Expr]] = {}
     terms = printer._as_ordered_terms(value) if value.is_Add else [value]

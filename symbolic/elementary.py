@@ -23,8 +23,8 @@ __all__ = [
 
 x, y, w = scalar("x"), scalar("y"), scalar("w")
 HIGHEST = 3  # order of Taylor coefficients
-# Errors of functions of the C library, in units of 2⁻⁵³: two units in the last place, an
-# assumption, and more than glibc states.
+# Errors of functions of the C library, in units of 2⁻⁵³: two units in the last place, an assumption
+# that exceeds what glibc states.
 LIBRARY = 4
 
 
@@ -174,9 +174,9 @@ def _roundings_of(function: Function, formula: Formula) -> list[int]:
 def constants() -> str:
     """Return the codes of operations, and tables with a row for each function.
 
-    The tables hold the number of roundings of the value and of f1, f2, f3, each an error of 2⁻⁵³
-    relative to the sum of the absolute values of their terms; the bounds of these sums if terms
-    cancel; and the extrema of values and coefficients.
+    The tables contain the numbers of roundings of the value and of f1, f2, f3, each an error of
+    2⁻⁵³ relative to the sum of the absolute values of their terms; the bounds of these sums if
+    terms cancel; and the extrema of values and coefficients.
     """
     critical = [_critical(function) for function in FUNCTIONS.values()]
     width = max(len(places) for _, places in critical)
@@ -203,9 +203,9 @@ def constants() -> str:
     )
 
 
-# --- sine and cosine, quicker than those of the C library in loops --------------------------------
+# --- sine and cosine, faster than those of the C library in loops ---------------------------------
 
-# π/2 as a sum of numbers of PARTS bits, and a remainder.
+# π/2 as a sum of numbers of PARTS bits and a remainder.
 PARTS, PRECISION = (33, 33), 150
 
 

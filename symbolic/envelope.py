@@ -1,8 +1,8 @@
 """Any function h on the unit sphere, eqs. (5)-(7): its envelope, and the Hessian of its extension.
 
-The surface depends only on the values of h on the sphere, whatever its extension off the sphere: it
-is the envelope of |n| h(n/|n|), which is homogeneous of degree 1. The gradient of this extension is
-eq. (5) with eq. (6), and its Hessian is derived here.
+The surface depends only on the values of h on the sphere, whatever its extension: it is the
+envelope of |n| h(n/|n|), which is homogeneous of degree 1. The gradient of this extension is eq.
+(5) with eq. (6), and its Hessian is derived here.
 """
 
 from __future__ import annotations
@@ -77,9 +77,9 @@ def derivatives_of_extension(function: sp.Expr, order: int) -> sp.Matrix:
 
 
 def _to_second_order() -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
-    """Return a function with the value h, gradient dh, second derivatives h_xx … at c; and c = n.
+    """Return a function with value h, gradient dh, second derivatives h_xx … at c; and c = n.
 
-    It suffices for all functions: first and second derivatives depend on no higher terms.
+    It represents all functions: first and second derivatives depend on no higher terms.
     """
     (c,) = vectors("c")
     step = n.column - c.column

@@ -30,7 +30,7 @@ __all__ = ["NORMAL", "array_function", "is_homogeneous"]
 NORMAL = n.components
 # Longer expressions are not tested for homogeneity; the general formula holds for them as well.
 LONGEST_PROOF = 2000
-MOST_EXPANDED = 10_000  # terms to which the proof may expand
+MOST_EXPANDED = 10_000  # the largest number of terms to which the proof may expand
 ROUNDING = 1e-9  # relative to h
 GENERIC = sp.Rational(3, 7), sp.Rational(5, 11), sp.Rational(8, 13)
 
@@ -50,7 +50,7 @@ def array_function(h: sp.Expr, domain: Boolean | bool = True) -> str:
     condition = cast(sp.Expr, sp.sympify(domain))
     code = straight_line(branch(_exact(h))).assignments
     for each in (condition, *(value for _, value in code)):
-        source_of(each)  # which raises NotImplementedError
+        source_of(each)  # raises NotImplementedError
     lines = [f"{name} = {array_source_of(value)}" for name, value in code]
     results = [array_source_of(condition), *map(str, (*x.components, *HESSIAN_SYMBOLS))]
     body = textwrap.indent("\n".join([*lines, f"return {', '.join(results)}"]), "    ")
@@ -100,7 +100,7 @@ def is_homogeneous(h: sp.Expr, gradient: Sequence[sp.Expr] | None = None) -> boo
 
 
 def _vanishes(defect: sp.Expr, h: sp.Expr) -> bool:
-    """Return whether the defect at a point is rounding error: this excludes most other functions.
+    """Return whether the defect at a point is rounding error, which excludes most other functions.
 
     The test is in float64, as evalf takes exponential time for nested sums and products, and longer
     for exp(exp(exp(n_x))).

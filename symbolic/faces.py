@@ -51,7 +51,7 @@ def _revolution() -> Content:
 
 REVOLUTION_JET = Formula(
     "revolution_jet",
-    "The point $p$ and the derivatives of a surface of revolution round the z axis, from those of "
+    "The point $p$ and the derivatives of a surface of revolution around the z axis, from those of "
     "the curve $c(v)$ that is turned; $x$ and $y$ are the cosine and the sine of the angle $u$.",
     BEYOND_THE_PAPER,
     _revolution,

@@ -73,7 +73,7 @@ def derive() -> dict[str, str]:
 
 
 def write(texts: Mapping[str, str], folder: Path) -> None:
-    """Write files into a folder, and remove those that are not among them."""
+    """Write files into a folder, and remove other files from it."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in existing(folder).keys() - texts.keys():
         (folder / name).unlink()

@@ -1,7 +1,6 @@
 """The named formula, an object from which kernels are emitted and LaTeX is printed.
 
-Formulas are written in the notation of vectors, in which they are shown; computations use their
-components.
+Formulas are written and shown in the notation of vectors; computations use components.
 """
 
 from __future__ import annotations
@@ -51,8 +50,7 @@ class Formula:
 
     `description` is a sentence or two, with mathematics between dollar signs. `definitions` are in
     the order of computation: each may use the inputs and earlier definitions. `outputs` are the
-    results among them; the others are named terms. `inputs`, `definitions` and `outputs` are
-    derived when one of them is first read.
+    results among them; the others are named terms. All three are derived when first read.
     """
 
     name: str
@@ -159,7 +157,7 @@ class Formula:
 def formula(
     name: str, description: str, *, source: str = BEYOND_THE_PAPER
 ) -> Callable[[Callable[[], Parts]], Formula]:
-    """Make a formula of the parts that a function derives, which is called at the first use.
+    """Make a formula of the parts that a function derives at the first use.
 
     This is a decorator: the formula replaces the function.
     """
@@ -180,7 +178,7 @@ def compose(
 ) -> Formula:
     """Chain formulas into one: results of earlier parts are inputs of later ones.
 
-    Only the definitions that `outputs` need are kept. When it is read, ValueError is raised if two
+    Only the definitions that `outputs` need are kept. Reading the formula raises ValueError if two
     parts define a term differently, or none defines an output.
     """
     ends = tuple(outputs)

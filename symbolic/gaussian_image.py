@@ -6,12 +6,12 @@ The parabolic lines come from one determinant, whatever the rank of [a b c]. Alo
     f1 = t a − s b,     f2 = t b − s c,     f3 = t d − s e,
 
 and one normal n serves a whole line s u + t v + ρ = 0 if and only if it is perpendicular to all
-three: n·f1 = n·f2 = 0 makes (A, B, C) a multiple of (s², st, t²), and n·f3 = 0 makes (P, Q) one of
-(s, t), so that n·p_u = 0 and n·p_v = 0 are the same equation. The directions are hence the roots of
-the binary cubic det[f1 f2 f3]. If det[a b c] ≠ 0 then f1 × f2 = det[a b c] (s² a* + st b* + t² c*).
-If a, b, c span a plane with normal n0, and λ1 a + λ2 b + λ3 c = 0, the binary cubic is
+three. Indeed, n·f1 = n·f2 = 0 makes (A, B, C) a multiple of (s², st, t²), and n·f3 = 0 makes (P, Q)
+one of (s, t), so that n·p_u = 0 and n·p_v = 0 are the same equation. The directions are hence the
+roots of the binary cubic det[f1 f2 f3]. If det[a b c] ≠ 0 then f1 × f2 = det[a b c] (s² a* + st b*
++ t² c*). If a, b, c span a plane with normal n0, and λ1 a + λ2 b + λ3 c = 0, the binary cubic is
 λ(s,t) (t n0·d − s n0·e) with λ(s,t) = λ1 s² + λ2 st + λ3 t²: the last factor is the line at
-infinity, with the normal n0, and the two others are lines in fixed directions. If a, b, c are
+infinity, with the normal n0, and the other two are lines in fixed directions. If a, b, c are
 multiples of one vector (a graph), the binary cubic vanishes and D(N) is a constant.
 """
 
@@ -124,9 +124,9 @@ ARC = Formula.build(
 ARC_ZEROS = Formula.build(
     "boundary_arc_zeros",
     "The two zeros of the component along $q$ of the normals of a boundary arc. At a singular "
-    "point, where the normal vanishes, it is zero for every $q$. $s$ is the sign of $z1$, which "
-    "avoids cancellation. A negative discriminant, the rounded value of a double zero, counts as "
-    "zero.",
+    "point the normal vanishes, and so does the component along every $q$. $s$ is the sign of "
+    "$z1$, which avoids cancellation. A negative discriminant, the rounded value of a double zero, "
+    "counts as zero.",
     inputs=[N0, N1, N2, q, s],
     terms=[
         *((f"z{k}", Dot(q, x)) for k, x in enumerate((N0, N1, N2))),

@@ -56,7 +56,7 @@ def golden_parts(corner: sp.Matrix) -> list[tuple[int, int]]:
 def barycentric(face: tuple[int, int, int]) -> sp.Matrix:
     """Return the matrix that gives α, β, γ of n = α i + β j + γ k, with the corners of a face."""
     corners = sp.Matrix.hstack(*(CORNERS[x] for x in face)).applyfunc(lambda x: x.rewrite(sp.sqrt))
-    # Arithmetic in the field of the numbers a + b √5 is much faster than with expressions.
+    # Arithmetic in the field of numbers a + b √5 is much faster than with expressions.
     return DomainMatrix.from_Matrix(corners, extension=True).to_field().inv().to_Matrix()
 
 
@@ -64,7 +64,7 @@ def frame(face: tuple[int, int, int]) -> sp.Matrix:
     """Return the linear map (3, 3) to 2γ − h, 2β − h and h = α + β + γ.
 
     Divided by h, the first two range from −1 to 1 on the face, and give the columns and the rows of
-    its lattice; the third, h, is the height.
+    its lattice. The third, h, is the height.
     """
     alpha, beta, gamma = (barycentric(face).row(k) for k in range(3))
     height = alpha + beta + gamma
@@ -74,7 +74,7 @@ def frame(face: tuple[int, int, int]) -> sp.Matrix:
 def face_radius() -> sp.Expr:
     """Return the tangent of the angle between the middle of a face and its corners.
 
-    Of the ν² small triangles of a face, the middle one subtends the largest angle at the centre;
+    Among the ν² small triangles of a face, the middle one subtends the largest angle at the centre;
     the tangent of that angle is ν times smaller.
     """
     corners = [CORNERS[x].applyfunc(lambda x: x.rewrite(sp.sqrt)) for x in FACES[0]]

@@ -36,8 +36,8 @@ AT_JET = Formula.build(
     "at_jet",
     "The length $L$ of the normal $N$ of a surface, the unit normal, the Gaussian and the mean "
     "curvature, from its 2-jet: $a = x_uu$, $b = x_uv$, $c = x_vv$, $d = x_u$, $e = x_v$. The mean "
-    "curvature is half the sum of the principal curvatures −II/I, positive on a sphere with outer "
-    "normals.",
+    "curvature is half the sum of the principal curvatures −II/I, positive on a sphere with "
+    "outward normals.",
     inputs=VECTORS,
     terms=[*NORMAL_AND_SECOND_FORM, *FIRST_FORM],
     outputs=[
@@ -50,9 +50,9 @@ AT_JET = Formula.build(
 
 FORMS_AT_JET = Formula.build(
     "forms_at_jet",
-    "The first fundamental form $E$, $F$, $G$ of a surface, its third one $e_1$, $f_1$, $g_1$, of "
-    "the derivatives of the unit normal, and $D$, which has the sign of the Gaussian curvature, "
-    "from its 2-jet.",
+    "The first fundamental form $E$, $F$, $G$ of a surface, its third fundamental form $e_1$, "
+    "$f_1$, $g_1$ (of the derivatives of the unit normal), and $D$, which has the sign of the "
+    "Gaussian curvature, from its 2-jet.",
     inputs=VECTORS,
     terms=[*NORMAL_AND_SECOND_FORM, ("r", 1 / Dot(N, N) ** 2)],
     outputs=[
@@ -68,9 +68,9 @@ FORMS_AT_JET = Formula.build(
 
 NEWTON = Formula.build(
     "newton",
-    "The step $u$, $v$ of Newton's method for $P = Q = 0$, the preimage of the unit normal $n$ on "
-    "the patch that osculates the surface; the squared sine $s$ of the angle between $n$ and the "
-    "normal $N$ of the surface, with $n × N = q$, and $m$ with the sign of its cosine.",
+    "The step $u$, $v$ of Newton's method for $P = Q = 0$: the preimage of the unit normal $n$ on "
+    "the patch that osculates the surface. $s$ is the squared sine of the angle between $n$ and "
+    "the normal $N$ of the surface, $q = n × N$, and $m$ has the sign of the cosine.",
     inputs=[*VECTORS, n],
     terms=[
         *FORM_TERMS,
@@ -111,7 +111,7 @@ ORDERS = ((2, 0), (1, 1), (0, 2), (1, 0), (0, 1))
 
 
 def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """Return the 2-jet by φ and r of a surface from that by s and t, at cos φ = x, sin φ = y.
+    """Return the 2-jet of a surface by φ and r from that by s and t, at cos φ = x, sin φ = y.
 
     One 2-jet determines the other, so that a quadratic patch can represent the surface.
     """
@@ -133,9 +133,9 @@ def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
 
 @formula(
     "polar_chart",
-    "The 2-jet in the regular chart $s = r x$, $t = r y$ at a pole, from derivatives by the "
-    "polar angle (once $d$, twice $a$), by angle and distance ($b$) and by the distance $r > 0$; "
-    "$x$ and $y$ are the cosine and the sine of the angle.",
+    "The 2-jet in the regular chart $s = r x$, $t = r y$ at a pole, from derivatives by the polar "
+    "angle (first $d$, second $a$), by angle and distance ($b$) and by the distance $r > 0$; $x$ "
+    "and $y$ are the cosine and the sine of the angle.",
 )
 def POLAR_CHART() -> Parts:
     """Write the 2-jet by s and t, and check by the chain rule that it gives the one by φ and r.
@@ -164,8 +164,8 @@ def POLAR_CHART() -> Parts:
 
 @formula(
     "at_pole",
-    "The 2-jet at a pole itself, in the chart, from the first and second derivatives $e$ and $c$ "
-    "by the distance from it, along the directions of 0, 45 and 90 degrees.",
+    "The 2-jet at a pole, in its chart, from the first and second derivatives $e$ and $c$ by the "
+    "distance from it, along the directions of 0, 45 and 90 degrees.",
 )
 def AT_POLE() -> Parts:
     """Solve for the 2-jet at a pole: along each direction it gives two derivatives by r."""
@@ -186,7 +186,7 @@ def AT_POLE() -> Parts:
     return Parts(inputs=known, outputs=[(z.name, solution[z]) for z in X])
 
 
-# With parameters u around a pole and r, which is 0 at it, the surface is a graph h over its tangent
+# At a pole with the parameters u around it and r = 0, the surface is a graph h over its tangent
 # plane with coordinates q1, q2. As r → 0, q_u, q_uu and h_r, h_ur vanish like r, and h_u, h_uu like
 # r².
 
@@ -198,9 +198,9 @@ h11, h12, h22 = (scalar(z) for z in ("h11", "h12", "h22"))
 
 GRAPH_SLOPES = Formula.build(
     "graph_slopes",
-    "The inverse $i11$, … of the matrix of $o$ and $e$, derivatives of the coordinates $q1$, $q2$ "
-    "of a plane by $u$, over $r$, and by $r$; and the first derivatives $G1$, $G2$ of a graph $h$ "
-    "by $q1$, $q2$, from $h1$ by $u$, over $r$, and $h2$ by $r$.",
+    "The inverse $i11$, … of the matrix of $o$ and $e$: the derivatives of coordinates $q1$, $q2$ "
+    "of a plane by $u$, divided by $r$, and by $r$. Also the first derivatives $G1$, $G2$ of a "
+    "graph $h$ by $q1$, $q2$, from $h1$ by $u$, divided by $r$, and $h2$ by $r$.",
     inputs=[o1, o2, e1, e2, h1, h2],
     terms=[("d", 1 / (o1 * e2 - o2 * e1))],
     outputs=[
@@ -217,10 +217,10 @@ GRAPH_SLOPES = Formula.build(
 @formula(
     "graph_at_pole",
     "The second derivatives $H11$, $H12$, $H22$ of a graph $h$ by the coordinates $q1$, $q2$ of "
-    "its tangent plane, near a pole with the parameters $u$ around it and $r$, $0$ at it. With "
-    "$i11$, … and $G1$, $G2$, those of `graph_slopes` over $r$; the second derivatives of $q1$, "
-    "$q2$: $a$ by $u$, over $r$, $b$ by both, $c$ by $r$; and those of $h$: $h11$ by $u$, over "
-    "$r^2$, $h12$ by both, over $r$, $h22$ by $r$.",
+    "its tangent plane, near a pole with the parameters $u$ around it and $r = 0$ at it. Inputs "
+    "are $i11$, … and $G1$, $G2$ of `graph_slopes`, the latter divided by $r$; the second "
+    "derivatives of $q1$, $q2$: $a$ by $u$, divided by $r$, $b$ by both, $c$ by $r$; and those of "
+    "$h$: $h11$ by $u$, divided by $r^2$, $h12$ by both, divided by $r$, $h22$ by $r$.",
 )
 def GRAPH_AT_POLE() -> Parts:
     """Write the second derivatives of a graph, and check them by the chain rule.

@@ -1,4 +1,4 @@
-"""Formulas as loops over arrays: one row for each set of inputs, the formula written out inside.
+"""Formulas as loops over arrays: a row per set of inputs, with the formula written out inside.
 
 They are plain Python; `runtime` compiles them. A loop is self-contained: it can be read and reused
 by itself.
@@ -101,7 +101,7 @@ def _array(argument: str) -> str:
 
 
 def _entries(argument: str, symbols: Symbols) -> list[tuple[str, str]]:
-    """Return the numbers in an argument by their names, with their indices in its array."""
+    """Return the names of the numbers in an argument, with their indices in its array."""
     array = _array(argument)
     if argument == "hessian":
         return [

@@ -36,8 +36,8 @@ CORNER_COTANGENTS = Formula.build(
 
 BORDER_SPACING = Formula.build(
     "border_spacing",
-    "Spacing of boundary points where the $k$-th nearest sample is at the distance $r$: that of "
-    "samples of which $k$ fill half a disk of radius $r$.",
+    "The spacing of boundary points where the distance to the $k$-th nearest sample is $r$: the "
+    "spacing of samples of which $k$ fill half a disk of radius $r$.",
     inputs=[r, k],
     terms=[("rho", k / (sp.pi * r**2 / 2))],
     outputs=[("d", 1 / sp.sqrt(scalar("rho")))],
@@ -52,8 +52,8 @@ BORDER_SPACING = Formula.build(
 def EDGE_OVER_SURFACE() -> Parts:
     """Solve for the shift of the middle Bézier point of an edge along n0 + n1, by least squares.
 
-    With it the ends of the edge, a quadratic curve, should be perpendicular to the normals: the
-    products with n0 and n1 of its first and last leg, e/2 ± beta (n0 + n1), should vanish.
+    With this shift the ends of the edge, a quadratic curve, should be perpendicular to the normals:
+    the products of n0 and n1 with its first and last leg, e/2 ± beta (n0 + n1), should vanish.
     """
     towards = 1 + Dot(n0, n1)
     legs = Dot(e, n0) / 2 + beta * towards, Dot(e, n1) / 2 - beta * towards

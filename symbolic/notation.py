@@ -139,7 +139,7 @@ def substitute(expression: sp.Expr, values: Mapping[Any, sp.Expr]) -> sp.Expr:
 
 
 def derivative(expression: sp.Expr, by: Mapping[VectorSymbol, VectorSymbol]) -> sp.Expr:
-    """Return the derivative of products of vectors, given those of vectors, 0 for others."""
+    """Return the derivative of products of vectors, given those of vectors, 0 by default."""
     zero: sp.Expr = sp.S.Zero
     if isinstance(expression, VectorProduct):
         factors = [cast(VectorSymbol, x) for x in expression.args]

@@ -1,4 +1,4 @@
-"""Users' formulas as compiled functions, with the code that `make generate` writes into files."""
+"""Users' formulas as compiled functions, by the code with which `make generate` writes files."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ LINEAR_NORMALS = compose(
 @formula(
     "spherical_field",
     "A field of normals whose length $q$ is a polynomial: the stereographic projection, with "
-    "respect to an orthonormal basis. It gives every direction but $-e_3$.",
+    "respect to an orthonormal basis. It gives every direction except $-e_3$.",
     source=SOURCE,
 )
 def SPHERICAL_FIELD() -> Parts:

@@ -98,10 +98,10 @@ ELIMINATED = [("D", SOLUTION.D), ("U", SOLUTION.U), ("V", SOLUTION.V), ("W", D -
 
 FORMS = Formula.build(
     "forms",
-    "Eliminating $u$, $v$ from eq. (9) leaves three quadratic forms in $n$, with $u = U/D$, "
-    "$v = V/D$ and $w = W/D$. The patch has the normal $n$ where $U$, $V$, $W$ have one sign, "
-    "which is then that of $D = U + V + W$; $U = 0$, $V = 0$, $W = 0$ are the three boundary cones "
-    "of its Gaussian image.",
+    "Eliminating $u$, $v$ from eq. (9) leaves three quadratic forms in $n$, with $u = U/D$, $v = "
+    "V/D$ and $w = W/D$. The patch has the normal $n$ where $U$, $V$, $W$ have the same sign, "
+    "which is that of $D = U + V + W$; $U = 0$, $V = 0$, $W = 0$ are the three boundary cones of "
+    "its Gaussian image.",
     source="eq. (9) and Sect. 3.2",
     inputs=[*VECTORS, n],
     terms=FORM_TERMS,
@@ -360,8 +360,8 @@ area = scalar("dA")
 
 MEASURE = Formula.build(
     "measure",
-    "Area of the patch and of its Gaussian image (signed: negative where the patch is hyperbolic), "
-    "both per area of the parameter plane.",
+    "Area of the patch and signed area of its Gaussian image (negative where the patch is "
+    "hyperbolic), both per area of the parameter plane.",
     inputs=[*VECTORS, u, v],
     terms=[
         ("p_u", P_U),
@@ -374,7 +374,7 @@ MEASURE = Formula.build(
 
 
 def quadrature_node() -> sp.Rational:
-    """Return t of the three inner nodes (1 − 2t, t, t) whose mean integrates all quadratics."""
+    """Return t of three inner nodes (1 − 2t, t, t) whose mean integrates all quadratics exactly."""
     t = sp.Symbol("t")
     second_moment = sp.integrate(u**2, (u, 0, 1 - v), (v, 0, 1))
     return min(sp.solve(((1 - 2 * t) ** 2 + 2 * t**2) / 6 - second_moment, t))

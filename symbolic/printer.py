@@ -1,7 +1,7 @@
 """SymPy expressions as Python source for Numba: products instead of powers, exact numbers.
 
-Powers other than short products and square roots, which occur only in users' expressions, are calls
-of `math.pow`.
+Powers other than short products and square roots are calls of `math.pow`; they occur only in users'
+expressions.
 """
 
 from __future__ import annotations

@@ -1,7 +1,6 @@
-"""Proofs for the points of a surface with a given normal: bounds over a cell of its parameters.
+"""Bounds over a cell of parameters that prove which points of a surface have a given normal.
 
-Over a cell, with parameters s and t that are scaled to −1 … 1, the derivatives of n·x by s and t
-are
+Over a cell with parameters s and t in [−1, 1], the derivatives of n·x by s and t are
 
     P + A s + B t + ½ (T0 s² + 2 T1 s t + T2 t²),
     Q + B s + C t + ½ (T1 s² + 2 T2 s t + T3 t²)
@@ -37,7 +36,7 @@ y11, y12, y22 = (scalar(f"y{k}") for k in ("11", "12", "22"))
 
 
 def _cubic(thirds: Iterable[sp.Expr], along: sp.Expr, across: sp.Expr) -> sp.Expr:
-    """Return the cubic form with these third derivatives."""
+    """Return the cubic form with the given third derivatives."""
     terms = (sp.binomial(3, k) * z * along ** (3 - k) * across**k / 6 for k, z in enumerate(thirds))
     return sum(terms, start=sp.S.Zero)
 
@@ -46,8 +45,8 @@ def _cubic(thirds: Iterable[sp.Expr], along: sp.Expr, across: sp.Expr) -> sp.Exp
 MODEL = P * s + Q * t + (A * s**2 + 2 * B * s * t + C * t**2) / 2 + _cubic(THIRDS, s, t)
 MODEL_AT = Formula.build(
     "model_at",
-    "The linear forms at $s$, $t$ of the cubic polynomial with those at the origin and the third "
-    "derivatives $T0$, …, $T3$.",
+    "The linear forms at $s$, $t$ of a cubic polynomial with the given linear forms at the origin "
+    "and the third derivatives $T0$, …, $T3$.",
     inputs=[*LINEAR_FORMS, *THIRDS, s, t],
     outputs=[
         (f"{form.name}_m", sp.expand(sp.diff(MODEL, *by)))
@@ -80,9 +79,9 @@ REMAINDERS = Formula.build(
 
 @formula(
     "excesses",
-    "Four numbers; if one is positive, no point of the cell has the normal $n$: the derivatives "
-    "of the height along $n$, or their combinations with one parameter eliminated, are larger at "
-    "the centre than their change over the cell. $R$ and $S$ bound the remainders beyond a "
+    "Four numbers; if one is positive, no point of the cell has the normal $n$. Each compares a "
+    "derivative of the height along $n$ at the centre, or a combination of both with one parameter "
+    "eliminated, with its change over the cell. $R$ and $S$ bound the remainders beyond a "
     "quadratic patch.",
 )
 def EXCESSES() -> Parts:
@@ -113,9 +112,9 @@ def EXCESSES() -> Parts:
 @formula(
     "contraction",
     "The inverse $y11$, $y12$, $y22$ of the Hessian $A$, $B$, $C$ at the centre, and bounds $q1$ "
-    "and $q2$ of the rows of its product with the change of the Hessian over the cell; the third "
-    "derivatives are $T0$, …, $T3$ up to $R0$, …, $R3$. If both are below 1 then at most one point "
-    "of the cell has the normal $n$ or $-n$.",
+    "and $q2$ of the rows of its product with the change of the Hessian over the cell, whose third "
+    "derivatives are $T0$, …, $T3$ up to $R0$, …, $R3$. If both bounds are below 1, at most one "
+    "point of the cell has the normal $n$ or $-n$.",
 )
 def CONTRACTION() -> Parts:
     """Multiply the change of the Hessian over the cell by the inverse of the Hessian."""
@@ -148,7 +147,7 @@ def CONTRACTION() -> Parts:
 def _ordinate(polynomial: sp.Expr, places: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
     """Return one Bernstein ordinate, over −1 … 1, of a polynomial of degree 2 in each parameter.
 
-    `places` says which one, by the parameter: −1 is the first, 0 the middle, 1 the last.
+    `places` selects it by the value for each parameter: −1 for the first, 0 the middle, 1 the last.
     """
     for z, place in places.items():
         low, middle, high = (polynomial.subs(z, k) for k in (-1, 0, 1))
@@ -158,7 +157,7 @@ def _ordinate(polynomial: sp.Expr, places: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
 
 @formula(
     "normal_ordinates",
-    "The Bernstein ordinates over the cell of $x_s × x_t$ of a patch: its normals lie in the cone "
+    "The Bernstein ordinates of $x_s × x_t$ of a patch over the cell: its normals lie in the cone "
     "that they span.",
 )
 def NORMAL_ORDINATES() -> Parts:
@@ -194,7 +193,7 @@ def NORMAL_ORDINATES() -> Parts:
 
 
 def _turned(thirds: Iterable[sp.Expr]) -> list[sp.Expr]:
-    """Return the third derivatives by i and j from those by s and t."""
+    """Return the third derivatives by i and j from third derivatives by s and t."""
     form = _cubic(thirds, x * i - y * j, y * i + x * j)
     return [sp.expand(sp.diff(form, *by)) for by in ((i, i, i), (i, i, j), (i, j, j), (j, j, j))]
 
@@ -207,8 +206,8 @@ def _without_signs(expression: sp.Expr) -> sp.Expr:
 
 TURNED = Formula.build(
     "turned",
-    "The third derivatives $T0$, …, $T3$ by $s$ and $t$, up to $R0$, …, $R3$, as those by $i$ and "
-    "$j$ in turned coordinates, $s = x i - y j$, $t = y i + x j$.",
+    "The third derivatives by $i$ and $j$ in turned coordinates, $s = x i - y j$, $t = y i + x j$, "
+    "from those by $s$ and $t$: $T0$, …, $T3$ up to $R0$, …, $R3$.",
     inputs=[*THIRDS, *RADII, x, y],
     outputs=[
         *((f"M{k}", z) for k, z in enumerate(_turned(THIRDS))),
@@ -239,12 +238,12 @@ first, second, off = scalar("o1"), scalar("o2"), scalar("o3")
 FOLD_CURVE = Formula.build(
     "fold_curve",
     "The curve $i(j)$ on which the derivative by $i$ of the height along $n$ vanishes, in a "
-    "rectangle with the half widths $h$ and $W$: $m > 0$ bounds the second derivative by $i$ from "
-    "below, $k$ bounds the slope of the curve, and $g$ how much the second derivative of the other "
-    "equation along the curve differs from the third derivative by $j$. The curve reaches from "
-    "$-W$ to $W$ if $z < 0$. $A$ and $P$ are derivatives by $i$ at the centre, where that by $i$ "
-    "and $j$ vanishes; $G0$, $G1$, $G2$ bound third derivatives, and $o1$, $o2$ the rounding of "
-    "first and second ones.",
+    "rectangle with the half widths $h$ and $W$. $m > 0$ bounds the second derivative by $i$ from "
+    "below, and $k$ the slope of the curve. $g$ bounds the difference between the second "
+    "derivative of the other equation along the curve and the third derivative by $j$. The curve "
+    "reaches from $-W$ to $W$ if $z < 0$. $A$ and $P$ are derivatives by $i$ at the centre, where "
+    "that by $i$ and $j$ vanishes; $G0$, $G1$, $G2$ bound third derivatives, and $o1$, $o2$ the "
+    "rounding of first and second ones.",
     inputs=[A, P, G0, G1, G2, h, W, first, second],
     outputs=[
         ("m", sp.Abs(A) - G0 * h - G1 * W - second),
@@ -256,9 +255,9 @@ FOLD_CURVE = Formula.build(
 
 FOLD_EXTREME = Formula.build(
     "fold_extreme",
-    "At a place near the extreme of the other equation along the curve of `fold_curve`: if $|Q| > "
-    "r$ and $Q$ has the sign of its second derivative, at least $c2$ in absolute value, then it "
-    "has no zero. Else zeros are at most $y$ away by $j$, and $z$ by $i$.",
+    "A test of the other equation near its extreme value along the curve of `fold_curve`, where "
+    "its second derivative is at least $c2$ in absolute value: it has no zero if $|Q| > r$ and $Q$ "
+    "has the sign of this derivative. Otherwise zeros are at most $y$ away by $j$, and $z$ by $i$.",
     inputs=[*LINEAR_FORMS, G0, G1, G2, k, m, c2, first, second],
     terms=[
         ("o3", (sp.Abs(P) + first) / m),

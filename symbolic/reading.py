@@ -1,8 +1,8 @@
 """Users' mathematical texts as SymPy expressions, without running any of it as Python.
 
 The text is parsed by `ast`, and the expression is built from the tree: literals, arithmetic, the
-declared symbols, and the constants and functions listed here. A value is a number or a truth value,
-and each function declares which it takes. SymPy's work is bounded beforehand: long constants become
+declared symbols, and the constants and functions listed here. A value is a number or a truth value;
+each function declares which it takes. SymPy's work is bounded beforehand: long constants become
 floating-point numbers, and operations and queries of signs are counted.
 """
 
@@ -40,9 +40,9 @@ __all__ = [
 
 LONGEST_TEXT = 20_000  # characters
 DEEPEST_TREE = 200
-MOST_STEPS = 10_000  # literals, names, operations and calls; in sums, counted for each term
+MOST_STEPS = 10_000  # literals, names, operations and calls; those in sums count for each term
 MOST_BITS = 2048  # twice what a float64 can hold
-MOST_PLAIN_BITS = 32  # of numbers whose roots and functions SymPy may evaluate exactly
+MOST_PLAIN_BITS = 32  # bits of numbers whose roots and functions SymPy may evaluate exactly
 MOST_EXACT = 30  # numbers and operations in a constant that is not a float
 
 # A function costs SymPy about a microsecond times the square of the steps of its arguments. A query
@@ -104,7 +104,7 @@ FUNCTIONS = {
     "Heaviside": Function(lambda x: (1 + sp.sign(x)) / 2, sp.Expr, ONE, True),
 }
 FUNCTIONS |= {"abs": FUNCTIONS["Abs"], "ln": FUNCTIONS["log"]}
-PARTED = ("Piecewise", "Sum", "Product")  # their arguments are not values
+PARTED = ("Piecewise", "Sum", "Product")  # functions whose arguments are not values
 
 CONSTANTS = {
     name: getattr(sp, name)
@@ -147,7 +147,7 @@ def read(text: str, symbols: Mapping[str, Any] | None = None, exact: bool = Fals
         raise
     except (RecursionError, MemoryError):
         raise ReadingError("it is nested too deeply") from None
-    except Exception as error:  # SymPy raises anything on arguments that it cannot use
+    except Exception as error:  # SymPy may raise anything for unusable arguments
         raise ReadingError("SymPy cannot make sense of it") from error
     refuse_unusable(expression)
     return expression
@@ -177,7 +177,7 @@ def is_long(expressions: Iterable[sp.Basic]) -> bool:
 
 
 def is_differentiable(expressions: Iterable[sp.Basic]) -> bool:
-    """Return whether SymPy can derive the second derivatives of expressions within some seconds."""
+    """Return whether SymPy can derive second derivatives of expressions within a few seconds."""
     known: dict[sp.Basic, tuple[int, int, int]] = {}
     return sum(_sizes(x, known)[2] for x in expressions) <= MOST_DERIVED
 
@@ -194,7 +194,7 @@ def _sizes(x: sp.Basic, known: dict[sp.Basic, tuple[int, int, int]]) -> tuple[in
             first = second = 0
         elif not isinstance(x, sp.Add | sp.Piecewise | ExprCondPair):  # rules of product and chain
             count = sum(y[1] > 0 for y in parts)
-            if isinstance(x, sp.Min | sp.Max):  # each is compared with all others
+            if isinstance(x, sp.Min | sp.Max):  # each argument is compared with all others
                 count **= 2
             first, second = first + count * size, second + 2 * count * first + count**2 * size
         known[x] = size, first, second
@@ -213,7 +213,7 @@ def _depth(expression: sp.Basic) -> int:
 def parts(expression: sp.Basic) -> Iterator[sp.Basic]:
     """Yield every distinct subexpression once, at any depth.
 
-    SymPy's own traversals visit parts that are shared once for each path to them.
+    SymPy's own traversals visit a shared part once for each path to it.
     """
     seen, waiting = {expression}, [expression]
     while waiting:
@@ -251,7 +251,7 @@ def replaced(expression: Any, rules: Mapping[Any, Any]) -> Any:  # noqa: ANN401 
 def with_shared_parts(
     expressions: Iterable[Any],
 ) -> tuple[list[tuple[sp.Symbol, Any]], list[Any]]:
-    """Return definitions of the parts that are used several times, and expressions in these."""
+    """Return definitions of the parts that are used several times, and the expressions in these."""
     expressions = list(expressions)
     uses = Counter(y for x in {y for e in expressions for y in parts(e)} for y in x.args)
     uses.update(expressions)
@@ -308,7 +308,7 @@ class _Reader:
             raise ReadingError(f"it is longer than {LONGEST_TEXT:,} characters")
         try:
             with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # those of Python's parser, about '1or 2'
+                warnings.simplefilter("ignore")  # SyntaxWarnings of Python's parser, about '1or 2'
                 tree = ast.parse(self.source, mode="eval")
         except (SyntaxError, ValueError):
             _refuse_syntax()
@@ -388,7 +388,7 @@ class _Reader:
         return left - right * floor
 
     def _chain(self, node: Any, kinds: Any) -> list[Any]:  # noqa: ANN401
-        """Return the terms of a - b + c, or the factors of a / b * c, of any number."""
+        """Return the terms of a - b + c, or the factors of a / b * c, however many."""
         operands = []
         while isinstance(node, ast.BinOp) and isinstance(node.op, kinds):
             operands.append((node.op, node.right))
@@ -441,7 +441,7 @@ class _Reader:
             plain = all(map(_is_plain, values))
             return function.of(*(values if plain else map(_float, values)))
         compared = sum(len(x.args) if isinstance(x, sp.Min | sp.Max) else 1 for x in values)
-        if function.asks:  # of each pair
+        if function.asks:  # for each pair
             pairs = max(compared * (compared - 1) // 2, 1)
             self._spend(ASKING + min(size, 2 * size // compared), pairs)
         else:

@@ -42,7 +42,7 @@ def straight_line(formula: Formula) -> StraightLine:
 
 
 def share_subexpressions(definitions: Collection[Definition]) -> list[Definition]:
-    """Eliminate common subexpressions jointly; each temporary stands just before its first use."""
+    """Eliminate common subexpressions jointly, with each temporary just before its first use."""
     names, values = zip(*definitions, strict=True)
     temporaries = sp.numbered_symbols("t", cls=sp.Dummy, real=True)
     shared, reduced = cast(

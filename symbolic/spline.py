@@ -1,11 +1,10 @@
 """The C¹ quadratic spline on the criss-cross grid, derived from its defining conditions.
 
-Every grid cell is cut by both diagonals into four triangles. The Zwart-Powell box spline is the
-only C¹ piecewise quadratic on that triangulation whose support is three cells wide (up to a
-factor): its Bézier net is the solution of a linear system. From it follow the net of a cell in its
-3 × 3 coefficients, the coefficient functionals that reproduce all quadratics, and the extrapolation
-of the ring of coefficients outside the domain. Lengths are in cells; a cell is centred at the
-origin.
+Both diagonals of each grid cell cut it into four triangles. The Zwart-Powell box spline is the only
+C¹ piecewise quadratic on that triangulation whose support is three cells wide (up to a factor): its
+Bézier net is the solution of a linear system. From it follow the net of a cell in its 3 × 3
+coefficients, the coefficient functionals that reproduce all quadratics, and the extrapolation of
+the ring of coefficients outside the domain. Lengths are in cells; a cell is centred at the origin.
 """
 
 from __future__ import annotations
@@ -95,8 +94,8 @@ def barycentric(point: Point, corners: Triangle) -> list[Fraction]:
 def smoothness_conditions(tiles: Iterable[Triangle]) -> list[dict[Point, Fraction]]:
     """Return the linear conditions on Bézier ordinates, by domain point, for a C¹ quadratic.
 
-    Across an edge PQ between the triangles RPQ and SPQ, with S = αR + βP + γQ, both ordinates next
-    to S are the same combination of three next to R. Ordinates on a common edge are the same.
+    Across an edge PQ between the triangles RPQ and SPQ, with S = αR + βP + γQ, each ordinate next
+    to S is the same combination of three next to R. Ordinates on a common edge are the same.
     """
     by_edge: dict[frozenset[Point], list[Point]] = {}
     for tile in tiles:
@@ -171,8 +170,8 @@ def ordinate(powers: tuple[int, int], left: Point, right: Point) -> Fraction:
 def functional_moments() -> Mapping[tuple[int, int], Fraction]:
     """Return the coefficient of the central cell that reproduces each monomial x^r y^s, r + s <= 2.
 
-    The coefficients of a quadratic are themselves a quadratic in the centre of the cell, which
-    follows from a comparison of Bézier nets.
+    The coefficients of a quadratic are a quadratic in the centre of the cell, as a comparison of
+    Bézier nets shows.
     """
     unknown = sp.symbols(f"k:{len(MONOMIALS)}")
     coefficients = {
@@ -355,15 +354,15 @@ EDGE_ORBITS = {"f": [(-HALF, ZERO), (HALF, ZERO)], "g": [(-3 * HALF, ZERO), (3 *
 
 EDGE_POINT = _functional(
     "edge_point",
-    "The middle Bézier point of an edge on the border from the values at its middle ($f$) and its "
-    "ends ($g$)",
+    "The middle Bézier point of an edge on the boundary from the values at its middle ($f$) and "
+    "its ends ($g$)",
     {"f": CENTRE, "g": EDGE_ORBITS["f"]},
     edge_moments,
 )
 EDGE_POINT_FROM_VERTICES = _functional(
     "edge_point_from_vertices",
-    "The middle Bézier point of an edge on the border from the values at its ends ($f$) and at the "
-    "next vertices along the border ($g$)",
+    "The middle Bézier point of an edge on the boundary from the values at its ends ($f$) and at "
+    "the next vertices along the boundary ($g$)",
     EDGE_ORBITS,
     edge_moments,
 )
@@ -386,14 +385,14 @@ def _solved(name: str, sentence: str, point: str, unknown: str) -> Formula:
 
 BEYOND_EDGE = _solved(
     "beyond_edge",
-    "The coefficient beyond an edge of the border from that of its cell and the middle Bézier "
+    "The coefficient beyond an edge of the boundary from that of its cell and the middle Bézier "
     "point $f$ of the edge.",
     "b110",
     "s",
 )
 BEYOND_CORNER = _solved(
     "beyond_corner",
-    "The coefficient beyond a corner of the domain from the three others round it and the value "
+    "The coefficient beyond a corner of the domain from the other three around it and the value "
     "$f$ there, which the spline interpolates.",
     "b200",
     "sw",
@@ -403,7 +402,7 @@ INSIDE = [scalar(name) for name in ("f1", "f2", "f3")]
 
 EXTRAPOLATION = Formula.build(
     "extrapolation",
-    "A value one step outside the domain from the three next inside: exact on all quadratics.",
+    "A value one step outside the domain from the next three inside: exact on all quadratics.",
     inputs=INSIDE,
     outputs=[("f0", _linear(extrapolation_weights(), INSIDE))],
 )

@@ -102,7 +102,8 @@ def _in_radii(value: sp.Expr, change: sp.Expr = sp.S.Zero) -> sp.Expr:
 @formula(
     "offset_curvature",
     "Gaussian and mean curvature of the offset at the distance $R$; principal radii may be "
-    "infinite. $s$ is the factor of the product of the radii, 0 where one of them becomes 0.",
+    "infinite. $s$ is the factor by which the product of the radii grows, 0 where one of them "
+    "becomes 0.",
 )
 def OFFSET_CURVATURE() -> Parts:
     """Add R to both radii, and write the result in the curvatures."""
@@ -182,8 +183,7 @@ CURVATURE_AT_NORMAL = compose(
     outputs=[K, H],
 )
 
-# The formulas that are emitted as loops over arrays, with the inputs that have a row for each
-# evaluation.
+# The formulas that are emitted as loops over arrays, with the inputs that are arrays.
 LOOPS = {
     SUPPORT_FUNCTION: (n,),
     GRADIENT_AT_NORMAL: (n,),

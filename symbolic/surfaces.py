@@ -133,8 +133,8 @@ amplitude, frequency, slope_u, slope_v = sp.symbols(
 
 TORUS = ParametricSurface(
     name="torus",
-    sentence="The torus round the z axis, u being the angle round the axis and v the angle round "
-    "the tube, from its outer equator upwards, with normals pointing out of the tube.",
+    sentence="The torus around the z axis; u is the angle around the axis, v the angle around the "
+    "tube, from its outer equator upwards. Normals point out of the tube.",
     position=(
         (major + minor * sp.cos(v)) * sp.cos(u),
         (major + minor * sp.cos(v)) * sp.sin(u),
@@ -163,8 +163,8 @@ SEMI_AXES = (
 
 ELLIPSOID = ParametricSurface(
     name="ellipsoid",
-    sentence="The whole ellipsoid x²/a² + y²/b² + z²/c² = 1, with the longitude u, the latitude v "
-    "(angles on the unit sphere that is stretched), poles at z = ±c, and outward normals.",
+    sentence="The whole ellipsoid x²/a² + y²/b² + z²/c² = 1 with the longitude u and the latitude "
+    "v of the sphere that is stretched, poles at z = ±c, and outward normals.",
     position=(a * sp.cos(u) * sp.cos(v), b * sp.sin(u) * sp.cos(v), c * sp.sin(v)),
     u=u,
     v=v,
@@ -175,7 +175,7 @@ ELLIPSOID = ParametricSurface(
 
 ELLIPSOID_PATCH = ParametricSurface(
     name="ellipsoid_patch",
-    sentence="The belt of the ellipsoid between the latitudes v = ±π/3, so without its poles, with "
+    sentence="The belt of the ellipsoid between the latitudes v = ±π/3, without its poles, with "
     "the longitude u and outward normals.",
     position=ELLIPSOID.position,
     u=u,
@@ -187,7 +187,7 @@ ELLIPSOID_PATCH = ParametricSurface(
 
 SPHERE = ParametricSurface(
     name="sphere",
-    sentence="The whole sphere round the origin, with the longitude u, the latitude v, poles on "
+    sentence="The whole sphere around the origin, with the longitude u, the latitude v, poles on "
     "the z axis, and outward normals.",
     position=(
         radius * sp.cos(u) * sp.cos(v),
@@ -203,8 +203,8 @@ SPHERE = ParametricSurface(
 
 HYPERBOLOID = ParametricSurface(
     name="hyperboloid",
-    sentence="The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1, u "
-    "going round the z axis and v along it, with normals pointing away from the axis.",
+    sentence="The hyperboloid of one sheet x²/a² + y²/b² − z²/c² = 1, cut off at z = ±c sinh 1; u "
+    "goes around the z axis, v along it. Normals point away from the axis.",
     position=(a * sp.cosh(v) * sp.cos(u), b * sp.cosh(v) * sp.sin(u), c * sp.sinh(v)),
     u=u,
     v=v,
@@ -276,8 +276,8 @@ ENNEPER = ParametricSurface(
 
 CATENOID = ParametricSurface(
     name="catenoid",
-    sentence="The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius, u "
-    "being the angle round the z axis and v = z/radius, with normals pointing away from the axis.",
+    sentence="The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius; u is "
+    "the angle around the z axis, v = z/radius. Normals point away from the axis.",
     position=(
         radius * sp.cosh(v) * sp.cos(u),
         radius * sp.cosh(v) * sp.sin(u),
@@ -292,8 +292,8 @@ CATENOID = ParametricSurface(
 
 HELICOID = ParametricSurface(
     name="helicoid",
-    sentence="One turn of the right-handed helicoid, u being the signed distance from the z axis "
-    "and v the angle, with normals pointing upwards where u > 0 and downwards where u < 0.",
+    sentence="One turn of the right-handed helicoid; u is the signed distance from the z axis, v "
+    "the angle. Normals point upwards where u > 0 and downwards where u < 0.",
     position=(u * sp.cos(v), u * sp.sin(v), pitch * v),
     u=u,
     v=v,
@@ -304,9 +304,9 @@ HELICOID = ParametricSurface(
 
 MOEBIUS_BAND = ParametricSurface(
     name="moebius_band",
-    sentence="The Möbius band round the z axis, u being the angle round the axis and v running "
-    "across, upright at u = 0 with its normal there pointing away from the axis, and with the "
-    "opposite normal after one turn.",
+    sentence="The Möbius band around the z axis; u is the angle around the axis, v runs across. It "
+    "is upright at u = 0, where its normal points away from the axis; after one turn the normal is "
+    "opposite.",
     position=(
         (radius + half_width * v * sp.sin(u / 2)) * sp.cos(u),
         (radius + half_width * v * sp.sin(u / 2)) * sp.sin(u),
@@ -364,8 +364,8 @@ WAVY_GRAPH = ParametricSurface(
 
 CYLINDER = ParametricSurface(
     name="cylinder",
-    sentence="The circular cylinder round the z axis, u being the angle and v = z/height, with "
-    "normals pointing away from the axis.",
+    sentence="The circular cylinder around the z axis; u is the angle, v = z/height. Normals point "
+    "away from the axis.",
     position=(radius * sp.cos(u), radius * sp.sin(u), height * v),
     u=u,
     v=v,
@@ -381,8 +381,8 @@ _distance = bottom + (top - bottom) * v
 
 CONE = ParametricSurface(
     name="cone",
-    sentence="The frustum of a circular cone round the z axis, which does not reach the apex, u "
-    "being the angle and v = z/height, with normals pointing away from the axis.",
+    sentence="The frustum of a circular cone around the z axis, without its apex; u is the angle, "
+    "v = z/height. Normals point away from the axis.",
     position=(_distance * sp.cos(u), _distance * sp.sin(u), height * v),
     u=u,
     v=v,

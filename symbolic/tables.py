@@ -13,7 +13,7 @@ from . import icosahedron, spline
 
 __all__ = ["differences", "grid", "icosahedron_tables"]
 
-# The number of points of a difference; the order of central ones is one less.
+# The number of points of a difference; the order of central differences is one less.
 STENCIL = 9
 WIDTH = 106  # of the longest row of small numbers
 SHORT = 20
@@ -23,9 +23,9 @@ def grid() -> str:
     """Return the positions around a cell that patches and fitting read, in order.
 
     NEIGHBOURS and CORNERS are given for each of the four patches. VERTICES are the vertices that
-    the formula `coefficient_from_vertices` reads, counted from the vertex one step south and one
-    step west of those of the cell; TRIANGLE_NEIGHBOURS are the ones of the nine coefficients that
-    the formula `triangle` reads.
+    the formula `coefficient_from_vertices` reads, counted from the vertex one step south and west
+    of the cell's vertices; TRIANGLE_NEIGHBOURS are the coefficients, of nine, that the formula
+    `triangle` reads.
     """
     neighbours, corners = (
         [[list(spline.quarter_turns(x, turns)) for x in places] for turns in range(4)]
@@ -74,7 +74,7 @@ def _weights(order: int, places: Sequence[int]) -> list[sp.Expr]:
 
 
 def _changes(order: int, places: Sequence[int]) -> list[sp.Expr]:
-    """Return the weights minus those of the difference with the nodes nearest to zero."""
+    """Return the weights minus those of the difference with the fewer nodes nearest to zero."""
     near = sorted(sorted(places, key=abs)[:-2])
     fewer = dict(zip(near, _weights(order, near), strict=True))
     pairs = zip(places, _weights(order, places), strict=True)

@@ -1,4 +1,4 @@
-"""Tapes: three expressions in u and v as a list of steps, each on results of earlier ones.
+"""Tapes: three expressions in u and v as a list of steps, each with results of earlier steps.
 
 Evaluated with numbers a tape gives points, with Taylor polynomials derivatives, with intervals
 bounds: `runtime/tape/kernels/points.py` and its neighbours interpret it.
@@ -48,7 +48,7 @@ class NoTapeError(ValueError):
 def tape_steps(
     position: Sequence[sp.Expr], u: sp.Symbol, v: sp.Symbol, parameters: Sequence[sp.Symbol] = ()
 ) -> tuple[list[Step], list[int]]:
-    """Return steps that compute expressions in u, v and parameters, and those of the results.
+    """Return steps that compute expressions in u, v and parameters, and the steps of the results.
 
     Raises NoTapeError if an expression has no tape.
     """
@@ -85,7 +85,7 @@ class _Steps:
         self._found: dict[sp.Expr, int] = {x: self._write(*y) for x, y in symbols.items()}
 
     def define(self, symbol: sp.Symbol, expression: sp.Expr) -> None:
-        """Write the steps of an expression that defines a symbol."""
+        """Write the steps of the expression that defines a symbol."""
         self._found[symbol] = self.step_of(expression)
 
     def step_of(self, expression: sp.Expr) -> int:

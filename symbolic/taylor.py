@@ -5,8 +5,8 @@ A function of u and v has at a point the Taylor polynomial
     a_0 + a_u s + a_v t + a_uu s² + a_uv s t + a_vv t² + …,
 
 whose coefficients are derivatives divided by factorials. The coefficients of products and
-compositions are sums of products with positive factors. If factors |x| <= X have errors up to D_x
-then a product x y z changes by at most
+compositions are sums of products with positive factors. If factors with |x| <= X, |y| <= Y, |z| <=
+Z have errors up to D_x, D_y, D_z, then their product x y z changes by at most
 
     D_x Y Z + (X + D_x) D_y Z + (X + D_x) (Y + D_y) D_z.
 """
@@ -30,7 +30,7 @@ Symbols = Mapping[sp.Symbol, sp.Symbol]
 LARGEST = str.maketrans("abf", "stF")
 
 s, t = sp.symbols("s t")  # u and v relative to the point
-u = scalar("u")  # the unit of rounding
+u = scalar("u")  # unit roundoff
 
 
 def _orders(axis: str) -> tuple[int, int]:
@@ -91,7 +91,7 @@ def _roundings(value: sp.Expr) -> int:
 def _radii(of: Coefficients, inputs: Sequence[sp.Symbol], errors: Symbols) -> Parts:
     """Return bounds for coefficients that are sums of products.
 
-    Named terms are absolute values increased by their errors, and the coefficients of these.
+    Named terms are the absolute values increased by their errors, and the coefficients of these.
     """
     symbols = {x for value in of.values() for x in value.free_symbols}
     largest = {x: scalar(x.name.translate(LARGEST)) for x in errors if x in symbols}

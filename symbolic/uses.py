@@ -29,7 +29,7 @@ def _functions_in(source: str) -> tuple[str, ...]:
 def wholes(formula: Formula, formulas: Iterable[Formula]) -> list[str]:
     """Return the names of the formulas that contain this one.
 
-    They may lack some of its outputs: `compose` drops those that are not needed.
+    Outputs of this formula may be missing there: `compose` drops those that are not needed.
     """
     mine = dict(formula.definitions)
 

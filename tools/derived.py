@@ -1,6 +1,6 @@
 """The methods of `Samples` that tools define; each loads its tool when it is called.
 
-`Samples` takes them from here (see `runtime/base/later.py`), and imports nothing of tools.
+`Samples` takes them from here (see `runtime/base/later.py`), and imports nothing from tools.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ __all__ = [
 ]
 
 
-# The samples of a mesh that hides parts of an outline.
+# The number of samples of a mesh that hides parts of an outline.
 OF_VIEW = 10_000
 
 
@@ -140,8 +140,8 @@ def mesh(
     """Return a triangle mesh of the whole surface through the samples.
 
     Neighbours are those of a Delaunay triangulation of the parameters: the mesh closes where the
-    surface does, has one vertex at a pole, and reaches open boundaries by added points, as far
-    apart as the samples near them. Then edges are flipped. Samples that coincide become one vertex.
+    surface does, has one vertex at a pole, and reaches open boundaries by added points, spaced like
+    the samples near them. Then edges are flipped. Samples that coincide become one vertex.
 
     Samples on a graded grid (`row` and `column`) stay vertices, however long its cells are.
 
@@ -167,10 +167,10 @@ def mesh(
           ``density="balanced"``, none is left out beside most narrow bends, and up to 8 %
           beside the sharpest. A grid, or a part of one, keeps its samples, in long cells, too.
         - "normals": triangles deviate from the normals at their corners as little as the
-          samples allow. They are long and thin where the surface is curved in one direction
-          only, and one sample is left out where a triangle would have no area. Of a CAD part:
-          planes, cylinders and cones have vertices on their edges only, other faces rows that
-          are even by how far normals turn.
+          samples allow. They are long and thin where the surface is curved in one direction only. A
+          sample is left out where a triangle would have no area. On a CAD part, planes, cylinders
+          and cones have vertices on their edges only; other faces have rows of vertices between
+          which normals turn equally.
     progress : bool, default False
         Show the progress on a terminal, after the first second.
 
@@ -347,8 +347,8 @@ def offset(self: Samples, distance: float) -> Samples:
     """Return the samples moved along their normals: the offset surface x + d n.
 
     Points, support and curvatures become those of the offset, if the samples have them; normals,
-    parameters and indices stay. `spline` and `surface` are None; `offset_of` has those of these
-    samples, from which `mesh` and `weights` of the offset take the neighbours.
+    parameters and indices stay. `spline` and `surface` are None; `offset_of` has the original ones,
+    from which `mesh` and `weights` of the offset determine neighbours.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """Support points: the farthest points of a surface in given directions.
 
-A farthest point has the direction as its normal, or the opposite one, or lies on a boundary.
-`GaussMap.points` finds the former, with a proof where there is one; on a boundary, n·x is maximized
-along short segments. The bounding box of a surface is made of six support points.
+A farthest point has the direction or its opposite as its normal, or lies on a boundary.
+`GaussMap.points` finds points with normals, with a proof if possible; on a boundary, n·x is
+maximized along short segments. Six support points give the bounding box of a surface.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ STEPS_A_CELL = 2
 BLOCK, PRODUCTS_AT_A_TIME = 8, 1 << 21
 # Steps of Newton's method, and of bisection where the boundary of a trim crosses a side.
 STEPS, BISECTIONS = 6, 50
-# Newton's method starts at these places in undecided boxes.
+# Newton's method starts at these positions in undecided boxes.
 IN_BOXES = (np.indices((3, 3)).reshape(2, -1).T + 0.5) / 3.0
-# A side is tested this far inside the domain, relative to it.
+# Whether a side is inside the trim is tested at this distance from it, relative to the domain.
 BESIDE = 1e-8
 # Values of n·x are bounded up to this many units of rounding of the largest coordinate.
 ROUNDING = 32.0 * np.finfo(np.float64).eps
@@ -60,9 +60,9 @@ class SupportPoints(NamedTuple):
     values : (S,) float64 array
         The values n·x there: the support function of the convex hull.
     errors : (S,) float64 array
-        Bounds of the differences from the largest values. They are rounding errors where all points
-        with the normals n and −n are proved to be known; in undecided boxes, the last step of
-        Newton's method counts. Without a proof, they follow from the measured distance of the
+        Bounds of the differences from the largest values. They are rounding errors if all points
+        with the normals n and −n are proved to be known; in undecided boxes, they include the last
+        step of Newton's method. Without a proof, they follow from the measured distance of the
         spline from the surface (`Misfit.distance`); for faces of a part they are then infinite.
     uv : (S, 2) float64 array
         The parameters of the points; NaN on splines of nets.
@@ -102,7 +102,7 @@ class SupportPoints(NamedTuple):
         self, owner: Indices, normals: Array, points: Array, uv: Array | None,
         faces: Indices | int = -1, border: Flags | bool = False, errors: Array | float = 0.0,
     ) -> None:  # fmt: skip
-        """Take points (k, 3) of directions (k,) where they are farther, the first one of several.
+        """Take points (k, 3) that are farther in directions (k,); of equal ones, take the first.
 
         `normals` (S, 3) are all directions.
         """
@@ -120,8 +120,8 @@ def support(self: GaussMap, directions: ArrayLike) -> SupportPoints:
     """Return the farthest point of the surface in each direction, wherever it lies.
 
     It is a point with this normal or the opposite one, or a point of a boundary, a corner, a tip,
-    or one point of a curve or a region of farthest points, always the same. The values are those of
-    the support function of the convex hull.
+    or one point of a curve or a region of farthest points, always the same one. The values are
+    those of the support function of the convex hull.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def bounds_of(self: Surface | Whole) -> Array:
 
 
 def _farthest(gauss_map: GaussMap, normals: Array) -> SupportPoints:
-    """Return the farthest points in unit directions (S, 3), with errors but those of rounding."""
+    """Return the farthest points in unit directions (S, 3); errors do not include rounding."""
     count, surface = len(normals), gauss_map.surface
     found = SupportPoints.nothing(count)
     fields = ["points", "uv", "normal_index"] + ["face_index"] * isinstance(surface, Whole)
@@ -217,8 +217,9 @@ class HasJets(Protocol):
 class Segments:
     """M segments `starts` + t `steps` (M, 2) of the parameters of a surface, 0 ≤ t ≤ 1.
 
-    The curves turn by less than half a turn each. `face` is the index of the face of a part, and
-    `border` is False for lines inside a surface. The boundary is within `errors` (M,) of them.
+    Each curve turns by less than half a turn. `face` is the index of the face of a part, and
+    `border` is False for lines inside a surface. The boundary is within `errors` (M,) of the
+    curves.
     """
 
     surface: HasJets
@@ -263,7 +264,8 @@ class NetEdges:
 class Curves:
     """Segments of one surface or more, with the points and tangents (M, 2, 3) at their ends.
 
-    Each is within a distance `reach` (M,) of its start, and each block of segments in a ball.
+    Each segment is within a distance `reach` (M,) of its start, and each block of segments is in a
+    ball.
     """
 
     parts: Sequence[Segments | NetEdges]
@@ -320,13 +322,13 @@ class Curves:
         return owner[near], rows[near]
 
     def _add(self, found: SupportPoints, normals: Array, owner: Indices, rows: Indices) -> None:
-        """Take the highest points of segments (k,) in directions (k,), which are sorted."""
+        """Take the highest points of segments (k,) in the directions (k,), which are sorted."""
         ends = np.einsum("kex,kx->ek", self.points[rows], normals[owner])
         slopes = np.einsum("kex,kx->ek", self.tangents[rows], normals[owner])
         inside = (slopes[0] > 0.0) & (slopes[1] < 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             t = np.where(inside, slopes[0] / (slopes[0] - slopes[1]), ends[1] > ends[0])
-        # A concave curve is below its tangents; twice their slopes leave room for others.
+        # A concave curve is below its tangents; twice the slopes allow for other curves.
         most = (ends + np.array([[2.0], [-2.0]]) * slopes).min(axis=0)
         peaks = np.flatnonzero(inside & (most >= found.values[owner]))
         highest = np.flatnonzero(~inside)
@@ -396,7 +398,7 @@ def _lines(geometry: OnPatches) -> Iterator[Segments | NetEdges]:
 
 
 def _of_trim(geometry: OnSpline, line: Array) -> Segments:
-    """Return a polyline (k, 2) in the unit square as segments; that of a predicate has errors."""
+    """Return a polyline (k, 2) in the unit square as segments; for a predicate, with errors."""
     spline, middles = geometry.spline, (line[1:] + line[:-1]) / 2.0
     around = wrapped(middles, spline.boundary)
     low, high = np.array(spline.domain).T
@@ -416,7 +418,7 @@ def _of_trim(geometry: OnSpline, line: Array) -> Segments:
 def _inside(
     geometry: OnSpline, starts: Array, steps: Array, inwards: Array, border: bool = True
 ) -> Segments:
-    """Return the parts of segments inside the trim, tested at places moved by `inwards` (2,)."""
+    """Return the parts of segments inside the trim, tested at points moved by `inwards` (2,)."""
     trim = geometry.spline.trim
     if trim is None:
         return Segments(geometry, starts, steps, border=border)
@@ -444,7 +446,7 @@ def _inside(
 def _edges_of_flat(spline: Spline) -> tuple[Array, Array]:
     """Return the edges of developable regions: starts and steps (k, 2) of the parameters.
 
-    On a developable patch, critical points of n·x are lines, which end on edges. Patches at tips
+    On a developable patch, critical points of n·x form lines, which end on edges. Patches at tips
     have no samples either.
     """
     flat, tips = _developable(spline), tips_of(spline)

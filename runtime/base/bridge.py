@@ -1,6 +1,6 @@
 """The only imports of `gaussmap.symbolic` in the runtime; its functions load SymPy when called.
 
-Without these calls, sampling never waits for SymPy.
+Nothing else in the runtime imports it, so that sampling never waits for SymPy.
 """
 
 from __future__ import annotations

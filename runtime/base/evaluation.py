@@ -42,7 +42,7 @@ def check_finite(
 ) -> None:
     """Raise SurfaceError, with the parameters, if values (..., k) are not finite.
 
-    Those at parameters (j, 2) for which `needed` returns False may be NaN or infinite.
+    Values at parameters (j, 2) may be NaN or infinite where `needed` returns False.
     """
     bad: NDArray[np.bool_] = np.any(~np.isfinite(values), axis=-1)
     if needed is not None and bad.any():

@@ -59,9 +59,8 @@ SINGULAR_POINT = 2.0**-20
 # A point is near a singular point where the normal is shorter than this, relative to the square of
 # the tangents: parameters with few digits do not give its direction there.
 NEAR_SINGULAR_POINT = 2.0**-12
-# A normal, or a slope along it, is zero where it is shorter than this, relative to the product of
-# tangents that it consists of, or to the largest normal of the patch: 4096 ε, far above the
-# rounding of such a product.
+# A normal, or a slope along it, is zero if it is shorter than this, relative to the product of its
+# tangents, or to the largest normal of the patch: 4096 ε, far above the rounding of such a product.
 VANISHING = 2.0**-40
 # Of a coefficient of the parabolic cubic, or of the cubic of its directions, relative to the
 # product of the lengths of the vectors in its terms: 256 ε.

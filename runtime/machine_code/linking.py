@@ -46,7 +46,7 @@ class Part(JITCodeLibrary):
 
     @property
     def codegen(self) -> Any:
-        """The owner of the code: not the execution engine, until a kernel is linked with it."""
+        """The owner of the code; the execution engine only takes linked kernels."""
         return self
 
     def set_env(self, name: str, environment: Any) -> None:

@@ -1,7 +1,7 @@
-"""Components of the points with one normal that the border of a trim may meet.
+"""Components of the points with one normal, where the boundary of a trim may cut them.
 
-Places of a curve or a region are found on a grid of its box, from which Gauss and Newton's method
-leads to points with the normal. Neighbouring places inside of the trim are in one piece.
+A curve or a region is sampled on a grid of its box, from which Gauss–Newton steps lead to points
+with the normal. Neighbouring points inside the trim are in one piece.
 """
 
 from __future__ import annotations
@@ -23,13 +23,14 @@ __all__ = ["components_in"]
 Jets = Callable[[Array, Array], Array]
 
 OPEN_BOX, ISOLATED = KINDS.index("open"), KINDS.index("isolated")
-# The number of places along a box that is a line: its width is at most THIN times its length, both
-# relative to the domain. Other boxes have SIDE places along each side.
+# The number of grid points along a box that is a line: its width is at most THIN times its length,
+# both relative to the domain. Other boxes have SIDE grid points along each side.
 PLACES, SIDE, THIN = 257, 65, 1e-3
-# Places are neighbours within this multiple of the step of the grid; one is kept of each half step.
+# Points are neighbours within this multiple of the step of the grid; of points within half a step,
+# one is kept.
 NEIGHBOURS, HALVES = 1.5, 2.0
-# At most STEPS steps lead to a point: there the angles between the normal and the tangent plane
-# differ from 90° by at most NEAR, and the steps end at SETTLED. An eigenvalue of the Hessian is 0
+# At most STEPS steps lead to a point: there the angles between the normal and the tangents differ
+# from 90° by at most NEAR, and the last step is at most SETTLED. An eigenvalue of the Hessian is 0
 # if it is less than SINGULAR times the other one.
 STEPS, SETTLED, NEAR, SINGULAR = 16, 1e-14, 1e-9, 1e-4
 
@@ -37,10 +38,10 @@ STEPS, SETTLED, NEAR, SINGULAR = 16, 1e-14, 1e-9, 1e-4
 def components_in(
     trim: Trim | None, open_: Undecided, normals: Array, jets: Jets
 ) -> tuple[Undecided, Undecided]:
-    """Return the components that are known and inside a trim, and what is left open.
+    """Return the known components inside a trim, and the boxes that remain undecided.
 
-    Of a component that the trim cuts there is one for each piece inside. `jets` returns those of
-    the surface at u and v (k,). The normals (S, 3) are unit vectors.
+    A component that the trim cuts has a row for each piece inside. `jets` returns the jets of the
+    surface at u and v (k,). The normals (S, 3) are unit vectors.
     """
     known = open_.kinds != OPEN_BOX
     if trim is None or len(known) == 0:
@@ -65,9 +66,9 @@ def _rows(open_: Undecided, rows: Indices | Flags | list[int]) -> Undecided:
 
 
 class Grid(NamedTuple):
-    """Places (k, 2) on a grid of a box, whose step is 1: u and v are `low` + `step` · place.
+    """A grid on a box with the step 1: point (k, 2) has the parameters `low` + `step` · point.
 
-    The step is 0 across a line. Places have the `periods` (2,), or 0.
+    The step is 0 across a line. Points have the `periods` (2,), or 0.
     """
 
     places: Array
@@ -97,7 +98,7 @@ def _pieces(trim: Trim, one: Undecided, normal: Array, jets: Jets) -> Undecided:
 
 
 def _grid(trim: Trim, box: Array) -> Grid:
-    """Return the grid of a box, a row on its middle line if it is thin."""
+    """Return the grid of a box: one row on its middle line if it is thin."""
     low, high = box.reshape(2, 2).T
     shares = (high - low) / np.ptp(trim.domain, axis=1)
     is_thin = shares <= THIN * shares.max()
@@ -109,7 +110,7 @@ def _grid(trim: Trim, box: Array) -> Grid:
 
 
 def _with_normal(grid: Grid, ends: Array, normal: Array, jets: Jets) -> Array:
-    """Return points (k, 2) with a normal between the ends (2, 2) of a box, from those of a grid."""
+    """Return points (k, 2) with a normal between the ends (2, 2) of a box, starting from a grid."""
     uv, scale = grid.low + grid.step * grid.places, np.ptp(ends, axis=0)
     for _ in range(STEPS):
         jet = jets(*uv.T.copy())

@@ -1,7 +1,7 @@
 """Samples of a spline moved to the surface that it approximates, by Newton's method.
 
 The samples of a spline at prescribed normals are close to those of the surface. Newton's method for
-n·x_u = n·x_v = 0 moves the former to the latter, except at parabolic and singular points.
+n·x_u = n·x_v = 0 moves them there, except at parabolic and singular points.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def _refine_away(
     target: Target,
     threads: int | None,
 ) -> list[Indices]:
-    """Move the samples away from poles; return the other samples for each chart."""
+    """Move the samples that are not next to poles; return the others for each chart."""
     domain = Parameters.of_domain(surface, spline)
 
     def work(first: int, last: int) -> tuple[Indices, list[Indices]]:

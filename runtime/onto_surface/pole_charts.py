@@ -21,8 +21,8 @@ __all__ = ["PoleChart", "pole_charts"]
 
 
 # Within four cells of a pole the spline is inaccurate and may have folds; its samples are up to a
-# cell away from those of the surface. With one cell samples are lost; from three to four only
-# rounding errors change.
+# cell away from those of the surface. With one cell samples are lost; beyond three only rounding
+# errors change.
 POLE_CELLS = 6
 # Closer to a pole than this part r of the domain, the 2-jet of the pole is used. Its error is of
 # order r; derivatives by the angle have errors of up to ε/r² by cancellation.

@@ -242,9 +242,9 @@ class ProvedSurface:
 def with_components(
     numbers: NDArray[np.int64], places: NDArray[np.float64], components: Undecided
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return solutions with those that stand for components, and a column of their codes.
+    """Return solutions and the points of components, with a column of component codes.
 
-    `places` (k, 6) are those of `ProvedPlaces`, for normals with the `numbers` (k,).
+    `places` (k, 6) are as in `ProvedPlaces`, for normals with the indices `numbers` (k,).
     """
     sides, uv = components.boxes.reshape(-1, 2, 2), components.uv
     rows = np.zeros((len(uv), CODE + 1))

@@ -90,7 +90,7 @@ def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
     lines += [(axis, x) for axis in (0, 1) for x in _turning(tape, domain, axis, periods[axis])]
     points = np.stack([_jets_on(tape, domain, axis, np.array([x]))[0, :, 0] for axis, x in lines])
     slack = ROUNDINGS * np.spacing(np.fmax.reduce(np.abs(points), axis=None))
-    with np.errstate(invalid="ignore"):  # no differences of infinite coordinates
+    with np.errstate(invalid="ignore"):  # infinity minus infinity
         is_point = np.ptp(points, axis=1).max(axis=1) <= slack
     found = [Apex(tape, *x) for x in lines[:sides]]
     for axis, x in lines[sides:]:

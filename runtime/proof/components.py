@@ -20,7 +20,7 @@ from .kernels.sorting import Sorted
 
 __all__ = ["Undecided", "components_of", "with_kinds"]
 
-# Boxes touch if their distance is below both widths, or below this part of the domain.
+# Boxes touch if their distance is at most the larger width, or this part of the domain.
 NEAR = 3e-6
 
 

@@ -2,7 +2,7 @@
 
 At a pole p, u is the parameter around it, and r = 0. The tangent plane has coordinates q1 and q2 in
 which the curve x_r (u, 0) is as close to a circle as possible; h is the height over it. By Taylor's
-theorem the quotients of `generated.jet.graph_at_pole` at r are derivatives at some r between 0 and
+theorem the quotients of `generated.jet.graph_at_pole` at r are derivatives at some ρ between 0 and
 r: of x and of x_u, or of the spline (x − p) / r. That h_r (u, 0) = 0, and that the surface has no
 creases, is checked at sampled points only.
 """

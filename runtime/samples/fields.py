@@ -56,9 +56,9 @@ class Component(IntEnum):
         A point with K = 0 that is the only one with this normal nearby, or several that cannot be
         told apart.
     CURVE
-        A curve or a region of points with one normal; the sample is one of these. Each piece of it
-        inside of a trim is one, if the pieces and the gaps between them are longer than 1/256 of a
-        line, or 1/64 of other curves and regions.
+        A curve or a region of points with one normal; the sample is one of these. Each piece inside
+        a trim has a sample, if pieces and gaps are longer than 1/256 of a line, or 1/64 of another
+        curve or region.
     TIP
         A tip of the surface, such as that of a cone, whose normal cone contains the normal.
     CREASE

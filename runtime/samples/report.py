@@ -93,7 +93,7 @@ class UndecidedNormal(NamedTuple):
         a region with this normal, such as a ruling of a cylinder. "open": it is not known whether
         there is a point, as next to a fold, up to rounding, or where x_u × x_v may vanish.
         "unmoved": points of the spline could not be moved to the surface. The first two are
-        components without a sample: no point of them was found inside of the trim.
+        components without a sample: none of their points was found inside the trim.
     border : bool
         Whether the box reaches an open side of the domain, or may meet the boundary of the trim.
     face : int or None

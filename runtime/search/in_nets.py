@@ -187,7 +187,7 @@ def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
 
 
 def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
-    """Return the signs (k,) of U, V or W, the form of an edge each, at normals (k, 3).
+    """Return the signs (k,) of the forms of edges, U, V or W, at normals (k, 3).
 
     Edge j of patch p has the row 3 p + j. Its form is V of the patch turned so that the edge is v =
     0, with the tangents at its ends projected onto the planes perpendicular to the normals that all

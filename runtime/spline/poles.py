@@ -26,8 +26,9 @@ __all__ = ["broken_poles", "close_pole", "ring_around", "spread_missing", "witho
 
 # The number of pairs a, b from which the plane closest to the ring is chosen.
 CANDIDATES = 4096
-# The length of a and b is the root of this times the distance of neighbours in the ring. Longer
-# vectors have a plane closer to the ring; shorter ones have multiples closer to its coefficients.
+# The length of a and b is the root of this times the distance of neighbours in the ring. With
+# longer vectors the plane is closer to that of the ring; with shorter ones their multiples are
+# closer to its coefficients.
 BALANCE = 1.0 / 32.0
 
 

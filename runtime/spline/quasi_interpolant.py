@@ -32,8 +32,8 @@ __all__ = [
 ]
 
 
-# Missing values are continued over so many steps: a patch depends on values two cells away, and the
-# nearest known one may be one cell away from it.
+# Missing values are extrapolated over this many steps: a patch depends on values two cells away,
+# and the nearest known value may be one cell away from it.
 FAR = 3
 
 
@@ -48,7 +48,7 @@ class Values(NamedTuple):
     middles: Sides
 
     def filled_by(self, fill: Callable[[Array], Array]) -> Values:
-        """Return the values with others in place of missing ones, by `continued` or `completed`."""
+        """Return the values, with missing ones filled in by `continued` or `completed`."""
         g = fill(self.vertices)
         rows = g[:, 0], g[:, -1], g[0], g[-1]
         sides = zip(self.middles, rows, strict=True)
@@ -143,10 +143,10 @@ def completed(points: Array) -> Array:
 
 
 def continued(points: Array) -> Array:
-    """Return points (m, n, 3) with more of them beside missing ones, NaN or infinite.
+    """Return points (m, n, 3), where some missing ones, NaN or infinite, are extrapolated.
 
-    Up to FAR steps from a known point they continue a quadratic through the three known points on
-    one line; elsewhere they are NaN.
+    Up to FAR steps from a known point they lie on a quadratic through the three known points of one
+    line; elsewhere they are NaN.
     """
     bad: Flags = np.any(~np.isfinite(points), axis=2)
     places, nearest = np.argwhere(bad), _nearest(bad).T

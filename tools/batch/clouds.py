@@ -96,7 +96,7 @@ class Clouds:
     def generator(self, *key: int) -> np.random.Generator:
         """Return an independent generator for each key."""
         seed = self.seed or ()
-        # The key includes the length of the seed: (1,) and (1, 0) would be the same otherwise.
+        # The key includes the length of the seed; otherwise (1,) and (1, 0) would be the same.
         return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(len(seed), *key)))
 
 

@@ -1,6 +1,6 @@
 """Running a data set on a cluster, by Dask's distributed scheduler.
 
-A task is a few parts: the worker that gets it writes them into the folder of the data set, which
+A task is a few parts. The worker that gets it writes them into the folder of the data set, which
 all machines see by the same path, and answers with a few numbers. If a worker is lost, Dask gives
 its task to another one, which samples the missing parts.
 """
@@ -31,7 +31,7 @@ __all__ = ["connected", "run_on_cluster"]
 LOST = 10
 # Seconds that a scheduler, or its first worker, may take to answer.
 PATIENCE = 30
-# Waiting tasks for each worker: the scheduler knows of no others.
+# The number of waiting tasks for each worker: the scheduler knows of no others.
 AHEAD = 2
 # The largest number of parts of a task, and the least number of tasks for each worker if there
 # are enough parts.
@@ -102,8 +102,8 @@ def run_on_cluster(
 
 
 def work(plan: Plan, parts: Sequence[Input]) -> Tally:
-    """Sample parts by a process of this thread of a worker of Dask."""
-    # Dask's nanny starts workers that may have no child processes, lest they are left behind. The
+    """Sample parts on a worker of Dask, in a process that belongs to the worker's thread."""
+    # Dask's nanny starts workers that may have no child processes, lest these are left behind. The
     # processes of a task end with it.
     multiprocessing.current_process().daemon = False
     worker = getattr(_HERE, "worker", None)
@@ -111,7 +111,7 @@ def work(plan: Plan, parts: Sequence[Input]) -> Tally:
         if worker is not None:
             worker.end()
         worker = _HERE.worker = Worker(plan)
-    # A task whose run was given up may start after another run has begun.
+    # A task of a cancelled run may start after another run has begun.
     if read_settings(plan.folder).to_json() != plan.settings.to_json():
         raise FileError(f"'{plan.folder}' holds another data set by now.")
     return sum(sampled(parts, [worker]), Tally())

@@ -192,7 +192,7 @@ class Dataset:
         names = tuple(MANIFEST_COLUMNS)
         if columns is not None:
             names = checked_names(columns, names, "column")
-        if not (self.folder / MANIFEST).exists():  # a run goes on, or was stopped
+        if not (self.folder / MANIFEST).exists():  # a run is still going on, or was stopped
             rows = rows_of(self.folder, self.settings, parts_in(self.folder))
             return manifest_table(rows).select(names)
         with opened_manifest(self.folder) as file:
@@ -440,7 +440,7 @@ def _checked_seed(seed: int | Sequence[int] | None) -> tuple[int, ...] | None:
 def _checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
     try:
         index, count = shard
-    except Exception:  # objects raise anything
+    except Exception:  # conversion may raise anything
         raise InputError(f"shard must be a pair (i, n), not {shown(shard)}.") from None
     index, count = whole_number(index, "shard[0]", least=0), whole_number(count, "shard[1]")
     if index >= count:

@@ -102,7 +102,7 @@ class Settings:
     ) -> Settings:
         """Return settings of samples computed by this version of the package."""
         how = fields, dtype, compression, files
-        # As they are read from JSON: tuples become lists.
+        # As if read from JSON: tuples become lists.
         return cls.from_json(cls(asked, *how, __version__, digest(), FORMAT).to_json())
 
     def to_json(self) -> str:
@@ -137,7 +137,7 @@ class Settings:
 
 
 def checked_names(names: object, known: Sequence[str], kind: str) -> tuple[str, ...]:
-    """Return the names if they are known, at least one, and none twice."""
+    """Return the names if all are known, and there is at least one, and none twice."""
     items = None if isinstance(names, str) else listed(names)
     if items is None:
         raise InputError(f"{kind}s must be a tuple of names, not {shown(names)}.")
@@ -240,7 +240,7 @@ def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Ite
         _refuse_links(path)
         path.mkdir(parents=True, exist_ok=True)
         if not (path / SETTINGS).exists() and any(
-            # Left by a run that was killed while it wrote the settings.
+            # A run that was killed while it wrote the settings left this file.
             entry.name != LOCK and not entry.name.startswith(BEGUN)
             for entry in path.iterdir()
         ):
@@ -264,7 +264,7 @@ def _begin(path: Path, settings: Settings, overwrite: bool) -> None:
         _remove(path)
     if (path / SETTINGS).exists():
         _check_same(read_settings(path), settings, path)
-    else:  # first of all: without settings the folder would be of something else
+    else:  # first of all: without settings the folder would not count as a data set
         with atomic_path(path / SETTINGS) as temporary:
             temporary.write_text(settings.to_json(), encoding="utf-8")
     for left in [*path.glob(f"{BEGUN}*"), *path.glob(f"{FILES}/{BEGUN}*"), path / MANIFEST]:
@@ -299,11 +299,11 @@ def _writing(path: Path) -> Iterator[None]:
 
 
 def _check_same(old: Settings, new: Settings, path: Path) -> None:
-    """Raise InputError where the settings of an existing data set differ from new ones."""
+    """Raise InputError if the settings of an existing data set differ from new ones."""
     had, wanted = (json.loads(x.to_json()) for x in (old, new))
     for then, now in ((had | {"asked": 0}, wanted | {"asked": 0}), (had["asked"], wanted["asked"])):
         for name in sorted({*then, *now}):
-            # As texts: NaN is not equal to itself.
+            # As texts, since NaN is not equal to itself.
             before, after = (json.dumps(x.get(name)) for x in (then, now))
             if before == after:
                 continue
@@ -331,7 +331,7 @@ def _remove(path: Path) -> None:
 def _lock(file: IO[bytes], folder: Path) -> None:
     """Raise FileError if another run holds the lock; the system releases that of a killed run.
 
-    On a file system without locks, nothing is locked.
+    The system releases the lock of a killed run. On a file system without locks, nothing is locked.
     """
     try:
         import fcntl

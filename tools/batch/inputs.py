@@ -27,7 +27,7 @@ __all__ = ["Input", "Source", "content_of", "inputs_of", "parameters_of"]
 
 Source = Surface | Spline | Part | str | os.PathLike[str]
 # The fingerprint of a surface is its points at this number of parameters along u and along v:
-# more than one cell has, so that small changes are seen, and fewer than sampling takes.
+# enough to see small changes, and fewer than sampling takes.
 LATTICE = 17
 
 
@@ -69,13 +69,13 @@ def inputs_of(sources: Iterable[Source]) -> Iterator[Input]:
 
 
 def _of_surface(part: int, surface: Surface | Spline | Part) -> Input:
-    # Functions defined in the user's program or notebook can be unpickled only if they are
-    # pickled by value.
+    # Functions defined in the user's program or notebook must be pickled by value to be unpickled
+    # elsewhere.
     pickle = from_extra("cloudpickle", "batch", "a data set of surfaces")
     try:
         name = as_text(str(surface.name or "surface"))
         return Input(part, name, type(surface).__name__, None, pickle.dumps(surface))
-    except Exception as error:  # of any type: users' functions may hold anything
+    except Exception as error:  # of any type, since users' functions may contain anything
         raise InputError(
             f"part {part} ({surface.name}) cannot be sent to another process: its function cannot "
             f"be pickled ({type(error).__name__}: {error})."

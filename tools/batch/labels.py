@@ -66,7 +66,7 @@ def _of_array(labels: ArrayLike, parts: Sequence[int]) -> dict[int, Any]:
 
 
 def _type_of(labels: Mapping[int, Any]) -> np.dtype[Any]:
-    """Return the type of labels; a null, as a failed part has, makes it float64."""
+    """Return the type of labels; a null, as for a failed part, makes it float64."""
     floating = False
     for value in labels.values():
         if value is None or isinstance(value, float | np.floating):

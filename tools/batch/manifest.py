@@ -31,7 +31,7 @@ def _column(meaning: str, unit: str = "", **default: Any) -> Any:  # noqa: ANN40
 
 @dataclass(frozen=True, slots=True)
 class ManifestRow:
-    """The status and results of a part, whenever, and however often, it was sampled."""
+    """The status and results of a part, regardless of when and how often it was sampled."""
 
     part: int = _column("the number of the part in the list, from 0 on")
     name: str = _column("the name of the part")

@@ -70,7 +70,7 @@ class Plan:
         return None if suffix is None else self.folder / FILES / file_name(part, name, suffix)
 
     def normals(self) -> NDArray[np.float64] | None:
-        """Return the prescribed normals, read from their file: they may be larger than the rest."""
+        """Return the prescribed normals, read from their file, as they may be large."""
         return _read(self.folder / NORMALS) if "normals" in self.settings.asked else None
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["KEPT", "STOPPED", "Task", "serve"]
 
 GIB = 2**30
-# The statuses beside "ok" and "failed": the part is unchanged; its samples cannot be written.
+# The statuses besides "ok" and "failed": the part is unchanged; its samples cannot be written.
 KEPT, STOPPED = "kept", "stopped"
 
 
@@ -83,7 +83,7 @@ def _say(pipe: Connection, about: dict[str, Any]) -> None:
 
 
 def _answers(task: Task) -> Iterator[dict[str, Any]]:
-    """Yield the content of a part, and then its results when its samples are written."""
+    """Yield the content of a part, and then its results when its samples have been written."""
     from ...runtime.base.errors import FileError, GaussmapError
     from .manifest import FAILED, OK
     from .part_files import write_part
@@ -94,7 +94,7 @@ def _answers(task: Task) -> Iterator[dict[str, Any]]:
         warnings.simplefilter("always")
         try:
             surface, known = _source(task)
-            # Sent first: the parent then knows it even if sampling kills this process.
+            # Sent first, so that the parent knows it even if sampling kills this process.
             yield known
             if task.before is not None and known["content"] == task.before.content:
                 yield {"status": KEPT}

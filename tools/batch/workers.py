@@ -1,4 +1,4 @@
-"""Sampling parts by processes: an error or a crash costs the part that caused it only."""
+"""Sampling parts by processes: an error or a crash only costs the part that caused it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ __all__ = ["Tally", "Worker", "run_locally", "sampled"]
 
 # The number of failures that are shown when a run ends; the manifest has all.
 SHOWN = 10
-# A process has one thread, as one process runs on each core. Modules of users are found after
+# A process has one thread, since one process runs on each core. Users' modules are found after
 # those of Python and of packages, so that they hide none of these.
 ENVIRONMENT = dict.fromkeys(
     ("NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS",

@@ -1,7 +1,7 @@
 """STEP files with damaged faces: finding these faces, and the file without them.
 
 A face that refers to a missing entity, or to numbers that are not finite, would become an infinite
-plane, or hang Open CASCADE. The other faces can be read.
+plane, or make Open CASCADE hang. The other faces can be read.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Converting saved parts of version 1 to version 2: their edges lie between two faces only."""
+"""Conversion of saved parts of version 1, where edges lie between two faces only, to version 2."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ PLACES = 32
 FEWEST = 2
 # Ends of edges within this distance, relative to the size of the part, are one corner.
 SAME_CORNER = 1e-5
-# A remainder smaller than this part of a step gets no sample of its own.
+# A remainder of less than this part of a step gets no sample of its own.
 SLACK = 1e-6
 
 
@@ -39,7 +39,7 @@ def with_edges(
 ) -> dict[str, NDArray[Any]]:
     """Return fields of `count` samples of a part, followed by those on its sharp edges.
 
-    Samples on edges are in the order of the edges. Each corner, where edges end, has one sample.
+    Samples on edges come in the order of the edges. Each corner, where edges end, has one sample.
     """
     found = {x: y.astype(dtype_of(x, dtype)) for x, y in _on_edges(space, count).items()}
     others = {
@@ -101,7 +101,7 @@ def _spaced(edges: Edges, step: float, most: int) -> tuple[Indices, Array, Flags
 
 
 def _many_places(edges: Edges) -> tuple[Indices, Array]:
-    """Return edges (M,) and positions (M,) on them that make at least `PLACES` steps each."""
+    """Return edges (M,) and positions (M,) that divide each edge into at least `PLACES` steps."""
     steps = np.diff(edges.starts) - 1
     parts = -(-PLACES // np.maximum(steps, 1))
     counts = steps * parts + 1
@@ -111,9 +111,9 @@ def _many_places(edges: Edges) -> tuple[Indices, Array]:
 
 
 def _costs(space: PartSpace, sides: Sides) -> Array:
-    """Return the lengths (M − 1,) between neighbouring positions, in units of the sizing function.
+    """Return the distances (M − 1,) of neighbouring positions, in units of the sizing function.
 
-    A cost is at least the angle between the normals if the target density follows the curvature.
+    If the target density follows the curvature, a distance is at least the angle of the normals.
     """
     target = space.target
     lengths = np.linalg.norm(np.diff(sides.points[:, 0], axis=0), axis=1) * space.unit
@@ -130,7 +130,7 @@ def _costs(space: PartSpace, sides: Sides) -> Array:
 
 
 def _divided(places: Array, costs: Array, most: int) -> Array:
-    """Return positions with equal costs between them, at most 1, from the first to the last."""
+    """Return positions from the first to the last with equal costs between them, at most 1."""
     if not len(costs):
         return places
     if not costs.any():

@@ -28,16 +28,17 @@ __all__ = [
 
 # Edges are sharp where the normals of the two faces differ by more than this, in degrees.
 SHARP = 1.0
-# Newton's method stops when the points on both faces are closer than SAME, relative to the size
-# of the part, and has succeeded if they are closer than FOUND times that.
+# Newton's method stops when the points on both faces are closer than SAME, relative to the size of
+# the part. It has succeeded if they are closer than FOUND times that.
 SAME, FOUND, MOST_ROUNDS = 1e-14, 1e3, 12
-# The largest distance that Newton's method may move a point: this factor times the distance of
-# the faces, over the sine of their angle.
+# Newton's method may move a point by at most this factor times the distance of the faces over the
+# sine of their angle.
 TIMES_APART = 3.0
-# Points of a file where the two faces are farther apart, relative to the size, are on no edge.
+# Points of a file where the faces are farther apart than this, relative to the size, are on no
+# edge.
 APART = 1e-4
-# A surface collapses where one of |x_u|, |x_v| is this many times the other; parameters that
-# exceed the domain by less than this part of it are moved to its end.
+# A surface collapses where one of |x_u|, |x_v| is this many times the other. Parameters outside the
+# domain by less than this part of it are moved to its end.
 COLLAPSED, BEYOND = 1e10, 1e-12
 
 
@@ -58,9 +59,9 @@ class Edges:
         return len(self.pieces)
 
     def at(self, edges: Indices, places: Array) -> Array:
-        """Return parameters (M, 4) at positions (M,): k at the k-th point of an edge.
+        """Return parameters (M, 4) at positions (M,): position k is the k-th point of an edge.
 
-        Between two points they are interpolated linearly.
+        Between two points, parameters are interpolated linearly.
         """
         last = np.diff(self.starts)[edges] - 1
         before = np.minimum(np.floor(places).astype(np.int64), last - 1)
@@ -70,7 +71,7 @@ class Edges:
 
 
 def edges_of(space: PartSpace, *, seams: bool = False) -> Edges:
-    """Return the edges between two pieces of a space; with `seams`, also of one with itself."""
+    """Return the edges between two pieces of a space; with `seams`, also those of one piece."""
     part = space.pieces[0].face.part
     known = np.full(len(part), -1)
     known[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))
@@ -88,7 +89,7 @@ def edges_of(space: PartSpace, *, seams: bool = False) -> Edges:
 def between_two(part: Part, *, seams: bool = False) -> tuple[Indices, Array, Indices]:
     """Return the edges between two faces: the faces (E, 2), the points, and their starts.
 
-    Without `seams`, the two faces are different.
+    With `seams`, both faces may be the same.
 
     The points (k, 4) of edge i, from starts[i] to starts[i + 1], are u, v on the first and on the
     second face.
@@ -131,10 +132,9 @@ def _of_surfaces(space: PartSpace, pieces: Indices, points: Array) -> Array:
 class Sides:
     """Both faces at M positions: `pieces` (M, 2), and u, v (M, 4) on their surfaces.
 
-    For both faces: points (M, 2, 3) in L, tangents x_u, x_v (M, 2, 2, 3), unit normals (M, 2, 3),
-    which are 0 where they are undefined, and the curvatures K, H (M, 2, 2). `collapsed` (M, 2)
-    marks positions on a side of the domain that is one point, as a pole; of these, only those of
-    spheres have normals.
+    For both faces: points (M, 2, 3) in L, tangents x_u, x_v (M, 2, 2, 3), unit normals (M, 2, 3), 0
+    where undefined, and the curvatures K, H (M, 2, 2). `collapsed` (M, 2) marks positions on a side
+    of the domain that is one point, such as a pole; of these, only poles of spheres have normals.
     """
 
     pieces: Indices
@@ -213,7 +213,7 @@ def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
 
 
 def _inside(space: PartSpace, owner: Indices, places: Array) -> Array:
-    """Return parameters (k, 2); those beyond the domain by rounding are moved to its end."""
+    """Return parameters (k, 2), moved to the end of the domain if they exceed it by rounding."""
     low, high = np.array([x.surface.domain for x in space.pieces])[owner].transpose(2, 0, 1)
     slack = BEYOND * (high - low)
     places = np.where((places < low) & (places >= low - slack), low, places)
@@ -227,8 +227,8 @@ def exact_places(edges: Edges, owner: Indices, places: Array) -> tuple[Sides, In
     """Return both sides at sharp positions of edges (M,), and the indices of these positions.
 
     Newton's method finds the intersection of the faces, in the plane across the edge. If the faces
-    do not intersect, because they meet within a tolerance only, a nearby point of the file is
-    taken; where the faces are farther apart than `APART`, there is no position.
+    meet within a tolerance only, and do not intersect, a nearby point of the file is taken. Where
+    they are farther apart than `APART`, there is no position.
     """
     space, pieces = edges.space, edges.pieces[owner]
     starts = sides_at(space, pieces, edges.at(owner, places))

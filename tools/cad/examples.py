@@ -65,7 +65,7 @@ def box_faces(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> li
 def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[EdgeRecord]:
     """Return the twelve sharp edges between the faces of `box_faces`.
 
-    Bit k of the number of a vertex says at which end of axis k it is.
+    Bit k of the index of a vertex says at which end of axis k it is.
     """
     size, found = np.array([width, depth, height]), []
     for first, second in itertools.combinations(range(3), 2):

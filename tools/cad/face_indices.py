@@ -1,4 +1,4 @@
-"""Indices that find all points of faces with given normals, proved, or in closed form."""
+"""Indices that find all points of faces with given normals, by a proof or in closed form."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ __all__ = ["face_index"]
 
 Array = NDArray[np.float64]
 
-# The cells of an index before bisection: faces are simple, and there are many.
+# The cells of an index before bisection: faces are simple and numerous.
 CELLS = (4, 4)
-# A side of the domain may be one point if the distance of its ends is less than this part of the
+# A side of the domain may be one point if the distance of its ends is below this part of the
 # largest such distance.
 CLOSE = 1e-3
 # A side is measured at this number of places.
@@ -91,8 +91,8 @@ class SmoothPieces:
 class Offset:
     """The index of an offset of a surface, by the index of that surface (the basis).
 
-    Both have the same parameters. Their normals are opposite where the offset has passed one centre
-    of principal curvature: there (1 + d κ₁) (1 + d κ₂) is negative.
+    Both have the same parameters. Their normals are opposite where the offset has passed exactly
+    one centre of principal curvature: there (1 + d κ₁) (1 + d κ₂) is negative.
     """
 
     basis: FaceIndex
@@ -109,7 +109,7 @@ class Offset:
     def _turned(self, found: FacePlaces, normals: Array, sign: float) -> FacePlaces:
         """Return the points of the basis at which the normal of the offset has the given sign.
 
-        Components of the basis are open where the sign may change inside of their boxes.
+        Components of the basis become undecided if the sign may change inside their boxes.
         """
         sides, open_ = self._sides(found.uv, found.radius, normals[found.numbers]), found.undecided
         is_known = np.abs(sides.middle) > sides.radius
@@ -135,7 +135,7 @@ class Offset:
     def _sides(self, uv: Array, radius: Array, normals: Array) -> Ball:
         """Return enclosures (k,) of numbers whose sign is that of the product of both normals.
 
-        The normal of the basis is exactly one of normals (k, 3), somewhere within the radii (k, 2).
+        The normal of the basis is one of normals (k, 3) exactly, somewhere within the radii (k, 2).
         """
         bounds = bounds_over_boxes(self.tape, uv, radius)
         factors = zip((U2, U1V1, V2, U1, V1), (2.0, 1.0, 2.0, 1.0, 1.0), strict=True)

@@ -45,19 +45,19 @@ Array, Indices = NDArray[np.float64], NDArray[np.int64]
 
 # Angles are divided into parts of at most this, in radians.
 ANGLE = 0.25
-# The least number of parts between two knots, for polynomials of higher degrees may turn there,
-# unless there would be more than MOST_PARTS parts along a parameter.
+# The least number of parts between two knots, since polynomials of higher degrees may turn there,
+# unless a parameter would have more than MOST_PARTS parts.
 PARTS_OF_SPAN, MOST_PARTS = 2, 64
-# Lines that are closer to one another than this part of the domain are one.
+# Lines closer to one another than this part of the domain are one line.
 SAME_LINE = 1e-9
-# The number of parts along each parameter of a surface whose function is not known.
+# The number of parts along each parameter of a surface with an unknown function.
 PARTS_OF_SURFACE = 16
-# Curvatures at a pole are those at this distance from it, relative to the domain.
+# Curvatures at a pole are taken at this distance from it, relative to the domain.
 BESIDE = 1e-6
 CURVATURES = ("gaussian_curvature", "mean_curvature")
-# Where no proof is possible, and for normals of lattices, points are searched on a spline: the
-# number of its cells for each part of a span, and the least and largest number of cells. Near the
-# boundary, the error of the spline loses points.
+# Without a proof, and for normals of lattices, points are searched on a spline: the number of its
+# cells for each part of a span, and the least and largest number of cells. Near the boundary, the
+# error of the spline loses points.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
 # Measurements on a raster of a face use about this number of positions, squared.
 RASTER = 64
@@ -121,7 +121,7 @@ class FacePiece(Piece):
 
     @property
     def boxes(self) -> Array:
-        """The boxes (M, 4) that make up the domain; the surface is smooth in each."""
+        """The boxes (M, 4) that partition the domain; the surface is smooth in each."""
         geometry, domain = self.face.geometry, self.surface.domain
         u, v = (_lines(self.face, geometry, axis, domain[axis]) for axis in (0, 1))
         return boxes_between(u, v)
@@ -134,7 +134,8 @@ class FacePiece(Piece):
     def polygons(self) -> list[Array]:
         """The closed polygons (k, 2) that bound the face; the first point is not repeated.
 
-        Loops of files exceed the domain by rounding, or by the tolerance of the file: these do not.
+        Loops in files exceed the domain by rounding, or by the tolerance of the file; these
+        polygons do not.
         """
         (u0, v0), (u1, v1) = low, high = np.array(self.surface.domain).T
         if self.surface.trim is None:
@@ -229,14 +230,14 @@ class FacePiece(Piece):
 
     def _geometries(self) -> list[OnSpline]:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, a starting value only
+            warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, only a starting value
             pieces = self.surface.pieces()
             return on_grids([geometry_of(x, self._cells(x.domain), "surface") for x in pieces])
 
     def _cells(self, domain: Domain) -> tuple[int, int]:
         """Return the numbers of cells of a spline over a domain, by the parts between lines.
 
-        `fit` would choose them by comparing splines, which takes longer than all the rest.
+        A choice by `fit`, which compares splines, would take longer than everything else.
         """
         along_u, along_v = (
             min(max(CELLS_A_PART * (1 + int(((lines > low) & (lines < high)).sum())), FEWEST), MOST)
@@ -270,7 +271,7 @@ class FacePiece(Piece):
 def pieces_of(
     faces: tuple[Face, ...], reach: Reach | None = None
 ) -> tuple[list[FacePiece], dict[int, str]]:
-    """Return the faces that can be sampled, and for each other face, by its index, the reason.
+    """Return the faces that can be sampled, and for each other face the reason, by its index.
 
     Faces without normals in a `reach` are in neither.
     """
@@ -313,7 +314,7 @@ def _lines(face: Face, geometry: Geometry, axis: int, ends: tuple[float, float])
 
 
 def _between(knots: Array, ends: tuple[float, float], period: float) -> Array:
-    """Return the knots, and those of other periods, between the ends, and these."""
+    """Return the ends, and the knots of all periods between them."""
     if period > 0.0:
         turns = np.arange(-2, 3) * period
         knots = np.unique(knots + turns[:, None])

@@ -1,4 +1,4 @@
-"""The points of a face that have given normals, and boxes that are undecided."""
+"""The points of a face that have given normals, and undecided boxes."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ Indices = NDArray[np.int64]
 
 
 class FacePlaces(NamedTuple):
-    """Points of a face, and undecided boxes, where there may be further points.
+    """Points of a face, and undecided boxes, which may contain further points.
 
-    numbers (k,) are the indices of normals; uv (k, 2) the parameters, and radius (k, 2) the radii
-    of boxes around them that hold the exact ones; sign (k,) that of the Gaussian curvature.
+    numbers (k,) are the indices of normals, uv (k, 2) parameters, radius (k, 2) bounds of their
+    errors, and sign (k,) the signs of the Gaussian curvature.
     """
 
     numbers: Indices
@@ -30,7 +30,7 @@ class FacePlaces(NamedTuple):
     undecided: Undecided
 
     def reversed_in(self, total: float) -> FacePlaces:
-        """Return the same points for the parameter total − u in place of u."""
+        """Return the same points for the parameter total − u instead of u."""
         uv, boxes, middles = self.uv.copy(), self.undecided.boxes.copy(), self.undecided.uv.copy()
         uv[:, 0], middles[:, 0] = total - uv[:, 0], total - middles[:, 0]
         boxes[:, :2] = total - boxes[:, 1::-1]

@@ -1,9 +1,9 @@
-"""Surfaces of faces: from the arrays of a face to a surface with exact derivatives and its trim.
+"""Surfaces of faces: from the arrays of a face to a surface with exact derivatives and a trim.
 
 Parameters are those of Open CASCADE and STEP (see `saving`); their domain is the bounding box of
-the loops. Planes, cylinders, cones, spheres, tori and surfaces of revolution are evaluated in their
-own frame, and placed. Extrusions are NURBS. Second derivatives of offsets are numerical (see
-`offset_surface`).
+the loops. Planes, cylinders, cones, spheres, tori and surfaces of revolution are evaluated in a
+frame of their own, and then placed. Extrusions are NURBS. Second derivatives of offsets are
+numerical (see `offset_surface`).
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ TURN = 2.0 * math.pi
 QUARTER = math.pi / 2.0
 OPEN: BoundaryPair = ("open", "open")
 PERIODIC: BoundaryPair = ("periodic", "periodic")
-# A loop is the boundary of the domain if it is within this distance of it, relative to the
-# domain.
+# A loop within this distance of the boundary of the domain, relative to the domain, is that
+# boundary.
 ON_BORDER = 1e-9
 
 
@@ -46,7 +46,7 @@ ON_BORDER = 1e-9
 class Shape:
     """A surface without its trim: its function in its own frame, and its boundary conditions.
 
-    `collapses` says whether the domain may have sides that are one point, to be looked for.
+    `collapses` says whether sides of the domain may be one point, and have to be tested.
     """
 
     function: Differentiable
@@ -81,7 +81,7 @@ def face_surface(
     if shape.placement is None:
         surface = Surface(name, function, *ends, trim=trim, assumed_open=assumed)
         return surface.flipped() if is_reversed else surface
-    # Placed and reversed in one step, for such faces are many. Both ends of u have the same
+    # Placed and reversed in one step, since such faces are numerous. Both ends of u have the same
     # boundary condition.
     moved = Moved(Surface(name, function, *ends), shape.placement, is_reversed, shape.domain[0])
     if is_reversed and trim is not None:
@@ -152,7 +152,7 @@ def _cone(geometry: Geometry, domain: Domain) -> Shape:
 
 
 def _sphere(geometry: Geometry, domain: Domain) -> Shape:
-    """Return a sphere: a torus whose radii make its circles meet, restricted between the poles."""
+    """Return a sphere: a torus whose first radius is 0, restricted between the poles."""
     function = CatalogueFunction("torus", (0.0, float(geometry.numbers[12])))
     around, ends = _around(domain[0])
     slack = SAME_END * TURN
@@ -198,7 +198,7 @@ def _of_nurbs(nurbs: Nurbs) -> Shape:
 
 
 def _revolution(geometry: Geometry, domain: Domain) -> Shape:
-    """Return a curve turned about the z axis of a frame whose x axis is arbitrary."""
+    """Return a curve turned about the z axis of a frame with an arbitrary x axis."""
     assert geometry.net is not None
     origin, axis = np.asarray(geometry.numbers).reshape(2, 3)
     frame = _frame(axis)
@@ -219,7 +219,7 @@ def _frame(axis: Array) -> Array:
 
 
 def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:
-    """Return an interval of an angle, exactly one turn if nearly so, and its conditions."""
+    """Return an interval of an angle, exactly one turn if it nearly is one, and its conditions."""
     low, high = interval
     if abs(high - low - TURN) <= SAME_END * TURN:
         return (low, low + TURN), PERIODIC
@@ -230,7 +230,7 @@ def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:
 
 
 def _offset(geometry: Geometry, domain: Domain) -> Shape:
-    """Return an offset; those of planes, cylinders, cones, spheres and tori keep their kind."""
+    """Return an offset; offsets of planes, cylinders, cones, spheres and tori keep their kind."""
     simple = simplest(geometry, domain)
     if simple.kind != "offset":
         return _shape(simple, domain)

@@ -45,7 +45,7 @@ def part_of_surfaces(
     held, known = _checked(surfaces), None if unit is None else checked_unit(unit)
     most = None if tolerance is None else positive_number(tolerance, "tolerance")
     faces = [_face(x) for x in held]
-    # The areas are not known yet, and faces without an area are not made into pieces.
+    # Areas are not known yet, and a face without an area would not become a piece.
     bare = part_of(
         PartRecord(text(name, "name"), known or "", METRES.get(known or "", 1.0), False, faces)
     )
@@ -127,7 +127,7 @@ def _corners(piece: FacePiece) -> Array:
 
 
 def _borders(piece: FacePiece) -> list[Border]:
-    """Return the boundaries of a face, which lies to their left."""
+    """Return the boundaries of a face, with the face on their left."""
     whole = piece.surface.trim is None
     found = []
     for polygon, sign in zip(piece.polygons, signs_of(piece), strict=True):

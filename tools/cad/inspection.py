@@ -1,7 +1,7 @@
-"""The format of a CAD file, whether it is complete, and its number of faces by its own account.
+"""The format of a CAD file, whether it is complete, and the number of faces that it states.
 
-Files are inspected before Open CASCADE reads them: it reads the beginning of a truncated file as if
-nothing were missing, and hangs on coordinates that are not finite.
+Files are inspected before Open CASCADE reads them: it reads the beginning of a truncated file
+without complaint, and hangs on coordinates that are not finite.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ HEAD = 4096
 START_OF_STEP = re.compile(rb"(?<!END-)ISO-10303-21\s*;")
 END_OF_STEP = b"END-ISO-10303-21"
 BREP = (b"DBRep_DrawableShape", b"CASCADE Topology V")
-# Decimal exponents that are too large: greater than 307.
+# Decimal exponents above 307, which are too large.
 TOO_LARGE = rb"e\+?0*(?:30[89]|3[1-9]\d|[4-9]\d\d|\d{4,})"
 SUSPICIOUS = re.compile(rb"nan|inf|" + TOO_LARGE)
 NUMBER = rb"[-+]?(?:nan|inf(?:inity)?|\d*\.?\d*" + TOO_LARGE + rb")"
@@ -48,14 +48,14 @@ SHELL = re.compile(
 REFERENCE = re.compile(rb"#\d+")
 # The types of entities of IGES that are faces: bounded and trimmed surfaces, and faces of shells.
 IGES_FACES = (b"143", b"144", b"510")
-# Names of arrays that every part saved by gaussmap has.
+# Names of arrays in every part saved by gaussmap.
 NAMES = {"about.npy", "face_loops.npy"}
 
 
 def checked_format(content: bytes) -> tuple[str, bool]:
     """Return the format of a file, STEP, IGES or BREP, and whether all its numbers are finite.
 
-    Raises UnusableError for damaged files; only STEP files may hold numbers that are not finite.
+    Raises UnusableError for damaged files; only STEP files may contain numbers that are not finite.
     """
     if not content.strip():
         raise UnusableError("is empty.")
@@ -92,14 +92,14 @@ def format_of(head: bytes) -> str | None:
 
 
 def _letters(lines: list[bytes]) -> str:
-    """Return the letters of the sections of lines of IGES, "?" where there is none."""
+    """Return the letters of the sections of lines of IGES, "?" for lines without one."""
     found = (x[72:73] for x in lines)
     letters = (x.decode() if x in (b"S", b"G", b"D", b"P", b"T") else "?" for x in found)
     return "".join(letters)
 
 
 def _check_iges(content: bytes) -> None:
-    """Compare the line counts of sections with those in the last line; UnusableError."""
+    """Raise UnusableError unless sections have as many lines as the last line says."""
     lines = [x for x in content.splitlines() if x.strip()]
     letters = _letters(lines)
     end = letters.find("T")
@@ -116,7 +116,7 @@ def _check_iges(content: bytes) -> None:
 
 
 def _check_brep(content: bytes) -> None:
-    """Check that each shape ends with a star, and the last line exists, else UnusableError."""
+    """Raise UnusableError unless each shape ends with a star, and the last line exists."""
     start = SHAPES.search(content)
     whole = start is not None and WHOLE.search(content[-HEAD:])
     if start is None or not whole or content.count(b"*", start.end()) != int(start[1]):
@@ -138,7 +138,7 @@ def _directory(content: bytes) -> list[bytes]:
 
 
 def is_part_file(source: str | None) -> bool:
-    """Return whether a text names a file that holds a part, by its suffix, beginning or arrays.
+    """Return whether a text names a file of a part, by its suffix, beginning or arrays.
 
     `read_cad` goes by the content of files, and takes any suffix.
     """
@@ -148,7 +148,7 @@ def is_part_file(source: str | None) -> bool:
     if suffix in CAD_SUFFIXES:
         return True
     try:
-        if not array_file(source).is_file():  # a pipe would be waited for
+        if not array_file(source).is_file():  # reading a pipe would block
             return False
         if suffix != ".npz":
             with open(source, "rb") as file:

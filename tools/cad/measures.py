@@ -23,8 +23,8 @@ __all__ = ["boundaries_of", "gap_of", "integrals_of", "signs_of", "volume_of"]
 # boundary.
 NODES, WEIGHTS = (x / 2.0 for x in np.polynomial.legendre.leggauss(5))
 NODES = NODES + 0.5
-# A point this far to the left of a boundary, relative to the domain, decides on which side the
-# face is.
+# A point this far to the left of a boundary, relative to the domain, decides on which side the face
+# lies.
 BESIDE = 1e-6
 
 
@@ -78,8 +78,8 @@ def _mean_height(piece: FacePiece, centre: Array) -> float:
 def integrals_of(piece: FacePiece, centre: Array) -> tuple[float, float]:
     """Return the integral of (x − c)·n over a face, in L³, and its area, in L².
 
-    By Green's theorem, ∫∫ g du dv over the face is ∮ G dv around it, with G the integral of g along
-    u.
+    By Green's theorem, ∫∫ g du dv over the face is ∮ G dv around it, where G is the integral of g
+    along u.
     """
     lines = piece.lines(0), piece.lines(1)
     total = np.zeros(2)

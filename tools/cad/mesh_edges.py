@@ -22,7 +22,7 @@ __all__ = ["MeshEdges", "SampledEdges"]
 PLACES = 64
 # The least number of steps of a closed edge.
 CLOSED = 3
-# Ends of an edge without vertices are one if closer than this, relative to the size.
+# Ends of an edge without vertices are one point if closer than this, relative to the size.
 SAME = 1e-7
 
 
@@ -30,8 +30,8 @@ SAME = 1e-7
 class SampledEdges:
     """Vertices on edges: points (M, 3), in L; for each edge, vertex indices, and shares in [0, 1].
 
-    For each side of an edge, `uv` has the parameters on the surface of its piece, in the direction
-    of the edge, and `edges` its edge.
+    `uv` has the parameters of each side of an edge, on the surface of its piece, in the direction
+    of the edge; `edges` has the edge of each side.
     """
 
     points: Array
@@ -45,8 +45,8 @@ class SampledEdges:
 class MeshEdges:
     """All edges around the pieces of a space, and their division into steps.
 
-    `sides` (S,) are indices of sides of edges of the part; `owner` (S,) are their edges, `pieces`
-    (S,) their pieces. `more` are shares of edges at which there are further vertices.
+    `sides` (S,) are indices of sides of edges of the part, `owner` (S,) their edges and `pieces`
+    (S,) their pieces. `more` are shares of edges with additional vertices.
     """
 
     spacing: Spacing
@@ -89,11 +89,11 @@ class MeshEdges:
         sides = [side for wire in face.wires for side, _ in wire]
         return bool(sides) and bool(np.isin(sides, self.sides).all())
 
-    # --- numbers ----------------------------------------------------------------------------------
+    # --- numbers of vertices ----------------------------------------------------------------------
 
     @property
     def least(self) -> int:
-        """The number of vertices on edges with as few steps as possible."""
+        """The least number of vertices on edges."""
         return self._count(self._steps(math.inf))
 
     def _count(self, steps: Indices) -> int:
@@ -110,8 +110,7 @@ class MeshEdges:
         """Return the steps (E,) of edges in a mesh of `count` vertices, at least `least`.
 
         The step is the smallest one that leaves enough vertices for the interior of faces. If no
-        face needs interior vertices, all vertices are on edges: the longest steps are divided
-        further.
+        face needs interior vertices, all vertices are on edges, and the longest steps are divided.
         """
         costs = self._costs[:, -1]
         low = max(self.spacing.smallest_step, costs.sum() / (count + len(costs)))
@@ -130,7 +129,7 @@ class MeshEdges:
         return steps
 
     def _total(self, steps: Indices, step: float) -> float:
-        """Return the number of vertices: on edges with `steps` (E,), and inside for a `step`."""
+        """Return the number of vertices on edges with `steps` (E,), and inside for a `step`."""
         around = np.bincount(self.pieces, steps[self.owner], len(self.space.pieces))
         return self._count(steps) + self.spacing.inside(step, around)
 
@@ -141,7 +140,7 @@ class MeshEdges:
 
     @cached_property
     def around(self) -> Indices:
-        """The numbers of sides (E,) of each edge that are on pieces of the space."""
+        """The number of sides (E,) of each edge that are on pieces of the space."""
         return np.bincount(self.owner, minlength=len(self.arrays["edge_vertices"]))
 
     def _steps(self, step: float) -> Indices:
@@ -153,7 +152,7 @@ class MeshEdges:
 
     @cached_property
     def _vertices(self) -> tuple[Array, Indices]:
-        """The vertices (V, 3) in use, and the indices (E, 2) of those at the ends of edges."""
+        """The vertices (V, 3) in use, and their indices (E, 2) at the ends of edges."""
         points, ends = list(self.arrays["vertices"]), self.arrays["edge_vertices"].copy()
         for row in np.flatnonzero(self.used & (ends < 0).any(axis=1)).tolist():
             side = int(np.flatnonzero(self.owner == row)[0])
@@ -181,7 +180,7 @@ class MeshEdges:
     def _costs(self) -> Array:
         """The cumulative lengths (E, PLACES + 1) along edges, measured by the spacing.
 
-        Of the faces at an edge, the one with the largest length counts.
+        If the lengths on the faces of an edge differ, the largest one counts.
         """
         shares = np.linspace(0.0, 1.0, PLACES + 1)
         sides = np.repeat(np.arange(len(self.sides)), len(shares))
@@ -195,7 +194,7 @@ class MeshEdges:
     def _uv(self, sides: Indices, shares: Array) -> Array:
         """Return u, v (M, 2) on the surfaces of sides (M,), at shares (M,) of their edges.
 
-        Between points of the part, which have derivatives, interpolation is cubic.
+        Interpolation between points of the part, which have derivatives, is cubic.
         """
         starts, points = self.arrays["side_point_starts"], self.arrays["side_points"]
         first, last = (starts[self.sides[sides] + k] for k in (0, 1))
@@ -215,7 +214,7 @@ class MeshEdges:
     def sampled(self, count: int) -> SampledEdges:
         """Return the vertices on edges in a mesh of `count` vertices, at least `least`.
 
-        If edges as fine as the interior of faces would have more vertices, they are coarser.
+        Edges are coarser than the interior of faces if equally fine ones would have more vertices.
         """
         points, ends = self._vertices
         steps, first = self._steps_for(count), len(points)
@@ -238,7 +237,7 @@ class MeshEdges:
     def _points(
         self, vertices: Array, count: int, numbers: dict[int, Indices], uv: dict[int, Array]
     ) -> Array:
-        """Return the points of vertices; those between ends are on the first face of their edge."""
+        """Return the points of vertices; those between ends lie on the first face of their edge."""
         found = np.concatenate([vertices, np.empty((count - len(vertices), 3))])
         firsts = np.sort(np.unique(self.owner, return_index=True)[1])
         rows = [numbers[int(self.owner[k])][1:-1] for k in firsts]

@@ -16,7 +16,7 @@ __all__ = ["EXTRA", "Crossing", "FaceBorder", "triangles_of"]
 # Shapely's constrained triangulations have no interior points; SciPy's have no constraints; the
 # library `triangle` is not free for all uses. The predicates of pythoncdt are exact.
 EXTRA = "pythoncdt", "mesh", "a mesh of a CAD part"
-# Parameter pairs are equal if they are as close as this, relative to the face.
+# Parameter pairs closer than this, relative to the face, are equal.
 SAME = 1e-11
 
 
@@ -30,7 +30,7 @@ class Crossing(Exception):  # noqa: N818 - a finding, not an error
 class FaceBorder:
     """The boundary of a face: positions (k, 2), their vertex indices (k,), and segments (k, 2).
 
-    Segments join two positions, by index; `edges` (k,) are the edges of the part that they are on.
+    Segments join two positions, by index; `edges` (k,) are the edges of the part on which they lie.
     """
 
     uv: Array
@@ -59,10 +59,10 @@ class FaceBorder:
 
 
 def triangles_of(border: FaceBorder, places: Array) -> tuple[Indices, Indices]:
-    """Return triangles (k, 3) of positions (n, 2) in a plane, of which the boundary's come first.
+    """Return triangles (k, 3) of positions (n, 2) in a plane; those of the boundary come first.
 
-    Triangles run counterclockwise. The segments (m, 2) that are constraints are returned, too. Of
-    equal positions, only the first is a vertex. Raises Crossing if the boundary crosses itself.
+    Triangles run counterclockwise. Also return the constrained segments (m, 2). Of equal positions,
+    only the first is a vertex. Raises Crossing if the boundary crosses itself.
     """
     cdt = from_extra(*EXTRA)
     low = places.min(axis=0)

@@ -17,16 +17,16 @@ from .results import PartSpace
 
 __all__ = ["graded"]
 
-# The size grows by at most this much for each unit of distance from an edge.
+# The size grows by at most this much per unit of distance from an edge.
 GROWTH = 0.55
-# Cells are halved until the sizes in each differ by about this fraction of the smallest.
+# Cells are halved until sizes within a cell differ by about this fraction of the smallest one.
 UNEVEN = 0.5
 
 
 def graded(edges: MeshEdges, count: int) -> PartSpace:
     """Return the space of edges, with sizes that grow slowly from their steps in a mesh.
 
-    Steps that are hardly smaller than the largest size of the face do not change it.
+    Steps hardly smaller than the largest size of the face do not change it.
     """
     space, sampled = edges.space, edges.sampled(count)
     step, points = step_of(space, count), space.scaled_points(sampled.points)

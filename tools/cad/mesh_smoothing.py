@@ -23,10 +23,10 @@ EVEN = math.sqrt(0.75)
 def smoothed(
     space: PartSpace, pieces: Indices, known: Places, triangles: Indices, points: Array, free: Flags
 ) -> tuple[Places, Array]:
-    """Return parameters and fields (C,) whose `free` rows have moved, and their points (C, 3).
+    """Return parameters and fields (C,), with `free` rows moved, and their points (C, 3).
 
-    The smallest angle around a moved vertex grows, and no triangle there turns away from the
-    normals by more than `LARGEST_DEVIATION` degrees, unless it did before.
+    The smallest angle around a moved vertex grows. No triangle there turns away from the normals by
+    more than `LARGEST_DEVIATION` degrees, unless it already did.
     """
     known, points = Places._make(x.copy() for x in known), points.copy()
     for _ in range(ROUNDS):
@@ -61,8 +61,8 @@ def smoothed(
 def _steps(corners: Array, tangents: Array, owner: Indices, count: int) -> Array:
     """Return displacements (count, 3) of the first corners of triangles (k, 3, 3).
 
-    The target is the mean of the tips of equilateral triangles on the opposite sides, in which thin
-    triangles count more.
+    The target is a mean of the tips of equilateral triangles on the opposite sides; thin triangles
+    have larger weights.
     """
     tip, one, other = corners.transpose(1, 0, 2)
     side, up = other - one, tip - (one + other) / 2.0
@@ -110,7 +110,7 @@ def _least(values: Array, owner: Indices, count: int) -> Array:
 
 
 def _first(chosen: Indices, better: Flags, now: Array, around: Indices, count: int) -> Indices:
-    """Return the chosen vertices (k,) to move together: of two neighbours, the worse one."""
+    """Return the chosen vertices (k,) that move together: of two neighbours, the worse one."""
     rank = np.full(count, len(chosen))
     rank[chosen[better]] = np.argsort(np.argsort(now[better]))
     nearest = rank[around].min(axis=1)

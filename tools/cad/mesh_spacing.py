@@ -1,8 +1,8 @@
 """The spacing of vertices in a mesh of a part, and the planes in which faces are triangulated.
 
 For well-shaped triangles, the vertices follow the target density of the space, proportional to κ.
-For triangles close to the normals, each parameter of a face is replaced by the accumulated angle of
-the normal along it: vertices are evenly spaced in the plane of these two angles. So rulings, and
+For triangles close to the normals, each parameter of a face is replaced by the angle that the
+normal turns along it: vertices are evenly spaced in the plane of these two angles. So rulings, and
 the interior of planes, need no vertices.
 """
 
@@ -32,7 +32,7 @@ __all__ = ["ByNormals", "Spacing", "TurnedPiece", "least_enough"]
 # Normals are compared at this number of values of each parameter, and at all knots.
 PLACES = 33
 # A face whose normals turn by less than this along a parameter, in radians, is ruled; a straight
-# edge as long as the part counts as this angle.
+# edge of the length of the part counts as this angle.
 RULED = 1e-6
 # The least weight of one parameter relative to the other.
 LEAST = 1e-3
@@ -40,7 +40,7 @@ LEAST = 1e-3
 CURVED = 0.5
 # The largest step, relative to the mean step.
 LONGEST = 3.0
-# The distance of the planes of different faces, in radians.
+# The distance between the planes of different faces, in radians.
 APART = 100.0
 
 
@@ -52,7 +52,7 @@ class Spacing:
     count: int
     # Whether triangles are to be well shaped, rather than close to the normals.
     by_shape: ClassVar[bool] = True
-    # The density is κ^(2 · exponent): triangles of size h are κ h²/8 from the surface, which is
+    # The density is κ^(2 · exponent). A triangle of size h is κ h²/8 from the surface; this is
     # constant if 1/h² is proportional to κ.
     exponent: ClassVar[float] = 0.5
 
@@ -139,9 +139,9 @@ class ByNormals(Spacing):
 def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
     """Return the steps (P,) in planes that minimize the mean angle for `count` vertices.
 
-    Angles are proportional to steps. With perimeter P and area F in the plane, a face has P/s
-    vertices on its boundary and F/s² inside; at the minimum, the area of the face, the weight of
-    its angle s, is a common factor times the derivative of that number. No step exceeds `LONGEST`
+    Angles are proportional to steps s. A face with perimeter P and area F in the plane has P/s
+    vertices on its boundary and F/s² inside. At the minimum, its area times the derivative of its
+    mean angle is a common factor times the derivative of this number. No step exceeds `LONGEST`
     times the mean.
     """
     areas = np.array([x.piece.size**2 for x in planes])
@@ -172,14 +172,14 @@ def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
 
 
 def least_enough(is_enough: Callable[[float], bool], low: float, high: float) -> float:
-    """Return the least number that is enough, up to rounding; `low` is not, and `high` is."""
+    """Return the least number that is enough, up to rounding; `low` is not enough, `high` is."""
     while low < (middle := math.sqrt(low * high)) < high:
         low, high = (low, middle) if is_enough(middle) else (middle, high)
     return high
 
 
 def _lengths_and_turns(points: Array) -> tuple[Array, Array]:
-    """Return lengths (S, n − 1) between points (S, n, 3), and turning angles of these polygons."""
+    """Return lengths (S, n − 1) between points (S, n, 3), and turning angles of the polygons."""
     steps = np.diff(points, axis=1)
     lengths = np.linalg.norm(steps, axis=2)
     along = steps / np.where(lengths > 0.0, lengths, 1.0)[..., None]
@@ -191,9 +191,9 @@ def _lengths_and_turns(points: Array) -> tuple[Array, Array]:
 class TurnedPiece(Piece):
     """A face as a plane whose coordinates are the angles of the normal along u and along v.
 
-    `knots` are values of u and v, and `lengths` the coordinates there, sums of the largest angle
-    over all parameter lines; `turns` is the larger total of both. A sphere stays a sphere, of
-    radius 1.
+    `knots` are values of u and v; `lengths` are the coordinates there, cumulative sums of the
+    largest angles on all parameter lines; `turns` is the larger of both totals. A sphere stays a
+    sphere, of radius 1.
     """
 
     piece: FacePiece
@@ -300,7 +300,7 @@ def _places(piece: FacePiece, axis: int) -> Array:
 
 
 def _angles(normals: Array, inside: Flags, axis: int) -> Array:
-    """Return the largest angles (k − 1,) between normals (k, l, 3) along an axis, where inside."""
+    """Return the largest angles (k − 1,) of neighbours (k, l, 3) inside, along an axis."""
     n = np.moveaxis(normals, axis, 0)
     here = np.moveaxis(inside if inside.any() else np.ones_like(inside), axis, 0)
     known = np.asarray(n.any(axis=2))
@@ -310,7 +310,7 @@ def _angles(normals: Array, inside: Flags, axis: int) -> Array:
 
 
 def _area(piece: FacePiece, knots: Sequence[Array], lengths: Sequence[Array]) -> float:
-    """Return the area in the plane, by the midpoints between knots that are inside the trim."""
+    """Return the area in the plane, as a sum over midpoints between knots inside the trim."""
     middles = np.meshgrid(*((x[1:] + x[:-1]) / 2.0 for x in knots), indexing="ij")
     inside = piece.contains(np.stack(middles, axis=-1).reshape(-1, 2))
     areas = np.outer(np.diff(lengths[0]), np.diff(lengths[1])).ravel()

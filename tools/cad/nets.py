@@ -19,8 +19,8 @@ __all__ = ["SAME_END", "curve_of_net", "line_of", "nurbs_of_curve", "nurbs_of_ne
 
 Array = NDArray[np.float64]
 
-# Ends of domains that differ by less than this, relative to the period or the length, are equal:
-# CAD systems compare parameters to 1e-9, and faces leave larger gaps along their seams.
+# Ends of domains closer than this, relative to the period or the length, are equal: CAD systems
+# compare parameters to 1e-9, and faces leave larger gaps along their seams.
 SAME_END = 1e-7
 
 
@@ -54,7 +54,7 @@ def curve_of_net(net: Net) -> Nurbs:
 def line_of(start: Array, way: Array, ends: Interval) -> Nurbs:
     """Return the line start + v way, in the plane y = 0, between two values of v.
 
-    It is the line v = 0 of a surface, as in `curve_of_net`, which goes along y.
+    As in `curve_of_net`, it is the line v = 0 of a surface, which extends along y.
     """
     middle, half = start + sum(ends) / 2.0 * way, (ends[1] - ends[0]) / 2.0 * way
     across = np.array([(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)])
@@ -66,7 +66,8 @@ def line_of(start: Array, way: Array, ends: Interval) -> Nurbs:
 def nurbs_over(nurbs: Nurbs, domain: tuple[Interval, Interval]) -> Nurbs:
     """Return a NURBS over a domain, with its creases, and periodic where it closes smoothly.
 
-    A domain beyond the ends is covered periodically if the ends meet; otherwise the NURBS is cut.
+    A domain that exceeds the NURBS is covered periodically if the ends of the NURBS meet; otherwise
+    the NURBS is cut.
     """
     for axis in (0, 1):
         nurbs = _over(nurbs, axis, domain[axis])
@@ -107,7 +108,7 @@ def _at_knot(knots: Array, end: float, slack: float) -> float:
 def _continued(nurbs: Nurbs, axis: int, interval: Interval) -> Nurbs:
     """Return copies of a NURBS, shifted by its period, that cover an interval.
 
-    If its ends along the axis do not meet, it is returned unchanged.
+    A NURBS whose ends along the axis do not meet is returned unchanged.
     """
     (first, last), degree = nurbs.domain[axis], nurbs.degrees[axis]
     points, knots = np.moveaxis(nurbs.points, axis, 0), nurbs.knots[axis]

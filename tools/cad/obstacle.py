@@ -17,7 +17,7 @@ VERTICES = 20_000
 
 
 def obstacle_of(part: Part) -> PartMesh:
-    """Return the mesh of a part, stored with the part; raises InputError and warns as meshes do."""
+    """Return the mesh of a part, cached with the part; raises InputError and warns as meshes do."""
     return kept(part, obstacle_of, lambda: _made(part))
 
 

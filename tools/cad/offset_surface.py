@@ -1,9 +1,9 @@
-"""Offset surfaces: the points at a distance from another surface, the basis, along its normals.
+"""Offset surfaces: points at a distance from another surface, the basis, along its normals.
 
 Points and first derivatives follow from the 2-jet of the basis. Second derivatives also need its
-third derivatives, which are numerical: differences of its second derivatives at nine positions in
-one knot span. The relative error of the second derivatives, to the largest one, is about 1e-12, or
-1e-10 where the reader has interpolated a circle or another curve that is no NURBS.
+third derivatives, which are differences of its second derivatives at nine points in one knot span.
+The error of the second derivatives, relative to the largest one, is about 1e-12, or 1e-10 where the
+reader has interpolated a circle or another curve that is no NURBS.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ Array = NDArray[np.float64]
 # A step is the largest power of two up to this fraction of a knot span.
 STEP = 1 / 128
 NODES = np.arange(9)[:, None] - 4
-# Where the basis has no normal, at a pole or an apex, it is taken at this distance from there,
+# Where the basis has no normal, at a pole or an apex, the normal is taken at this distance,
 # relative to the domain.
 BESIDE = 1e-7
 
@@ -45,7 +45,7 @@ BESIDE = 1e-7
 class Turned(Differentiable):
     """The surface x(u,v) of a curve rotated about the z axis by the angle u.
 
-    The curve is the line v = 0 of a NURBS, with u of the NURBS as the parameter v.
+    The curve is the line v = 0 of a NURBS; u of the NURBS is v of the surface.
     """
 
     curve: Nurbs
@@ -128,7 +128,7 @@ class OffsetSurface(Differentiable):
         return np.stack(by, axis=1) / step[:, None, None]
 
     def _span(self, axis: int, values: Array) -> tuple[Array, Array]:
-        """Return the ends of the knot spans that hold parameters (k,), inside the domain."""
+        """Return the ends of the knot spans of parameters (k,), inside the domain."""
         (first, last), knots = self.domain[axis], _knots_of(self.basis, axis)
         inner = np.unique(knots[(knots > first) & (knots < last)])
         lines = np.concatenate([[first], inner, [last]])

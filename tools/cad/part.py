@@ -169,7 +169,7 @@ class Part(Methods, Whole):
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:
-        """All faces; those that `failed`, too."""
+        """All faces, including those that `failed`."""
         return tuple(Face(self, k) for k in range(len(self)))
 
     @property
@@ -362,7 +362,7 @@ class Face:
 
     @property
     def area(self) -> float:
-        """The area inside the trim, in L², to about 1e-6: that of files, by Open CASCADE."""
+        """The area inside the trim, in L², to about 1e-6; in files, by Open CASCADE."""
         return float(self._row("area"))
 
     @property
@@ -378,7 +378,7 @@ class Face:
 
     @property
     def source_index(self) -> int:
-        """The index in the faces of the part that was read; `index` unless that was selected."""
+        """The index in the part that was read; `index` unless the face was selected."""
         places = self.part.about.get("source_indices")
         return int(places[self.index]) if places else self.index
 
@@ -445,7 +445,7 @@ class Face:
     def wires(self) -> tuple[tuple[tuple[int, bool], ...], ...]:
         """The edges along each loop, in order: an index, and whether it is traversed backwards.
 
-        The index is that of the edge's side in `part.arrays`. The face lies to the left of the
+        The index is that of the side of the edge in `part.arrays`. The face lies to the left of the
         loop, seen from where x_u × x_v points; () if the file of the part has no wires.
         """
         arrays = self.part.arrays

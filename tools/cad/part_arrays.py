@@ -1,7 +1,7 @@
 """A part as few long arrays: packing records, and unpacking the surface of one face.
 
-The numbers of all faces are concatenated in one array, beside an array of start indices, so that a
-part of 100,000 faces is some 20 arrays. `saving` describes them.
+The numbers of all faces are concatenated in one array, with an array of start indices, so that a
+part of 100,000 faces has some 20 arrays. `saving` describes them.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def packed(part: PartRecord) -> Arrays:
 
 
 def geometry_of(arrays: Mapping[str, NDArray[Any]], k: int) -> Geometry:
-    """Return surface k of packed arrays: that of face k, or a basis of an offset."""
+    """Return surface k of packed arrays: that of face k, or the basis of an offset."""
     starts, basis, net = arrays["number_starts"], int(arrays["basis"][k]), int(arrays["net"][k])
     return Geometry(
         NAMES[arrays["kind"][k]],
@@ -104,7 +104,7 @@ def _table(faces: Sequence[FaceRecord]) -> Arrays:
 
 
 def _basis(geometries: list[Geometry]) -> list[int]:
-    """Append the surfaces that others are offsets of; return the index of each basis, or −1."""
+    """Append the surfaces of which others are offsets; return the index of each basis, or −1."""
     places: list[int] = []
     for geometry in geometries:  # grows in the loop, which also visits the appended ones
         if geometry.basis is None:

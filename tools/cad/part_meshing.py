@@ -1,7 +1,7 @@
 """Meshes of parts: edges first, then the interior of faces, then triangles.
 
-All vertices and edges are sampled once, and shared by the adjacent faces. With these vertices
-given, the greedy cover of `sample` fills the faces. Each face is triangulated in a plane of its
+All vertices and edges are sampled once, and shared by the adjacent faces. The greedy cover of
+`sample` adds vertices in the interior of faces. Each face is triangulated in a plane of its
 parameters, scaled by its mean lengths, and edges are flipped in space.
 """
 
@@ -47,13 +47,13 @@ from .results import PartSpace, space_of
 
 __all__ = ["mesh_of_part", "mesh_of_samples"]
 
-# Where a face has no normal, the normal at this fraction of the way into the triangle is taken.
+# Where a face has no normal, the normal is taken at this fraction of the way into the triangle.
 INSIDE = 1e-6
-# The number of times that edges are divided further, until triangles are valid; and the number of
-# times that samples outside of the polygons around faces are replaced.
+# The number of times that edges are divided until triangles are valid; and the number of times that
+# samples outside of the polygons around faces are replaced.
 ROUNDS, REFILLS = 15, 8
-# If a mesh has faults, larger counts are tried, each MORE times the one before, up to MANY times
-# the least count of the edges. The error names the first count whose mesh has no faults.
+# If a mesh has faults, larger counts are tried: each MORE times the one before, up to MANY times
+# the least count of the edges. The error names the first count whose mesh has none.
 MORE, MANY = 1.2, 16
 # The largest number of solids that an error names.
 MOST_NAMED = 3
@@ -90,7 +90,7 @@ def mesh_of_part(
 ) -> PartMesh:
     """Return a mesh of a part with `count` vertices.
 
-    With `refuse`, raises InputError if the mesh has faults and a larger count gives one without.
+    With `refuse`, raise InputError if the mesh has faults and a larger count gives one without.
     """
     check_extra(*EXTRA)
     check_memory("mesh", count)
@@ -151,7 +151,7 @@ def _check_apart(part: Part) -> None:
 
 
 def _inward(mesh: PartMesh, whole: PartSpace, rows: Indices) -> str:
-    """Return a sentence: triangles point inward, and on which face."""
+    """Return a sentence about triangles that point inward, and their face."""
     face = mesh.face_index[rows[0]]
     label = next(x.label for x in whole.pieces if x.face.index == face)
     return (
@@ -164,7 +164,7 @@ def _inward(mesh: PartMesh, whole: PartSpace, rows: Indices) -> str:
 def mesh_and_soundness(
     part: Part, whole: PartSpace, count: int, failed: Mapping[int, str], spaced: type[Spacing]
 ) -> tuple[PartMesh, bool]:
-    """Return a mesh, and whether it is sound: no further face failed, no triangle points inward."""
+    """Return a mesh, and whether no further face failed and no triangle points inward."""
     lacking = dict(failed)
     while True:
         meshing = Meshing.of(part, whole, count, lacking, spaced)
@@ -224,9 +224,9 @@ class Corners:
     ) -> tuple[Corners, Array]:
         """Return the corners with triangles improved by edge flips, and their points (C, 3).
 
-        The triangles become closer to the normals. With `by_shape`, they become better shaped
-        first, also by moving vertices from index `first` on, and then closer to the normals where
-        no angle becomes small. Triangles at corners without a normal, as at apexes, stay.
+        The triangles become closer to the normals. With `by_shape`, they first become better
+        shaped, also by moves of vertices from index `first` on, and then closer to the normals
+        where no angle becomes small. Triangles at corners without a normal, as at apexes, stay.
         """
         count, normals = len(self.pieces), self.known.normals
         triangles = self.triangles.copy()
@@ -254,9 +254,9 @@ class Corners:
     def normals(self, space: PartSpace, triangles: Indices) -> Array:
         """Return unit normals (T, 3, 3) at the corners of triangles.
 
-        A corner where the face has no normal, because a line of one parameter is a point, takes a
-        normal from inside the triangle: half-way along that parameter, and close to the corner
-        along the other.
+        If the face has no normal at a corner, because a parameter line is a point, the normal is
+        taken inside the triangle: half-way along that parameter, and close to the corner along the
+        other.
         """
         uv, found = self.known.uv, self.known.normals[triangles]
         rows, corner = np.nonzero(~found.any(axis=2))
@@ -335,7 +335,7 @@ class Meshing:
     def mesh(self) -> tuple[PartMesh, dict[int, str]]:
         """Return the mesh, and the faces at edges that have too few or too many triangles.
 
-        Such edges are divided, and those near triangles that point inward, as long as that helps.
+        Such edges, and edges near triangles that point inward, are divided as long as that helps.
         Raises Crossing if the boundary of a face crosses itself.
         """
         best, least, wrong_of_best = None, (0, 0), np.empty((0, 2), dtype=np.int64)
@@ -358,7 +358,7 @@ class Meshing:
         return _without_unused(best), self._faces_at(best, wrong_of_best)
 
     def _faces_at(self, mesh: PartMesh, wrong: Indices) -> dict[int, str]:
-        """Return the faces of triangles with edges (k, 2), with the reason for their failure."""
+        """Return the faces of triangles with edges (k, 2), and why they fail."""
         count = len(mesh.vertices)
         at = np.isin(edge_numbers(mesh.triangles, count), np.sort(wrong, axis=1) @ [count, 1])
         faces = np.unique(mesh.face_index[at.any(axis=1)]).tolist()
@@ -525,7 +525,7 @@ def wrong_edges(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indi
 def inverted_triangles(mesh: PartMesh) -> Indices:
     """Return the triangles (k,) that point away from the mean normal of their corners.
 
-    A triangle that points away from the normal of one corner only is allowed: a face of a file may
+    Triangles that point away from the normal of a single corner are allowed: a face of a file may
     fold over at its end.
     """
     a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))

@@ -116,7 +116,7 @@ def _report(
 
 
 def _density(request: Request) -> str | None:
-    """Return the density for the report, None for "balanced"."""
+    """Return the density for the report; None for "balanced"."""
     if not isinstance(request.density, str):
         return "power"
     return None if request.density == "balanced" else request.density

@@ -1,6 +1,6 @@
 """`read_cad`: parts from STEP, IGES and BREP files, read by a separate process.
 
-Open CASCADE hangs on some files and crashes on others; its process is ended after a time limit.
+Open CASCADE hangs on some files and crashes on others; its process is killed after a time limit.
 """
 
 from __future__ import annotations
@@ -46,10 +46,10 @@ def read_cad(
 ) -> Part:
     """Read a part from a STEP, IGES or BREP file.
 
-    Open CASCADE reads it, in a separate process; `Part.save` stores the result, so that this is
-    needed once for each file. Faces of solids, shells and loose faces are read, those of assemblies
-    with their placements. Loose faces are sewn, so that the normals of those that enclose a solid
-    point out of it. A face that cannot be used is listed in `failed`, and the others are read.
+    Open CASCADE reads it, in a separate process. `Part.save` stores the result, so that each file
+    is read only once. Faces of solids, shells and loose faces are read, those of assemblies with
+    their placements. Loose faces are sewn; normals of faces that enclose a solid point out of it. A
+    face that cannot be used is listed in `failed`, and the others are read.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def _check_file(path: Path) -> None:
 
 
 def _plain(path: Path, folder: Path) -> Path:
-    """Return a path to the same file whose name Open CASCADE can read: it is valid UTF-8."""
+    """Return a path to the same file with a name that Open CASCADE can read: valid UTF-8."""
     try:
         str(path).encode("utf-8")
     except UnicodeEncodeError:
@@ -192,7 +192,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def _environment() -> dict[str, str]:
-    """Return an environment that finds the same modules, and starts no threads that need memory."""
+    """Return an environment with the same module path, and without threads that need memory."""
     paths = [os.path.abspath(x) for x in sys.path if isinstance(x, str)]
     return {
         **os.environ,

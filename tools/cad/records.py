@@ -21,12 +21,12 @@ Array = NDArray[np.float64]
 # The edges along a loop, in order: (edge, index among its sides, whether traversed backwards).
 Wire = list[tuple[int, int, bool]]
 
-# Why faces without an area fail: volumes and meshes need none of them.
+# The reason why faces without an area fail: volumes and meshes need none of them.
 NO_AREA = "its area is zero"
 
-# The kinds of faces, with the lengths of their numbers (see `saving`). Append only: files hold
-# indices of this list. "unknown" is for failed faces whose kind is not known, "surface" for faces
-# that hold a `Surface` in memory, which no file has.
+# The kinds of faces, with the lengths of their numbers (see `saving`). Append only, since files
+# store indices into this list. "unknown" is for failed faces of unknown kind, "surface" for faces
+# that have a `Surface` in memory, which no file has.
 KINDS: dict[str, int] = {
     "plane": 12,
     "cylinder": 13,
@@ -47,7 +47,7 @@ class Net:
     """A NURBS surface, or a NURBS curve, whose degrees, knots and shape have one entry.
 
     Control points are (m, n, 3) or (m, 3), not multiplied by their weights (m, n) or (m,), which
-    are None where all are 1.
+    are None if all are 1.
     """
 
     degrees: tuple[int, ...]
@@ -60,8 +60,8 @@ class Net:
 class Geometry:
     """A surface without its trim: its kind and the data of that kind.
 
-    `net` is the NURBS, or the curve of a revolution or an extrusion; `basis` is the surface that an
-    offset is taken from. A face of the kind "surface" has a `surface` in place of numbers.
+    `net` is the NURBS, or the curve of a revolution or an extrusion; `basis` is the surface of
+    which an offset is taken. A face of the kind "surface" has a `surface` instead of numbers.
     """
 
     kind: str
@@ -100,10 +100,10 @@ class EdgeRecord:
     """An edge: its parameters on the adjacent faces, and its end vertices.
 
     `faces` are those of its m sides: usually two, one on a boundary, the same one twice at a seam.
-    `parameters` (k, 2 m) are u and v on each of them at equal steps of a parameter of the edge, NaN
-    where unknown, and `slopes` (k, 2 m) their derivatives by this parameter, which goes from 0 to
-    1; by default finite differences. `vertices` are the indices of its first and last vertex; −1 if
-    unknown. An edge that is a point, as at a pole, is `degenerate`.
+    `parameters` (k, 2 m) are u and v on each of them, at equal steps of a parameter of the edge
+    from 0 to 1, NaN where unknown. `slopes` (k, 2 m) are their derivatives by it, by default finite
+    differences. `vertices` are the indices of its first and last vertex; −1 if unknown. An edge
+    that is a point, as at a pole, is `degenerate`.
     """
 
     faces: tuple[int, ...]
@@ -117,8 +117,8 @@ class EdgeRecord:
 class PartRecord:
     """A part; `metres` is the length of its unit, `oriented` whether all normals point outward.
 
-    `vertices` (V, 3) are the points at the ends of edges. `source_indices` are the indices of the
-    faces in the part that they were selected from.
+    `vertices` (V, 3) are the points at the ends of edges. `source_indices` are the indices that the
+    faces had in the part from which they were selected.
     """
 
     name: str

@@ -24,13 +24,13 @@ __all__ = ["PartSpace", "space_of", "weights_of"]
 
 Array = NDArray[np.float64]
 
-# The number of cells per sample; their areas are distributed to the samples.
+# The number of cells per sample; cells give their areas to the samples.
 CELLS_A_SAMPLE = 16
 
 
 @dataclass(frozen=True, eq=False)
 class PartSpace(Space):
-    """The faces of a part that can be sampled, and for others the reason, by face index."""
+    """The faces of a part that can be sampled; for the others, the reason by face index."""
 
     pieces: tuple[FacePiece, ...]
     failed: Mapping[int, str] = field(default_factory=dict)
@@ -41,8 +41,8 @@ def space_of(
 ) -> PartSpace:
     """Return the space of a part, or of its normals in a `reach`; SurfaceError if it is empty.
 
-    For whole parts, the first cells are cached, except for powers of K, which are many, and so are
-    the attributes of pieces, except rasters of their boundaries, which are large.
+    For whole parts, the first cells are cached, except for powers of K, of which there are many; so
+    are the attributes of pieces, except rasters of their boundaries, which are large.
     """
     target = target or TargetDensity(floor=1.0)
     if reach is None:
@@ -64,10 +64,10 @@ def space_of(
 
 
 def weights_of(part: Part, samples: Samples) -> Array:
-    """Return the weights of samples: the areas (N,) nearest to each on its own face.
+    """Return the weights of samples (N,): the area on their own face that is nearest to each.
 
     They add up to the area of each face, or of its part in the reach of the samples. Faces without
-    samples are left out, and samples on edges, or not regular, have weight 0.
+    samples do not count. Samples on edges, or not regular, have weight 0.
     """
     found, faces = np.zeros(len(samples)), samples.face_index
     if faces is None:

@@ -1,10 +1,10 @@
 """All points with given normals on planes, cylinders, cones, spheres and tori, in closed form.
 
-Normals of the map x → M x + p are M⁻ᵀ m, up to their length, so that n becomes m = Mᵀ n in the
-frame of the face, for any M. There, x_u × x_v is q (cos u cos w, sin u cos w, sin w), with w = v on
-spheres and tori, and w = minus the half angle on cylinders and cones. The formulas `torus_normal`
-and `cone_normal` are q. So u and w are the longitude and the latitude of m where q > 0, and of −m
-where q < 0: angles by definition of `arctan2`, without further derivation.
+In the frame of a face mapped by x → M x + p, the normal n is m = Mᵀ n, up to its length, for any M.
+There, x_u × x_v is q (cos u cos w, sin u cos w, sin w), with w = v on spheres and tori, and w =
+minus the half angle on cylinders and cones; q is given by the formulas `torus_normal` and
+`cone_normal`. So u and w are the longitude and the latitude of m where q > 0, and of −m where q <
+0, computed by `arctan2`.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Angles(NamedTuple):
         return Angles._make(x[rows] for x in self)
 
     def within(self, interval: Interval, axis: int) -> Angles:
-        """Return the rows whose u (axis 0) or v (axis 1) is in an interval, up to whole turns."""
+        """Return the rows whose u (axis 0) or v (axis 1) is in an interval, modulo whole turns."""
         (low, high), values, radius = interval, self[1 + axis], self[3 + axis]
         found = []
         for turn in range(1 + int((high - low) / TURN)):
@@ -139,7 +139,7 @@ class RoundFace:
         return Angles.on_lines(near, self.domain).boxes(CURVE, self.domain)
 
     def _on_rulings(self, normals: Array) -> FacePlaces:
-        """Return the rulings of a cylinder or cone with normals (S, 3), beyond an apex, too."""
+        """Return the rulings of a cylinder or cone with normals (S, 3), also beyond an apex."""
         radius, angle = self.sizes
         quotient, found = python_function(cone_normal), [NOTHING]
         first, last = quotient(radius, math.sin(angle), np.array(self.domain[1])).tolist()
@@ -164,7 +164,7 @@ class RoundFace:
         return joined(found)
 
     def _on_circles(self, normals: Array) -> FacePlaces:
-        """Return the points of a torus, or of a sphere, as a torus with the first radius 0."""
+        """Return the points of a torus, or of a sphere: a torus with the first radius 0."""
         (major, minor), own, found = self.sizes, normals @ self.frame, list[FacePlaces]()
         if self.kind == "sphere":
             return self._at_angles(own, 1.0).places(1.0)
@@ -187,7 +187,7 @@ class RoundFace:
     def _at_angles(self, own: Array, sign: float) -> Angles:
         """Return the parameters of normals in the frame of the face where cos v has a sign.
 
-        Near the axis u is unknown, and its radius is a whole turn.
+        Near the axis u is unknown, and its error bound is a whole turn.
         """
         across = np.hypot(own[:, 0], own[:, 1])
         u, v = np.arctan2(sign * own[:, 1], sign * own[:, 0]), np.arctan2(own[:, 2], sign * across)

@@ -83,8 +83,8 @@ SUFFIXES = (".npz",)
 MOST_BYTES = 4 << 30
 Arrays = dict[str, NDArray[Any]]
 
-# For each array, the letter of its type and its shape: arrays share lengths with the same letter,
-# "*" is any length.
+# For each array, the letter of its type and its shape: equal letters are equal lengths, "*" is any
+# length.
 SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "about": ("B", ("*",)),
     "reversed": ("?", ("F",)),
@@ -120,7 +120,7 @@ SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "face_wires": ("q", ("F+1",)),
 }
 MOST_DEGREE = 25
-# What each entry of `about` holds: one value, a list, or a dictionary by the index of the face.
+# The types of the entries of `about`: one value, a list, or a dictionary by the index of the face.
 ABOUT: dict[str, tuple[type, type | tuple[type, ...]]] = {
     "name": (object, str),
     "unit": (object, str),
@@ -135,7 +135,7 @@ ABOUT: dict[str, tuple[type, type | tuple[type, ...]]] = {
 # The reasons of faces that are not usable, while the others of the part are.
 NOT_FINITE = "its numbers are not finite"
 WRONG_AREA, FAR_AWAY = "its area is out of range", "its boundary is outside of its domain"
-# Areas are squares of lengths whose squares are numbers, too.
+# Squares of areas must neither overflow nor underflow.
 LEAST_AREA, MOST_AREA = 1e-150, 1e150
 # Loops may exceed the domain by this part of it.
 SLACK = 1e-6
@@ -325,7 +325,7 @@ def _not_finite(arrays: Arrays) -> dict[str, str]:
 
 
 def _out_of_range(arrays: Arrays) -> dict[str, str]:
-    """Return the faces that have areas or loops that cannot be, with the reason."""
+    """Return the faces with impossible areas or loops, with the reason."""
     area, domain = arrays["area"], arrays["domain"]
     wrong = ~((area >= LEAST_AREA) & (area <= MOST_AREA))
     counts = np.diff(arrays["loop_point_starts"])

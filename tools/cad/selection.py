@@ -115,7 +115,7 @@ def _conditions(
         found.append([fnmatchcase(x.name, pattern) for x in part.faces])
     if color is not None:
         away = np.abs(part.arrays["color"] - _colour(color)).max(axis=1)
-        found.append(away <= SAME_COLOUR)  # NaN is not
+        found.append(away <= SAME_COLOUR)  # false for NaN
     if index is not None:
         found.append(_at(index, len(part)))
     return [np.asarray(x, dtype=np.bool_) for x in found]

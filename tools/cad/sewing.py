@@ -1,7 +1,7 @@
 """Boundaries of surfaces that coincide, wholly or partly, as shared edges.
 
-Boundaries are split at their corners, and where corners of others lie on them. Parts between the
-same two vertices are one edge if their distance is nowhere larger than a tolerance.
+Boundaries are split at their corners, and where corners of other boundaries lie on them. Parts
+between the same two vertices are one edge if their distance is nowhere larger than a tolerance.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ __all__ = ["Border", "Sewn", "sewn"]
 
 # A boundary has a corner where it turns by more than this, in degrees.
 CORNER = 30.0
-# The number of steps between which points of a side are tabulated, and of iterations of Newton's
-# method, which finds the nearest point of the side from the nearest of these.
+# The number of steps between tabulated points of a side, and of iterations of Newton's method for
+# its nearest point, which starts at the nearest tabulated one.
 STEPS, ROUNDS = 64, 8
-# Edges nearly coincide if their distance is less than this, relative to their length.
+# Edges nearly coincide if their distance is below this, relative to their length.
 NEARLY = 0.01
-# The parameters of an edge are tabulated at this number of steps, doubled up to the largest
-# number until cubics between them have this error, relative to the length.
+# The parameters of an edge are tabulated at the first number of steps, doubled up to the second
+# until cubics between them have this error, relative to the length.
 STEPS_OF_EDGE, MOST_STEPS, EXACT = 32, 512, 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Border:
-    """A closed polygon (k, 2) in the domain of the surface of a face, which lies to its left.
+    """A closed polygon (k, 2) in the domain of the surface of a face, which is on its left.
 
     The first point is not repeated. The corners are all points, for a rectangle, or the points
     where the polygon turns on the surface.
@@ -119,8 +119,7 @@ class Side:
         starts = np.concatenate([even[inside], [low, high]])
         places = np.concatenate([self.known[inside], self.points(np.array([low, high]))[0]])
         squares = ((points[:, None] - places) ** 2).sum(axis=2)
-        # Two starts: both ends may be the same point, from which Newton's method goes one way
-        # only.
+        # Two starts: if both ends are the same point, Newton's method goes only one way from it.
         t = starts[np.argsort(squares, axis=1)[:, :2]].T.ravel()
         points = np.concatenate([points, points])
         best, least = t, np.full(len(points), np.inf)
@@ -156,7 +155,7 @@ class Span:
         return np.linspace(self.low, self.high, steps + 1)
 
     def inner(self, steps: int) -> Array:
-        """Return the points (steps − 1, 3) between equal steps."""
+        """Return the points (steps − 1, 3) at the inner ends of equal steps."""
         return self.side.points(self.t(steps)[1:-1])[0]
 
     def same(self, other: Span, tolerance: float) -> bool | None:
@@ -182,8 +181,8 @@ class Span:
 class Sewn:
     """Edges between vertices (V, 3), and the wire along each boundary, as in `PartRecord`.
 
-    `apart` is the largest distance of edges with one face that nearly coincide, see `NEARLY`; None
-    if there are none.
+    `apart` is the largest distance between edges with one face that nearly coincide, see `NEARLY`;
+    None if there are none.
     """
 
     vertices: Array
@@ -271,7 +270,7 @@ def _lines(spans: Sequence[Span], tolerance: float) -> list[dict[Span, bool]]:
     """Return groups of spans on one line; the values say which run backwards to the first."""
     lines, between = list[dict[Span, bool]](), defaultdict[Any, list[dict[Span, bool]]](list)
     for span in spans:
-        # Spans that are points share vertices only.
+        # Spans that are points only share vertices.
         known = [] if span.is_point else between[frozenset((span.first, span.last))]
         for line in known:
             backwards = span.same(next(iter(line)), tolerance)
@@ -285,7 +284,7 @@ def _lines(spans: Sequence[Span], tolerance: float) -> list[dict[Span, bool]]:
 
 
 def _apart(spans: Sequence[Span]) -> float | None:
-    """Return the largest distance of spans that nearly coincide; None if there are none."""
+    """Return the largest distance between spans that nearly coincide; None if there are none."""
     if len(spans) < 2:
         return None
     points = np.stack([x.inner(STEPS_OF_EDGE) for x in spans])

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Shell", "shells_of"]
 
-# A shell lies inside another one if, of about PROBES of its points, at least the share INSIDE
-# does.
+# A shell is inside another one if at least the share INSIDE of about PROBES of its points is.
 PROBES, INSIDE = 100, 0.9
 
 
@@ -31,8 +30,8 @@ PROBES, INSIDE = 100, 0.9
 class Shell:
     """Connected faces, each with −1 if it is flipped, else 1; and whether they are closed.
 
-    `solid` is the index of the solid that the shell encloses, or of which it is a cavity; −1 for
-    none.
+    `solid` is the index of the solid that the shell encloses, or of which it bounds a cavity; −1
+    for none.
     """
 
     signs: dict[int, int]
@@ -136,7 +135,7 @@ def _connected(pieces: Sequence[FacePiece], found: Sewn, borders: Sequence[Borde
 def _signs(
     pieces: Sequence[FacePiece], start: int, links: dict[int, list[tuple[int, int]]]
 ) -> dict[int, int]:
-    """Return the faces connected to one, and the signs of their normals."""
+    """Return the faces connected to `start`, and the signs of their normals."""
     signs, waiting = {start: 1}, [start]
     for face in waiting:  # grows in the loop
         for other, sign in links.get(face, ()):

@@ -1,7 +1,7 @@
-"""Points with given normals on edges where faces meet smoothly: one face keeps each of them.
+"""Points with given normals on edges where faces meet smoothly: one face keeps each point.
 
-The owner is the face of lowest index. So it is for curves and regions of points with one normal
-that run over such edges, and for points of other faces at their ends.
+The owner is the face of lowest index. It also owns curves and regions of points with one normal
+that run over such edges, and points of other faces at their ends.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ from .results import PartSpace
 
 __all__ = ["each_once"]
 
-# Points with the same normal on connected faces are equal if closer than this, relative to the
-# size of the part. Near a smooth edge no two points have the same normal and curvatures of the same
-# sign.
+# Points with the same normal on connected faces are one point if closer than this, relative to the
+# size of the part. Near a smooth edge no two points have the same normal and the same sign of K.
 SAME = 1e-8
-# Coordinates along this direction sort points; on symmetric parts, few are equal.
+# Points are sorted by coordinates along this direction; on symmetric parts, few are equal.
 DIRECTION = np.array([0.52, 0.47, 0.71])
-# The place of an edge where a face has a normal is searched at PLACES places, and then at as many
-# of an interval that is smaller by ZOOM, ROUNDS times over. The face has it up to NEAR.
+# The point of an edge where a face has a normal is searched among PLACES points, then ROUNDS times
+# among as many in an interval that is smaller by ZOOM. The face has the normal up to NEAR.
 PLACES, ZOOM, ROUNDS, NEAR = 33, 4.0, 12, 1e-6
-# The place is on a component if it is in its box up to this part of the domain.
+# The point is on a component if it is in its box, up to this part of the domain.
 SAME_PLACE = 1e-6
 
 
 def each_once(space: PartSpace, given: Given) -> Given:
-    """Return points at normals without those that a face of lower index has, too.
+    """Return points at normals without those that a face of lower index also has.
 
-    Where K changes its sign at the edge both are kept: nearby normals have two points or none.
+    Where K changes its sign at the edge both points are kept: nearby normals have two points or
+    none.
     """
     part = space.pieces[0].face.part
     if len(space.pieces) < 2 or len(given) < 2 or not given.same_normals:
@@ -72,9 +72,9 @@ def each_once(space: PartSpace, given: Given) -> Given:
 
 
 def _first_of_curves(space: PartSpace, given: Given, keep: Flags) -> Flags:
-    """Return which points at normals stand for a component, of those to keep.
+    """Return which points at normals to keep, so that each component has one.
 
-    Of curves and regions that meet at edges, with what else meets them there, one does.
+    Curves and regions that meet at edges, and points that meet them there, are one component.
     """
     component, normals = given.array("component", np.float64), given.array("normal_index", np.int64)
     curves = np.flatnonzero(keep & (component == Component.CURVE))
@@ -109,7 +109,7 @@ def _first_of_curves(space: PartSpace, given: Given, keep: Flags) -> Flags:
 
 
 def _places_with(edges: Edges, owner: Indices, normals: Array) -> tuple[Array, Array]:
-    """Return where both faces of edges (k,) have nearly the normals (k, 3), and how nearly.
+    """Return where both faces of edges (k,) have normals closest to (k, 3), and how close.
 
     These are parameters (k, 2, 2), and lengths (k, 2) of differences of normals.
     """
@@ -124,9 +124,9 @@ def _places_with(edges: Edges, owner: Indices, normals: Array) -> tuple[Array, A
 
 
 def _compared(edges: Edges, owner: Indices, normals: Array, at: Array) -> tuple[Array, Array]:
-    """Return parameters (k, 2, m, 2) on both faces, and the lengths (k, 2, m) of differences.
+    """Return parameters (k, 2, m, 2) on both faces, and lengths (k, 2, m) of normal differences.
 
-    The positions (k, 2, m) on the edges are for each face.
+    Each face has its own positions (k, 2, m) on the edges.
     """
     count, _, m = at.shape
     both = edges.at(np.repeat(owner, 2 * m), at.ravel()).reshape(count, 2, m, 2, 2)

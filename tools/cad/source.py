@@ -1,7 +1,7 @@
 """A CAD file before Open CASCADE reads it: its content, and the part files of an assembly.
 
-Open CASCADE leaves out part files that are missing or cut, and says nothing. So all of them are
-checked and copied beside each other, and references are renamed.
+Open CASCADE silently ignores part files that are missing or truncated. So all of them are checked
+and copied to one folder, and references are renamed.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from .inspection import checked_format, faces_said
 __all__ = ["PartFiles", "Source", "prepared"]
 
 COPY = "copy.step"
-# Open CASCADE takes the name of a part file from the identification that is assigned to a document,
-# or from the document.
+# Open CASCADE takes the name of a part file from the identification assigned to a document, or from
+# the document.
 DOCUMENT = b"DOCUMENT_FILE"
 ASSIGNED = b"APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT"
 STEP_SUFFIXES = (".step", ".stp", ".p21")
@@ -38,8 +38,8 @@ MOST_NAMED = 3
 class PartFiles:
     """The part files of an assembly, at all levels, copied to a folder.
 
-    `unreadable` maps their names to reasons; `lost` are the faces that were left out, and `faces`
-    the number of the others.
+    `unreadable` maps their names to reasons; `lost` are the faces that were left out, `faces` the
+    number of the others.
     """
 
     folder: Path
@@ -75,7 +75,7 @@ class PartFiles:
             return "absent-" + COPY
         if real in self.copies:
             return self.copies[real]
-        # No file of this name lies in the working folder, where Open CASCADE looks next.
+        # No file of this name is in the working folder, where Open CASCADE looks next.
         copy = self.copies[real] = f"gaussmap-{len(self.copies)}-{COPY}"
         try:
             content, lost = _checked_part(path)
@@ -118,7 +118,7 @@ class Source:
     def without(self, damaged: Mapping[int, str]) -> Source | None:
         """Return a STEP file without its damaged faces, or None if it has none.
 
-        `damaged` maps numbers of entities that cannot be read to reasons.
+        `damaged` maps numbers of unreadable entities to reasons.
         """
         content, lost = without_damaged_faces(self.content, damaged)
         return replace(self._with(content), lost=self.lost + lost) if lost else None

@@ -21,12 +21,12 @@ from .records import Geometry, Net
 
 __all__ = ["geometry_of_surface"]
 
-# Axes are perpendicular, and scales are equal, up to this; otherwise circles become ellipses.
+# Axes are perpendicular, and scales equal, up to this; otherwise circles become ellipses.
 SAME = 1e-9
 
 
 def geometry_of_surface(surface: Surface) -> tuple[Geometry, Array]:
-    """Return the geometry of a face of the same kind as in CAD files; "surface" if there is none.
+    """Return the geometry of a face, of its kind in CAD files; "surface" if there is none.
 
     The matrix (2, 2) maps the parameters of the surface to those of the geometry, some of
     which are lengths. Both have the same normals.

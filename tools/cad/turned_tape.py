@@ -16,12 +16,12 @@ from ...runtime.tape.tapes import TapeWriter
 
 __all__ = ["turned_tape"]
 
-# The curve does not depend on u: there is one span in u, which holds all angles of faces.
+# The curve does not depend on u: there is one span in u, which contains all angles of faces.
 ALL_ANGLES = np.array([-64.0, 64.0])
 
 
 def turned_tape(curve: Nurbs) -> Tape | None:
-    """Return the tape of the curve v = 0 of a NURBS, whose u is v here, rotated by u about z."""
+    """Return the tape of the curve v = 0 of a NURBS, whose u is v here, turned about z by u."""
     along = replace(
         curve,
         degrees=(0, curve.degrees[0]),

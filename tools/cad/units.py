@@ -11,7 +11,7 @@ from .records import FaceRecord, Geometry
 
 __all__ = ["scaled_parameters", "with_unit"]
 
-# The indices of the numbers of each kind that are lengths, and whether u and v are.
+# The indices of the numbers of each kind that are lengths, and whether u and v are lengths.
 LENGTHS: dict[str, tuple[tuple[int, ...], tuple[bool, bool]]] = {
     "plane": ((0, 1, 2), (True, True)),
     "cylinder": ((0, 1, 2, 12), (False, True)),

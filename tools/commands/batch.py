@@ -68,7 +68,7 @@ def run(options: SimpleNamespace) -> None:
 def _parts_of(options: SimpleNamespace) -> tuple[list[Source], Named]:
     """Return the parts, with files by name, and the options with which workers read these."""
     none = dict.fromkeys(("formula", "domain", "time_limit", "memory_limit"))
-    own = none | {"quiet": False}  # data sets do not depend on it
+    own = none | {"quiet": False}  # data sets do not depend on the number of threads
     named = Named.of(SimpleNamespace(**vars(options) | own))
     of_formulas = [
         surface_of(replace(named, formula=formula, domain=options.domain))

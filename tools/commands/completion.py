@@ -44,7 +44,7 @@ def run(options: SimpleNamespace) -> None:
 
 
 def completed(program: click.Command) -> int | None:
-    """Answer a shell that requests completions, and return the exit code; None if none does."""
+    """Answer a shell that requests completions; return the exit code, None if no shell does."""
     if VARIABLE not in os.environ:
         return None
     return shell_complete(program, {}, PROGRAM, VARIABLE, os.environ[VARIABLE])
@@ -70,7 +70,7 @@ def surfaces_and_files(
 
 def settings(context: click.Context, _: click.Parameter, begun: str) -> list[str]:
     """Complete the name of a parameter of the surface named earlier on the line."""
-    # Click leaves words in `args` while an option, as this one, has no value yet.
+    # While an option, such as this one, has no value yet, Click leaves words in `args`.
     words = [context.params.get("surface"), *context.args]
     surfaces = [x for word in words if (x := _catalogue().get(word or "")) is not None]
     return _begun([f"{name}=" for x in surfaces[:1] for name in x["parameters"]], begun)

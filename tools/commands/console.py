@@ -122,7 +122,7 @@ def interruptible() -> Iterator[None]:
 
 
 def give_up_output() -> None:
-    """Discard the rest of standard output, about which Python would complain at exit."""
+    """Discard the rest of standard output, which Python would otherwise report at exit."""
     with suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())

@@ -23,12 +23,12 @@ __all__ = [
 ]  # fmt: skip
 
 
-# The entry of a context by which --help-all asks for the whole help.
+# The key in a context that requests the whole help, for --help-all.
 ALL = "gaussmap.all"
 
 
 class Option(click.Option):
-    """An option written as in its help, such as "--spacing DX DY"; without values it is a flag.
+    """An option as the help writes it, such as "--spacing DX DY"; without values it is a flag.
 
     The help lists it in its group, and the brief help explains it if it is a `main` one. At most
     one of several `exclusive` options may be given.
@@ -57,8 +57,8 @@ class Command(click.Command):
     """A command that calls `run` of the module of its name, which is imported when it is called.
 
     So help, errors of usage and completion need neither NumPy nor Numba. `ctx.obj` is called after
-    the imports. A command with a `brief` epilog has a help that fits on a screen: other options
-    than the main ones are explained by --help-all.
+    the imports. A command with a `brief` epilog has a help that fits on a screen: --help-all
+    explains the options that are not main ones.
     """
 
     def __init__(self, *arguments: Any, brief: str = "", **settings: Any) -> None:  # noqa: ANN401
@@ -97,7 +97,7 @@ class Command(click.Command):
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options under the headings of their groups; in the brief help, the main ones.
 
-        Of the others it has the names.
+        The brief help only names the others.
         """
         groups: dict[str, list[tuple[str, str]]] = {}
         named: dict[str, list[str]] = {}

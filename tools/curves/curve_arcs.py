@@ -1,10 +1,10 @@
-"""A curve itself, without a spline, divided into arcs on which its normal turns one way, proved.
+"""A curve without a spline, divided into arcs on which its normal provably turns one way.
 
 Bounds of x′ and x″ over intervals of the parameter come from the tape of the curve. An arc is
 certain if x′ stays within 90° of one direction and x′ × x″ has one sign: the angle of the normal is
-monotone, and the arc has each normal between those at its ends exactly once. Intervals where
-neither is certain are halved until the normal turns by less than `SMALLEST_TURN` there: around
-inflections, and where the curve is straight. Intervals where x′ may vanish are cusps or singular.
+monotone, and the arc has each normal between those at its ends exactly once. Other intervals are
+halved until the normal turns by less than `SMALLEST_TURN` there: around inflections, and where the
+curve is straight. Intervals where x′ may vanish are cusps or singular.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 FIRST_ARCS, MOST_ARCS = 64, 1 << 14
-# An interval is not halved further if the normal turns by less than this (radians) in it, or if
-# it is shorter than this, relative to the domain, where the curve is singular.
+# An interval is not halved if the normal turns by less than this (radians) in it, or if it is
+# shorter than this, relative to the domain, where the curve is singular.
 SMALLEST_TURN, SHORTEST = 1e-12, 2.0**-36
-# Steps of Newton's method and of bisection: more than a float has digits.
+# The number of steps of Newton's method and of bisection: more than a float has digits.
 STEPS = 80
 CERTAIN, UNCERTAIN, SINGULAR = range(3)
 
@@ -93,7 +93,7 @@ class CurveArcs(Turning):
 
     @cached_property
     def inflections(self) -> Array:
-        """The parameters (k,) between certain arcs that turn in different senses."""
+        """The parameters (k,) between certain arcs on which the normal turns in opposite senses."""
         certain = np.flatnonzero(self.kinds == CERTAIN)
         following = np.roll(certain, -1)
         if not self.periodic:
@@ -120,7 +120,7 @@ class CurveArcs(Turning):
     def undecided(self, normals: Array) -> Flags:
         """Return a mask of unit normals (S, 2) that may have points other than those found.
 
-        These are normals that uncertain arcs may have, or all if the curve is singular somewhere.
+        These are the normals of uncertain arcs, or all if the curve is singular somewhere.
         """
         if (self.kinds == SINGULAR).any():
             return np.ones(len(normals), dtype=bool)

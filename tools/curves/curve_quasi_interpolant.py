@@ -16,7 +16,7 @@ from .curve_spline import CurveSpline
 __all__ = ["checked_points", "spline_of_points", "spline_of_values"]
 
 Array = NDArray[np.float64]
-# A last point nearer to the first than this, relative to the first step, repeats it.
+# A last point closer to the first than this, relative to the first step, repeats it.
 REPEATED = 1e-3
 
 

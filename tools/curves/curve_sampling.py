@@ -3,9 +3,9 @@
 The normals are sorted by angle, and each joint of the spline has one position in this order. The
 normals of an arc are those between the positions of its two joints, ascending where κ > 0 and
 descending where κ < 0. Neighbouring arcs share a joint and its position, so that no normal is lost
-or doubled there, whatever the rounding of the position. On a closed curve the sum of sign κ over
-the preimages of a normal is the turning number, for every normal. A normal that is exactly that of
-an inflection has two preimages there or none, as has one close to it.
+or doubled there, however the position is rounded. On a closed curve the sum of sign κ over the
+preimages of a normal is the turning number, for every normal. The exact normal of an inflection has
+two preimages there or none, like a normal close to it.
 
 Where the normals of neighbouring joints differ only by the rounding of the coordinates, the curve
 is straight, and the joints get one position.
@@ -41,8 +41,8 @@ Array = NDArray[np.float64]
 
 # The largest number of attempts to meet `count` by changing the number of normals.
 TRIES = 6
-# Arcs that this many uniform normals would sample are not straight, even if fewer normals are
-# used.
+# Arcs that this many uniform normals would sample do not count as straight, even if fewer normals
+# are used.
 LEAST_NORMALS = 1_000
 # The curves on which samples may lie.
 PLACES = ("curve", "spline")
@@ -63,7 +63,7 @@ class CurveReport:
     pieces : int
         The number of arcs of the spline.
     straight_share : float
-        The share (0…1) of the length where κ ≈ 0, so that it has no samples.
+        The share (0…1) of the length where κ ≈ 0, which has no samples.
     inflections : int
         The number of changes of the sign of κ.
     turning_number : int or None
@@ -74,7 +74,7 @@ class CurveReport:
         The number of prescribed normals for which all points are proved to be found; None on
         splines.
     undecided : tuple of int
-        Rows of the other normals: those of inflections and straight parts, up to rounding, or all
+        Rows of the other normals: normals of inflections and straight parts, up to rounding, or all
         if the curve has singular points.
 
     Examples
@@ -120,8 +120,8 @@ class CurveSamples:
     support : (N,) float64 array
         Support function h = n·x, in L.
     curvature : (N,) float64 array
-        In 1/L, positive on a circle with outward normals. Its sign bit is the sense in which the
-        normal turns, even where the curvature is rounded to 0.
+        In 1/L, positive on a circle with outward normals. Its sign bit says which way the normal
+        turns, even where the curvature is rounded to 0.
     normal_index : (N,) int64 array
         Rows of the prescribed normals.
     piece_index : (N,) int64 array
@@ -166,8 +166,8 @@ class CurveSamples:
     def polygon(self) -> NDArray[np.float64]:
         """(M, 2) float64 array: the vertices of the polygon through all samples, in order.
 
-        The polygon of an open curve begins and ends with those of the curve; that of a closed curve
-        repeats its first point at its end.
+        The polygon of an open curve begins and ends at the ends of the curve; that of a closed
+        curve repeats its first point at its end.
         """
         if len(self.ends):
             return np.concatenate([self.ends[:1], self.points, self.ends[1:]])
@@ -359,8 +359,8 @@ def _places(spline: CurveSpline | CurveArcs, angles: Array) -> NDArray[np.int64]
 def _merge_joints(angles: Array, turns: NDArray[np.int64], errors: Array, start: int) -> None:
     """Give neighbouring joints one normal if their normals differ only by rounding.
 
-    angles + 2π turns (P + 1,) are the angles at joints, errors (P + 1,) their rounding. The joints
-    of a closed curve are visited from the joint `start` > 0 on; 0 is the first one of an open one.
+    angles + 2π turns (P + 1,) are the angles at joints, errors (P + 1,) their rounding. On a closed
+    curve the joints are visited from the joint `start` > 0 on; on an open curve, `start` is 0.
     """
     pieces = len(angles) - 1
     whole = turns[pieces] - turns[0]
@@ -461,9 +461,9 @@ def _samples(
 
 
 def _straight_share(spline: CurveSpline | CurveArcs, normals: int) -> float:
-    """Return the share of the length where κ ≈ 0, so that it has no samples.
+    """Return the share of the length where κ ≈ 0, which has no samples.
 
-    An arc is straight if an arc of constant curvature, equally long, would get no sample.
+    An arc is straight if an arc of the same length with constant curvature would get no sample.
     """
     joints = spline.scale * spline.evaluate(spline.joints)
     lengths = np.hypot(*np.diff(joints, axis=0).T)

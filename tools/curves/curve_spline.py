@@ -235,7 +235,7 @@ class CurveSpline(Turning):
     def inflections(self) -> Array:
         """(k,) float64 array: the parameters where the curvature changes its sign, ascending.
 
-        An arc is a parabola without inflections: they are joints, or midpoints of straight
+        Arcs are parabolas without inflections: inflections are joints, or midpoints of straight
         stretches.
         """
         curved = np.flatnonzero(~self.straight)
@@ -277,7 +277,7 @@ class CurveSpline(Turning):
         )
 
     def _places(self, t: Array) -> Array:
-        """Return the piece of each parameter plus the share of it; InputError if outside."""
+        """Return the piece of each parameter plus the fraction in it; InputError if outside."""
         places = (t - self.domain[0]) / self.step
         if self.periodic:
             with np.errstate(invalid="ignore"):

@@ -127,7 +127,7 @@ class AlignedGrid:
             left = most - int(numbers[0].sum()) * int(numbers[1].sum())
             found.append((self._excess(steps, scales), left, numbers))
         least = min(excess for excess, _, _ in found)
-        # Of nearly equal errors, choose the numbers that leave the fewest samples.
+        # Of nearly equal errors, choose the numbers with the fewest samples left over.
         return min((x for x in found if x[0] <= AS_GOOD * least), key=lambda x: x[1])[2]
 
     def _excess(self, steps: Steps, scales: list[Array]) -> float:
@@ -167,7 +167,7 @@ class AlignedGrid:
         """Return the middles (k, 2) between neighbours along a parameter, in cells.
 
         Also return the distances in space of these neighbours and of neighbours across (2, k), and
-        the chords in normal space between the former (k,).
+        the chords between the normals of these neighbours (k,).
         """
         steps = [np.gradient(x) if len(x) > 1 else np.full(1, np.inf) for x in lines]
         steps[axis] = np.diff(lines[axis])

@@ -101,7 +101,8 @@ def _apart(
 ) -> tuple[Indices, float]:
     """Return the indices of normals farther than `near` from known ones, and the largest distance.
 
-    That distance is at most `widest`. Radii that fall from it save most updates of distances.
+    That distance is at most `widest`. The choice with radii that fall from `widest` updates fewer
+    distances.
     """
     distances = tree_of(known).query(normals, workers=thread_count(threads))[0]
     far = (distances > near) & normals.any(axis=1)

@@ -22,7 +22,7 @@ ACROSS = 8
 JUMP, REMAINS, BISECTIONS = 0.1, 0.4, 8
 # Not 1/2: by symmetry, bisection would hit the line K = 0 exactly.
 HALF = 0.47
-# K has to change its sign along this part of a line.
+# On a break, K changes its sign along at least this part of the line.
 ALONG = 0.75
 # |K| below this part of its maximum counts as 0.
 FLAT = 1e-6

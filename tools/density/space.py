@@ -53,7 +53,7 @@ MOST_LOST = 4
 FEWEST_PIXELS, MOST_PIXELS = 64, 512
 # Cells that the boundary intersects are cut in two steps if they have more parts than this.
 AT_ONCE = 64
-# The least size of a cell, relative to the domain of its piece and to the size of the space.
+# The least size of a cell, relative to the domain of its piece, and to the root of its area.
 DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
 # The factor by which cells are coarsened if they are too many.
@@ -181,8 +181,8 @@ class Space:
         corners, places = cells.boxes[chosen, :2], cells.places[chosen]
         others = places + BESIDE * (corners - places)
         chosen = chosen[self._is_flat(self.at(cells.pieces[chosen], others, keep=True))]
-        # A cell whose place is an apex has the area 0. If all cells of a piece do, they count
-        # alike.
+        # A cell whose place is an apex has the area 0. If all cells of a piece have, they get equal
+        # weights.
         tiny = np.finfo(np.float64).tiny
         weights = np.maximum(cells.numbers[:, AREA], tiny)
         flat = np.bincount(cells.pieces[chosen], weights[chosen], count)

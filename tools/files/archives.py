@@ -18,8 +18,8 @@ from .reading import UnusableError
 
 __all__ = ["Archive", "archive_of"]
 
-# An archive may unpack to this many bytes, or to this many times its own size. Numeric arrays
-# seldom compress to a tenth; uncompressed archives have no ratio.
+# An archive may unpack to this many bytes, or to this many times its own size: numeric arrays
+# seldom compress to a tenth, and uncompressed archives do not grow.
 HARMLESS, MOST_TIMES = 256 << 20, 100
 
 
@@ -56,7 +56,7 @@ class Archive:
 @contextmanager
 def archive_of(file: BufferedReader) -> Iterator[Archive]:
     """Yield the archive in a file; UnusableError if it is none, or would unpack to too much."""
-    # NumPy would take any other file for a pickle.
+    # NumPy would read any other file as a pickle.
     if not zipfile.is_zipfile(file):
         raise UnusableError("is damaged or is no .npz file; write it again.")
     packed = file.seek(0, 2)

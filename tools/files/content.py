@@ -12,7 +12,7 @@ from .reading import UnusableError
 
 __all__ = ["known_fields", "lacks", "report_from_json", "report_to_json"]
 
-# Values of `density` that version 0.1 wrote beside "aligned", and their present values: None, or
+# Values of `density` that version 0.1 wrote besides "aligned", and their present values: None, or
 # "aligned" for a grid on some of the pieces of a surface.
 OF_0_1 = {"isotropic": None, "mixed": "aligned"}
 

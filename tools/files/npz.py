@@ -26,7 +26,7 @@ def write_npz(samples: Samples, path: Path) -> None:
     if samples.fields != ARRAY_NAMES:
         arrays["fields"] = np.array(samples.fields)
     report = np.array(report_to_json(samples.report))
-    # savez appends .npz to paths that end in .NPZ, hence an open file. Not savez_compressed: it
+    # An open file, since savez appends .npz to paths that end in .NPZ. Not savez_compressed: it
     # takes forty times as long, and saves a sixth.
     with open(path, "wb") as file:
         np.savez(file, format_version=np.int64(_VERSION), report=report, **arrays)

@@ -16,7 +16,7 @@ from .lengths import whole_of
 __all__ = ["columns_of_faces", "texts_of"]
 
 
-# Texts that begin so are formulas for a spreadsheet, unless an apostrophe comes first.
+# Spreadsheets take texts with these beginnings for formulas, unless an apostrophe comes first.
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
@@ -39,6 +39,6 @@ def _text(value: float | str | None) -> str:
     if isinstance(value, str) and value.startswith(FORMULA):
         value = f"'{value}"
     line = io.StringIO()
-    # With this end of the line, names with line breaks are quoted.
+    # With this line ending, names with line breaks are quoted.
     csv.writer(line, lineterminator="\r\n").writerow(["" if value is None else value, ""])
     return line.getvalue()[:-3]

@@ -165,8 +165,8 @@ def _mode(path: Path) -> int | None:
 
 
 def _temporary(target: Path) -> Path:
-    # Not tempfile: its files are private to the user (mode 0600) whatever the umask. Not the
-    # target's stem: with an addition it could become too long.
+    # Not tempfile, whose files are private to the user (mode 0600) whatever the umask. Not the
+    # target's stem, which could become too long with an addition.
     return target.with_name(f"{BEGUN}{secrets.token_hex(8)}{target.suffix}")
 
 

@@ -54,7 +54,7 @@ _FIELDS = "gaussmap fields "
 _CHUNK = 200
 _LARGEST_HEADER = 1 << 20
 _LARGEST_INTEGER = 2**31 - 1
-# The number of rows packed or unpacked at once, so that they fit into the cache.
+# The number of rows that are packed or unpacked at once, such that they fit into the cache.
 ROWS = 4096
 
 
@@ -183,7 +183,7 @@ def _read_header(file: BufferedReader) -> _Header:
 
 
 def _empty_arrays(fields: Sequence[str], vertices: _Element) -> dict[str, NDArray[Any]]:
-    """Return arrays for the fields, in float32 only if all their columns are."""
+    """Return arrays for the fields; float32 only if all columns are."""
     kinds = vertices.columns
     missing = [column for name in fields for column in COLUMNS[name] if column not in kinds]
     if missing:

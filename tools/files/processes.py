@@ -15,7 +15,8 @@ PR_SET_PDEATHSIG = 1
 def end_with_parent(by: str, parent: int | None = None) -> None:
     """Let the system send this process a signal when its parent is killed, where it can.
 
-    With the process id of the parent, the process ends at once if the parent has ended already.
+    If `parent`, the process id of the parent, is given and the parent has already ended, end at
+    once.
     """
     with suppress(AttributeError, OSError, TypeError):
         import ctypes

@@ -25,7 +25,7 @@ class UnusableError(Exception):
 def regular_file(path: Path | str) -> BufferedReader:
     """Open a file for reading. Raises UnusableError for devices, pipes and Git LFS pointers.
 
-    To open a pipe into which nobody writes would take for ever.
+    Opening a pipe into which nobody writes would block forever.
     """
     path = Path(path)
     mode = path.stat().st_mode
@@ -42,10 +42,10 @@ def regular_file(path: Path | str) -> BufferedReader:
 def opened(path: Path, kind: str, content: str) -> Iterator[BufferedReader]:
     """Yield an open file; any error while reading it becomes a FileError that names the path.
 
-    `kind` continues "is no", and `content` says what the file holds, for the sentences.
+    `kind` continues "is no" and `content` names what the file holds, both in error messages.
     """
     try:
-        file = regular_file(path)  # an error here differs from one in the content
+        file = regular_file(path)  # tells an error here from one in the content
     except UnusableError as error:
         raise FileError(f"'{path}' {error}") from error
     except OSError as error:

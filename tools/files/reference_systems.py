@@ -33,7 +33,7 @@ def checked_crs(crs: str | int | None, name: str) -> Any:  # noqa: ANN401
             found = rasterio.CRS.from_user_input(crs)
             found.to_wkt()
             return found
-    except Exception:  # any method of the object may be called, and raise
+    except Exception:  # the object's methods may raise anything
         raise InputError(
             f"{name} must be a coordinate reference system, such as EPSG:32617, not {shown(crs)}."
         ) from None
@@ -69,7 +69,7 @@ def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any: 
 
 
 def projected(source: Any, target: Any, x: Array, y: Array, name: str) -> tuple[Array, Array]:  # noqa: ANN401
-    """Return coordinates of one shape in another system; InputError if it is undefined for some."""
+    """Return coordinates in another system; InputError if it is undefined for some of them."""
     warp = from_extra("rasterio.warp", "gis", "a projection")
     flat_x, flat_y = x.ravel(), y.ravel()
     found = np.empty((2, x.size))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["write_3mf"]
 
-# Not trimesh: it needs two more libraries, and writes other bytes each time.
+# Not trimesh: it needs two more libraries, and writes different bytes each time.
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 MODEL = "application/vnd.ms-package.3dmanufacturing-3dmodel+xml"
 PACKAGE = "http://schemas.openxmlformats.org/package/2006"

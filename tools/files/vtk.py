@@ -60,7 +60,7 @@ def _write_xml(name: str, data: Any, path: Path) -> None:  # noqa: ANN401
 
 
 def _run(writer: Any, data: Any) -> Any:  # noqa: ANN401
-    """Let a writer of VTK write to memory: its errors about files are only printed."""
+    """Let a writer of VTK write to memory, since it only prints errors about files."""
     writer.SetInputData(data)
     writer.WriteToOutputStringOn()
     writer.Write()

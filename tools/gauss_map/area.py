@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Array]:
     """Return the integrals of K and of |K| (k,) over patches.
 
-    Mixed patches, and those with a wide range of normals, are cut along their parabolic lines and
+    Mixed patches, and patches with a wide range of normals, are cut along their parabolic lines and
     at their singular points.
     """
     normals = patches.normals
@@ -64,7 +64,7 @@ def _fans_of(patch: Patches) -> list[Array]:
 def _on_sides(patch: Patches, polygon: Array) -> list[Array]:
     """Return the parameter pairs of the singular points on the sides of a polygon.
 
-    On a double parabolic line there may be singular points that no other line meets.
+    A double parabolic line may have singular points on which no other line lies.
     """
     places = []
     corners = _barycentric(polygon)
@@ -86,7 +86,7 @@ def _different(places: list[Array]) -> list[Array]:
 
 
 def _snapped(polygon: Array, places: list[Array]) -> Array:
-    """Move corners near singular points onto these: multiple lines are less accurate."""
+    """Move corners near singular points onto these: corners on multiple lines are less accurate."""
     polygon = polygon.copy()
     for place in places:
         polygon[np.abs(polygon - place).max(axis=1) <= DOUBLE_ROOT] = place

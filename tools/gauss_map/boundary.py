@@ -212,10 +212,10 @@ def _inner_limit(
 ) -> Array:
     """Return a unit vector orthogonal to `start`, in the half-plane of the limits of the normals.
 
-    Returns zero if there is none: N is parallel to `start` to the third order. In polar form,
-    N(place + x) = 2 N(place, x) + N(x, x). If the first term is always parallel to `start`, the
-    second decides, in the inward direction x along which the first vanishes; or else the third
-    order, on the curve tangent to x along which the component of N along `start` vanishes.
+    Returns zero if there is none: N is parallel to `start` up to the third order. In polar form,
+    N(place + x) = 2 N(place, x) + N(x, x). If the first term is parallel to `start` for all x, the
+    second one decides, in the inward direction x along which the first one vanishes; or else the
+    third order, on the curve tangent to x along which the component of N along `start` vanishes.
     """
 
     def polar(x: Array, y: Array) -> Array:

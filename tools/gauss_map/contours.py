@@ -3,8 +3,8 @@
 d is a direction, or the ray x − p from a viewpoint p. The signs of N·d on a grid locate the curves,
 which are closed or end at open sides. Zero counts as positive, so that a curve may follow sides of
 the grid, and cross a pole; along an open side it gets the sign opposite to the inside. Samples are
-sorted along these curves by their feet in the parameter plane; where a curve leaves the trim of the
-spline it is cut.
+sorted along these curves by their feet in the parameter plane. A curve is cut where it leaves the
+trim of the spline.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-# A cell of the spline is divided into the largest of these numbers of parts along u and along v
-# that gives at most MOST_CELLS cells.
+# A cell of the spline is divided, along u and along v, into the largest of these numbers of parts
+# with which there are at most MOST_CELLS cells.
 PARTS, MOST_CELLS = (8, 4, 2), 1 << 16
 # The error of N·d relative to the length of N.
 ROUNDING = 1e-14
-# The foot of a sample is searched on this number of segments, those with the nearest midpoints.
+# The foot of a sample is searched on this number of segments, which have the nearest midpoints.
 CANDIDATES = 8
 
 
 class View(NamedTuple):
-    """Where an eye is: at the point `at`, or, if it is `far`, looking along the direction `at`."""
+    """The position of an eye: the point `at`, or, if it is `far`, the direction of view `at`."""
 
     at: Array
     far: bool
 
     def rays(self, points: Array) -> Array:
-        """Return the directions (k, 3) in which the eye sees points (k, 3), of any length."""
+        """Return the directions (k, 3), of any length, in which the eye sees points (k, 3)."""
         return np.broadcast_to(self.at, points.shape) if self.far else points - self.at
 
 
@@ -71,7 +71,7 @@ def places_along(spline: Spline, view: View, count: int) -> tuple[Array, tuple[I
 
 
 def _wrapped(spline: Spline, cells: Array) -> Array:
-    """Return the parameters (k, 2) at places in cells, those beyond seams brought inside."""
+    """Return the parameters (k, 2) at positions in cells; those beyond seams are wrapped."""
     u, v = (spline.frame[:2] + cells * spline.frame[2:]).T
     return np.stack(brought_inside(u, v, spline.domain, spline.boundary), axis=1)
 
@@ -85,7 +85,7 @@ def polylines_of(spline: Spline, view: View, uv: Array) -> tuple[Indices, ...]:
     if not len(uv):
         return ()
     ends, section, closed, _ = _segments(spline, view)
-    if not len(ends):  # a curve in a corner of a cell, too small to be found
+    if not len(ends):  # a curve in the corner of a cell, too small to be found
         return (np.arange(len(uv)),)
     copies, original = _with_copies(spline, ends)
     segment, share = _feet(copies, spline.in_cells(uv.copy()))
@@ -99,7 +99,7 @@ def polylines_of(spline: Spline, view: View, uv: Array) -> tuple[Indices, ...]:
 
 
 def _segments(spline: Spline, view: View) -> tuple[Array, Indices, list[bool], Flags]:
-    """Return segments (k, 2, 2), in cells, in the order of curves, and the section (k,) of each.
+    """Return segments (k, 2, 2), in cells, in the order of curves, and their sections (k,).
 
     A curve is one section; where it leaves the trim another one begins. Also returns which sections
     are closed, and which segments are outside of the trim.
@@ -121,7 +121,7 @@ def _segments(spline: Spline, view: View) -> tuple[Array, Indices, list[bool], F
 
 
 def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
-    """Return for each parameter pair (k, 2) the nearest segment, and its foot on it (0 … 1)."""
+    """Return the nearest segment to each position (k, 2), and its foot on it (0 … 1)."""
     number = min(CANDIDATES, len(ends))
     near = tree_of(ends.mean(axis=1)).query(places, k=number)[1].reshape(len(places), number)
     start, step = ends[near, 0], ends[near, 1] - ends[near, 0]
@@ -147,7 +147,7 @@ def _lines(spline: Spline, view: View) -> list[tuple[list[Array], bool]]:
         values, noise = (normals * rays).sum(axis=2), noise * np.linalg.norm(rays, axis=2)
     values[np.abs(values) <= noise] = 0.0
     kinds = spline.boundary[0][0], spline.boundary[1][0]
-    for by, kind in enumerate(kinds):  # on both sides of a seam equal up to rounding
+    for by, kind in enumerate(kinds):  # on both sides of a seam, equal up to rounding
         side = np.swapaxes(values, 0, by)
         if kind in ("periodic", "mirrored"):
             side[-1] = side[0] if kind == "periodic" else -side[0, ::-1]
@@ -161,7 +161,7 @@ def _lines(spline: Spline, view: View) -> list[tuple[list[Array], bool]]:
 
 
 def _with_copies(spline: Spline, ends: Array) -> tuple[Array, Indices]:
-    """Add copies of segments next to seams, shifted beyond them; also returns their originals."""
+    """Add copies of segments next to seams, shifted beyond them; also return their originals."""
     which = np.arange(len(ends))
     for axis, (kind, _) in enumerate(spline.boundary):
         if kind not in ("periodic", "mirrored"):

@@ -12,26 +12,27 @@ from .sign_grid import SignGrid
 __all__ = ["CriticalZeros", "critical_zeros"]
 
 # The number of steps of Newton's method, which converges slowly where K is of order four, and the
-# final step size, relative to the domain.
+# length of a final step, relative to the domain.
 NEWTON_STEPS, ARRIVED = 40, 1e-10
-# K is zero at a critical point if a zero would lie within this distance, relative to the domain.
+# K is zero at a critical point if it has a zero within this distance, relative to the domain, as
+# estimated there.
 TOUCHING = 1e-7
-# The largest distance of a critical point from its nearest node, in cells: for Newton's method, and
-# estimated by differences between nodes.
+# The largest distance of a critical point from its nearest node, in cells: as found by Newton's
+# method, and as estimated by differences between nodes.
 FARTHEST, FARTHEST_BY_NODES = 2.0, 1.5
-# Critical points closer than this, in cells, are equal.
+# Critical points closer than this, in cells, are one point.
 SAME = 1e-2
-# K is constant in a direction if it grows by less than this factor of the growth in the other; the
-# second number is for differences between nodes, which are not close to the zeros.
+# K is constant in a direction if its growth there is less than this factor of the growth in the
+# other. The second number is for differences between nodes, which are not close to the zeros.
 CONSTANT, CONSTANT_BY_NODES = 1e-5, 1e-2
 
 
 class CriticalZeros(NamedTuple):
     """Saddles (k, 2), where curves K = 0 cross, and isolated points (m, 2) at which K touches zero.
 
-    A closed curve K = 0 smaller than a cell counts as an isolated point, too; it lies within
-    `reach` (m, 2) of the point. `unclear` says whether there are such curves, or others that are
-    closer to each other than a cell, or cross in the last cells before a boundary.
+    A closed curve K = 0 smaller than a cell also counts as an isolated point; it lies within
+    `reach` (m, 2) of the point. `unclear` says whether there are such curves, or curves closer to
+    each other than a cell, or curves that cross in the last cells before a boundary.
     """
 
     saddles: Array
@@ -43,7 +44,7 @@ class CriticalZeros(NamedTuple):
 def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
     """Return the critical points of K where it is zero.
 
-    Curves that pass it within `size`, relative to the domain, pass through it.
+    Curves within `size` of a critical point, relative to the domain, pass through it.
     """
     curvature = grid.curvature
     (low, high), extent = curvature.ends, curvature.extent
@@ -84,7 +85,7 @@ def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
 
 
 def _may_be_critical(grid: SignGrid) -> Flags:
-    """Return nodes near which, by differences, a critical point with K near zero may lie."""
+    """Return nodes near which a critical point with K near zero may lie, by differences."""
     from scipy.ndimage import minimum_filter
 
     K = np.where(grid.zero, 0.0, grid.values)
@@ -114,7 +115,7 @@ def _eigenvalues(hessian: Array) -> Array:
 
 
 def _half_distance_is_less(size: float | Array, K: Array, hessian: Array) -> Flags:
-    """Return at which critical points half the distance of the curves K = 0 is less than `size`.
+    """Return for which critical points half the distance of the curves K = 0 is below `size`.
 
     At a saddle the curves are the branches of the hyperbola 2 K − λ x² + μ y² = 0.
     """
@@ -123,7 +124,7 @@ def _half_distance_is_less(size: float | Array, K: Array, hessian: Array) -> Fla
 
 
 def _newton_step(gradient: Array, hessian: Array, constant: float = CONSTANT) -> Array:
-    """Return the shortest least-squares solutions of Newton's equations for the gradient of K."""
+    """Return the shortest least-squares Newton steps to a zero of the gradient of K."""
     inverse = np.linalg.pinv(hessian, rcond=constant, hermitian=True)
     return np.einsum("kxy,ky->kx", inverse, gradient)
 

@@ -20,16 +20,16 @@ from ...runtime.tape.tapes import jets_of
 
 __all__ = ["Curvature", "Known"]
 
-# The error of a second derivative from a formula, relative to its length.
+# The error of a second derivative that a formula gives, relative to its length.
 ROUNDING = 1e-13
-# K is zero where it is less than its estimated error times this.
+# K counts as zero if it is below its estimated error times this.
 SURE = 4.0
-# The number of parameter pairs at which K is computed at once.
+# The number of parameter pairs in one batch.
 AT_A_TIME = 1 << 14
 # Steps for derivatives of K, and for its slope in Newton's method, relative to the domain.
 STEP, SLOPE_STEP = 1 / 1024, 1e-6
-# The number of steps of Newton's method, its final step size, relative to the domain, and its
-# largest step.
+# The number of steps of Newton's method, the length of its final step, relative to the domain, and
+# of its largest step.
 NEWTON_STEPS, ARRIVED, FARTHEST = 5, 1e-13, 0.1
 # The size of a surface is measured on a grid with this number of points along u and along v.
 SIZES = 17
@@ -96,7 +96,7 @@ class Curvature:
     def onto_zeros(self, places: Array) -> Array:
         """Move parameters (k, 2) near curves K = 0 onto them, by Newton steps along the gradient.
 
-        Those on the boundary of the domain move along it. Those without a regular zero nearby, as
+        Points on the boundary of the domain move along it. Points without a regular zero nearby, as
         at crossings and singular points, stay.
         """
         low, high = self.ends

@@ -24,7 +24,7 @@ OfPlaces = Callable[[Array], Array]
 # Curves whose ends are closer than this, relative to their size, are closed.
 CLOSED = 1e-6
 # The nearest point of a curve is searched among this number of vertices, then among as many between
-# the neighbours of the nearest one, and so on; finally on the chords between these.
+# the neighbours of the nearest one, and so on; finally on the chords at it.
 PLACES, ROUNDS = 9, 5
 
 
@@ -70,7 +70,7 @@ class ImageCurve:
 class Traced:
     """A curve on a surface or a spline.
 
-    `of` says what lies on it.
+    `of` is the surface or the spline.
     """
 
     curve: ImageCurve
@@ -112,7 +112,7 @@ class Traced:
 
 
 class Curves:
-    """Curves on a surface or a spline: polylines in the parameters, or what `onto` makes of them.
+    """Curves on a surface or a spline: polylines in the parameters, or moved by `onto`.
 
     `jets` returns 2-jets (k, 6, 3) at parameters (k, 2); `size` is that of the surface.
     """

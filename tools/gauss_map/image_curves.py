@@ -1,7 +1,7 @@
 """Folds and boundary images of Gauss maps, where the number of points with a normal changes.
 
-The Gauss map folds along the parabolic curves. Next to the image of a fold, a normal has two points
-on one side and none on the other; next to the image of a boundary it has one and none.
+The Gauss map folds along the parabolic curves. A normal next to the image of a fold has two points
+on one side of it, and none on the other; next to the image of a boundary, one and none.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ __all__ = ["border_image", "folds", "margin"]
 
 # The number of segments of a side of the domain, before refinement.
 PARTS_OF_SIDE = 16
-# The tolerance of the curves from which angles are measured.
+# The tolerance of the curves to which angles are measured.
 TOLERANCE = 1e-3
 # Parameter pairs within this distance of a boundary, relative to the domain, are on it.
 ON_BORDER = 1e-9

@@ -28,11 +28,11 @@ LONGEST_SQUARED = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Members:
-    """The membership of k vectors in the set of normals of regular, non-parabolic points.
+    """Whether each of k vectors is the normal of a regular, non-parabolic point.
 
-    `inside` (k,) is true for such normals, and `uv` (k, 2) are the parameters; `signs` (k,) is the
-    sign of K where it was decided exactly, else 0. Where `vanishing` (k,) is true, D, U, V, W are
-    all zero: the vector may be the normal along a parabolic line.
+    `inside` (k,) says so, and `uv` (k, 2) are the parameters; `signs` (k,) is the sign of K where
+    it was decided exactly, else 0. Where `vanishing` (k,) is true, D, U, V, W are all zero: the
+    vector may be the normal along a parabolic line.
     """
 
     inside: NDArray[np.bool_]
@@ -66,7 +66,7 @@ class PatchNormals:
         return result
 
     def contain(self, normals: Array) -> NDArray[np.bool_]:
-        """Return a mask of the vectors (k, 3) that are normals of points, parabolic ones too."""
+        """Return a mask of the vectors (k, 3) that are normals of points, even parabolic ones."""
         members = self.members(normals)
         which = np.flatnonzero(members.vanishing)
         n, _ = integers_by_row(normals[which])
@@ -111,7 +111,7 @@ class PatchNormals:
 
     @cached_property
     def _shortest(self) -> float:
-        """The least length of N, as a sum of moduli, for which its direction is certain."""
+        """The least length of N, as a sum of moduli, at which its direction is certain."""
         return NEAR_SINGULAR_POINT * (2.0 * self._sizes[0] + self._sizes[1]) ** 2
 
     def _decide(self, members: Members, rows: NDArray[np.intp], normals: Array) -> None:

@@ -208,8 +208,8 @@ def _heights(places: Array, line: Array) -> Array:
 def singular_points(patch: Patches) -> Array:
     """Return the parameters (k, 2) at which N(u,v) vanishes: where two parabolic lines meet.
 
-    Such a point may be the real intersection of two complex lines. A patch has at most three of
-    them, unless all its parabolic lines coincide.
+    Such a point may be the real intersection of two complex lines. A patch has at most three,
+    unless all its parabolic lines coincide.
     """
     angle, roots = _roots(patch)
     c, s = math.cos(angle), math.sin(angle)
@@ -256,8 +256,8 @@ def _directions(patch: Patches) -> list[tuple[float, float, int]]:
 def _roots(patch: Patches) -> tuple[float, NDArray[np.complex128]]:
     """Return the roots x of the binary cubic, where (s, t) is (x, 1) rotated by an angle.
 
-    At that angle the cubic is large, so that no root is near infinity. There are no roots where the
-    cubic vanishes.
+    The angle is chosen such that no root is near infinity. There are no roots where the cubic
+    vanishes.
     """
     coefficients = np.array([float(x[0]) for x in patch.apply(formulas.parabolic_directions)])
     error = (
@@ -294,9 +294,9 @@ def _merged(angles: list[float]) -> list[tuple[float, int]]:
 
 
 def _row(patch: Patches, s: complex, t: complex) -> tuple[NDArray[Any], NDArray[Any], float]:
-    """Return l and the unit normal of the line l·(u, v, 1) = 0 with a direction.
+    """Return l and the unit normal of the line l·(u, v, 1) = 0 with a given direction.
 
-    Also returns the length of the normal before it was divided by it.
+    Also return the length of the normal before it was divided by it.
     """
     normals = np.array(patch.apply(formulas.parabolic_normal, s, t))[..., 0]
     lengths = np.linalg.norm(normals, axis=1)
@@ -329,7 +329,7 @@ def _segment(s: float, t: float, rho: float) -> Array | None:
 def _oriented(
     patch: Patches, s: float, t: float, rho: float, normal: Array, segment: Array | None
 ) -> Array:
-    """Return the normal with the sign that N(u,v) has on the line."""
+    """Return the normal with the sign of N(u,v) on the line."""
     centre = TRIANGLE.mean(axis=0)
     place = centre - (s * centre[0] + t * centre[1] + rho) * np.array([s, t])
     place = place if segment is None else segment.mean(axis=0)
@@ -337,7 +337,7 @@ def _oriented(
 
 
 def _sign_in(patch: Patches, polygon: Array) -> int:
-    """Return the sign of the cubic D(N(u,v)) inside a piece; a few samples may be zeros."""
+    """Return the sign of the cubic D(N(u,v)) inside a piece; some of its samples may be zero."""
     places = 0.5 * (polygon + polygon.mean(axis=0))
     values = cubic_bernstein(places) @ patch.cubic[0]
     return int(np.sign(values[np.abs(values).argmax()]))

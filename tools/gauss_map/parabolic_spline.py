@@ -32,7 +32,7 @@ CURVED = PatchClass.MIXED, PatchClass.ELLIPTIC, PatchClass.HYPERBOLIC
 class ZerosOfSpline(Zeros):
     """The curves across which K of a spline changes its sign.
 
-    They are exact: in each patch and along its edges they are straight in the parameters.
+    They are exact: inside each patch and along its edges they are straight in the parameters.
     """
 
     def __init__(self, spline: Spline) -> None:
@@ -71,18 +71,18 @@ class ZerosOfSpline(Zeros):
         return [frame[:2] + x * frame[2:] for x, _ in joined(pieces)]
 
     def _places(self, patches: Indices, local: Array) -> Array:
-        """Return points (k, n, 2), in cells, from parameters (n, 2) relative to patches (k,)."""
+        """Return points (k, n, 2), in cells, from parameters (n, 2) relative to each patch (k,)."""
         cell = np.stack(np.divmod(patches // 4, self.spline.cells[1]), axis=-1)
         return cell[:, None] + 0.5 + local @ grid.CORNERS[patches % 4]
 
     def _edges(self, lines: list[tuple[int, Array]]) -> Array:
         """Return the edges of patches (k, 2, 2), each once, and cut where a line ends on it.
 
-        `lines` are the parabolic lines of patches: the number of a patch, and two ends, in cells.
+        `lines` are the parabolic lines of patches: the index of a patch, and two ends, in cells.
         """
         corners = self._places(np.arange(self.spline.patches), CORNERS)
         ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 2)
-        # Both patches have an edge from the same end on.
+        # Both patches have the edge, starting from the same end.
         turned = np.diff(ends, axis=1)[:, 0] @ [2.0, 1.0] < 0.0
         ends[turned] = ends[turned, ::-1]
         period = np.where(self.periodic, 4 * np.array(self.spline.cells), np.iinfo(np.int64).max)

@@ -17,23 +17,24 @@ from .zero_curves import zero_curves
 
 __all__ = ["CELLS", "MOST_CELLS", "ZerosOfSurface"]
 
-# The numbers of cells of the grid along u and v. It is refined where curves are closer to each
-# other than a cell, or smaller, and where more than this share of its cells contains curves.
+# The numbers of cells of the grid along u and v. The grid is refined where curves are closer to
+# each other than a cell, or smaller, and where more than this share of its cells contains curves.
 CELLS, MOST_CELLS, CROWDED = 128, 512, 1 / 8
-# The least share of the domain without curvature that gets a warning.
+# A larger share of the domain without a known curvature causes a warning.
 WORTH_A_WARNING = 1e-4
-# Isolated zeros of K whose cells are this close are one.
+# Isolated zeros of K whose cells are this close are one zero.
 TOGETHER = 4
-# Derivatives of K below this bound count as zero: along the direction in which the normal is
-# constant, relative to the gradient of K (so on curves with one normal, such as the top circle of a
-# torus); and the gradient itself, relative to its maximum on the curve, where curves cross.
+# Derivatives of K below this bound count as zero. In the direction in which the normal is constant,
+# they are relative to the gradient of K: so on curves with one normal, such as the top circle of a
+# torus. The gradient itself is relative to its maximum on the curve: it vanishes where curves
+# cross.
 NO_CHANGE = 1e-6
 
 
 class ZerosOfSurface(Zeros):
     """The zeros of K of a surface.
 
-    Curves that are closer to each other than `size`, relative to the domain, cross or are a point.
+    Curves closer to each other than `size`, relative to the domain, cross or are a point.
     """
 
     def __init__(self, surface: Surface, cells: tuple[int, int], size: float) -> None:
@@ -89,7 +90,7 @@ class ZerosOfSurface(Zeros):
         return found
 
     def with_cusps(self, uv: Array) -> tuple[Array, Indices]:
-        """Return a curve (k, 2) with the cusps of its image as vertices, and the indices of these.
+        """Return a curve (k, 2) with the cusps of its image as vertices, and their indices.
 
         At a cusp, the derivative of K along the direction in which the normal is constant vanishes
         and changes its sign.
@@ -121,7 +122,7 @@ class ZerosOfSurface(Zeros):
     def _change(self, uv: Array) -> tuple[Array, Array]:
         """Return the derivative (k,) of K along the direction in which the normal is constant.
 
-        It is relative to the length of the gradient of K. Also returns the direction (k, 2),
+        It is relative to the length of the gradient of K. Also return the direction (k, 2),
         relative to the domain.
         """
         _, gradient, _ = self.curvature.derivatives(uv)

@@ -32,8 +32,8 @@ ORDER = "in the order b200, b020, b002, b110, b101, b011"
 class Patches:
     """The vectors a, b, c, d, e of eq. (8) of k patches, (k, 5, 3), in a unit near their size.
 
-    `noise` (k,) bounds the error of a component due to the rounding of the coordinates. Gaussian
-    images do not depend on the unit, which each patch has of its own.
+    `noise` (k,) bounds the error of a component due to the rounding of the coordinates. Each patch
+    has a unit of its own, on which Gaussian images do not depend.
     """
 
     vectors: Array
@@ -74,7 +74,7 @@ class Patches:
         return Patches(self.vectors[rows], self.noise[rows])
 
     def apply(self, formula: Callable[..., Any], *more: ArrayLike | Vector) -> Any:  # noqa: ANN401
-        """Return the outputs of a formula of patches, in which each number is an array (k,)."""
+        """Return the outputs of a formula for patches, where each number is an array (k,)."""
         return python_function(formula)(patch(self.vectors), *more)
 
     @cached_property
@@ -145,7 +145,7 @@ def checked_nets(nets: ArrayLike) -> Array:
 
 
 def _computable(array: Array, name: str) -> Array:
-    """Return an array of usable numbers; InputError with the row of the first other one."""
+    """Return an array of usable numbers; InputError with the row of the first unusable one."""
     rows = np.abs(array).reshape(len(array), -1)
     if not np.isfinite(rows).all():
         row = int(np.argmin(np.isfinite(rows).all(axis=1)))

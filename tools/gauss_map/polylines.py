@@ -11,8 +11,8 @@ __all__ = ["Evaluation", "distances", "refined"]
 
 Array = NDArray[np.float64]
 Evaluation = Callable[[Array], Array]
-# A segment whose midpoint departs from the curve by h is cut into √(h / size) parts, as the arc of
-# a parabola needs; other curves need a second pass, or a third.
+# A segment whose midpoint is h from the curve is cut into √(h / size) parts, as the arc of a
+# parabola requires; other curves need a second or third pass.
 PASSES = 3
 MOST_PARTS = 1000
 
@@ -20,8 +20,8 @@ MOST_PARTS = 1000
 def refined(uv: Array, evaluate: Evaluation, size: float, onto_curve: Evaluation) -> Array:
     """Insert vertices where a polyline (k, 2) departs from its curve by more than `size` in space.
 
-    `evaluate` returns the points (k, 3) of parameters (k, 2), `onto_curve` the parameters of points
-    of the curve near the given ones; a result that is farther away than a segment is not used.
+    `evaluate` returns the points (k, 3) of parameters (k, 2), `onto_curve` the parameters of nearby
+    points of the curve; a result farther away than the length of a segment is not used.
     """
     for _ in range(PASSES):
         start, along = uv[:-1], np.diff(uv, axis=0)

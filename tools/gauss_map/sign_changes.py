@@ -23,10 +23,10 @@ def sign_changes(
 ) -> list[tuple[list[Array], bool]]:
     """Return the lines between nodes with values ≥ 0 and < 0, and whether each is closed.
 
-    Cells with NaN have none. In a cell with four crossed sides, the mean of its corners decides
-    which sides are joined. `places` returns the points (k, 2) of a line on sides between nodes (k,
-    2) and (k, 2). A line has several parts (k, 2) if it crosses seams: `kinds` are "periodic" or
-    "mirrored" where the ends along u or along v are identified.
+    Cells with NaN have none. In a cell with four crossed sides, the sign of the mean of its corners
+    decides which sides are joined. `places` returns the points (k, 2) of a line on sides between
+    nodes (k, 2) and (k, 2). A line has several parts (k, 2) if it crosses seams: `kinds` are
+    "periodic" or "mirrored" where the ends along u or along v are identified.
     """
     from contourpy import LineType, contour_generator
 
@@ -42,7 +42,7 @@ def sign_changes(
     last = 2 * np.array(values.shape) - 2
 
     def name(code: Integers) -> Hashable:
-        """Return a name of a side, the same on both sides of a seam."""
+        """Return a key of a side, the same on both sides of a seam."""
         for axis, kind in enumerate(kinds):
             if kind in ("periodic", "mirrored") and code[axis] == last[axis]:
                 code = np.where(np.arange(2) == axis, 0, code)
@@ -60,7 +60,7 @@ def sign_changes(
 
 
 def with_borders(values: Array, noise: Array, kinds: tuple[str, str]) -> Array:
-    """Return values whose sign changes at open boundaries on which they are zero.
+    """Return values whose sign changes at those open boundaries on which they are zero.
 
     So the boundary is a line between values ≥ 0 and < 0. Values are zero up to `noise`, and must
     grow linearly from the boundary: otherwise they only touch zero.

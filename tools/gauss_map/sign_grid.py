@@ -13,10 +13,10 @@ from .sign_changes import with_borders
 
 __all__ = ["SignGrid"]
 
-# Nodes are shifted by this share of a cell: curves of symmetric surfaces often lie on lines of
-# symmetry, and should not pass through nodes.
+# Nodes are shifted by this share of a cell, so that curves on lines of symmetry do not pass through
+# them.
 OFFSET = 0.2360679774997897
-# K is known where its error is less than this, relative to K here, and where most nodes are.
+# K is known where its error is below this, relative to |K| or to 1 plus the median of |K|.
 RESOLVED = 1e-2
 TINY = float(np.finfo(float).tiny)
 
@@ -26,9 +26,10 @@ class SignGrid:
 
     `values` are those of K, with the sign of a neighbour where they are zero up to their error or
     unknown, and NaN without such a neighbour. So a curve through nodes is crossed once or not at
-    all, whatever the signs of the rounding. K is zero, up to its error, at all corners of the cells
-    in `flat`, and unknown at corners of those in `unknown`; `near_curves` are the cells next to a
-    change of sign, or to unknown ones. `areas` are those of cells, relative to the domain.
+    all, whatever the signs of rounding errors. K is zero, up to its error, at all corners of the
+    cells in `flat`, and unknown at corners of those in `unknown`; `near_curves` are the cells next
+    to a change of sign, or to unknown cells. `areas` are the areas of cells, relative to the
+    domain.
     """
 
     def __init__(self, curvature: Curvature, cells: tuple[int, int]) -> None:
@@ -92,7 +93,7 @@ def of_corners(x: NDArray[Any]) -> NDArray[Any]:
 
 
 def _line(low: float, high: float, count: int, wraps: bool) -> Array:
-    """Return count + 1 nodes; in a periodic direction one period that begins inside the domain."""
+    """Return count + 1 nodes; in a periodic direction, one period that begins inside the domain."""
     shares = (np.arange(count + 1) + OFFSET) / count
     if not wraps:
         shares[0], shares[-1] = 0.0, 1.0

@@ -42,7 +42,7 @@ from .contours import View, places_along, polylines_of
 
 __all__ = ["Silhouette", "great_circle", "silhouette"]
 
-# Fields for the normal of a sample, and the patch where it was found.
+# The fields for the normal of a sample, and for the patch where it was found.
 KEYS = ("normal_index", "patch_index")
 # The indices of x_uu, x_uv, x_vv, x_u, x_v in jets: the vectors of the osculating patch.
 SECOND_JET = (3, 4, 5, 1, 2)
@@ -102,9 +102,9 @@ def silhouette(
 
     They lie on the contour generator, whose projection along `direction`, or from `viewpoint`, is
     the outline, hidden parts included. Along a direction, the outline is concave where K < 0. The
-    points are found on the spline that approximates the surface, and moved to the surface as
-    samples are. Along a direction, next to parabolic points, where the surface may have no nearby
-    point with the same normal, they are moved to the contour generator of the surface, and their
+    points are found on the spline that approximates the surface, and moved to the surface like
+    samples. Along a direction, the surface may have no nearby point with the same normal next to
+    parabolic points. There, points are moved to the contour generator of the surface, and their
     normal differs from that of their `normal_index`.
 
     Parameters
@@ -125,9 +125,9 @@ def silhouette(
     Returns
     -------
     Silhouette
-        `Samples`: the points by normal, round the circle (`normal_index`) from the angle 0 to 2π,
-        and then by patch, each exactly once. Their `polylines`, a tuple of (k,) int64 arrays, are
-        the rows in order along each curve of the contour generator, across patches and parabolic
+        `Samples`: the points by normal, around the circle (`normal_index`) from the angle 0 to 2π,
+        then by patch, each exactly once. Their `polylines`, a tuple of (k,) int64 arrays, are the
+        rows in order along each curve of the contour generator, across patches and parabolic
         points. A closed curve repeats its first row at its end; others end at open boundaries, or
         at a trim.
 
@@ -221,7 +221,7 @@ def _view(direction: ArrayLike | None, viewpoint: ArrayLike | None) -> View:
 def _move_others(
     geometry: OnSpline, view: View, places: Array, arrays: dict[str, NDArray[Any]]
 ) -> int | None:
-    """Move samples that are not on the surface to its contour generator; return the number left.
+    """Move samples that are not on the surface to its contour generator; return how many remain.
 
     The samples, which were found at parameters (N, 2) of the spline, are overwritten.
     """
@@ -237,7 +237,7 @@ def _move_others(
 def _move_to_contour(
     geometry: OnSpline, view: View, places: Array, arrays: dict[str, NDArray[Any]], rows: Indices
 ) -> Flags:
-    """Move samples (k,) to the contour generator, and overwrite them; return which ones moved.
+    """Move samples (k,) to the contour generator, overwriting them; return which ones moved.
 
     Newton's method for N·d = 0, along the gradient from the parameters (N, 2), also converges at
     parabolic points.
@@ -268,7 +268,7 @@ def _move_to_contour(
 
 
 def _of_rows(lines: Sequence[Indices], rows: Flags) -> tuple[Indices, ...]:
-    """Return polylines of those rows that are kept."""
+    """Return polylines of the kept rows only."""
     number, found = np.cumsum(rows) - 1, list[Indices]()
     for line in lines:
         is_closed = len(line) > 1 and line[0] == line[-1]

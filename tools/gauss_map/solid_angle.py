@@ -22,26 +22,27 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-# The least cosine between the normals of one triangle and their mean; others are subdivided.
+# The least cosine between the normals of one triangle and their mean; wider triangles are
+# subdivided.
 NARROW = 0.5
 # A sum of unit normals shorter than this has no direction.
 SMALL = 1e-9
 # Around a singular point inside, wide triangles remain at any depth. Those that remain after DEPTH
-# subdivisions are omitted, a solid angle of about 2^-26 (deeper, rounding costs more). Along a
-# curve of singular points their number soon exceeds MOST_WIDE, and about 2^-12 is omitted.
+# subdivisions are omitted, a solid angle of about 2^-26 (deeper, rounding errors are larger). Along
+# a curve of singular points their number soon exceeds MOST_WIDE, and about 2^-12 is omitted.
 DEPTH = 26
 MOST_WIDE = 20_000
 LEFT_OUT = 2.0**-6
 # Gauss-Legendre quadrature on an arc and on its halves must agree to AGREEMENT, or the halves are
-# cut again; so are arcs with an end that is shorter than the rest by the factor SHORT, where the
-# direction may turn too fast for both.
+# cut again. So are arcs with an end shorter than the rest by the factor SHORT, where the direction
+# may turn too fast for both quadratures.
 SHORT = 1.0 / 16.0
 NODES = 16
 AGREEMENT = 1e-15
 ARC_DEPTH = 40
 MOST_PARTS = 1_000_000
-# The candidates for poles, and the number of normals tested on each arc for their distance from the
-# opposite pole.
+# The candidates for poles, and the number of normals on each arc whose distance from the opposite
+# pole is tested.
 POLES = np.array([x for x in product((-1.0, 0.0, 1.0), repeat=3) if any(x)])
 POLES /= np.linalg.norm(POLES, axis=1, keepdims=True)
 SAMPLES = 9
@@ -54,8 +55,8 @@ def solid_angles(normals: Array) -> Array:
 
     Singular points, where N vanishes, must be corners (exactly zero) for the full accuracy.
 
-    `normals` (k, 3, 3, 3) holds the control normal of each two corners. The result is the integral
-    of the Gaussian curvature over the surface: negative where that is hyperbolic, with overlaps
+    `normals` (k, 3, 3, 3) are the control normals of each two corners. The result is the integral
+    of the Gaussian curvature over the surface: negative where it is hyperbolic, with overlaps
     counted by their multiplicity. It is exact up to rounding, about 1e-15 for each triangle.
     """
     result = np.zeros(len(normals))
@@ -69,8 +70,8 @@ def solid_angles(normals: Array) -> Array:
 def by_boundary(normals: Array, about: float) -> float:
     """Return the solid angle of one triangle (3, 3, 3, 3) by the integral along its boundary alone.
 
-    The integral is known up to whole spheres, which `about` decides. It is accurate at a singular
-    corner, too, where subdivision has to omit something. Returns `about` if the boundary is not
+    The integral is known up to whole spheres, which `about` decides. It is also accurate at a
+    singular corner, where subdivision has to omit something. Returns `about` if the boundary is not
     closed.
     """
     arcs = np.concatenate(boundary_of(normals[None]))
@@ -86,7 +87,7 @@ def by_boundary(normals: Array, about: float) -> float:
 
 
 def is_wide(normals: Array) -> NDArray[np.bool_]:
-    """Return which triangles (k,) have normals that are not all near their mean."""
+    """Return which triangles (k,) have normals far from their mean."""
     return ~_near_mean(normals)[1] & normals.any(axis=(1, 2, 3))
 
 
@@ -188,7 +189,7 @@ def _narrow(normals: Array) -> tuple[NDArray[np.intp], Array, Array]:
 
 
 def _near_mean(normals: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the mean directions (k, 3) of control normals, and whether all are near to them."""
+    """Return the mean directions (k, 3) of control normals, and whether all are near them."""
     net = normals.reshape(-1, 9, 3)
     lengths = np.linalg.norm(net, axis=2, keepdims=True)
     directions = np.divide(net, lengths, out=np.zeros_like(net), where=lengths > 0.0)
@@ -201,10 +202,10 @@ def _near_mean(normals: Array) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def _cut(normals: Array) -> tuple[Array, NDArray[np.intp]]:
-    """Cut triangles into smaller ones; also returns the index of each one's original.
+    """Cut triangles into smaller ones; also return the index of the original of each.
 
-    A triangle is cut into four, or, at a singular corner where the normals turn by more than 60
-    degrees, into two from that corner: smaller triangles there turn as much.
+    A triangle is cut into four. At a singular corner where the normals turn by more than 60
+    degrees, it is cut into two from that corner: smaller triangles there turn as much.
     """
     whole = np.ones(len(normals), dtype=bool)
     parts, which = [], []
@@ -227,7 +228,7 @@ def _cut(normals: Array) -> tuple[Array, NDArray[np.intp]]:
 
 
 def _has_short_end(arcs: Array) -> NDArray[np.bool_]:
-    """Return which arcs begin or end near a singular point, but not in it."""
+    """Return which arcs begin or end near a singular point, but not at it."""
     lengths = np.linalg.norm(arcs, axis=2)
     ends = np.where(lengths[:, ::2] > 0.0, lengths[:, ::2], np.inf)
     return ends.min(axis=1) < SHORT * lengths.max(axis=1)

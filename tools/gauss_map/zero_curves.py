@@ -1,4 +1,4 @@
-"""The curves K = 0: contour lines of the signs of K, with exact vertices, joined where they cross.
+"""The curves K = 0: contour lines of the signs of K with exact vertices, joined at crossings.
 
 The signs at the nodes of a grid do not show which branches belong together at a crossing, which is
 a saddle of K. A block of cells around each saddle is left out, and the curves that end at the block
@@ -16,7 +16,7 @@ from .sign_grid import SignGrid
 
 __all__ = ["zero_curves"]
 
-# Accuracy of a vertex relative to the side of a cell on which it lies.
+# Accuracy of a vertex, relative to the side of a cell on which it lies.
 ACCURACY = 1e-14
 # A vertex within this distance of a node, relative to the side, is the node.
 AT_NODE = 1e-9
@@ -40,8 +40,8 @@ def zero_curves(grid: SignGrid, saddles: Array) -> list[Array]:
 def _hide_block(grid: SignGrid, values: Array, saddle: Array) -> int:
     """Hide the values inside the smallest block around a saddle that at least four curves enter.
 
-    Returns half of its size in cells, 0 if there is none. Two curves suffice for a block that is
-    clipped by the boundary of the domain: the ends of the others may be outside.
+    Returns half of its size in cells, 0 if there is none. Two curves suffice for a block that the
+    boundary of the domain clips: the ends of the others may be outside.
     """
     cell = np.ravel(grid.cells_at(saddle[None]))
     shape, wraps = np.array(values.shape), grid.curvature.wraps
@@ -66,7 +66,7 @@ def _hide_block(grid: SignGrid, values: Array, saddle: Array) -> int:
 
 
 def _to_saddles(grid: SignGrid, line: Array, blocks: list[tuple[Array, int]]) -> Array:
-    """Continue the ends of a line at the boundary of a block to its saddle."""
+    """Continue the ends of a line at the boundary of a block to the saddle in it."""
     (low, high), period = grid.curvature.ends, grid.curvature.extent
     start, end = (np.empty((0, 2)) for _ in range(2))
     for saddle, half in blocks:
@@ -82,8 +82,8 @@ def _to_saddles(grid: SignGrid, line: Array, blocks: list[tuple[Array, int]]) ->
 def _zeros_between(grid: SignGrid, low: Indices, high: Indices) -> Array:
     """Return the zeros (k, 2) of K between nodes (k, 2) of different sign.
 
-    The sign of a node where K is zero up to its error was taken from its neighbours; K gets that
-    sign here, too.
+    The sign of a node where K is zero up to its error comes from its neighbours, here as in the
+    grid.
     """
     from scipy.optimize.elementwise import find_root
 

@@ -24,9 +24,8 @@ Flags = NDArray[np.bool_]
 STEPS_A_CELL = 8
 # The distance from the midpoint of a segment, on both sides, at which the trim is tested.
 ASIDE = 1e-7
-# The boundary of a predicate is searched on a grid with this number of nodes for each cell, of
-# FEWEST to MOST nodes, then by bisection; midpoints of its segments are refined likewise, in
-# several passes.
+# The boundary of a predicate is searched on a grid with this number of nodes per cell, of FEWEST to
+# MOST nodes, then by bisection. Midpoints of its segments are refined likewise, in several passes.
 NODES_A_CELL, FEWEST, MOST, BISECTIONS, PASSES = 4, 64, 1024, 40, 5
 MOST_POINTS = 50_000
 
@@ -77,7 +76,7 @@ def _dense(line: Array, spline: Spline) -> Array:
 
 
 def _with_crossings(line: Array, boundary: Boundary) -> Array:
-    """Insert the points at which a polyline crosses open sides, exactly on them."""
+    """Insert the points at which a polyline crosses open sides, exactly on these."""
     for axis, ends in enumerate(boundary):
         if ends[0] in ("periodic", "mirrored"):
             continue
@@ -128,7 +127,7 @@ def _pieces(line: Array, kept: Flags) -> list[Array]:
 
 
 def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
-    """Yield the edges between patches with and without missing points."""
+    """Yield the edges between patches that depend on missing points and patches that do not."""
     m, n = part.cells
     known = part.patches.reshape(m, n, 4)
     closes = [ends[0] == "periodic" for ends in boundary]
@@ -162,7 +161,7 @@ def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
 
 
 def _changes(part: TrimPart, spline: Spline) -> Iterator[Segment]:
-    """Yield the lines on which a condition changes: between nodes of a grid, by bisection."""
+    """Yield the lines on which a condition changes, between nodes of a grid, by bisection."""
     from contourpy import LineType, contour_generator
 
     counts = np.clip(NODES_A_CELL * np.array(spline.cells), FEWEST, MOST)

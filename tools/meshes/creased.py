@@ -14,15 +14,15 @@ from .mesh import Mesh
 
 __all__ = ["CreasedMesh", "mean_normals", "unit"]
 
-# The decimal places to which equal normals at a point agree.
+# Normals at a point are equal if they agree to this number of decimals.
 DIGITS = 9
-# Fields with defaults only because those of `Mesh` have some.
+# These fields have defaults only because fields of `Mesh` have.
 _GIVEN: Any = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CreasedMesh(Mesh):
-    """A mesh of faces that meet at creases: those of a part, or the patches of a spline of nets.
+    """A mesh of faces that meet at creases: faces of a part, or patches of a spline of nets.
 
     It has all attributes and methods of a `Mesh`. `normals` are the means over the faces around a
     vertex, `uv` the parameters on one of these faces, and `sample_index` is −1: no vertex is a

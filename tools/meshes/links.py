@@ -13,7 +13,7 @@ Indices = NDArray[np.int64]
 def edge_numbers(triangles: Indices, count: int) -> Indices:
     """Return numbers (k, 3) that identify the edges opposite to the corners of triangles.
 
-    They are first · count + second, where the first vertex is the smaller one.
+    They are first · count + second, where the first vertex is the one with the smaller index.
     """
     one, other = triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]
     return np.minimum(one, other) * count + np.maximum(one, other)
@@ -22,7 +22,7 @@ def edge_numbers(triangles: Indices, count: int) -> Indices:
 def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:
     """Return the triangles (k, 3) opposite to the corners, −1 for none, and whether all exist.
 
-    That is so if each edge is in two triangles, or in one between two vertices where the surface
+    All exist if each edge is in two triangles, or in one between two vertices where the surface
     `may_end`. Triangles at an edge of three or more are not neighbours.
     """
     numbers = edge_numbers(triangles, len(may_end)).ravel()

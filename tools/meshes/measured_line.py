@@ -1,4 +1,4 @@
-"""A polyline of the boundary, with vertices as far apart as the samples near it."""
+"""A polyline of the boundary, with vertices spaced like the samples near it."""
 
 from __future__ import annotations
 
@@ -24,19 +24,20 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-# The largest step for measuring a polyline, relative to the spacing, and the largest number of
-# steps.
+# The largest step in the measurement of a polyline, relative to the spacing, and the largest number
+# of steps.
 FINE, MOST_STEPS = 0.125, 200_000
-# The smallest step, relative to the mean one, and the smallest measure of a step.
+# The smallest spacing, relative to the mean step, and the smallest measure of a step.
 SHORTEST, LEAST = 1e-3, 1e-12
-# A polyline has a corner where it turns by more than this within a spacing.
+# A polyline has a corner where it turns by more than this within one spacing.
 CORNER = math.radians(30.0)
 # A sample closer to the boundary than this, relative to the spacing there, gets a vertex opposite
-# to it: no triangle of a sample and two boundary vertices must be flat.
+# to it, so that no triangle of a sample and two boundary vertices is flat.
 CLOSE = 0.25
-# The sample must also be closer than this in the domain: another part of the surface may pass by.
+# The sample must also be closer than this in the domain: in space, another part of the surface may
+# be near.
 DEEPEST = 0.125
-# Measures that differ by less belong to one vertex.
+# Measures that differ by less than this belong to one vertex.
 EQUAL = 1e-6
 
 
@@ -83,8 +84,9 @@ class MeasuredLine:
     ) -> None:
         """Move vertices to the feet of close samples; samples within `on_line` become vertices.
 
-        `samples` are the positions and the indices of the samples in the tree; with `lengths` (2,),
-        of the surface along u and v, feet are perpendicular; `on_line` is relative to the spacing.
+        `samples` are the positions and the indices of the samples in the tree. Feet are
+        perpendicular if the domain is scaled by `lengths` (2,), those of the surface along u and v.
+        `on_line` is relative to the spacing.
         """
         reach = CLOSE * self.spacings
         distance, nearest = tree_of(self.points).query(
@@ -93,7 +95,7 @@ class MeasuredLine:
         found = np.asarray(nearest)
         near = np.flatnonzero(found < len(self.points))
         near = near[distance[near] < reach[found[near]]]
-        near = near[np.argsort(-distance[near], kind="stable")]  # the closest one comes last
+        near = near[np.argsort(-distance[near], kind="stable")]  # the closest sample comes last
         around = self.positions[found[near]]
         positions, numbers = samples
         places = wrapped(positions[near], boundary, around)
@@ -106,7 +108,7 @@ class MeasuredLine:
         self._take(at, numbers[near], distance <= on_line * self.spacings[found[near]])
 
     def _take(self, at: Array, numbers: Indices, is_on: Flags) -> None:
-        """Make samples on the line vertices, replacing other vertices near them."""
+        """Make samples on the line vertices, in place of other vertices near them."""
         for t, number in zip(at[is_on].tolist(), numbers[is_on].tolist(), strict=True):
             apart = np.abs(self.t - t)
             ends = np.flatnonzero(self.fixed & (apart <= EQUAL))

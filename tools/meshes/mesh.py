@@ -47,8 +47,8 @@ class Mesh(Methods):
     name : str
         Label of the surface.
     sides : (T, 3) int64 array
-        1, or −1 where the normal at a corner and that at the first corner are on opposite sides: on
-        a one-sided surface normals change sides somewhere. By default 1.
+        1, or −1 where the normals at a corner and at the first corner are on opposite sides: on a
+        one-sided surface normals change sides somewhere. By default 1.
     left_out : int
         The number of samples that are no vertices: too close to others or, with an `angle`, in no
         remaining triangle.
@@ -257,7 +257,7 @@ def tangents_of(points: NDArray[np.float64], triangles: NDArray[np.int64]) -> ND
 
 
 def scaled(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return points (k, 3) centred and scaled to a size of about 1: products do not overflow."""
+    """Return points (k, 3) centred and scaled to about 1, so that products do not overflow."""
     around, scale = centred(points)
     return around * scale
 

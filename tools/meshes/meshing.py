@@ -32,7 +32,7 @@ __all__ = ["mesh_of", "triangulated"]
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-WHOLE = 180.0  # degrees: no triangle deviates by more
+WHOLE = 180.0  # degrees: no triangle deviates more
 
 
 def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) -> Mesh:
@@ -60,7 +60,7 @@ def _checked_angle(angle: object) -> float:
 
 
 def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -> Triangulated:
-    """Triangulate samples; InputError if `must_be_whole` and the whole surface is not covered."""
+    """Triangulate samples; InputError if `must_be_whole` and part of the surface is not covered."""
     boundary = boundary_of(spline)
     tell("triangulating")
     vertices = Vertices.of(samples, spline, boundary)
@@ -87,7 +87,7 @@ def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -
 
 
 def _with_points_as_poles(spline: Spline, boundary: Boundary) -> Boundary:
-    """Return the boundary conditions, where every side that is one point is a pole."""
+    """Return the boundary conditions, with every side that is one point as a pole."""
     ends: list[list[BoundaryCondition]] = [[*kinds] for kinds in boundary]
     for axis, place in collapsed_sides(spline):
         ends[axis][place] = "pole"
@@ -141,7 +141,7 @@ def _lengths(spline: Spline) -> Array:
 def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[Array, Array, Array]:
     """Return parameters, points and unit normals of vertices; NaN for missing normals.
 
-    Added points of an offset are on the original surface.
+    Added points of an offset are points of the original surface.
     """
     uv = uv_at(spline, vertices.positions)
     points, normals = np.empty((2, len(uv), 3))
@@ -187,7 +187,7 @@ def _at_apexes(
 def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:
     """Set missing normals of vertices, as at poles, to the mean of the normals around them.
 
-    It is 0 if these are missing, too.
+    It is 0 if these normals are missing, too.
     """
     missing = np.asarray(~np.isfinite(normals).all(axis=1))
     normals[missing] = 0.0

@@ -109,7 +109,7 @@ Links = tuple[Indices, Indices]
 
 
 def _links(spline: NetSpline, inside: Parts) -> tuple[Links, Links]:
-    """Return pairs of points of patches, by index L k + l: equal normals, and equal positions."""
+    """Return pairs of points of patches, by index L k + l: of equal normals, of equal positions."""
     topology, size = spline.topology, len(inside.places)
     first = size * np.arange(spline.patches)[:, None]
     edges = (first[:, None] + inside.edges).reshape(3 * spline.patches, -1)
@@ -131,7 +131,7 @@ def _links(spline: NetSpline, inside: Parts) -> tuple[Links, Links]:
 def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> Array:
     """Return the unit normals (L T, 3) of patches at parameters; linked points share one.
 
-    Where all patches around a point are singular they share one only if their normals agree.
+    If all patches around a point are singular, they share a normal only if their normals agree.
     """
     N, singular = spline.normals_in_patches(patches, uv)
     own = unit(N)

@@ -30,15 +30,15 @@ Array = NDArray[np.float64]
 
 # A position within this distance of an open side or a pole, relative to the domain, lies on it.
 ON_SIDE = 1e-9
-# The spacing of points on a boundary follows from the distance of the k-th nearest sample, with
+# The spacing of points on a boundary follows from the distance to the k-th nearest sample, with
 # this k.
 NEAREST = 4
 
 
 def wrapped(positions: Array, boundary: Boundary, around: Array | None = None) -> Array:
-    """Return positions (..., 2) shifted across seams into the unit square.
+    """Return positions (..., 2), shifted across seams into the unit square.
 
-    With positions `around`, they are shifted to be nearest to these.
+    If `around` is given, they are shifted to be nearest to these positions instead.
     """
     positions = positions.copy()
     for axis, (end, _) in enumerate(boundary):
@@ -64,7 +64,7 @@ def points_at(spline: Spline, positions: Array) -> Array:
 
 
 def spacings_at(tree: KDTree, points: Array) -> Array:
-    """Return spacings (k,) of vertices at points (k, 3), from the distances of nearby samples."""
+    """Return spacings (k,) of vertices at points (k, 3), from the distances to nearby samples."""
     nearest = min(NEAREST, tree.n)
     distances = tree.query(points, k=nearest, workers=-1)[0].reshape(len(points), -1)[:, -1]
     return distances * python_function(border_spacing)(1.0, nearest)
@@ -77,7 +77,7 @@ def on_side(axis: int, place: float, t: Array) -> Array:
 
 
 def boundary_of(spline: Spline) -> Boundary:
-    """Return the boundary conditions of a spline; an end that closes around a point is a pole."""
+    """Return the boundary conditions of a spline; a side that closes around a point is a pole."""
     found: list[BoundaryPair] = []
     for axis, ends in enumerate(spline.boundary):
         closes = spline.boundary[1 - axis][0] == "periodic"

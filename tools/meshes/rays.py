@@ -1,4 +1,4 @@
-"""Unobstructed and visible samples: rays that are tested against a mesh."""
+"""Unobstructed and visible samples: rays tested against a mesh."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ PURPOSE = "a test with rays"
 # Rays begin this far below the surface, relative to the obstacle's size, to hit an obstacle in
 # contact.
 BELOW = 1e-9
-RAYS = 4096  # traced at once
-# Rays to an eye begin this many times as far from the surface as points of it are from the mesh.
+RAYS = 4096  # rays that are traced at once
+# Rays to an eye begin this many times as far from the surface as its points are from the mesh.
 TIMES_AWAY = 2.0
 
 
@@ -33,8 +33,8 @@ def check_rays() -> None:
 def unobstructed(points: Array, normals: Array, distance: float, obstacle: object) -> Flags:
     """Return a mask (N,) of rays of this length that do not enter the obstacle, a closed mesh.
 
-    A ray may leave the obstacle: through the surface on which it begins, whose mesh has chords on
-    either side of the surface.
+    A ray may leave the obstacle through the surface on which it begins, since chords of the mesh
+    lie on either side of the surface.
     """
     solid, middle, scale = _solid(obstacle, closed=True)
     points, distance = (points - middle) * scale, distance * scale
@@ -50,9 +50,9 @@ def unobstructed(points: Array, normals: Array, distance: float, obstacle: objec
 def visible(points: Array, normals: Array, to_eye: Array, surface: Mesh) -> Flags:
     """Return a mask (N,) of points of a silhouette that are seen, by a mesh of the surface.
 
-    `to_eye` (N, 3) are vectors to the eye, not shorter than the way out of the mesh. Rays begin on
-    either side of the surface, as far from it as the mesh is: a surface that does not hide the
-    point is on the other side of one of them.
+    `to_eye` (N, 3) are vectors to the eye, at least long enough to leave the mesh. Rays begin on
+    both sides of the surface, as far from it as the mesh is. A point is seen if one of its rays is
+    free: the surface around it does not count as hiding it.
     """
     trimesh = from_extra("trimesh", "rays", PURPOSE)
     solid, middle, scale = _solid(surface, closed=False)
@@ -85,7 +85,8 @@ def _solid(obstacle: object, closed: bool) -> tuple[Any, Array, float]:
     """Return a mesh of trimesh that traces rays in double precision, its centre and its scale.
 
     Raises InputError if it is open and should be closed. trimesh rounds coordinates to some
-    decimals, and merges equal points: it is moved to the origin and scaled to a size of about 1.
+    decimals and merges equal points: so the mesh is moved to the origin and scaled to a size of
+    about 1.
     """
     trimesh = from_extra("trimesh", "rays", PURPOSE)
     corners: Any = obstacle

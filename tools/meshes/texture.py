@@ -30,7 +30,7 @@ class Texture(NamedTuple):
 def corner_places(
     uv: Array, triangles: Indices, domain: Domain | None, boundary: Boundary | None
 ) -> Array:
-    """Return texture coordinates (T, 3, 2) of corners: parameters, the domain scaled to 1 × 1.
+    """Return texture coordinates (T, 3, 2) of corners: parameters, with the domain scaled to 1 × 1.
 
     Across a seam they continue beyond 1. A pole gets the mean coordinate of the two other corners.
     Without a domain they are the parameters.

@@ -37,20 +37,20 @@ Prefer = Literal["normals", "shape"]
 KINDS = ("shape", "normals")
 
 # For better shapes a triangle may deviate by at most this angle (degrees) from a normal at a
-# corner, unless it did by more before.
+# corner, unless it already deviates more.
 LARGEST_DEVIATION = 30.0
 # Triangles with smaller angles (degrees) than these are removed, one bound after the other, until
 # at most the share PART of all triangles has an angle below ENOUGH.
 SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
-# A bound for which more than this share of the samples would be left out is not tried: where
-# distances of samples double from one to the next, no triangles are better, and collapses go on.
+# A bound is not tried if more than this share of the samples would be left out: where distances of
+# samples double from one to the next, no triangles are better, and collapses would go on.
 MOST_LOST = 0.1
 # The arrays that flips and collapses change.
 CHANGED = ("triangles", "sides", "neighbours")
-# The largest number of rounds for each bound: a collapse may allow another one.
+# The largest number of rounds for each bound: a collapse may make another one possible.
 ROUNDS = 4
-# No vertex in more triangles than this is moved.
+# A vertex in more triangles than this is not moved.
 MOST_AROUND = 256
 
 
@@ -77,7 +77,7 @@ class Triangulated:
     boundary: Boundary
 
     def cosines(self) -> Array:
-        """Return the smallest cosine of each triangle and the normals at its corners."""
+        """Return the smallest cosine of each triangle with the normals at its corners."""
         return cosines_of(self.points, self.normals, self.triangles, self.sides)
 
     def tangents(self) -> Array:
@@ -106,7 +106,7 @@ class Triangulated:
         return replace(self, triangles=triangles, sides=self.sides[chosen], neighbours=adjacent)
 
     def chosen(self, which: NDArray[np.bool_]) -> Triangulated:
-        """Return the chosen triangles; the others are neighbours of none of them."""
+        """Return the chosen triangles; the others no longer count as neighbours."""
         number = np.cumsum(which) - 1
         adjacent = self.neighbours[which]
         adjacent = np.where(adjacent >= 0, number[adjacent], -1)
@@ -115,7 +115,7 @@ class Triangulated:
         )
 
     def mesh(self, samples: int) -> Mesh:
-        """Return the mesh, from the original number of samples."""
+        """Return the mesh, made from `samples` samples."""
         triangles, sides = self.triangles, self.sides
         reverse = sides[:, :1] < 0
         triangles, sides = (
@@ -157,10 +157,10 @@ def checked_prefer(prefer: object) -> Prefer:
 def improved(mesh: Triangulated, prefer: Prefer, angle: float) -> Triangulated:
     """Return a mesh with better triangles, by flips and, where these do not suffice, collapses.
 
-    For "normals", edges are collapsed only to remove triangles without area, and so are edges at
-    samples on a graded grid, whose cells may be long: there, other vertices are removed only for
-    angles below the smallest bound. No flip makes a triangle deviate from normals by more than
-    `angle` degrees.
+    For "normals", edges are collapsed only to remove triangles without area. The same holds for
+    edges at samples on a graded grid, whose cells may be long; on such a grid, other vertices are
+    removed only for angles below the smallest bound. No flip makes a triangle deviate from normals
+    by more than `angle` degrees.
     """
     least = math.cos(math.radians(min(angle, LARGEST_DEVIATION)))
     flip_edges(mesh, prefer, least)
@@ -187,7 +187,7 @@ def improved(mesh: Triangulated, prefer: Prefer, angle: float) -> Triangulated:
 def flip_edges(mesh: Triangulated, prefer: Prefer, least: float = 1.0) -> int:
     """Flip edges until no flip improves triangles; return the number of flips.
 
-    For "shape" cosines between triangles and normals may fall, down to `least`.
+    For "shape", cosines between triangles and normals may fall, but not below `least`.
     """
     by_shape = prefer == "shape"
     waiting = np.ones(len(mesh.triangles), dtype=np.bool_)

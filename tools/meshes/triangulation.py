@@ -2,8 +2,8 @@
 
 Qhull triangulates points of a surface without seams. A domain that is periodic in one parameter is
 mapped to a sphere, a pole to one point and an open end to a circle of latitude; the convex hull is
-the Delaunay triangulation of the sphere, and its plane faces inside these circles are left out. A
-Möbius band is half of a band that is symmetric about the centre. A domain that is periodic in both
+the Delaunay triangulation of the sphere, without its plane faces inside these circles. A Möbius
+band is half of a band that is symmetric about the centre. A domain that is periodic in both
 parameters is continued periodically in the plane, and one copy of each triangle is taken. An open
 domain is a rectangle.
 """
@@ -30,28 +30,28 @@ Indices = NDArray[np.int64]
 # Triangles (k, 3), and for their corners (k, 3) 1, or −1 where the corner is a mirrored copy.
 Triangulation = tuple[Indices, Indices]
 
-# The latitude of an open end: the lowest, that of an end opposite to a pole, and the highest.
+# The latitudes of an open end: the lowest, that of an end opposite to a pole, and the highest.
 LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
-# Random displacements of points, relative to their mean distance; the second is for a triangulation
-# that fails. Without them, four or more points of a lattice on one circle would be triangulated
+# Random displacements of points, relative to their mean distance, of which the second is for a
+# second attempt. Without them, four or more points of a lattice on one circle would be triangulated
 # differently in their copies. Without copies the first attempt has no displacement.
 DISPLACEMENTS = (1e-6, 1e-3)
 # Free points keep this distance from open sides.
 INSIDE = 5e-10
-# The height, relative to the side, by which sides of a rectangle are curved outwards: their points
-# become extreme.
+# The height, relative to the side, by which sides of a rectangle are curved outwards, so that their
+# points become extreme.
 BULGE = 0.05
-# A domain that is periodic in both parameters is continued by this number of mean distances of
-# points first, then by these fractions of a period.
+# A domain that is periodic in both parameters is continued first by this number of mean distances
+# of points, then by these fractions of a period.
 STEPS, MARGINS = (10.0, 30.0), (0.25, 1.0)
-# It is cut into strips of about this number of points, for threads.
+# The domain is cut into strips of about this number of points, for threads.
 STRIP = 25_000
 
 
 def triangulations(
     positions: Array, is_free: NDArray[np.bool_], boundary: Boundary, lengths: Array
 ) -> Iterator[Triangulation]:
-    """Yield triangulations of positions (k, 2) in the unit square: the next is for a failure.
+    """Yield triangulations of positions (k, 2) in the unit square; use the next if one fails.
 
     Positions that are not free lie on an open side or at a pole, and are not displaced. `boundary`
     are the boundary conditions, `lengths` those of the surface along u and v. Triangles run
@@ -155,8 +155,8 @@ def _one_of_each(
 ) -> Triangulation:
     """Return one copy of each triangle: the one whose corner of the smallest index is no copy.
 
-    `original` are the indices of the originals of points, of which the first `count` are no copies.
-    A triangle with two copies of one point is left out.
+    Point k is a copy of `original[k]`; the first `count` points are no copies. A triangle with two
+    copies of one point is left out.
     """
     a, b, c = (original[triangles[:, k]] for k in range(3))
     first = np.where(a < b, triangles[:, 0], triangles[:, 1])

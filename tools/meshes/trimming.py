@@ -1,7 +1,7 @@
 """Meshes of trimmed surfaces: vertices on the boundary, and triangles inside.
 
-The whole domain is triangulated, with further points outside of the boundary that fill it; then the
-triangles outside are left out. Points are added to the boundary until it consists of edges.
+The whole domain is triangulated, with additional points that fill it outside of the boundary; then
+the triangles outside are left out. Points are added to the boundary until it consists of edges.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ Triangulate = Callable[[Vertices], tuple[Indices, Indices, Indices]]
 # A sample closer than this, relative to the spacing, lies on the boundary: chords are as close to
 # curves.
 ON_LINE = 5e-3
-# Outside there is about one point for each vertex, between these numbers; they keep the distance
-# AWAY from the boundary, in gaps between its vertices. Added vertices on open sides keep ASIDE.
+# Outside there is about one point per vertex, between these numbers. They keep the distance AWAY
+# from the boundary, in gaps between its vertices; added vertices on open sides keep ASIDE.
 FEWEST, MOST, AWAY, ASIDE = 400, 4000, 0.7, 0.3
 # The largest number of times that points are added to the boundary.
 ROUNDS = 8
@@ -43,9 +43,9 @@ def trimmed_triangles(
 ) -> tuple[Vertices, Indices, Indices, Indices, bool]:
     """Return vertices and triangles inside the trim, sides, neighbours, and whether complete.
 
-    Complete means that the triangles end only at the boundary of the surface. `vertices` are those
-    of the whole domain, `points` those of the samples, `lengths` (2,) those of the surface along u
-    and v; `triangulate` returns the same as `_triangles` of `meshing.py`.
+    Complete means that the triangles end only at the boundary of the surface. `vertices` cover the
+    whole domain, `points` are those of the samples, `lengths` (2,) those of the surface along u and
+    v; `triangulate` is like `_triangles` of `meshing.py`.
     """
     own = vertices.chosen(vertices.sample >= 0)
     tree = tree_of(points[own.sample] * spline.scale)
@@ -102,7 +102,7 @@ class _Trim:
         return inner, Vertices.joined([outside, filling])
 
     def border(self) -> Vertices:
-        """Return the vertices of all lines, in order; those on open sides are not displaced."""
+        """Return the vertices of all lines, in order; vertices on open sides are not displaced."""
         ends = [len(x.t) - x.closed for x in self.lines]
         found = [x.at_vertices()[:end] for x, end in zip(self.lines, ends, strict=True)]
         sample = [x.sample[:end] for x, end in zip(self.lines, ends, strict=True)]
@@ -116,7 +116,7 @@ class _Trim:
     def refine(self, triangles: Indices, first: int, count: int) -> bool:
         """Add boundary points where the boundary has no edges; return True if any was added.
 
-        `first` is the index of its first vertex, `count` the number of all vertices.
+        The boundary vertices start at index `first`, `count` is the number of all vertices.
         """
         edges = np.unique(edge_numbers(triangles, count))
         added = False
@@ -132,9 +132,9 @@ class _Trim:
         return added
 
     def is_inside(self, whole: Vertices, triangles: Indices, possible: Flags, sure: Flags) -> Flags:
-        """Return a mask of the triangles inside, of those whose vertices are all `possible`.
+        """Return a mask of the triangles inside; all their vertices must be `possible`.
 
-        Triangles with a `sure` vertex are inside, and others if their centroids are.
+        Triangles with a `sure` vertex are inside, the others if their centroids are.
         """
         kept = np.asarray(possible[triangles].all(axis=1))
         unsure = np.flatnonzero(kept & ~sure[triangles].any(axis=1))

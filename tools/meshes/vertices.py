@@ -32,8 +32,8 @@ Indices = NDArray[np.int64]
 STEPS_A_CELL = 16
 # A sample closer to an open side than this, relative to the spacing, lies on it.
 ON_LINE = 1e-6
-# Of samples closer than this, relative to their mean distance in the domain, only the first one is
-# a vertex: triangulations displace points by a tenth of it.
+# Of samples closer to each other than this, relative to their mean distance in the domain, only the
+# first one is a vertex: triangulations displace points by a tenth of it.
 NEARLY_EQUAL = 1e-5
 NEEDED = ("points", "normals", "uv")
 
@@ -83,7 +83,7 @@ class Vertices:
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
     def without(self, sample: Indices) -> Vertices:
-        """Return these vertices without some samples."""
+        """Return these vertices without the given samples."""
         return self.chosen(~np.isin(self.sample, sample))
 
     def chosen(self, kept: NDArray[np.bool_]) -> Vertices:
@@ -113,8 +113,8 @@ class Vertices:
 def check_fields(samples: Samples) -> None:
     """Raise MissingFieldError unless samples have the fields that a mesh needs.
 
-    Those on a graded grid also need its lines: its cells may be long, and samples that are close to
-    others in one direction are not superfluous.
+    Samples on a graded grid also need its lines: its cells may be long, so that samples close to
+    others in one direction are needed.
     """
     needed = NEEDED + (GRID_NAMES if samples.report.density == "aligned" else ())
     if lacking := [name for name in needed if name not in samples.fields]:
@@ -122,7 +122,7 @@ def check_fields(samples: Samples) -> None:
 
 
 def before_offset(samples: Samples) -> Array:
-    """Return the points (N, 3) of samples in float64, of an offset those of its surface."""
+    """Return the points (N, 3) of samples in float64; for an offset, those before it."""
     points = samples.points.astype(np.float64)
     if samples.offset_of is None:
         return points
@@ -130,7 +130,7 @@ def before_offset(samples: Samples) -> Array:
 
 
 def _unique(positions: Array, boundary: Boundary) -> Array:
-    """Return positions made equal where points of the surface are: on seams and at poles."""
+    """Return positions, made equal where points of the surface are equal: on seams and at poles."""
     unique = np.ascontiguousarray(positions).copy()
     for axis, place in np.ndindex(2, 2):
         if boundary[axis][place] == "pole":

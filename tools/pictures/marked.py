@@ -15,7 +15,7 @@ BETWEEN = np.array([0.6, 0.35, 0.8])  # the arrow of the normal is then seen fro
 
 
 class Marked(NamedTuple):
-    """A prescribed normal (3,), its samples, and which of these are visible, as booleans (N,)."""
+    """A prescribed normal (3,), its samples, and a mask (N,) of the visible ones."""
 
     normal: NDArray[np.float64]
     samples: NDArray[np.bool_]
@@ -34,7 +34,7 @@ def marked(
 ) -> Marked | None:
     """Return a normal with many visible samples, or None if no visible sample is at a normal.
 
-    Of the normals with at least as many visible samples as the mean, it is the one nearest to a
+    Among the normals with at least as many visible samples as the mean, it is the one nearest to a
     direction between the rows of `view`: right, up, and towards the viewer.
     """
     index = samples.normal_index

@@ -79,9 +79,8 @@ def plot(
     turned towards their mean if they are concentrated. On the right are the visible samples in
     colour; those that fill gaps are smaller, and their normals have another colour. One prescribed
     normal and its samples are marked. In the middle is the support function at the prescribed
-    normals, if it has at most two branches: one for K > 0 and one for K < 0. Heights of a surface
-    that are very small or large relative to its width are rescaled, and the label of the axis gives
-    the factor.
+    normals, if it has at most two branches: one for K > 0 and one for K < 0. If a surface is very
+    flat or very high, its heights are rescaled, and the label of the axis gives the factor.
 
     Parameters
     ----------

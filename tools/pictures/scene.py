@@ -43,13 +43,14 @@ MESH, MOST_MESH = 112, 224  # quadrangles along u and v: the number of cells, wi
 ISOLINES = 16  # parameter lines along u and v
 # A surface hides a sample if it is nearer to the viewer by this fraction of its diameter.
 HIDING = 0.01
-# The number of parts of the diameter, of which one is the longest side of divided triangles of a
-# part; the number of pixels along each side for visibility; and the number of triangles at a time.
+# For a part: the diameter over the longest side of divided triangles; the number of pixels along
+# each side for visibility; and the number of triangles at a time.
 PIECES, PIXELS, AT_ONCE = 40, 400, 4096
-# A ratio of height to width below LOW or above HIGH is changed to about the second number.
+# A ratio of height to width below LOW or above HIGH is changed to about LOW_WANTED or HIGH_WANTED.
 LOW, LOW_WANTED = 0.1, 0.25
 HIGH, HIGH_WANTED = 10.0, 2.0
-# The number of grid lines across a plane, across other faces, and across those of parts with many.
+# The number of grid lines across a plane, across other faces, and across faces of parts with many
+# faces.
 FLAT, CURVED, SMALL, MANY = 2, 40, 12, 60
 SLIVER = 1e-9  # a triangle without an area, relative to the rectangle of parameters
 
@@ -77,7 +78,7 @@ class Scene:
     faces: NDArray[np.int64] | None = None
 
     def seen(self, points: Array) -> Array:
-        """Return points (..., 3) as right, up, and nearness to the viewer."""
+        """Return points (..., 3) as right, up, and height towards the viewer."""
         return (points * [1.0, 1.0, self.factor]) @ self.view.T
 
     @cached_property
@@ -107,7 +108,7 @@ class Scene:
         seen = self.visible(np.concatenate(self.lines))
         ends = np.cumsum([len(line) for line in self.lines])
         segments = np.concatenate([np.stack([x[:-1], x[1:]], axis=1) for x in self.lines])
-        # A segment begins at each point but the last one of each line.
+        # Each point but the last one of each line begins a segment.
         first = np.delete(np.arange(len(seen)), ends - 1)
         return segments[seen[first] & seen[first + 1]]
 
@@ -120,8 +121,8 @@ class Scene:
     def in_layers(self) -> list[Scene]:
         """Return scenes to paint in order, because Matplotlib sorts quadrangles by mean depth.
 
-        Such sorting suits the small quadrangles of a surface. Those of a part differ in size: they
-        are divided, and the hidden ones come first.
+        Sorting by depth suits the small quadrangles of a surface. The triangles of a part differ in
+        size: they are divided, and the hidden ones come first.
         """
         if self.faces is None:
             return [self]
@@ -159,7 +160,7 @@ def scene_of(surface: object, seen_from: Array | None = None, distance: float = 
     if isinstance(surface, Part):
         drawn, lines, faces = _of_part(surface)
     elif isinstance(surface, Surface | AnySpline):
-        # For several pieces one spline is drawn, which rounds the edges between them.
+        # Several pieces are drawn as one spline, which rounds the edges between them.
         (drawn, lines), faces = _of_spline(spline_of(surface, None), distance), None
     else:
         kind = type(surface).__name__
@@ -175,7 +176,7 @@ def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...
     mesh = spline.evaluate(u[:, None], v)
     if distance:
         mesh = mesh + distance * np.nan_to_num(spline.normals(u[:, None], v))
-    beside = np.pad(inside, 1)  # a segment is drawn if a quadrangle beside it is
+    beside = np.pad(inside, 1)  # a segment is drawn if a quadrangle beside it is drawn
     along_v = beside[1:, 1:-1] | beside[:-1, 1:-1]
     along_u = beside[1:-1, 1:] | beside[1:-1, :-1]
     lines = [
@@ -190,7 +191,8 @@ def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...
 def _grid_inside(spline: Spline) -> tuple[Array, Array, NDArray[np.bool_]]:
     """Return values of u and v, and which rectangles between them are inside the trim.
 
-    The grid is as fine as always where a trim leaves only a small part of the domain.
+    If a trim leaves only a small part of the domain, the grid is finer, as fine on this part as
+    usual.
     """
     counts = [min(max(MESH, count), MOST_MESH) for count in spline.cells]
     ends = np.array(spline.domain)
@@ -260,7 +262,7 @@ def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
 def _divided(loop: Array) -> Array:
     """Return a closed polygon in the unit square with more points; the first one is repeated.
 
-    Their spacing is about that of lines across a face, on all four sides of the square.
+    Their spacing is about that of grid lines across a face, on all four sides of the square.
     """
     closed = np.concatenate([loop, loop[:1]])
     lengths = np.linalg.norm(np.diff(closed, axis=0), axis=1)

@@ -25,7 +25,7 @@ RADIUS = 1.15  # in inches
 class _Kind(NamedTuple):
     """Unit vectors drawn in the same way: in a colour, with an area relative to others.
 
-    `number` is the count of normals of the kind; equal ones are drawn once.
+    `number` is the number of normals of the kind; equal ones are drawn once.
     """
 
     label: str
@@ -150,8 +150,8 @@ def view_of(
 ) -> NDArray[np.float64]:
     """Return the rows (3, 3) right, up, and towards a viewer who sees most of the normals.
 
-    The viewer is `old`, by default that of `view()`, turned towards the mean normal, the more so
-    the more the normals are concentrated.
+    The viewer is `old`, by default that of `view()`, turned towards the mean normal; the more
+    concentrated the normals are, the farther.
     """
     old = view() if old is None else old
     mean = normals.mean(axis=0)

@@ -18,7 +18,7 @@ from .scene import Scene
 
 __all__ = ["Room", "View", "draw_surface"]
 
-# Numbers from LONG on have long labels. Axes that are SHORT relative to the longest have fewer
+# Numbers from LONG on have long labels. Axes that are SHORT relative to the longest one have fewer
 # labels, FLAT ones have one.
 LONG, SHORT, FLAT = 1e5, 0.35, 0.15
 ARROWS, ARROW = 6, 0.16  # at most this many, with a length relative to the size of the surface
@@ -76,7 +76,7 @@ def _mark(
 ) -> None:
     """Mark points with their normal; only a few get arrows, and none if heights are rescaled.
 
-    Many marks have about the `size` of samples in points.
+    If there are many, marks have about the `size` of samples, in points.
     """
     few = len(points) <= ARROWS
     if few and scene.factor == 1.0:
@@ -130,7 +130,7 @@ def _frame(
         axis.labelpad = distance
         flat = extent[k] < FLAT * extent.max()
         middle = FixedLocator([limits[:, k].mean()])
-        # Labels along short axes would overlap, and so would long ones; none has an offset.
+        # Labels along short axes would overlap, as would long ones; none has an offset.
         long = np.abs(limits[:, k]).max() >= LONG or extent[k] < SHORT * extent.max()
         axis.set_major_locator(middle if flat else MaxNLocator(2 if long else 4, prune="both"))
         axis.set_major_formatter(lambda value, _: f"{value:.7g}".replace("-", "−"))

@@ -167,8 +167,8 @@ def sample(
     that the function of a surface must return the same points each time; a `GaussMap` keeps them as
     long as it exists. On other surfaces, and at normals that were not prescribed, Newton's method
     moves a sample from the spline to the point with its normal. If there is no such point nearby,
-    there is no sample; of prescribed normals, these are listed in `undecided`, too. Samples that
-    fill gaps are evaluated at their parameters.
+    there is no sample; a prescribed normal is then also listed in `undecided`. Samples that fill
+    gaps are evaluated at their parameters.
 
     **Parts and pieces.** All faces of a part, and all smooth pieces of a surface, have one target
     density and one count; angle and coverage refer to the whole. A piece has samples at normals if
@@ -183,10 +183,10 @@ def sample(
     `other_normals`. They are on both faces exactly, or, if the faces of the file do not meet, on
     the first one and as close to the other as in the file. Each edge has samples at both ends and
     at least one in between, however small the count. Between neighbours on an edge the normals of
-    each face differ by about as much as between neighbours elsewhere, or less, and gaps are no
-    wider than in flat regions. A corner has one sample, with the normals of the edge that is
-    sharpest there. Boundaries of open shells have only one face, and are not edges.
-    `Samples.weights` are 0 on edges.
+    each face differ by about as much as between neighbours elsewhere, or less. Gaps are no wider
+    than in flat regions. A corner has one sample, with the normals of the edge that is sharpest
+    there. Boundaries of open shells have only one face, and are not edges. `Samples.weights` are 0
+    on edges.
 
     The samples of a spline at a normal have Σ sign K = χ/2, for every normal of every closed
     surface, those at poles included; χ is the Euler characteristic.
@@ -253,7 +253,7 @@ def sample_and_normals(
 
 
 class Arguments(NamedTuple):
-    """The checked arguments of `sample`, but for `cells`, `on` and `fields`."""
+    """The checked arguments of `sample`, except `cells`, `on` and `fields`."""
 
     request: Request
     cells: Sequence[int] | None
@@ -269,7 +269,7 @@ class Arguments(NamedTuple):
 def _sampled(
     surface: Surface | AnySpline | Whole, given: Arguments
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return samples and the normals that were searched: here it is decided by which way."""
+    """Choose how to sample a surface; return samples and the normals that were searched."""
     density, normals = given.request.density, given.request.normals
     if isinstance(surface, Whole):
         return _of_part(surface, given)
@@ -334,7 +334,7 @@ def _filled(
     fields: tuple[str, ...],
     given: Arguments,
 ) -> tuple[Samples, NDArray[np.float64]]:
-    """Return samples for any density of all pieces of a surface, and the normals searched."""
+    """Return samples of all pieces of a surface for any density, and the normals searched."""
     request, on_surface = given.request, geometries[0].on == "surface"
     space = space_of(geometries, given.threads, target_of(request))
     cover = fill(space, request, given.progress)

@@ -168,7 +168,7 @@ class _Stream:
 
 
 def _chunk(found: Samples, start: int, total: int, listed: bool) -> Samples:
-    """Return samples at a block of the `total` normals, which are numbered from `start` on.
+    """Return samples at a block of the `total` normals, whose indices begin at `start`.
 
     Undecided normals are `listed` if they were prescribed.
     """

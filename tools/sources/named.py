@@ -59,9 +59,9 @@ class Named:
         return cls(**{x.name: known[x.name] for x in fields(cls) if x.name in known})
 
     def refuse(self, names: Iterable[str], reason: str) -> None:
-        """Raise InputError for the first of these options that is given; {} stands for the source.
+        """Raise InputError if any of these options is given; {} in the reason is the source.
 
-        The message is the name of the option and the reason why it does not apply to this source.
+        The message names the option, and says why it does not apply to this source.
         """
         for name in names:
             if name in self.given():

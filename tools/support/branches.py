@@ -122,7 +122,7 @@ def curvatures(
     normals: NDArray[np.float64], hessian: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return principal radii (k, 2), Gaussian and mean curvature at unit normals (k, 3)."""
-    scale = scales_to_one(np.abs(hessian).max(axis=(1, 2)))  # determinants then do not overflow
+    scale = scales_to_one(np.abs(hessian).max(axis=(1, 2)))  # so that determinants do not overflow
     scaled = hessian * scale[:, None, None]
     entries = Hessian(*scaled[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]].T)
     with np.errstate(all="ignore"):  # infinite curvatures and radii are valid

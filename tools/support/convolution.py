@@ -151,9 +151,9 @@ def convolve(
     Notes
     -----
     For two convex bodies whose normals point outwards the result lies on the boundary of their
-    Minkowski sum. For others it lies on the convolution surface, of which that boundary is a part:
-    other sheets lie inside the sum. A body B, moved by t, meets a body A where t lies in the sum of
-    A and −B, that is B reflected in the origin. The outward normals of −B are −n, so it is
+    Minkowski sum. For others it lies on the convolution surface; the boundary of the sum is a part
+    of it, and other sheets lie inside the sum. A body B, moved by t, meets a body A if t lies in
+    the sum of A and −B, B reflected in the origin. The outward normals of −B are −n, so it is
     ``SupportFunction.of_spline(B).scaled(-1).reversed()``.
 
     On splines a point differs from that of the surface with the same normal by up to about
@@ -215,7 +215,7 @@ def _sums(
 
 
 def _source(surface: Surface | AnySpline | SupportFunction, cells: Sequence[int] | None) -> Source:
-    """Return where branches come from: a smooth surface itself, a spline, or a support function."""
+    """Return the source of branches: a smooth surface itself, a spline, or a support function."""
     if isinstance(surface, SupportFunction):
         return surface._source
     if not isinstance(surface, Surface | AnySpline):

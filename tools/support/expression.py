@@ -111,7 +111,7 @@ def _names(normal: Sequence[Any]) -> list[str]:
     """Return the names of the components of the normal; InputError unless they are three."""
     try:
         names = [x if isinstance(x, str) else x.name for x in islice(normal, 4)]
-    except Exception:  # objects raise anything
+    except Exception:  # iteration may raise anything
         names = []
     usable = all(isinstance(x, str) and x.isidentifier() and not iskeyword(x) for x in names)
     if len(names) != 3 or len(set(names)) != 3 or not usable:

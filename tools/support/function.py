@@ -30,7 +30,7 @@ __all__ = ["SupportFunction"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SupportFunction:
-    """A support function h(n): the distance from the origin of the tangent plane with normal n.
+    """A support function h(n): the distance of the tangent plane with normal n from the origin.
 
     Make one with `of_spline`, `of_patch` or `from_sympy`. Several points of a surface may have one
     normal, each on a *branch* of h; `branches` returns all of them. The envelope operator (7) gives

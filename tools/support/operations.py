@@ -88,7 +88,7 @@ class Moved:
     distance: float = 0.0
 
     def sheets(self, normals: Vector) -> Sheets:
-        """Return the branches; radii are multiplied by s and the side, and grow by d."""
+        """Return the branches; radii are multiplied by s and the side, then increased by d."""
         R, growth = self.rotation, self.side * self.factor
         turned = normals if R is None else as_normals(normals @ R)
         sheets = self.of.sheets(self.side * turned)
@@ -139,7 +139,7 @@ def _grown(sheets: Sheets, normals: Vector, d: float) -> Sheets:
     hessian = sheets.hessian + matrices.reshape(-1, 3, 3)
     s, gaussian, mean = python_function(formulas.offset_curvature)(K, H, d)
     # Where a radius was 0, the old curvatures do not determine the new ones; where a radius becomes
-    # 0, they do so only up to the rounding of 1 + 2 H d + K d². For large surfaces K, about the
+    # 0, they do so only up to the rounding of 1 + 2 H d + K d². On large surfaces K, about the
     # square of H, underflows.
     lost = (np.maximum(np.abs(K), H * H) < np.finfo(np.float64).tiny) & (H != 0.0)
     rows = np.flatnonzero(lost | ~(np.abs(s) > CANCELLED * size_of_terms(K, H, d)))

@@ -55,8 +55,8 @@ class Source(Protocol):
         ...
 
 
-# At a pole, |x_u × x_v| is below this part of the larger of |x_u|² and |x_v|². From there, three
-# rays leave at these parts of a turn from the given point.
+# At a pole, |x_u × x_v| is below this part of the larger of |x_u|² and |x_v|². Three rays leave the
+# pole, at these parts of a turn from the given point.
 COLLAPSED, RAYS = 1e-7, (0.0, 1 / 3, 2 / 3)
 
 
@@ -73,13 +73,13 @@ class SurfaceSource:
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
         """Return all points with these normals, by normal."""
-        found = self.map._with_fit(self.map.points(normals))  # its report is that of the warning
+        found = self.map._with_fit(self.map.points(normals))  # the warning uses its report
         assert found.on_surface is not None
         self.report, self.on_surface = found.report, found.on_surface
         order = np.argsort(found.normal_index, kind="stable")
         found, self.on_surface = found[order], found.on_surface[order]
         hessian = _hessians_on_surface(self.surface, normals[found.normal_index], found.uv)
-        hessian[found.component == Component.TIP] = 0.0  # there the support function is linear
+        hessian[found.component == Component.TIP] = 0.0  # where the support function is linear
         as_one_patch = np.zeros_like(found.normal_index)
         return Sheets(
             found.normal_index, found.points, hessian, found.gaussian_curvature,
@@ -234,12 +234,12 @@ def _hessians_on_surface(
     lengths = [np.linalg.norm(x, axis=1) for x in (x_u, x_v)]
     scales = (size[0] ** 2, size[0] * size[1], size[1] ** 2)
     forms = [f * np.einsum("ij,ij->i", normals, x) for f, x in zip(scales, second, strict=True)]
-    with np.errstate(all="ignore"):  # at parabolic points radii are infinite
+    with np.errstate(all="ignore"):  # radii are infinite at parabolic points
         A, B, C = forms
         found = _matrices(A, B, C, A * C - B * B, vector(x_u), vector(x_v))
         large = np.linalg.norm(np.cross(x_u, x_v), axis=1)
     for k in np.flatnonzero(~(large > COLLAPSED * np.maximum(*lengths) ** 2)):
-        axis = int(lengths[1][k] > lengths[0][k])  # that of the rays
+        axis = int(lengths[1][k] > lengths[0][k])  # from the rays
         found[k] = _hessian_at_pole(surface, normals[k], uv[k], axis)
     return found
 

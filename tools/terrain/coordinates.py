@@ -15,9 +15,9 @@ __all__ = ["check_degrees", "grid_of", "of_arrays", "of_spacing", "of_transform"
 
 Array = NDArray[np.float64]
 
-# Distances are equal up to this relative difference, as for coordinates in single precision.
+# Distances are equal up to this relative difference, allowing for coordinates in single precision.
 EQUAL = 1e-3
-# If heights vary by more than this multiple of the extents of x and y, these are in degrees.
+# x and y are in degrees if heights vary by more than this multiple of their extents.
 TOO_STEEP = 10.0
 
 

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 
 class Raster(NamedTuple):
-    """Heights (m, n), NaN where missing, and their position according to the file.
+    """Heights (m, n), NaN where missing, and their position as given in the file.
 
     `transform` (a, b, c, d, e, f) maps a column and a row, counted from the corner of the first
     pixel, to x = a column + b row + c and y = d column + e row + f; None if the file has none.

@@ -198,7 +198,7 @@ def _surface(
     if source is None:
         check_degrees(x, y, heights, name)
     if source is not None and asked is not None and source == asked and source.is_geographic:
-        asked = None  # it is the CRS of x and y
+        asked = None  # the CRS of x and y
     system = target_crs(source, asked, x, y, name)
     if system is not None and source != system:
         x, y = projected(source, system, *grid_of(x, y), name)

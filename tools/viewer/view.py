@@ -1,4 +1,4 @@
-"""One page with the surface and its unit sphere of normals, which light up together.
+"""One page with a surface and the unit sphere of its normals, which light up together.
 
 Plotly.js draws it: its package on the registry holds a complete library for three dimensions in
 browsers in one script, which is embedded in the page (k3d needs Jupyter's widgets, and pythreejs is
@@ -40,8 +40,8 @@ SCRIPTS = (
 )  # fmt: skip
 COUNT = 5_000  # the default number of samples
 MOST = 50_000  # the most samples in a page that stays fluid
-NEIGHBOURS = 8  # for each sample, to find connected groups
-LEAST_ANGLE, MOST_ANGLE = 1.0, 20.0  # in degrees, the limits of the initial angle around a normal
+NEIGHBOURS = 8  # neighbours of each sample, for finding connected groups
+LEAST_ANGLE, MOST_ANGLE = 1.0, 20.0  # in degrees: the limits of the initial angle around a normal
 PARABOLIC_LEGEND = (
     '<span class="legend"><span class="dot" style="background:{}"></span>'
     "parabolic (K = 0)</span>"  # flat, too
@@ -51,12 +51,12 @@ HINTS = (
     "Click a place: its region and their normals light up.",
     "Click a face: its samples and their normals light up.",
 )
-# The colours of samples: elliptic, hyperbolic, parabolic ones. What lights up has darker ones.
+# The colours of elliptic, hyperbolic and parabolic samples; darker ones for what lights up.
 PALE = (SCALE[4], SCALE[2], "#b9b9b9")
-# Colours of faces without a colour in the file; neighbours seldom have the same.
+# Colours of faces without a colour in the file; neighbours seldom have the same one.
 COLOURS_OF_FACES = ("#c9d6df", "#e3d5bd", "#cfe0cf", "#dfcfdc", "#c8dcdc", "#e0d0c8", "#d3d3e3")
-# The margin around the surface, relative to its diameter: samples are drawn above it (LIFT in
-# scene.js), and points outside of the range of an axis are not drawn.
+# The margin around the surface, relative to its diameter: samples are drawn above the surface (LIFT
+# in scene.js), and points outside of the range of an axis are not drawn.
 MARGIN = 0.02
 RADIUS = 10.0  # of the initial region around a point, in per cent of the diameter
 
@@ -103,7 +103,7 @@ def page(samples: Samples, surface: Surface | AnySpline | Part | None = None) ->
         style=(here / "style.css").read_text(encoding="utf-8"),
         script="\n".join((here / f"{x}.js").read_text(encoding="utf-8") for x in SCRIPTS),
         plotly=offline.get_plotlyjs().replace("</script", "<\\/script"),
-        # A "<" in the data could end the script element.
+        # "<" in the data could end the script element.
         data=json.dumps(data, allow_nan=False).replace("<", "\\u003c"),
         surface=("Part" if data["part"] else "Surface") + _heights(scene),
         hint=HINTS[data["part"] is not None],
@@ -114,7 +114,7 @@ def page(samples: Samples, surface: Surface | AnySpline | Part | None = None) ->
 
 
 def _heights(scene: Scene) -> str:
-    """Return what is said of heights that are drawn larger or smaller than they are."""
+    """Return a sentence about heights that are drawn larger or smaller than they are."""
     if scene.factor == 1.0:
         return ""
     how = "exaggerated" if scene.factor > 1.0 else "reduced"

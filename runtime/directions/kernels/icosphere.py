@@ -1,7 +1,7 @@
 """The points of the icosphere, a refined icosahedron: their indices and unit normals.
 
-The points of frequency ν on a face are (ν − s − t, s, t): s counts its rows, t its columns. The 12
-corners come first, then the points inside the 30 edges, then those inside the 20 faces, row by row.
+The points of frequency ν on a face are (ν − s − t, s, t), in row s and column t. The 12 corners
+come first, then the points inside the 30 edges, then those inside the 20 faces, row by row.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def new_line() -> tuple[NDArray[np.int64], NDArray[np.float64]]:
 
 @inline
 def row_start(face, s, frequency):
-    """Return the index of the point (s, 0) of a face: that of (s, 1) minus one."""
+    """Return the index of the point (s, 0) of a face, that of (s, 1) minus one."""
     rows = s - 1
     inside = (frequency - 1) * (frequency - 2) >> 1
     before = rows * (frequency - 1) - (rows * (rows + 1) >> 1)
@@ -43,9 +43,9 @@ def row_start(face, s, frequency):
 def write_normals(face, frequency, places, first, count, tile):
     """Write the unit normals of points of a face to the first three rows of a tile.
 
-    They are `count` points from `first` on, and up to VECTOR − 1 more; `places` (2 STEP) holds
-    their rows and columns. Before the square root, only b φ and one sum are rounded: mirror images
-    agree bit for bit, and a point of two faces is the same on both.
+    They are `count` points from `first` on, and up to VECTOR − 1 more; `places` (2 STEP) contains
+    their rows and columns. Before the square root, only b φ and one sum are rounded, so that mirror
+    images agree bit for bit, and a point of two faces is the same on both.
     """
     long_vectors()
     a_x, b_x, a_y, b_y, a_z, b_z = line(face, 0)

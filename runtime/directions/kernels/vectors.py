@@ -20,9 +20,9 @@ __all__ = [
     "whole_vectors",
 ]
 
-# The largest number of lanes of a vectorized loop; arrays are padded by as many numbers.
+# The largest number of lanes of a vectorized loop; arrays are padded by as many entries.
 VECTOR = 16
-# The number of samples of a tile, and from one row of it to the next, with room for some more.
+# The number of samples of a tile, and the length of its rows, with room for some more.
 TILE = 64
 STEP = TILE + VECTOR
 

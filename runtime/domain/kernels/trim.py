@@ -1,14 +1,14 @@
 """Points inside closed polygons of the parameter plane, by the even-odd rule.
 
-The plane is cut into cells, and each cell has a list of the segments that may touch it. The parity
-at the corner of each cell is known; a point has the same parity, or the opposite one if an odd
-number of segments of the cell lies between it and the corner.
+The plane is cut into cells, and each cell lists the segments that may touch it. The parity at the
+corner of each cell is known; a point has the same parity, or the opposite one if the path to the
+corner crosses an odd number of segments.
 
-Every point p is displaced infinitesimally along u, and much less along v (Simulation of Simplicity,
-Edelsbrunner and Mücke 1990): no point is on a segment, or level with a vertex, and of two polygons
-with a common side exactly one contains a point of it. Comparisons with the ends of a segment are
-exact. Only inside its bounding box a rounded product decides, always the same one, so that rounding
-matters only next to a segment.
+Every point is displaced infinitesimally along u, and much less along v (Simulation of Simplicity,
+Edelsbrunner and Mücke 1990). So no point is on a segment, or level with a vertex, and exactly one
+of two polygons with a common side contains a point of it. Comparisons with the ends of a segment
+are exact. Only inside its bounding box a rounded product decides, always the same one, so that
+rounding matters only next to a segment.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ __all__ = [
 class SegmentGrid(NamedTuple):
     """Segments of polygons, sorted into the rows (along v) and columns (along u) of a grid.
 
-    segments (n, 4): the ends u, v of each, the one with the smaller v first (or the smaller u).
+    segments (n, 4): u, v of both ends, the end with the smaller v (then u) first.
     frame (6,): the corner u, v of the grid, its cells per length along u and v, and their sizes.
     starts (rows columns + 1,): segments of cell c are members[starts[c]:starts[c + 1]].
     parity (rows, columns): whether the corner u, v of the cell is inside.
@@ -62,9 +62,9 @@ def is_left(segment, u, v):
 
 @inline
 def is_right_of(segment, u, v):
-    """Return whether a segment whose v range contains that of a point is right of it (at larger u).
+    """Return whether a segment whose v range contains a point's is right of it (at larger u).
 
-    The first end of the segment is the lower one, so that the point is then left of it.
+    The first end of the segment is the lower one, so that the point is on its left.
     """
     if segment[0] > u and segment[2] > u:
         return True
@@ -75,7 +75,7 @@ def is_right_of(segment, u, v):
 
 @inline
 def is_below(segment, u, v):
-    """Return whether a segment whose u range contains that of a point is below it."""
+    """Return whether a segment whose u range contains a point's is below it."""
     if segment[3] <= v:
         return True
     if segment[1] > v:
@@ -99,7 +99,7 @@ def crosses(segment, u, v, corner_u, corner_v):
 
 @inline
 def cell_along(x, low, rate, count):
-    """Return the number of the row or column of a coordinate."""
+    """Return the index of the row or column of a coordinate."""
     return min(max(int((x - low) * rate), 0), count - 1)
 
 
@@ -143,8 +143,8 @@ class Joined(NamedTuple):
     """The cells of L sets of polygons, concatenated, and their shifts (s, 4).
 
     starts (L + 1, 6): the offsets of segments, starts, members, parities and shifts of each set,
-    and its number of rows, which equals that of its columns. `cell_starts` and `members` are
-    relative to these offsets.
+    and its number of rows, which is also that of columns. `cell_starts` and `members` are relative
+    to these offsets.
     """
 
     segments: NDArray[np.float64]
@@ -182,7 +182,7 @@ def find_inside_each(joined, owners, places, inside):
 def find_parities(cells):
     """Write the parities at the corners of the cells.
 
-    The parity of a corner is that of the number of segments on its right in its row.
+    The parity of a corner is that of the number of segments in its row on its right.
     """
     rows, columns = cells.parity.shape
     frame = cells.frame
@@ -193,7 +193,7 @@ def find_parities(cells):
         while j < rows and frame[1] + j * frame[5] < segment[3]:
             v = frame[1] + j * frame[5]
             if segment[1] <= v:
-                # The last corner that is left of the segment.
+                # The last corner left of the segment.
                 share = (v - segment[1]) / (segment[3] - segment[1])
                 near = segment[0] + share * (segment[2] - segment[0])
                 i = cell_along(near, frame[0], frame[2], columns)
@@ -211,10 +211,10 @@ def find_parities(cells):
 
 @jit
 def list_segments(cells, margins, stores):
-    """Count the segments of each cell in starts[cell + 1], or store them, from starts[cell] on.
+    """Count the segments of each cell in starts[cell + 1], or store them from starts[cell] on.
 
-    Storing moves the starts to the ends. A segment belongs to all cells that it may touch: margins
-    (2,) exceed the rounding errors of coordinates.
+    Storing advances the starts to the ends. A segment belongs to all cells that it may touch:
+    margins (2,) exceed the rounding errors of coordinates.
     """
     rows, columns = cells.parity.shape
     frame = cells.frame
@@ -244,7 +244,7 @@ def list_segments(cells, margins, stores):
 
 @jit
 def to_cells(patches, places, columns, first, last, cells):
-    """Write parameters (k, 2) in cells of the grid, from those (k, 2) in patches (k,)."""
+    """Write parameters (k, 2) in cells of the grid, from parameters (k, 2) in patches (k,)."""
     for k in range(first, last):
         i, j, turn = place_of(patches[k], columns)
         u = places[k, 0]

@@ -1,4 +1,4 @@
-"""The solid angles of the normals of a surface, from its 2-jets at Gauss points of cells."""
+"""Solid angles of the normals of a surface, from its 2-jets at Gauss points of cells."""
 
 from __future__ import annotations
 

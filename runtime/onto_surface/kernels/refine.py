@@ -1,6 +1,6 @@
 """Newton's method for the points of a surface that have given normals, many at once.
 
-A row is a sample. The surface is known by 2-jets (k, 6, 3), x, x_u, x_v, x_uu, x_uv and x_vv, which
+A row is a sample. The surface is given by 2-jets (k, 6, 3), x, x_u, x_v, x_uu, x_uv and x_vv, which
 the caller computes at `Rows.place` before each step.
 """
 
@@ -42,9 +42,9 @@ NOT_FOUND, FOUND = 0, 1
 # In cells of the spline: the largest length of a step, and of all steps together. A point farther
 # away belongs to another sample.
 LONGEST_STEP, FARTHEST = 1.0, 3.0
-# The part of a step that is taken back if it does not reduce the angle.
+# The part of a step that is undone if it does not reduce the angle.
 TAKEN_BACK = 0.5
-# The iteration does not converge if the squared sine is not below this part of the previous one.
+# The iteration fails if the squared sine is not below this part of the previous one.
 SLOW = 0.25
 OPPOSITE = 4.0  # in place of the squared sine of angles above 90 degrees
 
@@ -69,7 +69,7 @@ class Rows(NamedTuple):
 
 
 class Target(NamedTuple):
-    """For each row: the normal, the required sign of K, or 0, and the sample that is found.
+    """For each row: the normal, the required sign of K, or 0, and the resulting sample.
 
     `state` (n,) is NOT_FOUND or FOUND; only samples that are FOUND are overwritten.
     """
@@ -84,7 +84,7 @@ class Target(NamedTuple):
 
 
 class Box(NamedTuple):
-    """The ends of both parameters, their behaviour there, and the size of a cell of the spline."""
+    """The ends of both parameters, their types, and the size of a cell of the spline."""
 
     ends: tuple[float, float, float, float]
     kinds: tuple[int, int]
@@ -93,7 +93,7 @@ class Box(NamedTuple):
 
 @inline
 def inside(value, low, high, kind):
-    """Return a parameter of the interval: unchanged, modulo the period, or the nearest one."""
+    """Return a parameter in the interval: unchanged, modulo the period, or the nearest one."""
     if kind == PERIODIC:
         if value < low:
             value += high - low
@@ -153,10 +153,9 @@ def keep(rows, left, row, u, v, s, t, gone_u, gone_v, least):
 def newton(jets, count, rows, target, box, size, tolerance, noise):
     """Finish the first `count` rows or move them by a step; return the number of unfinished rows.
 
-    A row is finished where the squared sine of the angle between its normal and that of the surface
-    is at most `tolerance`, or where it is at most `noise` and does not decrease. Point and
-    curvatures there are written. `size`, a power of two, times the surface has cells of about the
-    size 1.
+    A row is finished if the squared sine of the angle between its normal and that of the surface is
+    at most `tolerance`, or if it is at most `noise` and does not decrease. Its point and curvatures
+    are written. `size`, a power of two, scales the surface to cells of about the size 1.
     """
     u0, u1, v0, v1 = box.ends
     du, dv = box.cell
@@ -198,7 +197,7 @@ def newton(jets, count, rows, target, box, size, tolerance, noise):
 
 @inline
 def polar_jet(jets, k, angle, turn, sign):
-    """Return a 2-jet by φ and r: parameter `angle` is φ/turn, the other one grows as sign · r."""
+    """Return a 2-jet by φ and r: parameter `angle` is φ/turn, the other has the slope `sign`."""
     radius = 1 - angle
     by_angle = 1.0 / turn
     return Patch(
@@ -213,7 +212,7 @@ def polar_jet(jets, k, angle, turn, sign):
 
 @jit
 def jet_of_pole(jets, angle, sign, chart):
-    """Write the 2-jet (1, 6, 3) of a pole, from those (3, 6, 3) at 0, 45 and 90 degrees."""
+    """Write the 2-jet (1, 6, 3) of a pole, from 2-jets (3, 6, 3) at 0, 45 and 90 degrees."""
     first = polar_jet(jets, 0, angle, 1.0, sign)
     middle = polar_jet(jets, 1, angle, 1.0, sign)
     last = polar_jet(jets, 2, angle, 1.0, sign)
@@ -223,9 +222,9 @@ def jet_of_pole(jets, angle, sign, chart):
 
 @jit
 def chart_jets(jets, phi, r, angle, turn, sign, near, pole, chart):
-    """Write 2-jets (k, 6, 3) by s = r cos φ and t = r sin φ, from those by the parameters.
+    """Write 2-jets (k, 6, 3) by s = r cos φ and t = r sin φ, from 2-jets by the parameters.
 
-    Where r (k,) is at most `near`, that of the `pole` itself (1, 6, 3) is continued.
+    Where r (k,) is at most `near`, the 2-jet (1, 6, 3) of the `pole` is continued.
     """
     for k in range(phi.size):
         x, y = math.cos(phi[k]), math.sin(phi[k])

@@ -38,10 +38,10 @@ WHERE, OPEN_COLUMNS = 5, 7
 
 
 class Answers(NamedTuple):
-    """Arrays for solutions (k, 10), other boxes (k, 7) with their kinds, and normals of both.
+    """Arrays for solutions (k, 10), other boxes (k, 7) with their kinds, and indices of normals.
 
-    The columns of the latter are u₀, u₁, v₀, v₁, whether the box reaches the boundary, and u and v
-    of a point of it.
+    The columns of boxes are u₀, u₁, v₀, v₁, whether the box reaches the boundary, and u and v of a
+    point of it.
 
     `counts` are the numbers of solutions and boxes.
     """
@@ -128,7 +128,7 @@ def merge_places(places, numbers, groups, first, last, fast, fast_starts, domain
 
 @loop
 def either(row, other, period):
-    """Return the relation of two solutions by the box of either."""
+    """Return the relation of two solutions, tested in the box of each."""
     one, two = relation(row, other, period), relation(other, row, period)
     return 1 if one == 1 or two == 1 else one
 

@@ -1,8 +1,8 @@
 """Cells of the parameters of a surface, with proved bounds of its derivatives.
 
-Each cell has parameters s and t of its own, which are −1 … 1 on it: u = u₀ + h_u s, v = v₀ + h_v t.
-Derivatives are those by s and t, so that all of a cell have one unit, and those of n·x for a unit
-normal n are in that unit, too. `symbolic/proved.py` says what the bounds are for.
+Each cell has parameters s and t in [−1, 1]: u = u₀ + h_u s, v = v₀ + h_v t. Derivatives are by s
+and t, so that all derivatives of a cell have one unit, as have those of n·x for a unit normal n.
+`symbolic/proved.py` says what the bounds are for.
 """
 
 from __future__ import annotations
@@ -46,23 +46,24 @@ __all__ = [
     "write_one_cone",
 ]  # fmt: skip
 
-# Twice the unit of rounding.
+# Twice the unit roundoff.
 EPS = 2.0**-52
 # Bounds hold beyond the sides of a cell, so that neighbours share the points near a common side.
 INFLATED = 1.0 + 1.0 / 16.0
-# The columns of `hot`: five vectors of the patch, then what it leaves out.
+# The columns of `hot`: five vectors of the patch, then bounds of its remainders.
 HOT = 17
-# The columns of `noise`: the rounding of x_s, of x_t, and of second derivatives; how far bounds
+# The columns of `noise`: rounding errors of x_s, of x_t, and of second derivatives; how far bounds
 # hold; the tolerances of n·x_s and of n·x_t at joints.
 FIRST_S, FIRST_T, SECOND, REACH, TOLERANCE_S, TOLERANCE_T = range(6)
-# Three each: what the patch leaves out of the coordinates of x_s and of x_t.
+# Three each: remainders of the coordinates of x_s and of x_t.
 LEFT_S, LEFT_T = 6, 9
 NOISE = 12
 # Normals of both sides of a joint differ by at most this angle, in radians.
 SMOOTH = 1e-9
-# The chord of a cone: from here on its half angle is too wide to tell n from −n; no bound at all.
+# The chord of a cone: above the first, its half angle is too wide to tell n from −n; no bound at
+# all.
 WIDE, OPEN = 1.3, 2.1
-# A normal that is a bound of the cell has a smaller contraction than this in a regular cell.
+# In a regular cell, contractions for the directions of the ordinates of its normals are below this.
 REGULAR = 0.8
 # A Hessian whose determinant is smaller than this, relative to its entries, is singular.
 FLAT = 1e-9
@@ -73,7 +74,7 @@ class CellBounds(NamedTuple):
 
     place (k, 4): u₀, v₀, h_u, h_v.
     hot (k, 17): the vectors a, b, c, d, e of the patch that osculates at the centre, and bounds of
-    what it leaves out of x_s and x_t.
+    the remainders of x_s and x_t beyond it.
     thirds (k, 24): x_sss, x_sst, x_stt, x_ttt, then how far they may be from these.
     noise (k, 12): the rounding of x_s and x_t, and of second derivatives; the largest |s|, |t| for
     which all bounds hold, 0 if there are none, 1 if they end at a joint; tolerances. At a joint the
@@ -122,7 +123,7 @@ class Work(NamedTuple):
 
 @inline
 def gap_of(u, v, h_u, h_v):
-    """Return how far the sides of neighbouring cells may be apart by rounding."""
+    """Return a bound of the gap between the sides of neighbouring cells, due to rounding."""
     return 8.0 * EPS * (1.0 + max(abs(u) / h_u, abs(v) / h_v))
 
 
@@ -147,7 +148,7 @@ def linear_forms_of(patch, n):
 
 @inline
 def thirds_of(thirds, j, n):
-    """Return the third derivatives of n·x and how far they may be from these."""
+    """Return the third derivatives of n·x at the centre, and bounds of their changes."""
     x, y, z = abs(n.x), abs(n.y), abs(n.z)
     return (
         thirds[j, 0] * n.x + thirds[j, 1] * n.y + thirds[j, 2] * n.z,
@@ -181,7 +182,7 @@ def inverse_of(a, b, c, t0, t1, t2, t3, r0, r1, r2, r3, second):
 def write_cells(tape, work, reach, cells, count):
     """Write bounds over the first `count` cells, at most LANES, whose places are written.
 
-    They go as far as `reach`, or else to the sides; a cell without bounds has the reach 0.
+    Bounds hold as far as `reach`, or else up to the sides; a cell without bounds has the reach 0.
     """
     write_bounds(tape, work, reach, cells, count)
     for j in range(count):
@@ -204,7 +205,7 @@ def write_cells(tape, work, reach, cells, count):
 
 @loop
 def write_rest(cells, j):
-    """Write what the patch of cell j leaves out of x_s and x_t."""
+    """Write bounds of the remainders of x_s and x_t beyond the patch of cell j."""
     hot, noise, place = cells.hot, cells.noise, cells.place
     patch = patch_of(hot, j)
     # Neighbouring cells meet up to the rounding of their sides.
@@ -231,16 +232,16 @@ def write_left(noise, j, column, bounds):
 
 @inline
 def widened(bounds, slack):
-    """Return bounds of coordinates, each with the same slack."""
+    """Return bounds of coordinates, each enlarged by the slack."""
     return Vector(bounds.x + slack, bounds.y + slack, bounds.z + slack)
 
 
 @loop
 def rests_in(cells, j, size_u, size_v):
-    """Return bounds of the coordinates of what a patch leaves out of x_s and x_t.
+    """Return bounds of the coordinates of the remainders of x_s and x_t in a part of cell j.
 
-    The patch osculates in the middle of a part of cell j; the sizes are those of the part, relative
-    to the cell.
+    The patch osculates at the centre of the part; the sizes are those of the part, relative to the
+    cell.
     """
     x0, x1, x2, x3 = thirds_along(cells.thirds, j, 0)
     y0, y1, y2, y3 = thirds_along(cells.thirds, j, 1)
@@ -287,7 +288,7 @@ def third_sizes(thirds, j):
 
 @loop
 def write_bounds(tape, work, reach, cells, count):
-    """Write derivatives at centres, bounds as far as `reach`, and rounding.
+    """Write derivatives at centres, bounds as far as `reach`, and rounding errors.
 
     Cells without bounds get the reach 0. Cells that have some stay as they are if `reach` is 1.
     """
@@ -353,7 +354,7 @@ def write_thirds(tape, work, cells, j):
 
 @loop
 def write_noise(tape, errors, reach, cells, j):
-    """Write the rounding of derivatives, their scaling and products in cell j, lane j of errors."""
+    """Write rounding errors of derivatives, scaled to cell j, from lane j of errors."""
     hot, noise = cells.hot, cells.noise
     h_u, h_v = cells.place[j, 2], cells.place[j, 3]
     first_s = first_t = second = 0.0
@@ -383,9 +384,9 @@ def write_noise(tape, errors, reach, cells, j):
 
 @loop
 def normal_error(patch, rest_s, rest_t):
-    """Return a bound of what a patch leaves out of x_s × x_t, from bounds of coordinates.
+    """Return a bound of the remainder of x_s × x_t beyond a patch, from bounds of coordinates.
 
-    Where x_s and x_t are nearly parallel, lengths alone would bound it by far too much.
+    Where x_s and x_t are nearly parallel, a bound from lengths alone would be far too large.
     """
     along = sizes_of(patch.d, patch.a, patch.b)
     across = sizes_of(patch.e, patch.b, patch.c)
@@ -411,14 +412,14 @@ def sizes_of(v, w, x):
 
 @inline
 def left_of(cells, j, column):
-    """Return bounds of the coordinates of what the patch of cell j leaves out of x_s or x_t."""
+    """Return bounds of the coordinates of the remainder of x_s or x_t in cell j."""
     noise = cells.noise
     return Vector(noise[j, column], noise[j, column + 1], noise[j, column + 2])
 
 
 @loop
 def side_of(patch, rest_s, rest_t, n):
-    """Return 1 if all normals of a cell have positive products with n, −1 if negative, else 0."""
+    """Return 1 or −1 if all normals of a cell have products of that sign with n, else 0."""
     ordinates = normal_ordinates(patch)
     error = normal_error(patch, rest_s, rest_t)
     least, most = math.inf, -math.inf
@@ -474,7 +475,7 @@ def write_one_cone(cells):
 
 @loop
 def is_done(cells, j):
-    """Say whether a cell has at most one place for normals like its own, or is flat."""
+    """Return whether a cell has at most one solution for each of its normals, or is flat."""
     if cells.noise[j, REACH] == 0.0 or cells.cone[j, 3] >= WIDE:
         return False
     patch = patch_of(cells.hot, j)
@@ -511,10 +512,10 @@ def copy_cell(cells, j, target, k):
 def cut_cells(tape, work, places, state, last, levels, stack, tile, cells):
     """Write the cells of base cells, each cut into four until it is regular.
 
-    The base cells are at these places (k, 4). They are cut at most `levels` times. `state` holds
-    the next base cell, the number of cells on the `stack` (…, 5), and the number of cells written;
-    it ends at base cell `last` unless there is no more room. `tile` are work arrays, of LANES
-    cells.
+    The base cells are rows of places (k, 4), cut at most `levels` times. `state` holds the next
+    base cell, the number of cells on the `stack` (…, 5), and the number of cells written. The
+    function returns at base cell `last`, or when there is no more room. `tile` are work arrays for
+    LANES cells.
     """
     count = 0
     while count + LANES <= cells.place.shape[0] and (state[0] < last or state[1] > 0):

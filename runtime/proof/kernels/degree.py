@@ -1,4 +1,4 @@
-"""The degree of the Gauss map on a box that may cross joints: no point with a normal, or just one.
+"""The degree of the Gauss map on a box that may cross joints: 0 or 1 points with a normal.
 
 A joint is a line u = const or v = const where second derivatives of the surface may jump, and first
 ones, too, as long as the tangent plane does not. Joints cut the box into parts. Where the surface
@@ -46,28 +46,28 @@ from .pairs import distance, forms_at, is_beyond, most_of, newton
 
 __all__ = ["DECIDED", "LARGEST", "PARTS", "PATH", "degree_on", "index_around"]
 
-# What is known of a box: nothing, or its one point with the normal, or that it has none.
+# What is known of a box: nothing; one point with the normal; none.
 UNDECIDED, DECIDED = range(2)
-# Boxes grow on each side by this part of their width, since the normal may not be on the border.
-# A joint that is nearer to a side than this part of the width becomes the side.
-# They grow by a part of the domain at least: near a joint normals are known up to a tolerance.
+# Boxes grow on each side by this part of their width, since the normal may not be on the border. If
+# a joint is nearer to a side than this part of the width, the side moves to the joint. Boxes grow
+# at least by a part of the domain: near a joint normals are known up to a tolerance.
 GROWN, LEAST, NEAR_SIDE = 0.4, 2.0**-23, 0.05
 # The largest number of parts along u and along v.
 PARTS = 4
 # Segments of a side of a part are at least this long; a side has the length 2.
 LONGEST, SHORTEST = 1.0, 2.0**-14
-# The computed gradient has at most this relative error at ends of segments, so that two of them
-# and the jump at a joint do not add up to half a turn.
+# The relative error of the computed gradient at ends of segments is at most this, so that two
+# errors and the jump at a joint add up to less than half a turn.
 ERROR = 0.3
-# A normal is at least this multiple of the tolerance away from that of the border.
+# The normal differs from normals of the border by at least this multiple of the tolerance.
 AWAY = 4.0
 STEPS = 8
-# The numbers of a path along a border.
+# The entries of a path along a border.
 PATH = 6
-# A hull is small if it is at most LARGEST times the domain. Its index is computed along the border
-# of a larger box, since the gradient is too small next to the hull: the box grows by the fractions
-# AROUND of the domain in turn. Each of the four sides of the border has up to EACH cells, which are
-# THIN relative to the box.
+# A hull is small if it is at most LARGEST times the domain. Next to a small hull the gradient is
+# too small, so that the index is computed along the border of a larger box: the hull grown by each
+# fraction AROUND of the domain in turn. Each side of the border has up to EACH cells, of the
+# thickness THIN relative to the box.
 LARGEST, AROUND, EACH, THIN = 0.01, (3e-6, 1e-4, 1e-3, 1e-2, 3e-2), LANES // 4, 2.0**-7
 
 
@@ -136,8 +136,8 @@ def middle_and_half(low, high):
 def sign_on(tile, count, n):
     """Return the sign of the determinant of the Hessian of n·x if all parts of a tile share it.
 
-    Otherwise return 0, also if the products of n and the normals have no known common sign. Return
-    2 if all these products are negative: then no part has the normal n.
+    Return 0 if they do not share it, or if the products of n and the normals have no known common
+    sign, and 2 if all these products are negative: then no part has the normal n.
     """
     sign = side = 0
     for k in range(count):
@@ -176,9 +176,9 @@ def along_side(side, x):
 
 @loop
 def gradient_at(tile, k, n, e1, e2, s, t):
-    """Return the gradient at s, t in part k, times the area |x_s × x_t|, and what bounds it.
+    """Return the gradient at s, t in part k, times the area |x_s × x_t|, and terms of its bound.
 
-    This is: the forms A, B, C; the derivatives F1, F2; bounds of |x_s| and |x_t|; and a bound of
+    These are the forms A, B, C; the derivatives F1, F2; bounds of |x_s| and |x_t|; and a bound of
     the error of the gradient.
     """
     patch = patch_of(tile.hot, k)
@@ -236,7 +236,7 @@ def turns_less_than_half(tile, k, n, e1, e2, side, x, step):
 
 @loop
 def walk_side(tile, k, n, e1, e2, side, path):
-    """Follow the gradient along a side of part k; return whether it is known to have no zero there.
+    """Follow the gradient along a side of part k; return whether it is known to have no zero.
 
     `path` (6,) are the angle turned through so far, the last gradient, the first one, and whether
     there was one.
@@ -296,7 +296,7 @@ def winding(tile, along, across, n, path):
 def index_around(tape, work, tile, joints, domain, hull, n, ends, path, box):
     """Return the winding number of the gradient around a hull; NaN if it is unknown.
 
-    The path goes around a larger `box` (4,), which is written, in the domain.
+    The path is the border of a larger box in the domain, which is written to `box` (4,).
     """
     e1, e2 = plane_of(n)
     size_u, size_v = domain[1] - domain[0], domain[3] - domain[2]
@@ -381,8 +381,8 @@ def plane_of(n):
 def write_nearest(tape, work, tile, count, n, row):
     """Write the best known solution in the parts of a tile to a row; return False if there is none.
 
-    Its error bounds enclose the solutions of all parts, and, if several have one, all points whose
-    normals are within the tolerance.
+    The error bounds enclose the solutions of all parts. If several parts have one, they enclose all
+    points whose normals are within the tolerance.
     """
     outputs, place = tape.outputs, tile.place
     x, y, z = (
@@ -429,10 +429,10 @@ def write_nearest(tape, work, tile, count, n, row):
 
 @loop
 def reach_at(tile, k, n, s, t, p, q):
-    """Return how far from s, t, where F is (p, q), a solution in part k may be.
+    """Return a bound of the distance from s, t, where F is (p, q), to a solution in part k.
 
-    The second value is how much farther the tolerance allows it to be; the third one says whether
-    there is no solution even with the tolerance.
+    The second value is what the tolerance adds to it; the third one says whether there is no
+    solution even with the tolerance.
     """
     patch = patch_of(tile.hot, k)
     a, b, c, _, _ = linear_forms_of(patch, n)

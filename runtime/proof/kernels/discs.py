@@ -1,7 +1,7 @@
 """Discs around poles: the points with given normals there, in coordinates of the tangent plane.
 
-At a pole the parameters are u around it and r, which is 0 at it. The surface is a graph over its
-tangent plane, whose coordinates s and t are scaled so that the disc is within s² + t² ≤ 1.
+At a pole, u is the parameter around it, and r = 0. The surface is a graph over its tangent plane,
+whose coordinates s and t are scaled so that the disc is within s² + t² ≤ 1.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ __all__ = ["Disc", "decide_discs"]
 STEPS = 60
 # A step longer than this part of the distance from the pole restarts at the pole.
 LONG = 0.25
-# The numbers of the frame of a disc.
+# Indices into the frame of a disc.
 (
     FAR_NOISE, NEAR_NOISE, SIZE, START, TURN, END, INWARD, ANGLE, UNIT, WHOLE, BY_U, BY_R, QUOTIENT,
     SENSE,
@@ -39,11 +39,11 @@ class Disc(NamedTuple):
 
     hot (1, 15): the vectors a, b, c, d, e of the patch that osculates at the pole, by s and t.
     changes (m, 3, 3): bounds of x_ss, x_st, x_tt minus a, b, c, within `whole`, half of it, …
-    frame (14): the derivatives of h by s and t are computed up to the first one plus the second
-    over r, in units of the size; radius of the disc; first u, and its length; the other parameter
-    at the pole, whether it grows with r (1 or −1), and the number of the first, 0 or 1; the unit of
-    s and t; how far bounds hold; the largest derivatives of r u and of r by the coordinates of the
-    plane; whether the tape is that of (x − p) / r; and 1 if angles in the plane grow with u.
+    frame (14): two numbers e0, e1: computed derivatives of h by s and t have errors up to e0 + e1 /
+    r, in units of the size; radius of the disc; first u, and its length; the other parameter at the
+    pole, whether it grows with r (1 or −1), and the index, 0 or 1, of u; the unit of s and t; how
+    far bounds hold; the largest derivatives of r u and of r by the coordinates of the plane;
+    whether the tape is that of (x − p) / r; and 1 if angles in the plane grow with u.
     basis (3, 3): derivatives of x by the coordinates of the plane and by h.
     directions (k, 2): angles in the plane at equal steps of u, and distances over r there.
     """
@@ -67,13 +67,13 @@ def bound_of(changes, ring, k, n):
 
 @inline
 def rows_of(y11, y12, y22, p, q):
-    """Return the larger row of a matrix, without signs, times a vector."""
+    """Return the larger row of a matrix times a vector, in absolute values."""
     return max(abs(y11) * p + abs(y12) * q, abs(y12) * p + abs(y22) * q)
 
 
 @loop
 def change_in(disc, ring, n, y11, y12, y22):
-    """Return a bound of the change of the Hessian in a ring, times the inverse at the pole."""
+    """Return a bound of the change of the Hessian in a ring, times its inverse at the pole."""
     a, b, c = (
         bound_of(disc.changes, ring, 0, n),
         bound_of(disc.changes, ring, 1, n),
@@ -106,7 +106,7 @@ def place_towards(disc, s, t):
 
 @loop
 def graph_at(tape, work, disc, u, r):
-    """Return s and t at u and r, the derivatives of u and r by these, and those of h, unscaled."""
+    """Return s and t at u and r, derivatives of u and r by s and t, and those of h, unscaled."""
     work.u[0], work.v[0] = u, r
     evaluate_points(tape, work.u, work.v, 1, work.registers)
     x, y, z = (
@@ -131,7 +131,7 @@ def graph_at(tape, work, disc, u, r):
 
 @loop
 def place_in(tape, work, disc, n):
-    """Return u, r, a bound of the distance to the only solution for n in s, t, and the determinant.
+    """Return u, r of the only solution for n, a bound of its error in s, t, and the determinant.
 
     The bound is infinite if nothing is proved, and negative if no solution is in the disc.
     """
@@ -195,7 +195,7 @@ def place_in(tape, work, disc, n):
         else:
             u, r = u + u_s * s1 + u_t * t1, r + r_s * s1 + r_t * t1
             u -= frame[TURN] * math.floor((u - frame[START]) / frame[TURN])
-    # The square around the point has to be where bounds hold.
+    # Bounds have to hold in the square around the point.
     if not best_length + 1.5 * least <= whole:
         least = math.inf
     return best_u, best_r, least, d

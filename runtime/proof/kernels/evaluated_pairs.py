@@ -1,4 +1,4 @@
-"""The places of pairs of a normal and a cell that two evaluations of the surface prove."""
+"""Pairs of a normal and a cell whose solution two evaluations of the surface prove."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ from .pairs import (
 
 __all__ = ["PLACE", "Index", "Joints", "Outcome", "Tiles", "evaluate_pairs"]
 
-# The columns of places: u, v, how far each may be from the exact one, D, and whether the border of
-# the domain is so near.
+# The columns of places: u, v, the error bound of each, D, and whether they reach the boundary of
+# the domain.
 PLACE = 6
 
 
 class Joints(NamedTuple):
-    """The lines u = const (k,), v = const (l,) where derivatives may jump, but no tangent plane."""
+    """Lines u = const (k,), v = const (l,) where derivatives may jump, but the normal does not."""
 
     u: NDArray[np.float64]
     v: NDArray[np.float64]
@@ -50,7 +50,7 @@ class Index(NamedTuple):
 
 
 class Tiles(NamedTuple):
-    """Work arrays: a tile of pairs with their cells and numbers of normals."""
+    """Work arrays: a tile of pairs with the indices of their cells and normals."""
 
     pairs: NDArray[np.float64]
     cells: NDArray[np.int64]
@@ -88,9 +88,9 @@ class Outcome(NamedTuple):
 
 @loop
 def flush(tape, work, cells, tiles, first, count, found):
-    """Evaluate the pairs of a tile, those from `first` on for the first time.
+    """Evaluate the pairs of a tile, for the first time from position `first` on.
 
-    Returns how many stay in the tile, or −1 if there was no room for what was found.
+    Returns how many stay in the tile, or −1 if there was no room for the results.
     """
     if (
         found.counts[0] + count > found.numbers.shape[0]
@@ -124,7 +124,7 @@ def flush(tape, work, cells, tiles, first, count, found):
 
 @loop
 def store_hard(t, count, tiles, found):
-    """Store the pairs of a tile that are not decided here."""
+    """Store the undecided pairs of a tile as hard ones."""
     at = found.counts[1]
     for k in range(count):
         if t[np.uint64(k) + STATE] >= HARD:
@@ -135,12 +135,12 @@ def store_hard(t, count, tiles, found):
 
 @jit
 def evaluate_pairs(cells, tape, work, normals, keys, tiles, found):
-    """Find the places of pairs; say whether there was room for them.
+    """Find the solutions of pairs; return whether there was room for them.
 
-    A key is number of a normal (S, 3) << 32 | cell.
+    A key is index of a normal (S, 3) << 32 | cell.
     """
     found.counts[0] = found.counts[1] = 0
-    kept = count = 0  # pairs in the tile, those that have been there before in front
+    kept = count = 0  # pairs in the tile; those with an earlier evaluation come first
     for key in keys:
         number, j = key >> 32, key & NUMBER
         load_pair(tiles.pairs, count, cells, j, row_vector(normals, number))

@@ -54,19 +54,18 @@ __all__ = [
     "write_forms",
 ]
 
-# The rows of a tile of pairs, of LANES numbers: the normal, the cell, the forms of the pair, bounds
-# (see `CellBounds`), the inverse of the Hessian and bounds of its product with it (`inverse_of`),
-# how far solutions within the tolerances may be from exact ones; and the solution: s, t, its error
-# bound, D, the number of evaluations, a state.
+# The rows of a tile of pairs, of LANES numbers: the normal; the cell; the forms of the pair; bounds
+# (see `CellBounds`); the inverse of the Hessian with its bounds (`inverse_of`); the tolerance of
+# solutions; and the solution: s, t, its error bound, D, the number of evaluations, a state.
 (
     NX, NY, NZ, U0, V0, HU, HV, A, B, C, P, Q, T0, T1, T2, T3, R0, R1, R2, R3,
     ROUND_S, ROUND_T, ROUND_2, REACHED, TOL_S, TOL_T,
     Y11, Y12, Y22, CHANGE, NOISE, BASE, SLACK, S, T, RADIUS, DETERMINANT, ROUND, STATE,
 ) = (np.uint64(k * LANES) for k in range(39))  # fmt: skip
 ROWS = 39
-# States of a pair: no solution, one, needs another evaluation, not decided here, one near a side.
+# States of a pair: no solution; one; needs another evaluation; not decided here; one near a side.
 NONE, ONE, MORE, HARD, EDGE = 0.0, 1.0, 2.0, 3.0, 4.0
-# The largest product of the inverse of the Hessian with its change.
+# The largest allowed product of the inverse of the Hessian with its change.
 CONTRACTING = 0.95
 # A solution is accurate enough if its error bound is below this multiple of the rounding error.
 CLOSE = 4.0
@@ -129,7 +128,7 @@ def write_forms(t, count, registers, outputs):
 
 @inline
 def rests(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap):
-    """Return bounds of what the linear forms leave out of both derivatives in a cell."""
+    """Return bounds of the remainders of both derivatives beyond the linear forms in a cell."""
     rest_s, rest_t = remainders(abs(t0) + r0, abs(t1) + r1, abs(t2) + r2, abs(t3) + r3)
     rest_s = rest_s * (1.0 + 4.0 * gap) + round_s + 2.0 * round_2 + gap * (abs(a) + abs(b) + abs(p))
     rest_t = rest_t * (1.0 + 4.0 * gap) + round_t + 2.0 * round_2 + gap * (abs(b) + abs(c) + abs(q))
@@ -148,7 +147,7 @@ def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t,
 
 @inline
 def most_of(reached, gap):
-    """Return up to which |s|, |t| the tape has the derivatives of a cell, not of its neighbour."""
+    """Return the largest |s|, |t| where derivatives are those of this cell, not a neighbour's."""
     return 1.0 if reached > 1.0 else 1.0 - gap
 
 
@@ -180,7 +179,7 @@ def is_beyond(s, t, g1, g2, error, change):
 
 @loop
 def solved(low, high, f, own, rest):
-    """Return the part of low … high where |f + own x| is at most `rest`; all of it if own = 0."""
+    """Return the part of [low, high] where |f + own x| is at most `rest`; all of it if own = 0."""
     if own != 0.0:
         one, two = (-f - rest) / own, (rest - f) / own
         low, high = max(low, min(one, two)), min(high, max(one, two))
@@ -191,8 +190,8 @@ def solved(low, high, f, own, rest):
 def contracted(t, k):
     """Return the part of the box in lane k that may have solutions, s₀, s₁, t₀, t₁.
 
-    Both derivatives, and the two combinations from which a parameter is eliminated, are solved for
-    s and for t. The part is empty if s₀ > s₁ or t₀ > t₁.
+    Both derivatives, and the two combinations with one parameter eliminated, are solved for s and
+    for t. The part is empty if s₀ > s₁ or t₀ > t₁.
     """
     i = np.uint64(k)
     a, b, c, p, q = t[i + A], t[i + B], t[i + C], t[i + P], t[i + Q]
@@ -240,7 +239,8 @@ def bound_pairs(t, first, count):
         rounding = max(i11 * round_s + i12 * round_t, i12 * round_s + i22 * round_t)
         tolerance = max(i11 * tol_s + i12 * tol_t, i12 * tol_s + i22 * tol_t)
         s, z = model_start(a, b, c, p, q, t0, t1, t2, t3, y11, y12, y22)
-        # The residual at the nearest point of the cell, by the model; at joints inside of it.
+        # The residual of the model at the point of the cell nearest to its solution; inside of
+        # joints.
         most = most_of(t[i + REACHED], gap)
         s1, z1 = min(max(s, -most), most), min(max(z, -most), most)
         _, _, _, p1, q1 = model_at(a, b, c, p, q, t0, t1, t2, t3, s1, z1)
@@ -308,7 +308,7 @@ def improve_pairs(t, count, registers, outputs, u, v):
         v[k] += h_v * (w1 - w)
         t[i + S], t[i + T], t[i + RADIUS], t[i + DETERMINANT] = s1, w1, radius, d
         t[i + ROUND] += 1.0
-        # Near a joint the solution may be that of the neighbour, with a normal that differs a bit.
+        # Near a joint the solution may be the neighbour's, whose normal differs slightly.
         near = radius + gap + slack
         edge = HARD if at_joint else EDGE
         known = ONE if largest < 1.0 - near else NONE if largest > 1.0 + near else edge

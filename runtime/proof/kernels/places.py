@@ -1,7 +1,6 @@
 """All solutions for a normal in cells that the simple search left open: bisection, folds, doubles.
 
-The cells of a normal are bisected level by level. Remaining undecided solutions lie in a few small
-boxes, which are listed.
+The cells of a normal are bisected level by level. Small boxes that remain undecided are listed.
 """
 
 from __future__ import annotations
@@ -68,24 +67,25 @@ __all__ = ["Boxes", "decide_normals"]
 
 # The number of levels of bisection, and the levels after which clusters are tested.
 DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
-# The boxes of a curve of solutions about double on each level. More boxes than MANY are a curve if
-# their number grows by GROWTH for TIMES levels; at most MOST cells, or MOST/4 boxes, are processed.
+# The boxes along a curve of solutions about double on each level. More boxes than MANY are a curve
+# if their number grows by GROWTH on TIMES levels; at most MOST cells, or MOST/4 boxes, are
+# processed.
 MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
-# The columns of boxes: u, v, the number of a cell, and half the widths relative to the cell's.
+# The columns of boxes: u, v, the index of a cell, and half the widths relative to the cell's.
 BOX_COLUMNS = 5
 # A box is cut into two if one side is longer by SLENDER, with sides relative to those of its cell.
 # Contraction leaves at least the part SHRUNK of a side, so that clusters have a width.
 SLENDER, SHRUNK = 4.0, 2.0**-5
-# A cluster is a curve of solutions if SETTLING steps from the middles of its boxes, of up to
-# CHECKED ones, lead to solutions no farther away than BESIDE half widths. A Hessian whose
-# determinant is less than RANK times the square of its larger eigenvalue has the rank 1.
+# A cluster is a curve of solutions if SETTLING steps from the centres of up to CHECKED of its boxes
+# lead to solutions within BESIDE half widths. A Hessian has the rank 1 if its determinant is less
+# than RANK times the square of its larger eigenvalue.
 SETTLING, CHECKED, BESIDE, RANK = 32, 64, 4.0, 1e-4
-# From this level on, rounding explains open boxes more than twice as many as on the level before.
+# From this level on, open boxes may be due to rounding if they more than double in a level.
 FINE = 10
 
 
 class Boxes(NamedTuple):
-    """Work arrays: boxes of a level, of the next one, their clusters, and the fates of these."""
+    """Work arrays: boxes of a level, of the next one, their clusters, and decisions on these."""
 
     now: NDArray[np.float64]
     following: NDArray[np.float64]
@@ -125,7 +125,7 @@ def side_at(tape, work, tile, cells, j, u, v, r_u, r_v, n):
 
 @loop
 def cut_boxes(tape, work, index, boxes, count, number, n, answers):
-    """Decide boxes of a level, write the next ones; return their number, −1 without room."""
+    """Decide the boxes of a level, write the next ones; return their number, −1 without room."""
     cells, t = index.cells, boxes.pairs
     following = 0
     for first in range(0, count, LANES):
@@ -171,8 +171,8 @@ def inside(middle, half):
 def keep_boxes(t, lanes, boxes, cells, following):
     """Contract and cut the boxes of a tile that are undecided; add the parts to the next level.
 
-    A box is cut into four parts, or into two if one of its sides is much longer. `following` is the
-    number of boxes on the next level so far; the new number is returned.
+    A box is cut into four parts, or into two if one side is much longer. `following` is the number
+    of boxes on the next level so far; the new number is returned.
     """
     for k in range(lanes):
         i = np.uint64(k)
@@ -186,7 +186,7 @@ def keep_boxes(t, lanes, boxes, cells, following):
             min(max(0.5 * (high_s - low_s), SHRUNK), 1.0),
             min(max(0.5 * (high_t - low_t), SHRUNK), 1.0),
         )
-        # Parts stay in the cell: beyond a joint its derivatives are others.
+        # Parts stay in the cell: beyond a joint derivatives are different.
         u = t[i + U0] + inside(0.5 * (low_s + high_s), half_s) * t[i + HU]
         v = t[i + V0] + inside(0.5 * (low_t + high_t), half_t) * t[i + HV]
         size_u = half_s * t[i + HU] / cells.place[j, 2]
@@ -230,9 +230,9 @@ def store_places(t, lanes, work, boxes, number, answers):
 
 @loop
 def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, answers):
-    """Drop clusters of boxes that a degree or a fold decides; after the `last` level, list others.
+    """Drop clusters of boxes that a degree or a fold decides; list the rest after the `last` level.
 
-    Returns the number of boxes that are left, −1 if there was no room.
+    Returns the number of boxes that remain, −1 if there was no room.
     """
     cells, tile = index.cells, boxes.tile
     hulls = cluster(boxes.following, count, cells, domain[4:], boxes.hulls, boxes.owner)
@@ -284,7 +284,7 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
 
 @loop
 def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
-    """List the clusters of boxes of rows, as curves if they are; return whether there was room."""
+    """List the clusters of `rows` as curves or undecided; return whether there was room."""
     hulls = cluster(rows, count, index.cells, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
         hull = boxes.hulls[i]
@@ -300,9 +300,9 @@ def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
 
 @loop
 def is_curve(tape, work, cells, boxes, rows, count, owner, n):
-    """Return whether there are solutions beside all boxes of a cluster, up to rounding.
+    """Return whether solutions lie beside all boxes of a cluster, up to rounding.
 
-    Up to CHECKED boxes are checked. The solution of one in their middle is written to `ends`.
+    Up to CHECKED boxes are checked. The solution near the middle one is written to `ends`.
     """
     own = 0
     for k in range(count):
@@ -323,9 +323,9 @@ def is_curve(tape, work, cells, boxes, rows, count, owner, n):
 
 @loop
 def settles(tape, work, cells, box, n):
-    """Move from the middle of a box to a solution by Gauss and Newton's method, to work.u, work.v.
+    """Move from the centre of a box to a solution by Gauss–Newton steps, to work.u, work.v.
 
-    Return whether its residual is explained by rounding, and whether it is near the box.
+    Return whether rounding explains its residual, and whether it is near the box.
     """
     j, outputs = int(box[2]), tape.outputs
     h_u, h_v = cells.place[j, 2], cells.place[j, 3]
@@ -387,7 +387,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
 
 @loop
 def orient(tape, work, index, boxes, first, domain, number, n, answers):
-    """Remove solutions with the normal −n; list those that may have no normal.
+    """Remove solutions with the normal −n; list those of unknown sign.
 
     Return whether there was room.
     """
@@ -414,7 +414,7 @@ def orient(tape, work, index, boxes, first, domain, number, n, answers):
 def decide_normals(tape, work, index, normals, hard, groups, first, last, domain, boxes, answers):
     """Decide the hard pairs of the groups [first, last), each of one normal.
 
-    hard (…, 2) are numbers of normals (S, 3) and of cells; groups[g] is the start of a group.
+    hard (…, 2) are indices of normals (S, 3) and of cells; groups[g] is the start of a group.
     `domain` (6) is u₀, u₁, v₀, v₁, and the periods of u and v or 0. Returns the next group, `last`
     unless there was no more room for answers.
     """

@@ -70,11 +70,11 @@ def curvatures_of_tile(registers, outputs, scales, count, curvatures):
 
 @jit
 def fill_places(tape, work, numbers, places, first, last, normals, scales, curvatures, fields):
-    """Write the fields of the samples at the solutions first, …, last − 1 of a search.
+    """Write the fields of the samples at the solutions [first, last) of a search.
 
     places (k, 6) are the solutions, numbers (k,) the indices of their unit normals (S, 3). `scales`
-    are (size, du, dv): on the surface times `size`, a rectangle of parameters du × dv has about the
-    size 1.
+    are (size, du, dv): a rectangle of parameters du × dv, mapped to the surface and multiplied by
+    `size`, has about the size 1.
     """
     x, y, z = POINT * tape.outputs[0], POINT * tape.outputs[1], POINT * tape.outputs[2]
     curved = len(fields.gaussian_curvature) + len(fields.mean_curvature) > 0

@@ -23,15 +23,15 @@ from .wide_integers import MANTISSA, rounded, wide
 
 __all__ = ["NORMAL_LIMBS", "PATCH_LIMBS", "SPARE", "Decided", "decide_exactly"]
 
-# The limbs of coefficients, and of normals: normals at corners of patches along an axis have
-# components that are rounding errors of rounding errors.
+# The numbers of limbs of coefficients, and of normals: at corners of patches along an axis, normals
+# have components that are rounding errors of rounding errors.
 PATCH_LIMBS, NORMAL_LIMBS = (0, 0), (0, 0, 0)
 # The spare bits, for weights and sums.
 SPARE = 6
 
 
 class Decided(NamedTuple):
-    """The output: U/D and V/D (k, 2), |D| (k,), signs of U, V, W (k, 3), and if known (k,)."""
+    """The output: U/D and V/D (k, 2), |D| (k,), signs of U, V, W (k, 3), whether known (k,)."""
 
     local: Any
     size: Any
@@ -44,7 +44,7 @@ class Decided(NamedTuple):
 
 @loop
 def widened(least, largest, x):
-    """Return the least and the largest modulus of nonzero numbers, including one more."""
+    """Return the least and the largest modulus of nonzero numbers, updated by one more."""
     size = abs(x)
     if 0.0 < size < least:
         least = size
@@ -55,9 +55,10 @@ def widened(least, largest, x):
 
 @loop
 def unit_of(least, largest, limbs):
-    """Return the exponent of a unit in which numbers of these moduli are integers, and if they fit.
+    """Return the exponent of a unit in which numbers are integers, and whether they fit.
 
-    They fit if they have at most as many limbs as `limbs`, with SPARE bits left.
+    The numbers have moduli from `least` to `largest`. They fit if they have at most as many limbs
+    as `limbs`, with SPARE bits left.
     """
     unit = math.frexp(least)[1] - MANTISSA
     return unit, largest == 0.0 or math.frexp(largest)[1] - unit <= 64 * len(limbs) - SPARE
@@ -94,7 +95,7 @@ def wide_coefficient(mu, i, j, unit):
 
 @loop
 def neighbour(mu, i, j, turn, k, centre, unit):
-    """Return neighbour k minus the coefficient."""
+    """Return neighbour k minus the coefficient at the centre."""
     x, y, z = wide_coefficient(mu, i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1], unit)
     return Vector(x - centre.x, y - centre.y, z - centre.z)
 
@@ -134,9 +135,10 @@ def wide_normal(n, unit):
 
 @loop
 def note(D, U, V, W, forms, signs):
-    """Use the coefficients of one monomial for the signs that are still zero.
+    """Take signs that are still zero from the coefficients of one monomial.
 
-    Keep them for D, U, V if D has no leading monomial yet. Return whether all signs are known.
+    If D has no leading monomial yet, keep the coefficients for D, U, V. Return whether all signs
+    are known.
     """
     if forms[0] == 0.0:
         forms[0], forms[1], forms[2] = D, U, V
@@ -181,7 +183,7 @@ def exact_forms(patch, n, forms, signs):
 def decide_exactly(mu, scale, patches, normals, first, last, forms, decided):
     """Decide the pairs [first, last) of patches (k,) and normals (k, 3).
 
-    A pair stays undecided if its numbers are too long. `forms` (3,) is a work array.
+    A pair stays undecided if its integers are too long. `forms` (3,) is a work array.
     """
     columns = mu.shape[1] - 2
     exponent = math.frexp(scale)[1] - 1

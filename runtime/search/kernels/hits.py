@@ -29,21 +29,21 @@ from .lists import NUMBER
 
 __all__ = ["fill_known", "fill_samples", "new_tile"]
 
-# The number of rows, of STEP numbers, and the starts of the parts of a tile. The starts are typed,
-# since Numba compiles a function anew for each literal number in its arguments.
+# The number of rows of a tile, of STEP entries each, and where its parts start. The starts are
+# typed, since Numba compiles a function anew for each literal number in its arguments.
 ROWS = 38
 ONE_ROW, TWO_ROWS = np.uint64(STEP), np.uint64(2 * STEP)
 NORMAL, COEFFICIENTS, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
     np.int64(STEP * row) for row in (0, 3, 21, 30, 33, 34, 35, 36, 37)
 )
 NORMAL_INDEX, PATCH_INDEX, THREE_ROWS = np.int64(0), np.int64(STEP), np.int64(3 * STEP)
-# Rows and columns, from that of the coefficient before, of those that `triangle` takes.
-# Contiguous: machine code has other arrays by their address, and cannot be kept.
+# Rows and columns of the coefficients that `triangle` takes, counted from the coefficient before.
+# Contiguous: machine code refers to other arrays by their address, and cannot be kept.
 AROUND = np.ascontiguousarray(NEIGHBOURS[:, [0, 1, 2, 3, 5, 7]] + 1, np.uint64)
 
 
 class Place(NamedTuple):
-    """The position of a patch: centre and number of its cell, its corners u = 1, v = 1 there."""
+    """The position of a patch: centre and indices of its cell, its corners u = 1, v = 1 there."""
 
     centre: Vector
     cell_u: float
@@ -91,7 +91,7 @@ def place_in(mu, i, j, turn):
 
 @loop
 def load_patch(mu, number, scale, tile, k):
-    """Write the coefficients around the patch of sample k of a tile, and the position."""
+    """Write the coefficients around the patch of sample k of a tile, and its position."""
     columns, patch = np.uint64(mu.shape[1] - 2), np.uint64(number)  # unsigned divisions are faster
     cell, turn = patch >> np.uint64(2), patch & np.uint64(3)
     i = cell // columns
@@ -115,14 +115,14 @@ def load_patch(mu, number, scale, tile, k):
 
 @loop
 def copy_patch(tile, k, source):
-    """Write the same as `load_patch`, for the patch of another sample of the tile."""
+    """Copy what `load_patch` writes from another sample of the tile."""
     for row in range(COEFFICIENTS, POINT, STEP):
         tile[np.uint64(row + k)] = tile[np.uint64(row + source)]
 
 
 @loop
 def on_surface(place, frame, size, n, u, v, x, K, H):
-    """Return point, parameters, support and curvatures of a sample in the unit of the surface."""
+    """Return point, parameters, support and curvatures of a sample, in the unit of the surface."""
     unit = 1.0 / size
     point = Vector(
         place.centre.x + x.x * unit, place.centre.y + x.y * unit, place.centre.z + x.z * unit
@@ -134,9 +134,9 @@ def on_surface(place, frame, size, n, u, v, x, K, H):
 
 @loop
 def evaluate_tile(tile, count, frame, size, curved):
-    """Evaluate `count` samples of a tile; the loop has no branches, so that it is vectorized.
+    """Evaluate `count` samples of a tile; without branches, so that the loop is vectorized.
 
-    If `curved` is None, curvatures are left out, at compile time.
+    If `curved` is None, curvatures are left out when it is compiled.
     """
     long_vectors()
     frame = (frame[0], frame[1], frame[2], frame[3])
@@ -193,8 +193,8 @@ def fill_tile(
     tile, indices, count, start, scale, frame,
     points, directions, uv, support, gaussian, mean, normal_index, patch_index,
 ):  # fmt: skip
-    """Evaluate and store `count` samples of a tile, from number `start` on."""
-    # The last vector is filled up with samples that are not stored.
+    """Evaluate `count` samples of a tile, and store them from index `start` on."""
+    # The last vector is padded with samples that are not stored.
     full = whole_vectors(count)
     if len(gaussian) + len(mean) > 0:
         evaluate_tile(tile, full, frame, SCALE * scale, True)
@@ -214,7 +214,7 @@ def fill_tile(
 
 @loop
 def write_vectors(tile, row, count, start, field):
-    """Write the vectors in three rows of a tile to a field, from number `start` on."""
+    """Write the vectors in three rows of a tile to a field, from index `start` on."""
     if len(field) > 0:
         for k in range(count):
             set_row(field, np.uint64(start + k), vector_in(tile, row, k))
@@ -222,7 +222,7 @@ def write_vectors(tile, row, count, start, field):
 
 @loop
 def write_numbers(tile, row, count, start, field):
-    """Write the numbers in a row of a tile to a field, from number `start` on."""
+    """Write the numbers in a row of a tile to a field, from index `start` on."""
     if len(field) > 0:
         for k in range(count):
             field[np.uint64(start + k)] = tile[np.uint64(row + k)]
@@ -233,11 +233,11 @@ def fill_samples(
     mu, scale, normals, frame, keys, first, last, tile, indices,
     points, directions, uv, support, gaussian, mean, normal_index, patch_index,
 ):  # fmt: skip
-    """Fill the samples first, …, last − 1 of keys (N,), number of the normal << 32 | patch.
+    """Fill the samples [first, last) of keys (N,), index of the normal << 32 | patch.
 
     frame = (u0, v0, du, dv): the corner of the domain and the size of a cell in the parameters.
-    Absent ones of points (N, 3), directions (N, 3), uv (N, 2), support, gaussian, mean and the two
-    indices (N,) are empty. `tile` and `indices` are work arrays, see `new_tile`.
+    points (N, 3), directions (N, 3), uv (N, 2), support, gaussian, mean and the two indices (N,)
+    are empty if they are not requested. `tile` and `indices` are work arrays, see `new_tile`.
     """
     for begin in range(first, last, TILE):
         count = min(TILE, last - begin)
@@ -264,9 +264,8 @@ def fill_known(
 ):  # fmt: skip
     """Fill the samples which[0], which[1], … at known parameters; see `fill_samples`.
 
-    keys (k,) are their numbers of normals << 32 | patch. local (k, 5) holds u, v, the
-    sign of K, and the parameters at which curvatures are evaluated: u, v, or a nearby point if that
-    is singular.
+    keys (k,) are index of their normal << 32 | patch. local (k, 5) holds u, v, the sign of K, and
+    the parameters at which curvatures are evaluated: u, v, or a nearby point if that is singular.
     """
     columns = mu.shape[1] - 2
     frame = (frame[0], frame[1], frame[2], frame[3])

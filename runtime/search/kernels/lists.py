@@ -3,7 +3,7 @@
 Bins are squares on the faces of a cube around the sphere. If all cones lie in a cap, only the face
 +z has bins, and a linear map, the frame (3, 3), takes the cap to this face. On each face, bins are
 numbered along a Morton curve: the leading bits of a number are the bin of a coarser level. Keys are
-sorted by their leading bits, by counting; those with the same ones keep their order.
+sorted by their leading bits, by counting; keys with the same leading bits keep their order.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ __all__ = [
 
 # The level of the bins by which normals are sorted.
 FINEST = np.int64(12)
-# The bits of a number in a key.
+# The bits of an index in a key.
 NUMBER = (1 << 32) - 1
 # Cones with a larger chord are compared with all bins.
 WIDE = 0.5
@@ -41,9 +41,9 @@ ZENITH = np.int64(4)  # the face +z
 
 
 class Lists(NamedTuple):
-    """The bins: a frame and its inverse (3, 3), the number of faces, how often these are halved.
+    """The bins: a frame and its inverse (3, 3), the number of faces, and how often they are halved.
 
-    `starts` (bins + 1,) are the starts of bins in `members`, the numbers of pieces.
+    Bin b lists `members` [starts[b], starts[b + 1]), which are indices of pieces.
     """
 
     frame: NDArray[np.float64]
@@ -70,7 +70,7 @@ def cube_face(n):
 
 @loop
 def nearest_bin(position, grid):
-    """Return the bin at a position along an edge of the grid, the first or last beyond its ends."""
+    """Return the bin at a position along an edge of the grid, clamped to the grid."""
     return min(max(int(position), 0), grid - 1)
 
 
@@ -92,7 +92,7 @@ def mapped(frame, n):
 
 @inline
 def spread_bits(x):
-    """Return a number with a zero before each of its 16 bits."""
+    """Return a 16-bit number with a zero before each bit."""
     x = (x | x << 8) & 0x00FF00FF
     x = (x | x << 4) & 0x0F0F0F0F
     x = (x | x << 2) & 0x33333333
@@ -107,7 +107,7 @@ def bin_number(face, row, column, level):
 
 @jit
 def order_normals(normals, frame, faces, first, last, keys):
-    """Write bin << 32 | number of the normals first, …, last − 1; −1 for those outside of a cap."""
+    """Write keys bin << 32 | index of the normals [first, last); −1 outside of a cap."""
     grid = np.int64(1) << FINEST
     for k in range(first, last):
         face, s, t = cube_face(mapped(frame, row_vector(normals, k)))
@@ -122,7 +122,7 @@ def order_normals(normals, frame, faces, first, last, keys):
 
 @inline
 def face_of(faces, k):
-    """Return a face of the cube: all are used, or one."""
+    """Return face k of the cube: all faces are used, or one."""
     return ZENITH if faces == 1 else np.int64(k)
 
 
@@ -138,7 +138,7 @@ def direction(inverse, face, s, t):
 
 @jit
 def write_caps(inverse, faces, level, caps):
-    """Write caps that hold the bins: their middles, and radii as chords."""
+    """Write caps that contain the bins: their axes, and radii as chords."""
     grid = np.int64(1) << level
     half = 1.0 / grid
     for k in range(faces):
@@ -161,7 +161,7 @@ def write_caps(inverse, faces, level, caps):
 
 @inline
 def meets(cone, cap):
-    """Return whether a cone and its slab may have a direction in a cap."""
+    """Return whether a cone and its slab may share a direction with a cap."""
     x, y, z = cone[0] - cap[0], cone[1] - cap[1], cone[2] - cap[2]
     reach = cone[CHORD] + cap[3]
     across = cone[SLAB] * cap[0] + cone[SLAB + 1] * cap[1] + cone[SLAB + 2] * cap[2]
@@ -170,7 +170,7 @@ def meets(cone, cap):
 
 @jit
 def list_pieces(cones, caps, frame, faces, level, stretch, least, keys):
-    """Write bin << 32 | piece for the pieces of bins, as far as there is room; return how many.
+    """Write keys bin << 32 | piece for each bin of each piece while there is room; return how many.
 
     `stretch` is the norm of the frame, `least` the least height of a direction on its face.
     """
@@ -187,8 +187,8 @@ def list_pieces(cones, caps, frame, faces, level, stretch, least, keys):
                 height = axis[face >> 1] if face & 1 == 0 else -axis[face >> 1]
                 if height + chord < least:
                     continue
-                # The place s = x / height of a direction on the face moves by at most ds if the
-                # direction moves by the chord, since its height is at least `least` there.
+                # If a direction moves by the chord, its position s = x / height on the face moves
+                # by at most ds, since its height is at least `least` there.
                 x, y = axis[((face >> 1) + 1) % 3], axis[((face >> 1) + 2) % 3]
                 step = chord * stretch / (height * max(least, height - chord))
                 s, ds = x / height, step * math.sqrt((x / stretch) ** 2 + height * height)
@@ -219,7 +219,7 @@ def count_keys(keys, shift, starts):
 
 @jit
 def place_keys(keys, shift, starts, ordered):
-    """Write keys to their places; `starts` are those of their leading bits, and move on."""
+    """Write keys to their positions, `starts` of their leading bits, which advance."""
     for k in range(keys.size):
         b = np.uint64(keys[k] >> shift)
         ordered[np.uint64(starts[b])] = keys[k]
@@ -228,7 +228,7 @@ def place_keys(keys, shift, starts, ordered):
 
 @jit
 def order_few(keys):
-    """Sort keys of which few are not in order, and not far from their places."""
+    """Sort keys that are nearly in order: few are misplaced, by few positions."""
     for k in range(1, keys.size):
         key, at = keys[k], k
         while at > 0 and keys[at - 1] > key:

@@ -1,8 +1,9 @@
 """Pieces of a surface, each with a cone of its normals: patches of a spline, or cells of a surface.
 
 The normals of a patch are combinations of its control normals with positive weights. So a cone that
-holds the directions of these holds all normals: those within a distance, a chord, of an axis. Long
-thin images also lie between two parallel planes, a slab.
+contains the directions of these contains all normals. It is given by its axis and its chord, the
+largest distance from the axis on the sphere. A slab between two parallel planes also bounds long
+thin images.
 """
 
 from __future__ import annotations
@@ -41,16 +42,16 @@ __all__ = [
 
 # Columns of cones: the axis, the chord; the direction of the slab, and half its width.
 CHORD, SLAB, WIDTH, CONE = 3, 4, 7, 8
-# Columns of patches: the vectors a, b, c, d, e, and the error of U, V, W; those of cells of a
-# surface have bounds of what the patch leaves out of x_s and x_t instead.
+# Columns of patches: the vectors a, b, c, d, e, and the error of U, V, W. Cells of a surface have
+# bounds of the remainders of x_s and x_t instead of the error.
 BOUND, VECTORS = 15, 16
 REST_S, REST_T = 15, 16
-# The chord of a cone that holds all directions, and the width of a slab that does.
+# The chord of a cone, and the width of a slab, that contain all directions.
 EVERYTHING = 2.0
 # Cones with a chord above this are not used: weights add up to less than the cosine of their angle.
 WIDEST = 1.0
-# Chords and widths are wider than computed by this, relatively and absolutely: rounding of sums of
-# a few numbers of size 1.
+# Chords and widths are enlarged by this, relatively and absolutely: rounding of sums of a few
+# numbers of size 1.
 RELATIVE, ABSOLUTE = 1.0 + 1e-12, 1e-14
 
 
@@ -84,7 +85,7 @@ class Pieces(NamedTuple):
 
 @jit
 def write_pieces(spline, first, start, last, net, pieces):
-    """Write the patches of the cells start, …, last − 1; those of cell `first` are the first ones.
+    """Write the patches of the cells [start, last); row 0 is the first patch of cell `first`.
 
     `net` (6, 4) is a work array.
     """
@@ -132,7 +133,7 @@ def put_piece(pieces, k, patch, spread, noise, net):
     """Write a patch, the cone of its normals, and a bound of the errors of its forms U, V, W.
 
     `spread` are the largest differences of its coefficients in x, y and z. `noise` is an error in
-    addition to the rounding of these.
+    addition to the rounding of the coefficients.
     """
     tangents = tangent_bounds(patch)
     square = max(tangents.x, tangents.y, tangents.z)
@@ -176,7 +177,7 @@ def write_vector(row, at, v):
 def write_net_pieces(vectors, control, angles, bounds, net, pieces):
     """Write the patches of nets; `net` (6, 4) is a work array.
 
-    They have vectors (T, 5, 3), control normals (T, 6, 3) with errors that are angles (T,), and
+    Nets have vectors (T, 5, 3), control normals (T, 6, 3) with errors that are angles (T,), and
     errors (T,) of U, V, W.
     """
     for k in range(angles.size):
@@ -203,7 +204,7 @@ def write_net_pieces(vectors, control, angles, bounds, net, pieces):
 def write_cone(net, cone):
     """Write the cone and the slab of unit control normals and their errors (6, 4), angles.
 
-    Errors of control normals that vanish are infinite; they add no direction to the cone.
+    The error of a control normal that vanishes is infinite; it adds no direction to the cone.
     """
     x = y = z = far = worst = 0.0
     regular = True
@@ -237,7 +238,7 @@ def write_cone(net, cone):
 
 @loop
 def thinnest(net, axis):
-    """Return the unit vector across an axis along which directions (6, 4) differ least."""
+    """Return the unit vector perpendicular to an axis along which directions (6, 4) vary least."""
     x, y, z = abs(axis.x), abs(axis.y), abs(axis.z)
     if x <= y and x <= z:
         p = Vector(0.0, axis.z, -axis.y)
@@ -255,7 +256,7 @@ def thinnest(net, axis):
         n = row_vector(net, m)
         s, t = dot(n, p), dot(n, q)
         xx, xy, yy = xx + s * s, xy + s * t, yy + t * t
-    # Half the angle of (xx − yy, 2 xy) is the direction along which they differ most.
+    # Half the angle of (xx − yy, 2 xy) is the direction along which they vary most.
     size = math.sqrt((xx - yy) ** 2 + 4.0 * xy * xy)
     share = (xx - yy) / size if size > 0.0 else 1.0
     c, s = math.sqrt(max(0.5 + 0.5 * share, 0.0)), math.sqrt(max(0.5 - 0.5 * share, 0.0))

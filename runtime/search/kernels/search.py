@@ -1,8 +1,8 @@
 """The search: which pieces have which normals.
 
-Normals come in the order of their bins. A tile is up to LANES normals of one bin; the pieces of the
-bin whose cones meet a cap around the tile are tested at all of its normals. The signs of U, V, W
-and D decide for the patch of a spline; a cell of a surface is excluded, or left to the proof.
+Normals come in the order of their bins. A tile is up to LANES normals of one bin; pieces of the bin
+whose cones meet a cap around the tile are tested for all normals of the tile. A patch of a spline
+is decided by the signs of U, V, W and D; a cell of a surface is excluded, or left to the proof.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ __all__ = ["CELLS", "PATCHES", "Memory", "Pairs", "search"]
 # The kinds of pieces.
 PATCHES, CELLS = 0, 1
 
-# The normals of a tile, and how many of them are tested at a time.
+# The number of normals of a tile, and how many are tested at a time.
 LANES, STEP = 64, 8
-# Rows of a tile: x, y, z of the normals, and what is known of them.
+# Rows of a tile: x, y, z of the normals, and their codes.
 Y, Z, CODE = (np.uint64(k * LANES) for k in range(1, 4))
 # The codes: no, yes, and undecided because of rounding.
 NO, YES, UNDECIDED = 0.0, 1.0, 2.0
@@ -45,14 +45,15 @@ class Memory(NamedTuple):
 
     @classmethod
     def new(cls, members: int) -> Memory:
-        """Return new work arrays; a bin has at most a number of members."""
+        """Return new work arrays, for bins with up to `members` members."""
         return cls(np.zeros(4 * LANES), np.zeros(4), np.empty(members + 1, np.int64))
 
 
 class Pairs(NamedTuple):
-    """Pairs of a normal and a piece that has it, certain and undecided ones.
+    """Pairs of a normal and a piece that has it or may have it.
 
-    Each is a key, number of the normal << 32 | piece; `counts` (2,) are their numbers.
+    `certain` and `undecided` are keys index of the normal << 32 | piece, `counts` (2,) their
+    numbers.
     """
 
     certain: NDArray[np.int64]
@@ -61,16 +62,16 @@ class Pairs(NamedTuple):
 
     @classmethod
     def new(cls, room: int) -> Pairs:
-        """Return room for a number of keys of each kind."""
+        """Return room for a number of keys of both."""
         return cls(np.empty(room, np.int64), np.empty(room, np.int64), np.zeros(2, np.int64))
 
 
 @jit
 def search(kind, pieces, lists, normals, order, first, last, memory, found):
-    """Find the pieces, which are of a kind, of the normals order[first], …, order[last − 1].
+    """Find the pieces, all of one kind, with the normals order[first], …, order[last − 1].
 
-    `order` (S,) are keys of `order_normals`. Returns where there was no more room, and how much
-    room is needed there.
+    `order` (S,) are keys of `order_normals`. Returns where room ended, and how much is needed
+    there.
     """
     tile, cap, near = memory
     cones, starts, members = pieces.cones, lists.starts, lists.members
@@ -102,7 +103,7 @@ def search(kind, pieces, lists, normals, order, first, last, memory, found):
 
 @loop
 def load_tile(tile, normals, order, first, last, cap):
-    """Write normals to a tile, and a cap that holds them."""
+    """Write normals to a tile, and a cap that contains them."""
     x = y = z = square = 0.0
     count = last - first
     for k in range(count):
@@ -134,7 +135,7 @@ def near_pieces(cones, members, first, last, cap, near):
 
 @inline
 def patch_in(row):
-    """Return the patch of a piece, but for p."""
+    """Return the patch of a piece, without p."""
     return Patch(
         Vector(row[0], row[1], row[2]),
         Vector(row[3], row[4], row[5]),
@@ -149,8 +150,8 @@ def patch_in(row):
 def test_tile(cone, row, tile, count):
     """Write the codes of the normals of a tile.
 
-    A patch has a normal if U, V, W have one sign there (Sect. 3.2), which is that of D, and if the
-    normal is in the cone: the forms are even, and its opposite has the same signs.
+    A patch has a normal if U, V, W have the sign of D there (Sect. 3.2), and the normal is in the
+    cone: the forms are even, so that the opposite normal has the same signs.
     """
     patch = patch_in(row)
     axis, square, bound = Vector(cone[0], cone[1], cone[2]), cone[CHORD] * cone[CHORD], row[BOUND]
@@ -172,9 +173,9 @@ def test_tile(cone, row, tile, count):
 
 @loop
 def exclude_tile(cone, row, tile, count):
-    """Write the codes of the normals of a tile: NO for those that a cell does not have by bounds.
+    """Write the codes of the normals of a tile: NO where bounds of the cell exclude the normal.
 
-    The others are UNDECIDED if its cone does not exclude the opposites of normals.
+    The other codes are YES, or UNDECIDED if the cone does not exclude opposite normals.
     """
     patch, rest_s, rest_t = patch_in(row), row[REST_S], row[REST_T]
     axis, square = Vector(cone[0], cone[1], cone[2]), cone[CHORD] * cone[CHORD]
@@ -196,7 +197,7 @@ def exclude_tile(cone, row, tile, count):
 def look_again(row, tile, count):
     """Compare hits of a piece without a narrow cone with the oriented normal at their parameters.
 
-    The forms are even in n: they do not distinguish a normal from its opposite, as a cone does.
+    The forms are even in n: unlike a cone, they do not distinguish a normal from its opposite.
     """
     patch = patch_in(row)
     for k in range(count):
@@ -214,12 +215,12 @@ def look_again(row, tile, count):
 
 @loop
 def store(tile, count, order, first, j, found):
-    """Write the keys of piece j and those normals of a tile that it has, or may have."""
+    """Write the keys of piece j and the normals of a tile that it has or may have."""
     certain, undecided, counts = found
     a, b = counts[0], counts[1]
     for k in range(count):
         code = tile[np.uint64(k) + CODE]
-        if code != NO:  # a branch: few have the normal, and stores are slower
+        if code != NO:  # a branch: most pieces lack the normal, and storing always would be slower
             key = (order[np.uint64(first + k)] & NUMBER) << 32 | j
             if code == YES:
                 certain[np.uint64(a)] = key

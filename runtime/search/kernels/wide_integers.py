@@ -1,9 +1,9 @@
 """Wide integers: exact numbers of many bits, on which formulas run unchanged.
 
 Binary fractions are integers in a common unit, and so are their sums and products. In compiled code
-`wide` returns an integer of two or more limbs of 64 bits. A product has as many bits as both of its
-factors together, and so never overflows; a sum has the bits of its terms, and needs spare ones.
-Without compilation, wide integers are Python's integers.
+`wide` returns an integer of two or more limbs of 64 bits. A product has the bits of both factors
+together, and never overflows; a sum has the bits of its terms, and needs spare ones. Without
+compilation, wide integers are Python's integers.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from numba.extending import intrinsic, lower_builtin, models, overload, register
 
 __all__ = ["MANTISSA", "rounded", "wide"]
 
-# The format of floating-point numbers: the bits of an integer mantissa, the mask of those that are
-# stored, and the exponent of the last one in the smallest numbers.
+# The format of floating-point numbers: the bits of the mantissa as an integer, the mask of those
+# that are stored, and the exponent of the last one in the smallest numbers.
 MANTISSA, FRACTION, LOWEST = 53, (1 << 52) - 1, -1074
 LIMB, PAIR, BIT = ir.IntType(64), ir.IntType(128), ir.IntType(1)
 
@@ -52,7 +52,7 @@ class WideModel(models.PrimitiveModel):
 def wide(value, unit, limbs) -> Any:
     """Return value / 2^unit, an integer with as many limbs as the tuple `limbs` has entries.
 
-    Its type depends on the number of entries, and not on their values.
+    Its type depends on the length of the tuple only.
     """
     mantissa, exponent = math.frexp(value)
     return int(math.ldexp(mantissa, MANTISSA)) << max(exponent - MANTISSA - unit, 0)
@@ -82,7 +82,7 @@ def shifted(_: Any, mantissa: Any, shift: Any, limbs: Any) -> Any:
 
 @intrinsic
 def leading(_: Any, x: Any) -> Any:
-    """Return the first 63 bits of the modulus of a number, and the exponent of the last one.
+    """Return the first 63 bits of the modulus of a number, and the exponent of the last of them.
 
     The last bit is set if any bit beyond it is set, so that the result rounds like the number
     itself.
@@ -171,7 +171,7 @@ def weighted(builder: Any, weight: Any, x: Any) -> Any:
 
 @operation(operator.mul, Wide, Wide)
 def product(builder: Any, x: Any, y: Any) -> Any:
-    """Emit a call of the product of these types."""
+    """Emit a call of the product function of these types."""
     name = f"wide_product_{x.type.width}_{y.type.width}"
     function = builder.module.globals.get(name)
     if function is None:

@@ -36,7 +36,7 @@ def patch_of_jet(jets, k, size, du, dv):
 
 @inline
 def is_regular(patch, L, K):
-    """Say whether a patch, whose normal has the length L, determines its direction and K."""
+    """Return whether a patch whose normal has the length L determines its direction and K."""
     largest = max(dot(patch.d, patch.d), dot(patch.e, patch.e))
     return VANISHING * largest < L and abs(K) < math.inf
 

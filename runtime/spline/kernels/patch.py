@@ -36,7 +36,7 @@ __all__ = [
 ]
 
 THIRD = 1.0 / 3.0
-# The indices of neighbours in NEIGHBOURS; typed, as each literal would be compiled on its own.
+# The indices of neighbours in NEIGHBOURS; typed, as Numba compiles for each literal separately.
 SOUTHWEST, SOUTH, SOUTHEAST, WEST, EAST, NORTH = (np.int64(k) for k in (0, 1, 2, 3, 5, 7))
 
 
@@ -144,7 +144,7 @@ def longest_control_normal(patch):
 
 @jit
 def count_developable(mu, scale, noise, first, last):
-    """Return how many of the patches first, …, last − 1 are developable."""
+    """Return the number of developable patches among [first, last)."""
     columns = mu.shape[1] - 2
     found = 0
     for number in range(first, last):

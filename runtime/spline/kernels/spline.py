@@ -32,7 +32,7 @@ __all__ = [
     "patches_at",
 ]
 
-# From steps in cells to steps in the parameters u, v of a patch, for its quarter turns.
+# From steps in cells to steps in the parameters u, v of a patch, by its quarter turns.
 TO_PATCH = np.linalg.inv(CORNERS)
 
 
@@ -124,7 +124,7 @@ def locate(s, t):
 
 @inline
 def patch_at(x, y, rows, columns):
-    """Return row, column and triangle of the cell of a parameter pair in cells, and u, v there."""
+    """Return row, column and triangle of a parameter pair in cells, and u, v in this triangle."""
     i = min(max(int(math.floor(x)), 0), rows - 1)
     j = min(max(int(math.floor(y)), 0), columns - 1)
     turn, u, v = locate(x - i - 0.5, y - j - 0.5)
@@ -174,7 +174,7 @@ def set_second(jets, k, row, patch, uu, uv, vv, size):
 def jets_on_spline(mu, scale, frame, cells, jets):
     """Write the 2-jets (k, 6, 3) of a spline at parameters (k, 2) in cells.
 
-    Second derivatives are those of one of the patches that meet at a point.
+    Second derivatives at joints are those of one of the patches.
     """
     size = SCALE * scale
     du = frame[2]
@@ -184,7 +184,7 @@ def jets_on_spline(mu, scale, frame, cells, jets):
         patch = patch_vectors(mu, i + 1, j + 1, turn, scale)
         x = envelope(patch, u, v)
         p_u, p_v, _ = tangents(patch, u, v)
-        # Derivatives along the lines of the parameters, from those along the sides of the patch.
+        # From derivatives along the sides of the patch to derivatives along the parameter lines.
         a = TO_PATCH[turn, 0, 0] / du
         b = TO_PATCH[turn, 0, 1] / du
         c = TO_PATCH[turn, 1, 0] / dv

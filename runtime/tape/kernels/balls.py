@@ -1,8 +1,8 @@
 """Bounds of the Taylor coefficients of a tape over boxes |u − u0| <= ru, |v − v0| <= rv.
 
-A coefficient is known as a ball: a midpoint and a radius. Registers are those of
-`points`, with the ten coefficients 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv; there are
-registers of midpoints and of radii. Boxes are evaluated in tiles of LANES.
+A coefficient is enclosed in a ball: a midpoint and a radius. Registers are as in `points`, with the
+ten coefficients 1, u, v, uu, uv, vv, uuu, uuv, uvv, vvv; midpoints and radii have registers of
+their own. Boxes are evaluated in tiles of LANES.
 
 Radii include the rounding errors of all operations; their bounds are derived with the formulas
 (`symbolic/taylor.py`). The functions of the C library are assumed to be accurate to two units in
@@ -26,7 +26,8 @@ __all__ = ["BALL", "bounds_of_boxes", "evaluate_boxes"]
 # The size of a row of registers, and the offsets of its coefficients.
 BALL = np.int64(10 * LANES)
 U, V, UU, UV, VV, UUU, UUV, UVV, VVV = (np.uint64(k * LANES) for k in range(1, 10))
-# Bounds of the relative rounding errors of radii, sums of fewer than 64 terms, and of underflow.
+# Bounds of the relative rounding errors of radii, which are sums of fewer than 64 terms, and of
+# underflow.
 INFLATION = 1.0 + 2.0**-46
 TINY = 1e-290
 
@@ -86,7 +87,7 @@ def put_cubic(registers, at, k, c):
 
 @loop
 def put_quadratic(registers, at, k, c):
-    """Write the coefficients of lane k up to those of degree 2."""
+    """Write the coefficients of lane k up to degree 2."""
     i = np.uint64(at + k)
     registers[i], registers[i + U], registers[i + V] = c[0], c[1], c[2]
     registers[i + UU], registers[i + UV], registers[i + VV] = c[3], c[4], c[5]
@@ -192,7 +193,7 @@ def write_ranges(code, middles, radii, a, f, ends, count):
 
 @loop
 def write_coranges(code, middles, radii, f, count):
-    """Turn the coefficients of a sine into those of the cosine."""
+    """Replace the coefficients of a sine by those of the cosine."""
     for k in range(count):
         i = np.uint64(f + k)
         y, w = middles[i], middles[i + U]
@@ -209,7 +210,7 @@ def write_coranges(code, middles, radii, f, count):
 
 @loop
 def compose(terms, middles, radii, a, f, at, count):
-    """Write a function of a register, whose Taylor coefficients are in the rows from f on."""
+    """Write a function of a register; its Taylor coefficients are in the rows from f on."""
     if terms == 10:
         for k in range(count):
             i = np.uint64(f + k)
@@ -244,8 +245,8 @@ def compose(terms, middles, radii, a, f, at, count):
 def evaluate_boxes(tape, order, centres, half_widths, count, middles, radii, ends):
     """Write the balls of all rows of a tape on `count` boxes, at most LANES.
 
-    Centres and radii of boxes are (k, 2). The order is 2 or 3. Registers have a row more than the
-    tape; `ends` (2, 4) is scratch memory.
+    Centres and half widths of boxes are (k, 2). The order is 2 or 3. Registers have a row more than
+    the tape; `ends` (2, 4) is scratch memory.
     """
     terms = 10 if order == 3 else 6
     rows = tape.operations.shape[0]

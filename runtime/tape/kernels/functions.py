@@ -16,12 +16,12 @@ __all__ = [
     "sine_and_cosine",
 ]
 
-UNIT = 2.0**-53  # the unit of rounding
+UNIT = 2.0**-53  # unit roundoff
 QUARTER = 0.5 * math.pi
-FAR = 1e8  # beyond this, multiples of π/2 are not located
-# Adding and subtracting it rounds numbers to integers.
+FAR = 1e8  # beyond this, reduction modulo π/2 is inaccurate
+# Adding and subtracting this rounds numbers to integers.
 SHIFT = 1.5 * 2.0**52
-LARGEST_ANGLE = 2.0**18  # the domain of `reduced_angle`
+LARGEST_ANGLE = 2.0**18  # largest argument of `reduced_angle`
 
 
 @inline
@@ -42,7 +42,7 @@ def sine_and_cosine(x):
 
 @loop
 def coefficients(code, x):
-    """Return the value of the function with this code at x, and its Taylor coefficients after it.
+    """Return the value at x of the function with this code, and its Taylor coefficients there.
 
     They are NaN or infinite where they do not exist.
     """
@@ -113,7 +113,7 @@ def error_of_rounding(code, order, size):
 
 @loop
 def include(code, x, f):
-    """Extend the lowest and highest coefficients f (2, 4) by those at x."""
+    """Extend the least and largest coefficients f (2, 4) by those at x."""
     found = coefficients(code, x)
     jumps = code == elementary.SIGN and x == 0.0
     if jumps or not abs(found[0]) + abs(found[1]) + abs(found[2]) + abs(found[3]) < math.inf:

@@ -22,9 +22,9 @@ __all__ = ["Net", "Scratch", "jets", "positions"]
 class Net(NamedTuple):
     """A NURBS surface, as arrays for kernels.
 
-    Points are (m, n, 3), or (m, n, 4) if they are w x, w y, w z, w; relative to the centre (3,).
-    For u and for v: the degree; the knots; the first and last knot span in use, whose polynomials
-    extend beyond their ends; and the lower end and length of the period, which is 0 without one.
+    Points are (m, n, 3), or (m, n, 4) with w x, w y, w z, w; relative to the centre (3,). For u and
+    for v: the degree; the knots; the first and last knot span in use, whose polynomials extend
+    beyond their ends; and the lower end and length of the period, which is 0 without one.
     """
 
     degrees: NDArray[np.int64]
@@ -57,7 +57,7 @@ def in_period(x, low, period):
 
 @loop
 def span_of(knots, first, last, near, x):
-    """Return the knot span from `first` to `last` that holds x, or the one nearest to x.
+    """Return the knot span from `first` to `last` that contains x, or the one nearest to x.
 
     Spans are closed on their left. The search begins at the span `near`.
     """
@@ -81,8 +81,8 @@ def span_of(knots, first, last, near, x):
 def basis_functions(knots, degree, span, x, basis):
     """Write the nonzero basis functions, and their first and second derivatives.
 
-    Each step raises the degree by one. The derivatives of one degree are the differences of
-    the functions of the degree below, relative to the knots that they cover.
+    Each step raises the degree by one. The derivatives of one degree are differences of the
+    functions of the degree below, relative to the knots that these cover.
     """
     basis[0, 0], basis[1, 0], basis[2, 0] = 1.0, 0.0, 0.0
     for j in range(1, degree + 1):

@@ -1,8 +1,8 @@
-"""Tapes: lists of the operations that compute a surface; their evaluation to 2-jets.
+"""Tapes: lists of operations that compute a surface; their evaluation to 2-jets.
 
-Points are evaluated in tiles of LANES: each operation is a loop over the lanes, which share the
-time of interpretation. Results of operations, the registers, are Taylor polynomials in u and v of
-degree 2: numbers 1, u, v, uu, uv, vv for each row of the tape, each with LANES lanes.
+Points are evaluated in tiles of LANES: each operation is a loop over the lanes, which shares the
+cost of interpretation. The results of operations, in registers, are Taylor polynomials in u and v
+of degree 2: numbers 1, u, v, uu, uv, vv for each row of the tape, each with LANES lanes.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Tape(NamedTuple):
 
     Operations (k, 4) int64 are a code of `generated.elementary` and the rows of its arguments.
     Numbers (k, 2) are constants with bounds of their errors. Outputs (3,) int64 are the rows of x,
-    y and z. A spline is read by the operation of that name.
+    y and z. The operation `spline` reads a spline.
     """
 
     operations: NDArray[np.int64]
@@ -136,7 +136,7 @@ def multiply(registers, a, b, at, count):
 
 @loop
 def compose(registers, a, at, count):
-    """Write a function of a register; its value, f1 and f2 are in the slots of 1, u and v."""
+    """Write a function of a register whose value, f1 and f2 are in the slots of 1, u and v."""
     for k in range(count):
         x = taylor_at(registers, a, k)
         i = np.uint64(at + k)
@@ -156,7 +156,7 @@ def write_coefficients(code, registers, a, at, count):
 
 @loop
 def write_sines(registers, a, at, count):
-    """Write the same as `write_coefficients` for sines."""
+    """Write what `write_coefficients` writes, for sines."""
     long_vectors()
     for k in range(count):
         i = np.uint64(at + k)

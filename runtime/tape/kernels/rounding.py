@@ -1,8 +1,8 @@
 """Bounds of the rounding errors of 2-jets that a tape computes, over boxes of parameters.
 
-For each operation, balls enclose the exact Taylor coefficients on the box, and a bound is computed
-for the errors of those that `points` computes anywhere in the box: errors of the arguments, and
-rounding errors of the operation. The assumptions are those of `balls`.
+For each operation, balls enclose the exact Taylor coefficients on the box. From these follow bounds
+of the errors of the coefficients that `points` computes anywhere in the box: errors of the
+arguments, and rounding errors of the operation. The assumptions are those of `balls`.
 """
 
 from __future__ import annotations
@@ -68,7 +68,8 @@ def of_sum(code, factor, distance, middles, radii, errors, a, b, at, count):
             else:
                 largest = size_at(middles, radii, x) + errors[x]
                 error = abs(factor) * errors[x] + distance * largest + UNIT * size
-            # UNIT * size is for the exact result: the computed one is hardly larger.
+            # UNIT * size bounds the rounding of the exact result: the computed one is hardly
+            # larger.
             errors[z] = error * INFLATION + TINY
 
 
@@ -86,8 +87,8 @@ def of_product(middles, radii, errors, a, b, at, count):
 def of_coefficients(code, middles, radii, errors, a, f, ends, count):
     """Write bounds of the Taylor coefficients of a function, and of their errors, from row f on.
 
-    Between the exact argument and the computed one a coefficient changes by its slope, which is the
-    next coefficient.
+    Between the exact and the computed argument a coefficient changes by at most its slope, the next
+    coefficient, times their difference.
     """
     for k in range(count):
         i = np.uint64(a + k)

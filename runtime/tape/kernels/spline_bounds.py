@@ -1,8 +1,8 @@
-"""Bounds of the polynomials of a spline over boxes, for `tape_balls` and `tape_rounding`.
+"""Bounds of the polynomials of a spline over boxes, for `balls` and `rounding`.
 
-On a box, a polynomial is expanded at its centre s, t. Over the box, a coefficient of the expansion
-changes by at most the sum of the absolute values of those of higher order. The same expansion of
-absolute values bounds rounding errors.
+On a box, a polynomial is expanded at the centre s, t. Over the box, a coefficient of the expansion
+changes by at most the sum of the absolute values of the coefficients of higher order. The same
+expansion of absolute values bounds rounding errors.
 
 A box may contain knots. A derivative that is unbounded there has an infinite radius.
 """
@@ -25,7 +25,7 @@ __all__ = ["SLACK", "write_spline_balls", "write_spline_errors"]
 IN_U = np.array([0, 1, 0, 2, 1, 0, 3, 2, 1, 0])
 IN_V = np.array([0, 0, 1, 0, 1, 2, 0, 1, 2, 3])
 SECOND = np.int64(MOST_COEFFICIENTS)  # the offset of the second polynomial of an array
-# An end of a box within this distance of a knot, in roundings of the knots, counts as the knot.
+# An end of a box within this distance of a knot counts as the knot, in roundings of the knots.
 SLACK = 8.0 * UNIT
 
 
@@ -125,7 +125,7 @@ def expand(spline, i, j, c, s, t, middles, radii, at):
 
 @loop
 def include_balls(spline, i, j, c, s, t, half_s, half_t, terms, middles, radii, at, scratch):
-    """Extend lowest and highest coefficients in u and v by those of one pair of spans."""
+    """Extend the least and largest coefficients in u and v by those of one pair of spans."""
     p, q = spline.coefficients.shape[2] - 1, spline.coefficients.shape[3] - 1
     along_u, along_v = spline.frames_u[i, 1], spline.frames_v[j, 1]
     rounding = (2.0 * (p + q) + 2.0) * UNIT
@@ -201,7 +201,7 @@ def write_spline_errors(
 ):
     """Write bounds of the errors of the coordinates of a spline at points of a box.
 
-    The parameter in a span has an error itself, which is multiplied by the slopes of coefficients.
+    The parameter in a span has an error, too, which is multiplied by the slopes of coefficients.
     """
     x = own_parameter(turned, number, u)
     if turned == 1:

@@ -25,7 +25,7 @@ __all__ = [
 ]
 
 COORDINATES = 4  # rows of a tape: x, y, z and a weight
-MOST_COEFFICIENTS = 160  # of one polynomial, for which registers have room
+MOST_COEFFICIENTS = 160  # of one polynomial, which fit into registers
 
 
 class Polynomials(NamedTuple):

@@ -163,7 +163,7 @@ def test_surfaces(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["surfaces"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == list(gm.surfaces.names())
-    assert re.match(r"torus +The torus round", lines[0])
+    assert re.match(r"torus +The torus around", lines[0])
     assert main(["surfaces", "torus"]) == 0
     assert capsys.readouterr().out == gm.surfaces.describe("torus") + "\n"
 

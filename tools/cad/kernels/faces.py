@@ -31,7 +31,7 @@ def revolve(u, curve, out):
 def offset(distance, jets, thirds, out):
     """Write y, y_u, y_v, y_uu, y_uv, y_vv (k, 6, 3) at a distance from 2-jets (k, 6, 3).
 
-    Second derivatives need the third ones (k, 4, 3): x_uuu, x_uuv, x_uvv, x_vvv. All are NaN where
+    Second derivatives need third ones of x (k, 4, 3): x_uuu, x_uuv, x_uvv, x_vvv. All are NaN where
     x_u × x_v = 0.
     """
     for k in range(len(jets)):

@@ -19,10 +19,9 @@ __all__ = ["UnusableError", "curve_net", "knots_of", "opened"]
 
 Array = NDArray[np.float64]
 
-# Curves other than NURBS, such as circles, become splines of this degree that interpolate them.
-# The number of spans is doubled until the error, relative to the size of the curve, is that of
-# rounding. Third derivatives of shorter spans would have larger errors, and offsets need them: the
-# circle has four spans.
+# Curves other than NURBS, such as circles, are interpolated by splines of this degree. The number
+# of spans is doubled until the error, relative to the size of the curve, is that of rounding.
+# Offsets need third derivatives, whose errors grow with shorter spans: a circle has four spans.
 DEGREE, MOST_SPANS = 13, 1024
 ROUNDING = 4e-15
 # The length of the extension of a line beyond its domain, relative to the domain.
@@ -86,10 +85,10 @@ def _of_spline(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
 
 
 def opened(calls: Sequence[Callable[..., Any]], domain: Sequence[float], period: float) -> float:
-    """Make a periodic spline open, over a period that has a domain; return the shift of its knots.
+    """Open a periodic spline over a period that contains a domain; return the shift of its knots.
 
-    The domain of a face that is turned about its axis starts anywhere. `calls` return knots and
-    their number, insert a knot, set the first one, and end the period.
+    The domain of a face turned about its axis starts anywhere. `calls` return knots and their
+    number, insert a knot, set the first one, and end the period.
     """
     knot, count, insert, begin, end = calls
     first = float(knot(1))
@@ -141,7 +140,7 @@ def _control_points(curve: Any, ends: Array) -> Array:  # noqa: ANN401
 
 
 def _misfit(curve: Any, ends: Array, points: Array) -> float:  # noqa: ANN401
-    """Return the error midway between the points of interpolation, relative to the curve's size."""
+    """Return the error midway between the interpolated points, relative to the curve's size."""
     places = np.linspace(0.1, 0.7, 3)
     parameters = ends[:-1, None] + np.diff(ends)[:, None] * places
     values = _values(curve, parameters.ravel()).reshape(-1, len(places), 3)
@@ -150,7 +149,7 @@ def _misfit(curve: Any, ends: Array, points: Array) -> float:  # noqa: ANN401
 
 
 def _bernstein(places: Array) -> Array:
-    """Return the Bernstein polynomials of `DEGREE`, a row for each of the values in [0, 1]."""
+    """Return the Bernstein polynomials of `DEGREE`, in a row for each of the values in [0, 1]."""
     k = np.arange(DEGREE + 1)
     binomials = np.array([comb(DEGREE, int(x)) for x in k], dtype=np.float64)
     return binomials * places[:, None] ** k * (1.0 - places[:, None]) ** (DEGREE - k)

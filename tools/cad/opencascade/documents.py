@@ -50,7 +50,7 @@ class PlacedShape:
 
 @dataclass
 class Document:
-    """The shapes of a file; `styles` are those of their subshapes, in all placements."""
+    """The shapes of a file; `styles` are the styles of their subshapes, in all placements."""
 
     pieces: list[PlacedShape]
     styles: dict[Key, Style] = field(default_factory=dict)
@@ -66,7 +66,7 @@ def new_document() -> Any:  # noqa: ANN401
 
 
 def pieces_of(document: Any) -> Document:  # noqa: ANN401
-    """Return the shapes, names and colours that a reader has put into a document."""
+    """Return the shapes, names and colours of a document that a reader has filled."""
     found = Document([])
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     labels = _labels()
@@ -123,14 +123,14 @@ def _name(label: Any) -> str:  # noqa: ANN401
     attribute = TDataStd_Name()
     label.FindAttribute(TDataStd_Name.GetID_s(), attribute)
     name = " ".join(attribute.Get().ToExtString().split())
-    return "" if name.startswith("=>[") else name  # Open CASCADE's own for components
+    return "" if name.startswith("=>[") else name  # Open CASCADE's own names for components
 
 
 def _color(label: Any) -> Color | None:  # noqa: ANN401
     color = Quantity_Color()
     for kind in (XCAFDoc_ColorType.XCAFDoc_ColorSurf, XCAFDoc_ColorType.XCAFDoc_ColorGen):
         if XCAFDoc_ColorTool.GetColor_s(label, kind, color):
-            # Values as in files: Open CASCADE itself holds linear values, in single precision.
+            # Values as in files: Open CASCADE itself stores linear values, in single precision.
             red, green, blue = color.Values(Quantity_TypeOfColor.Quantity_TOC_sRGB)
             return round(red, DIGITS), round(green, DIGITS), round(blue, DIGITS)
     return None

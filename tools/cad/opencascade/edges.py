@@ -1,4 +1,4 @@
-"""The edges of all faces, as parameters on each face, and the wires that they make."""
+"""The edges of all faces, as parameters on each face, and the wires that they form."""
 
 # pyright: reportMissingImports=false
 
@@ -31,8 +31,8 @@ __all__ = ["Topology", "topology_of"]
 Array = NDArray[np.float64]
 Wires = list[Wire]
 
-# The number of points on a p-curve that is not straight: one for each angle on circles, a number
-# for each piece of others, and the least and the largest number.
+# The number of points on a p-curve that is not straight: one per angle on circles, a number per
+# piece of other curves, the least and the largest number.
 ANGLE, POINTS_A_PIECE, LEAST, MOST = 0.15, 4, 9, 1025
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
 EDGE = TopAbs_ShapeEnum.TopAbs_EDGE
@@ -61,9 +61,9 @@ def topology_of(
 ) -> Topology:
     """Return all edges of faces, and their order around each face.
 
-    The smoothness that a file claims is often wrong, and is ignored. Faces that failed, and those
-    with an edge without p-curve, have no wires. Parameters that are lengths are multiplied by
-    `factor`, as those of the faces will be.
+    The smoothness that a file claims is often wrong, and is ignored. Faces that failed, or have an
+    edge without p-curve, have no wires. Parameters that are lengths are multiplied by `factor`, as
+    those of the faces will be.
     """
     numbers, known, wires = indexed_shapes(), list[Known](), list[Wires]()
     for k, (face, record) in enumerate(zip(placed, faces, strict=True)):
@@ -98,7 +98,7 @@ def _ordered(face: Any, reader: FaceReader) -> EdgeCurves:  # noqa: ANN401
 
 
 def _record(known: Known, scales: list[Array], vertices: _Vertices) -> EdgeRecord:
-    """Return an edge; parameters on a side are NaN without a p-curve."""
+    """Return an edge; parameters of a side are NaN if it has no p-curve."""
     shares = _shares(max((_points(x) for x in known.curves if x), default=2))
     sides = np.full((len(shares), len(known.faces), 4), np.nan)
     for k, (face, curve) in enumerate(zip(known.faces, known.curves, strict=True)):
@@ -141,7 +141,7 @@ def _shares(number: int) -> Array:
 
 
 def _points(curve: PCurve) -> int:
-    """Return the number of points that represent a curve."""
+    """Return the number of points for a curve."""
     if not curve.pieces:
         return 2
     if curve.radius:

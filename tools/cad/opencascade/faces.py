@@ -25,11 +25,11 @@ __all__ = ["FaceReader", "area_of"]
 
 Array = NDArray[np.float64]
 
-# The smallest area, in mm², that counts as positive: points within 1e-7 mm are equal to Open
-# CASCADE.
+# The smallest area, in mm², that counts as positive: Open CASCADE considers points within 1e-7 mm
+# equal.
 LEAST_AREA = 1e-12
-# The estimated relative error at which Open CASCADE stops dividing a face. Areas are within 1e-6 of
-# closed forms then; without it, those of ellipsoids of one face are off by 3e-3.
+# The estimated relative error at which Open CASCADE stops dividing a face. With it, areas agree
+# with closed forms to 1e-6; without it, those of ellipsoids of one face are off by 3e-3.
 PRECISION = 1e-10
 
 
@@ -59,7 +59,7 @@ class FaceReader:
             reason = str(error)
         except MemoryError:
             raise
-        except Exception as error:  # Open CASCADE raises hundreds of types
+        except Exception as error:  # Open CASCADE raises hundreds of exception types
             text = " ".join(str(error).split())[:80].rstrip(".")
             reason = f"Open CASCADE fails on it ({text or type(error).__name__})"
         return FaceRecord(Geometry("unknown"), reason=reason)

@@ -94,7 +94,7 @@ def _damaged(reader: Any, content: bytes) -> Mapping[int, str] | None:  # noqa: 
 
 
 def _set_unit(document: Document, reader: Any) -> None:  # noqa: ANN401
-    """Set the unit of a STEP file, which may have several."""
+    """Set the unit of a STEP file, which may have several units."""
     names = [sequence("TColStd.TColStd_SequenceOfAsciiString", "Sequence_TCollection_AsciiString")]
     names += [type(names[0])(), type(names[0])()]
     reader.FileUnits(*names)

@@ -1,4 +1,4 @@
-"""The trim of a face: the polygons in u and v that its p-curves make."""
+"""The trim of a face: the polygons in u and v that its p-curves form."""
 
 # pyright: reportMissingImports=false
 
@@ -22,11 +22,11 @@ from .shapes import parts_of
 __all__ = ["EdgeCurves", "loops_of", "wires_of"]
 
 Array = NDArray[np.float64]
-# The edges of each wire of a face and their p-curves, one after another.
+# The edges of each wire of a face with their p-curves, in order.
 EdgeCurves = list[list[tuple[Any, PCurve]]]
 
 # The largest distance of polygons from the curves, relative to the (u, v) box of the face and to
-# its mean width in it, but not less than the last.
+# its mean width in it, but at least the last of these.
 OF_BOX, OF_WIDTH, LEAST = 1e-4, 1e-3, 1e-7
 # The largest gap between consecutive curves, relative to the box, if edges do not allow it.
 GAP = 1e-2
@@ -98,7 +98,7 @@ def _gap_of(surface: Any, wires: EdgeCurves, size: Array) -> float:  # noqa: ANN
 
 
 def _mean_width(loops: list[Array], size: Array) -> float:
-    """Return twice the area over the length of polygons, in units of the box."""
+    """Return the area of polygons over half their length, in units of the box."""
     area = length = 0.0
     for loop in loops:
         scaled = (loop - loop[0]) / size
@@ -131,7 +131,7 @@ def _edges_of(wire: Any, face: Any) -> list[tuple[Any, PCurve]]:  # noqa: ANN401
 
 
 def _chained(curves: list[PCurve]) -> list[int]:
-    """Return an order of curves in which each begins close to where the one before ends."""
+    """Return an order of curves in which each begins close to the end of the one before."""
     ends = [x.evaluate(np.array(x.ends))[:, :2] for x in curves]
     ends = [x[::-1] if curve.reversed else x for x, curve in zip(ends, curves, strict=True)]
     order, left = [0], set(range(1, len(curves)))

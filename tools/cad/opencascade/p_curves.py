@@ -34,9 +34,9 @@ FIRST_PIECES, PIECES_A_SPAN, MOST_PIECES = 4, 2, 256
 class PCurve:
     """A p-curve: points and derivatives (k, 4) at parameters, and its direction in the wire.
 
-    `ends` are its ends and the parameters of possible corners between them; `pieces` is the number
-    of pieces that a polyline initially has in each interval between these, 0 for a straight line.
-    `radius` is that of a circle, or 0.
+    `ends` are its ends and the parameters of possible corners between them; a polyline initially
+    has `pieces` pieces in each interval between these, 0 for a straight line. `radius` is that of a
+    circle, or 0.
     """
 
     evaluate: Callable[[Array], Array]
@@ -99,14 +99,14 @@ def _adaptor(edge: Any, face: Any) -> Any:  # noqa: ANN401
 
 
 def _corners(spline: Any, ends: tuple[float, float]) -> tuple[tuple[float, ...], int]:  # noqa: ANN401
-    """Return the ends and the knots between them with corners, and the number of all spans."""
+    """Return the ends, the knots with corners between them, and the number of all spans."""
     inside = [k for k in range(1, spline.NbKnots() + 1) if ends[0] < spline.Knot(k) < ends[1]]
     multiple = [k for k in inside if spline.Multiplicity(k) >= spline.Degree()]
     return (ends[0], *(spline.Knot(k) for k in multiple), ends[1]), len(inside) + 1
 
 
-# A call of Open CASCADE for a point takes a microsecond and more, and most curves are lines and
-# circles: their points are computed here, by the formulas of Open CASCADE.
+# For a point, a call of Open CASCADE takes a microsecond or more, and most curves are lines and
+# circles. Their points are computed here, by the formulas of Open CASCADE.
 
 
 def _line(line: Any) -> Callable[[Array], Array]:  # noqa: ANN401

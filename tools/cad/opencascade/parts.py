@@ -32,7 +32,7 @@ MOST_NAMED = 5
 
 
 def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
-    """Return the part in a file, in a unit or its own; UnusableError with a reason if not."""
+    """Return the part in a file, in a given unit or its own; UnusableError with a reason if not."""
     document, lost = read_file(source)
     found = gathered(document)
     said = source.faces_said()
@@ -81,7 +81,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
 
 
 def _invalid(document: Document, faces: list[PlacedFace]) -> Iterator[str]:
-    """Yield a sentence if Open CASCADE calls shapes invalid, with the indices of faces."""
+    """Yield a sentence with the faces of shapes that Open CASCADE calls invalid, if any."""
     if all(BRepCheck_Analyzer(x.shape).IsValid() for x in document.pieces):
         return
     bad = [k for k, x in enumerate(faces) if not BRepCheck_Analyzer(x.shape).IsValid()]
@@ -94,7 +94,7 @@ def _invalid(document: Document, faces: list[PlacedFace]) -> Iterator[str]:
 
 
 def _warn_of_part_files(document: Document, source: Source) -> None:
-    """Warn of part files without content; Open CASCADE makes empty shapes of references to them."""
+    """Warn of part files without content: Open CASCADE makes empty shapes of references to them."""
     if source.parts is not None and (which := source.parts.said()):
         empty = plural(sum(x.shape.NbChildren() == 0 for x in document.pieces), "reference")
         document.warnings.append(f"{which}; left out: {empty} to them.")
@@ -116,7 +116,7 @@ def _face(face: PlacedFace, reader: FaceReader) -> FaceRecord:
 
 
 def _different(faces: list[PlacedFace]) -> int:
-    """Return the number of faces, counting copies in other placements once."""
+    """Return the number of faces, where copies in other placements count once."""
     return len({Key(x.shape, placed=False) for x in faces})
 
 

@@ -33,7 +33,7 @@ def one_sided(
     """Return points (k, 2) of a polyline from one end of a smooth curve to the other.
 
     On the kept side, left or right in the direction of the parameter, the polyline deviates from
-    the curve by at most `tolerance` (2,) in u and v; on the other side by at most 1e-3 of that: it
+    the curve by at most `tolerance` (2,) in u and v; on the other side by at most 1e-3 of that. It
     follows tangents where the curve is convex towards the kept side, and chords elsewhere. So a
     point inside a polygon of such polylines is inside the curves.
     """

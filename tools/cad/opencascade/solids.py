@@ -24,10 +24,10 @@ from .shapes import Key, parts_of
 
 __all__ = ["CLOSE", "Gathered", "PlacedFace", "gathered"]
 
-# Loose faces are sewn where their boundaries are closer than this, in mm; if holes remain, with a
+# Loose faces are sewn where their boundaries are closer than this, in mm; if holes remain, than a
 # distance relative to the size of all faces.
 CLOSE, CLOSE_OF_SIZE = 1e-3, 1e-4
-# The largest number of loose faces that are sewn: more would take minutes.
+# The largest number of loose faces that are sewn: more of them would take minutes.
 MOST_LOOSE = 20_000
 
 
@@ -116,7 +116,7 @@ def _add_loose(found: Gathered, loose: list[tuple[Any, Style]]) -> None:
 
 
 def _sewn(faces: list[Any]) -> Any:  # noqa: ANN401
-    """Return the sewing of faces, with a wide tolerance if the narrow one leaves holes."""
+    """Return the sewing of faces, with a wider tolerance if the narrow one leaves holes."""
     compound, builder = TopoDS_Compound(), BRep_Builder()
     builder.MakeCompound(compound)
     for face in faces:

@@ -29,9 +29,9 @@ ELEMENTARY: dict[str, tuple[str, tuple[str, ...]]] = {
     "Geom_ToroidalSurface": ("torus", ("MajorRadius", "MinorRadius")),
 }
 
-# The header of a surface that Open CASCADE writes, before the control points: the title, its
-# kind, whether it is rational and, if it may be, periodic; its degrees, and numbers of control
-# points and of knots.
+# The header that Open CASCADE writes for a surface, before the control points: the title, its kind,
+# whether it is rational and, if it may be, periodic; its degrees, and numbers of control points and
+# of knots.
 TITLE = len(b"Surfaces 1\n")
 BEFORE_POLES = {
     "Geom_BezierSurface": TITLE + 1 + 2 + 2 * 2,
@@ -40,7 +40,7 @@ BEFORE_POLES = {
 
 
 def basis_of(surface: Any) -> Any:  # noqa: ANN401
-    """Return the untrimmed surface: its own trim is replaced by that of the face."""
+    """Return the untrimmed surface: the trim of the face replaces its own."""
     while direct_class(surface) == "Geom_RectangularTrimmedSurface":
         surface = surface.BasisSurface()
     return surface
@@ -108,7 +108,7 @@ def _net(surface: Any) -> tuple[Array, Array | None]:  # noqa: ANN401
     m, n = surface.NbUPoles(), surface.NbVPoles()
     rational = surface.IsURational() or surface.IsVRational()
     numbers = 4 if rational else 3
-    # Calls for each control point would take longer than all the rest: writing returns all at
+    # Calls for each control point would take longer than everything else: writing returns all at
     # once.
     written, buffer = BinTools_SurfaceSet(), io.BytesIO()
     written.Add(surface)

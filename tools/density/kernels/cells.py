@@ -19,7 +19,7 @@ from .sizing import density_of
 
 __all__ = ["evaluate_cells"]
 
-# The factor by which the surface may be farther away than its osculating patch.
+# The surface may be farther from the centre than its osculating patch by this factor.
 BEYOND = 1.03
 
 
@@ -71,9 +71,9 @@ def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numb
     numbers (M, 14): the radius of a ball around the point that contains the cell; the largest chord
     between the normal and others of the cell, 0 if it is rounding error, 2 if an angle is not acute
     or there is no normal; the lengths of the cell along u and v; its bends along u and v, relative
-    to the lengths, 0 if they are rounding error; its area; the least radius of curvature (smaller
-    ones count as this): if it is 0 on entry, the width of the cell, or of one whose sides are
-    `finest` (2,); and its sides along u and v at the place, which are vectors.
+    to the lengths, 0 if they are rounding error; its area; the least radius of curvature, which
+    replaces smaller ones (if it is 0 on entry: the width of the cell, or of a cell with the sides
+    `finest` (2,)); and the vectors of its sides along u and v at the place.
     """
     for k in range(jets.shape[0]):
         du = boxes[k, 2] - boxes[k, 0]

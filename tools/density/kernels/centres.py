@@ -1,7 +1,7 @@
 """Discrete Voronoi cells of samples: their centres, and the widest gaps.
 
 The cell of a candidate that no boundary intersects is nearly a parallelogram, with a grid of FINER²
-points. Their nearest samples are found among the few in the list of the candidate.
+points. The list of the candidate has the few samples among which their nearest ones are.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ def squared_distance(x, rows, k):
 def find_in_cell(candidates, lists, samples, k, work):
     """Write the fine points of a cell, with their nearest samples, to work (5, FINER²).
 
-    The rows are x, y, z, the squared distance and the number of the nearest sample in the list.
+    The rows are x, y, z, the squared distance, and the index of the nearest sample in the list.
     """
     row, sides = lists.order[k], lists.numbers
     p, u, v = (
@@ -97,7 +97,7 @@ def find_in_cell(candidates, lists, samples, k, work):
 def begin_lists(grids, lists, margin):
     """Write the radius around each candidate within which samples are listed.
 
-    Samples within it may be the nearest ones in the cell after they have moved by margin/√w.
+    These samples may be the nearest ones in the cell after moves by up to margin/√w.
     """
     for k in range(lists.within.size):
         away = math.sqrt(max(grids.candidates[k, SQUARE], 0.0))
@@ -110,9 +110,9 @@ def add_moments(candidates, lists, samples, work, moments):
     """Add the fine points in the cells of candidates to the moments (N, 4) of the nearest samples.
 
     Moments are the sums of weights times the points, and of the weights: area times w² times the
-    squared distance from the sample. The gradient, by the sample, of the integral of w² times the
-    fourth power of the distance over the Voronoi cell vanishes at the mean, with these weights. The
-    mean is near the centre of the smallest ball around the cell.
+    squared distance from the sample. At the mean with these weights, the integral of w² times the
+    fourth power of the distance over the Voronoi cell has the gradient 0 by the sample. The mean is
+    near the centre of the smallest ball around the cell.
     """
     for k in range(candidates.shape[0]):
         if lists.counts[k] == 0:
@@ -154,9 +154,9 @@ def find_nearest(candidates, lists, points, found, squares):
 
 @jit
 def find_widest(candidates, lists, samples, least, work, found):
-    """Find the point of each cell that is farthest from all samples, if at least least/√w away.
+    """Find the point of each cell that is farthest from all samples, and at least least/√w away.
 
-    found (M,) are the indices of the points, −1 for the candidate itself, −2 if none is as far.
+    found (M,) are the indices of the points, −1 for the candidate itself, −2 if there is none.
     """
     for k in range(candidates.shape[0]):
         found[k] = -2

@@ -2,7 +2,7 @@
 
 Each new sample updates the distances of the candidates around it, which is cheaper than repeated
 searches for the nearest sample of each candidate. A sample counts for candidates on its own side of
-the surface: its normal makes an angle of at most 60 degrees with theirs.
+the surface: the angle between their normals is at most 60 degrees.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .hash_grids import CELL, DENSITY, NORMAL, SQUARE, bucket_of
 
 __all__ = ["Lists", "choose_far", "note_samples", "update_distances"]
 
-# The index of a sample without one; typed, so that Numba compiles one function for all indices.
+# The index of no sample; typed, so that Numba compiles one function for all indices.
 NO_NUMBER = np.int64(-1)
 # The cosine of the largest angle between normals on the same side of a surface.
 SAME_SIDE = 0.5
@@ -27,7 +27,7 @@ SAME_SIDE = 0.5
 
 @inline
 def distance_to_cells(i, cell, x):
-    """Return the distance of x from interval i of an axis that is cut into lengths `cell`."""
+    """Return the distance of x from interval i of an axis cut into intervals of width `cell`."""
     return max(i * cell - x, x - (i + 1) * cell, 0.0)
 
 
@@ -64,7 +64,7 @@ def around(meet):
     """Return a loop that calls meet(grids, kept, at, number, square, n) near a sample.
 
     It is called for all candidates within radius/√w of the sample x with the normal n, and for some
-    others; `square` is w times the squared distance, and `kept` is the output of `meet`.
+    others. `square` is w times the squared distance, `kept` the output of `meet`.
     """
     meets = inline(meet)
 
@@ -123,7 +123,7 @@ update_around, note_around = around(update), around(note)
 
 @loop
 def is_near(grids, radius, samples, k):
-    """Say whether a sample is within radius/√w of the box around all candidates."""
+    """Return whether a sample is within radius/√w of the box around all candidates."""
     reach = 0.0
     for level in range(grids.sizes.size):
         reach = max(reach, radius * grids.sizes[level])

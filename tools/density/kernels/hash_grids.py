@@ -55,7 +55,7 @@ class HashGrids(NamedTuple):
 
 @inline
 def level_of(density):
-    """Return the number of the grid for a density; the next one has cells twice as wide."""
+    """Return the index of the grid for a density; the next one has cells twice as wide."""
     return LEVELS // 2 - (math.frexp(density)[1] >> 1)
 
 

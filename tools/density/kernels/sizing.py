@@ -19,8 +19,7 @@ class TargetDensity(NamedTuple):
     """Samples per area, up to a factor: a κ^(2e) + b |K|^e, from the floor to the ceiling.
 
     κ is the larger principal curvature in modulus, a the curvature weight, b the Gauss weight and e
-    the exponent.
-    Curvatures are those of the scaled surface.
+    the exponent. Curvatures are those of the scaled surface.
     """
 
     floor: float = 0.0

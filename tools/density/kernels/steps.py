@@ -1,4 +1,4 @@
-"""The steps of a graded grid along both parameters, as long as limits of errors allow."""
+"""The steps of a graded grid along both parameters, as long as the error limits allow."""
 
 from __future__ import annotations
 
@@ -49,11 +49,11 @@ def longest_steps(third, first, limits, along, least, most, steps):
 
 @jit
 def shared_steps(forms, swapped, limits, share, shortest, longest, along_u, along_v):
-    """Write steps along u (k,) and v (l,), of which those along u use a share of the limits.
+    """Write steps along u (k,) and v (l,), where steps along u use a share of the limits.
 
     `forms` are two forms (3, k, l), the largest first entry of each along u (k,), and the width of
-    the domain; `swapped` are the same with u and v exchanged. Steps are between the parts
-    `shortest` and `longest` of the domain.
+    the domain; `swapped` are the same with u and v exchanged. Steps are at least the part
+    `shortest` of the domain, and at most `longest`.
     """
     third, first, largest_of_third, largest_of_first, width = forms
     for i in range(along_u.size):

@@ -21,8 +21,8 @@ COSINE_LOSS = 0.1
 def find_fan(triangles, neighbours, first, b, a, fan):
     """Write the triangles around b, from `first` to the other one at the edge a b, to `fan`.
 
-    Returns their number, or 0 if b is on a boundary, or the number exceeds the length of `fan`
-    (n,).
+    Returns their number, or 0 if b is on a boundary, or there are more triangles than `fan` (n,)
+    has room for.
     """
     t, over = first, corner_of(triangles, first, a)
     for k in range(fan.size):
@@ -30,7 +30,7 @@ def find_fan(triangles, neighbours, first, b, a, fan):
         following = neighbours[t, over]
         if following < 0:
             return 0
-        # The next edge is opposite to the vertex that both have beside b.
+        # The next edge is opposite to the vertex that both triangles have besides b.
         shared = triangles[t, 3 - over - corner_of(triangles, t, b)]
         over, t = corner_of(triangles, following, shared), following
         if t == first:
@@ -72,8 +72,9 @@ def cosine_with(points, normals, triangles, sides, t, b, a, turn):
 def tangent_after(points, normals, triangles, sides, neighbours, least, first, b, a, fan):
     """Return the smallest tangent around b after b is moved to a, or −1 if that is not allowed.
 
-    `first` is a triangle with both corners. The smallest tangent must rise, the smallest cosine may
-    fall to `least` or a little, b must not lie on a boundary, and the mesh must remain a surface.
+    `first` is a triangle with both corners. It is allowed if the smallest tangent rises, the
+    smallest cosine falls to no less than `least`, or only a little, b is not on a boundary, and the
+    mesh remains a surface.
     """
     count = find_fan(triangles, neighbours, first, b, a, fan)
     if count == 0:
@@ -101,7 +102,7 @@ def tangent_after(points, normals, triangles, sides, neighbours, least, first, b
 
 @loop
 def have_other_neighbours(triangles, neighbours, b, a, fan, count):
-    """Return whether a and b have common neighbours beside those in the triangles at their edge."""
+    """Return whether a and b have common neighbours besides those in triangles at their edge."""
     first, other = fan[0], fan[count - 1]
     for t in fan[1 : count - 1]:
         for k in range(3):
@@ -116,7 +117,7 @@ def have_other_neighbours(triangles, neighbours, b, a, fan, count):
 
 @loop
 def remove_triangle(triangles, neighbours, t, b, a):
-    """Remove a triangle at the edge a b: those across its other two edges become neighbours."""
+    """Remove a triangle at the edge a b, and link the triangles across its other two edges."""
     across_a = neighbours[t, corner_of(triangles, t, a)]
     across_b = neighbours[t, corner_of(triangles, t, b)]
     for k in range(3):
@@ -146,9 +147,9 @@ def collapse_edge(triangles, sides, neighbours, first, b, a, fan):
 def collapse_edges(points, normals, triangles, sides, neighbours, is_free, smallest, least, fan):
     """Collapse edges of triangles with small angles if these grow; return the number of collapses.
 
-    A triangle is treated if the tangent of its smallest angle is below `smallest`: of all collapses
-    of its edges that move a free vertex, the one with the largest smallest tangent is made. `fan`
-    (n,) is workspace for the triangles around a vertex.
+    A triangle is treated if the tangent of its smallest angle is below `smallest`. Of all collapses
+    of its edges that move a free vertex, the best one is made: the one after which the smallest
+    tangent is largest. `fan` (n,) is workspace for the triangles around a vertex.
     """
     collapses = 0
     for t in range(triangles.shape[0]):

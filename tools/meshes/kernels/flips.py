@@ -17,7 +17,7 @@ __all__ = ["flip_edges", "smallest_cosines", "smallest_tangents"]
 
 @loop
 def smallest_cosine(points, normals, a, b, c, side_a, side_b, side_c):
-    """Return the smallest cosine between the normals of a triangle and at its corners a, b, c.
+    """Return the smallest cosine between the normal of a triangle and those at its corners a, b, c.
 
     It is −2 if the triangle has no normal. The corners are sorted first, so that rounding does not
     depend on their order, and triangles without area cause no endless flips.
@@ -42,7 +42,7 @@ def smallest_cosine(points, normals, a, b, c, side_a, side_b, side_c):
 
 @jit
 def smallest_cosines(points, normals, triangles, sides, cosines):
-    """Write the smallest cosine between the normals of each triangle (k,) and at its corners."""
+    """Write the smallest cosine between the normal of each triangle and those at its corners."""
     for t in range(triangles.shape[0]):
         cosines[t] = smallest_cosine(
             points,
@@ -139,8 +139,8 @@ def flip_edge(points, normals, triangles, sides, neighbours, by_shape, least, t,
 
     The edge a b of the triangles c a b and d b a becomes the edge c d of c a d and d b c. The flip
     must raise their smallest cosine or, `by_shape`, the tangent of their smallest angle; the other
-    of these two may fall, down to `least`. Returns the triangle across the edge, or −1 without a
-    flip.
+    of these two may fall, but not below `least`. Returns the triangle across the edge, or −1
+    without a flip.
     """
     other = neighbours[t, k]
     if other < 0:
@@ -186,7 +186,7 @@ def flip_edge(points, normals, triangles, sides, neighbours, by_shape, least, t,
 
 @jit
 def flip_edges(points, normals, triangles, sides, neighbours, by_shape, least, queue, is_queued):
-    """Flip edges while that improves two triangles, see `flip_edge`; return the number of flips.
+    """Flip edges while this improves two triangles, see `flip_edge`; return the number of flips.
 
     `triangles`, `sides` and `neighbours` (k, 3) are changed in place. Initially, queue (k,) must
     hold all triangles, and is_queued (k,) must be True. No flip makes a second edge between two
