@@ -228,6 +228,8 @@ class Tipped(NamedTuple):
         normals = _unit(np.cross(rays, np.roll(rays, -1, axis=0)))
         normals = normals[normals.any(axis=1)]
         mean = _unit(normals.sum(axis=0)[None])
+        if not np.abs(rays @ mean[0]).max() > ROUNDING:
+            return None  # a smooth pole, whose opposite meridians have other parameters
         cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
         # A cap smaller than a half-sphere contains all normals at the tip, and the arcs between.
         cosine = cosine if cosine > 0.0 else -math.inf

@@ -18,7 +18,7 @@ from .kernels.answers import CURVE, ISOLATED, OPEN_BOX, WHERE, Answers
 from .kernels.degree import LARGEST
 from .kernels.sorting import Sorted
 
-__all__ = ["Undecided", "components_of", "with_kinds"]
+__all__ = ["Undecided", "boxes_of", "components_of", "with_kinds"]
 
 # Boxes touch if their distance is at most the larger width, or this part of the domain.
 NEAR = 3e-6
@@ -47,11 +47,8 @@ NOTHING = Undecided(
 )
 
 
-def components_of(answers: Sequence[Answers], domain: Array) -> Undecided:
-    """Return the undecided boxes of answers, joined where they touch, in the order of normals.
-
-    `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v or 0. Degrees are unknown.
-    """
+def boxes_of(answers: Sequence[Answers]) -> Undecided:
+    """Return the undecided boxes of answers, in the order of normals. Degrees are unknown."""
     answers = [x for x in answers if len(x.open_numbers) > 0]
     if not answers:
         return NOTHING
@@ -60,28 +57,35 @@ def components_of(answers: Sequence[Answers], domain: Array) -> Undecided:
         for x in zip(*((y.open_numbers, y.open_boxes, y.kinds) for y in answers), strict=True)
     )
     order = np.lexsort((rows[:, 2], rows[:, 0], numbers))
-    rows, kinds, numbers = rows[order], kinds[order], numbers[order]
-    keep = np.ones(len(numbers), np.bool_)
-    _, starts, counts = np.unique(numbers, return_index=True, return_counts=True)
+    rows, degree = rows[order], np.full(len(order), np.nan)
+    boxes, uv = rows[:, :4].copy(), rows[:, WHERE:].copy()
+    return Undecided(numbers[order], boxes, kinds[order], rows[:, 4] > 0.0, degree, uv)
+
+
+def components_of(open_: Undecided, domain: Array) -> Undecided:
+    """Return boxes, joined where they touch.
+
+    `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v or 0.
+    """
+    keep = np.ones(len(open_.numbers), np.bool_)
+    _, starts, counts = np.unique(open_.numbers, return_index=True, return_counts=True)
     for first, count in zip(starts[counts > 1].tolist(), counts[counts > 1].tolist(), strict=True):
         some = slice(first, first + count)
-        _join(rows[some], kinds[some], keep[some], domain)
-    rows, kinds, numbers = rows[keep], kinds[keep], numbers[keep]
-    low, high = domain[0:4:2], domain[1:4:2]
-    around = (rows[:, 1:4:2] - rows[:, 0:4:2] >= high - low) & (domain[4:] > 0.0)
-    rows[:, 0:4:2] = np.where(around, low, rows[:, 0:4:2])
-    rows[:, 1:4:2] = np.where(around, high, rows[:, 1:4:2])
-    degree = np.full(len(numbers), np.nan)
-    return Undecided(
-        numbers, rows[:, :4].copy(), kinds, rows[:, 4] > 0.0, degree, rows[:, WHERE:].copy()
-    )
+        _join(Undecided._make(x[some] for x in open_), keep[some], domain)
+    open_, low, high = Undecided._make(x[keep] for x in open_), domain[0:4:2], domain[1:4:2]
+    boxes = open_.boxes
+    around = (boxes[:, 1::2] - boxes[:, 0::2] >= high - low) & (domain[4:] > 0.0)
+    boxes[:, 0::2] = np.where(around, low, boxes[:, 0::2])
+    boxes[:, 1::2] = np.where(around, high, boxes[:, 1::2])
+    return open_
 
 
-def _join(rows: Array, kinds: Indices, keep: NDArray[np.bool_], domain: Array) -> None:
+def _join(open_: Undecided, keep: NDArray[np.bool_], domain: Array) -> None:
     """Join the boxes of one normal that touch; mark the first box of each component in `keep`."""
     k, slack, periods = 0, NEAR * (domain[1:4:2] - domain[0:4:2]), domain[4:]
+    rows, kinds, border = open_.boxes, open_.kinds, open_.border
     while k < len(rows):
-        low, high = rows[:, 0:4:2], rows[:, 1:4:2]
+        low, high = rows[:, 0::2], rows[:, 1::2]
         shift = _shift(0.5 * (low + high), 0.5 * (low[k] + high[k]), periods)
         low, high, width = low + shift, high + shift, high - low
         near = np.maximum(np.maximum(width, width[k]), slack)
@@ -91,8 +95,8 @@ def _join(rows: Array, kinds: Indices, keep: NDArray[np.bool_], domain: Array) -
             k += 1
             continue
         touch[k] = True
-        rows[k, 0:4:2], rows[k, 1:4:2] = low[touch].min(axis=0), high[touch].max(axis=0)
-        rows[k, 4] = rows[touch, 4].max()
+        rows[k, 0::2], rows[k, 1::2] = low[touch].min(axis=0), high[touch].max(axis=0)
+        border[k] = border[touch].any()
         if (kinds[touch] != CURVE).any():
             kinds[k] = OPEN_BOX
         touch[k] = False

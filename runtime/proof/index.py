@@ -27,7 +27,7 @@ from ..search.kernels.search import Memory, Pairs, search
 from ..search.patch_index import listed, ordered
 from ..tape.kernels.points import LANES, Tape
 from .apexes import Apex, apexes_of
-from .components import Undecided, components_of, with_kinds
+from .components import Undecided, boxes_of, components_of, with_kinds
 from .discs import PoleDisc
 from .grid_lines import joints_of, lines_of
 from .kernels.answers import (
@@ -232,10 +232,11 @@ class ProvedIndex:
             answers.extend(unknown)
         answers += [cap.answers(normals) for cap in self.caps]
         places = _sorted(parts, len(normals))
-        open_ = components_of(answers, self.domain)
-        for apex in self.apexes:
+        open_ = boxes_of(answers)
+        for apex in self.apexes if len(open_.numbers) > 0 else ():
             open_ = apex.decided(open_, normals)
         if len(open_.numbers) > 0:
+            open_ = components_of(open_, self.domain)
             open_ = with_kinds(open_, self._around(open_, normals), places, self.domain)
         if self.seams:
             places = self._once_at_seams(places)
@@ -258,10 +259,13 @@ class ProvedIndex:
 
     def _around(self, open_: Undecided, normals: NDArray[np.float64]) -> Array:
         """Return winding numbers around boxes, and the boxes of their paths (k, 5)."""
-        around = np.empty((len(open_.numbers), 5))
+        around, points = np.empty((len(open_.numbers), 5)), np.zeros(4)
+        for x in self.apexes:
+            if not x.inside:
+                points[2 * x.axis + (x.end == self.domain[2 * x.axis + 1])] = 1.0
         with self.room() as rooms:
             indices_around(
-                self.tape, rooms.work, rooms.boxes.tile, self.index.joints, self.domain,
+                self.tape, rooms.work, rooms.boxes.tile, self.index.joints, self.domain, points,
                 open_.boxes, open_.numbers, normals, rooms.boxes.ends, rooms.boxes.path, around,
             )  # fmt: skip
         return around

@@ -15,10 +15,10 @@ import numpy as np
 from ..base.aliases import Array
 from ..domain.domain import Boundary, Domain
 from ..tape.kernels.points import Tape
-from ..tape.tapes import bounds_over_boxes
+from ..tape.tapes import bounds_over_boxes, jets_of
 from .ball import Ball
 from .discs import NARROW, SECTORS, PoleDisc, pole_disc
-from .kernels.answers import OPEN_BOX, Answers
+from .kernels.answers import CURVE, OPEN_BOX, Answers
 
 __all__ = ["Cap", "Poles", "poles_of"]
 
@@ -27,22 +27,28 @@ WIDEST, SMALLEST = 0.05, 2.0**-8
 # The positions of Taylor coefficients.
 U1, V1, U1V1 = 1, 2, 4
 ROUNDING = 2.0**-40
+# A cap is in a plane if its normals at PLACES² places differ by at most SMOOTH.
+PLACES, SMOOTH = 16, 1e-9
 
 
 class Cap(NamedTuple):
-    """A box u₀, u₁, v₀, v₁ of parameters around a pole, its size, and the cone of its normals."""
+    """A box u₀, u₁, v₀, v₁ of parameters around a pole, its size, and the cone of its normals.
+
+    A cap in a plane is a region with one normal, of the `kind` CURVE; others are left open.
+    """
 
     box: Array
     size: float
     axis: Array
     angle: float
+    kind: int = OPEN_BOX
 
     def answers(self, normals: Array) -> Answers:
         """Return the cap as an undecided box for each of the unit normals (S, 3) in its cone."""
         away = np.linalg.norm(normals - self.axis, axis=1)
         numbers = np.flatnonzero(away <= 2.0 * np.sin(0.5 * self.angle) + ROUNDING)
         row = np.array([*self.box, 0.0, *self.box.reshape(2, 2).mean(axis=1)])
-        boxes, kinds = np.tile(row, (len(numbers), 1)), np.full(len(numbers), OPEN_BOX)
+        boxes, kinds = np.tile(row, (len(numbers), 1)), np.full(len(numbers), self.kind)
         return Answers.new(0)._replace(open_boxes=boxes, kinds=kinds, open_numbers=numbers)
 
 
@@ -102,9 +108,22 @@ def _cap_of(tape: Tape, domain: Domain, angle: int, end: float, size: float) -> 
         if cone is not None and cone[1] <= WIDEST:
             sides = [list(x) for x in domain]
             sides[1 - angle] = sorted((end, end + inward * size))
-            return Cap(np.array([*sides[0], *sides[1]]), size, *cone)
+            box = np.array([*sides[0], *sides[1]])
+            normals = _normals_in(tape, box)
+            if np.linalg.norm(normals - normals[0], axis=1).max() <= SMOOTH:
+                return Cap(box, size, normals[0], SMOOTH, CURVE)
+            return Cap(box, size, *cone)
         size *= 0.5
     return None
+
+
+def _normals_in(tape: Tape, box: Array) -> Array:
+    """Return unit normals (PLACES², 3) at places in a box."""
+    parts = (np.arange(PLACES) + 0.5) / PLACES
+    u, v = (low + (high - low) * parts for low, high in box.reshape(2, 2))
+    jets = jets_of(tape, np.repeat(u, PLACES), np.tile(v, PLACES))
+    normals = np.cross(jets[:, 1], jets[:, 2])
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
 def _cone(

@@ -10,13 +10,16 @@ __all__ = ["indices_around"]
 
 
 @jit
-def indices_around(tape, work, tile, joints, domain, boxes, numbers, normals, ends, path, around):
+def indices_around(
+    tape, work, tile, joints, domain, points, boxes, numbers, normals, ends, path, around
+):
     """Write the winding number around each box (k, 4) to `around` (k, 5), and the path's box.
 
-    numbers (k,) are those of the normals (S, 3). The winding number is NaN if it is unknown.
+    numbers (k,) are those of the normals (S, 3); `points` (4,) are 1 for sides of the domain that
+    are one point, else 0. The winding number is NaN if it is unknown.
     """
     for k in range(numbers.size):
         n, row = row_vector(normals, numbers[k]), around[k]
         row[0] = index_around(
-            tape, work, tile, joints, domain, boxes[k], n, ends, path, row[1:]
+            tape, work, tile, joints, domain, points, boxes[k], n, ends, path, row[1:]
         )  # fmt: skip

@@ -64,11 +64,14 @@ AWAY = 4.0
 STEPS = 8
 # The entries of a path along a border.
 PATH = 6
-# A hull is small if it is at most LARGEST times the domain. Next to a small hull the gradient is
-# too small, so that the index is computed along the border of a larger box: the hull grown by each
-# fraction AROUND of the domain in turn. Each side of the border has up to EACH cells, of the
-# thickness THIN relative to the box.
-LARGEST, AROUND, EACH, THIN = 0.01, (3e-6, 1e-4, 1e-3, 1e-2, 3e-2), LANES // 4, 2.0**-7
+# How a box lies along a parameter: inside of the domain, all of a period, at either end.
+INSIDE, SEAM, BEFORE, AFTER = range(4)
+# A hull is small if it is at most LARGEST times the domain. Its index is computed along the border
+# of a larger box, since the gradient is too small next to the hull: the box grows by the fractions
+# AROUND of the domain in turn; that of a large hull by those from FAR on, and BEYOND of its size.
+# The border has up to LANES cells, which are THIN relative to the box.
+LARGEST, AROUND, THIN = 0.01, (3e-6, 1e-4, 1e-3, 1e-2, 3e-2), 2.0**-7
+FAR, BEYOND = 1e-2, 0.1
 
 
 @loop
@@ -293,58 +296,98 @@ def winding(tile, along, across, n, path):
 
 
 @loop
-def index_around(tape, work, tile, joints, domain, hull, n, ends, path, box):
+def grow(hull, axis, large, factor, domain, points, box):
+    """Write the ends of a box around a hull along an axis; return what its sides there are.
+
+    SEAM if the hull is all of a period, BEFORE or AFTER if the box ends in a side of the domain
+    that is one point, INSIDE if in none; -1 if it leaves the domain.
+    """
+    low, high = hull[2 * axis], hull[2 * axis + 1]
+    start, end = domain[2 * axis], domain[2 * axis + 1]
+    if domain[4 + axis] > 0.0 and high - low >= end - start:
+        box[2 * axis], box[2 * axis + 1] = start, end
+        return SEAM
+    more = max(factor * (end - start), (BEYOND if large else GROWN) * (high - low))
+    low, high = low - more, high + more
+    found = INSIDE
+    if domain[4 + axis] == 0.0:
+        if low < start:
+            found, low = BEFORE if points[2 * axis] > 0.0 else -1, start
+        if high > end:
+            found, high = AFTER if found == INSIDE and points[2 * axis + 1] > 0.0 else -1, end
+    box[2 * axis], box[2 * axis + 1] = low, high
+    return found
+
+
+@loop
+def index_around(tape, work, tile, joints, domain, points, hull, n, ends, path, box):
     """Return the winding number of the gradient around a hull; NaN if it is unknown.
 
-    The path is the border of a larger box in the domain, which is written to `box` (4,).
+    The path goes around a larger `box` (4,), which is written, in the domain. It consists of two
+    curves if the hull is all of a period, and of one if there is a pole beside it: `points` (4,)
+    are 1 for sides of the domain that are one point.
     """
     e1, e2 = plane_of(n)
     size_u, size_v = domain[1] - domain[0], domain[3] - domain[2]
-    if max((hull[1] - hull[0]) / size_u, (hull[3] - hull[2]) / size_v) > LARGEST:
-        return math.nan
+    large = max((hull[1] - hull[0]) / size_u, (hull[3] - hull[2]) / size_v) > LARGEST
     for factor in AROUND:
-        more_u = max(factor * size_u, GROWN * (hull[1] - hull[0]))
-        more_v = max(factor * size_v, GROWN * (hull[3] - hull[2]))
-        box[0], box[1], box[2], box[3] = (
-            hull[0] - more_u, hull[1] + more_u, hull[2] - more_v, hull[3] + more_v
-        )  # fmt: skip
-        if domain[4] == 0.0 and (box[0] < domain[0] or box[1] > domain[1]):
-            return math.nan
-        if domain[5] == 0.0 and (box[2] < domain[2] or box[3] > domain[3]):
+        if large and factor < FAR:
+            continue
+        in_u = grow(hull, 0, large, factor, domain, points, box)
+        in_v = grow(hull, 1, large, factor, domain, points, box)
+        closed = in_u == SEAM or in_v == SEAM
+        if min(in_u, in_v) < 0 or in_u == in_v == SEAM or (max(in_u, in_v) > SEAM and not closed):
             return math.nan
         along = ends_of_parts(joints.u, domain[4], box[0], box[1], ends[0])
         across = ends_of_parts(joints.v, domain[5], box[2], box[3], ends[1])
         if along * across == 0:
             return math.nan
         box[0], box[1], box[2], box[3] = ends[0, 0], ends[0, along], ends[1, 0], ends[1, across]
-        count = write_ring(tape, work, tile, ends, along, across)
+        count = write_ring(tape, work, tile, ends, along, across, in_u, in_v)
         start_path(path)
-        known = True
+        known, turns, last = True, 0.0, -1
         for k in range(count):
+            side = int(work.levels[k])
+            if closed and side != last:
+                turns += turns_of(path) if last >= 0 else 0.0
+                start_path(path)
+                last = side
             known = (
                 known
                 and tile.noise[k, REACH] > 0.0
                 and side_in(tile, k, n) > 0
-                and walk_side(tile, k, n, e1, e2, int(work.levels[k]), path)
+                and walk_side(tile, k, n, e1, e2, side, path)
             )
         if known:
-            return turns_of(path)
+            return turns + turns_of(path)
     return math.nan
 
 
+@inline
+def is_free(side, in_u, in_v):
+    """Return whether a side of a box is a part of its border: neither a seam nor one point."""
+    kind = in_v if side % 2 == 0 else in_u
+    # Side 0 is where v is least, side 3 where u is.
+    return kind != SEAM and kind != (BEFORE if side % 3 == 0 else AFTER)
+
+
 @loop
-def write_ring(tape, work, tile, ends, along, across):
+def write_ring(tape, work, tile, ends, along, across, in_u, in_v):
     """Write bounds over cells along the border of a box, counter-clockwise, inside of it.
 
-    The box is cut at joints into parts with these ends. The sides are written to `levels`; return
-    the number of cells.
+    The box is cut at joints into parts with these ends, and lies as `in_u` and `in_v` say. The
+    sides are written to `levels`; return the number of cells.
     """
-    count = 0
+    count = sides = 0
     for side in range(4):
+        sides += 1 if is_free(side, in_u, in_v) else 0
+    for side in range(4):
+        if not is_free(side, in_u, in_v):
+            continue
         axis = side % 2
         other = 1 - axis
         parts, last = (along, across) if axis == 0 else (across, along)
-        each = EACH // parts
+        each = LANES // (sides * parts)
         depth = THIN * (ends[other, last] - ends[other, 0])
         inside = ends[other, 0] + depth if side % 3 == 0 else ends[other, last] - depth
         for step in range(parts * each):

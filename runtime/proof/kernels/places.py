@@ -270,7 +270,9 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
             if not add_open(answers, number, u - r_u, u + r_u, v - r_v, v + r_v, OPEN_BOX, domain):
                 return -1
         elif boxes.fates[i] != NO_PLACE and last:
-            if not add_open(answers, number, u0, u1, v0, v1, OPEN_BOX, domain):
+            if not list_cluster(
+                tape, work, cells, boxes, boxes.following, count, i, domain, number, n, answers
+            ):
                 return -1
             boxes.fates[i] = NO_PLACE
     left = 0
@@ -284,17 +286,25 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
 
 @loop
 def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
-    """List the clusters of `rows` as curves or undecided; return whether there was room."""
-    hulls = cluster(rows, count, index.cells, domain[4:], boxes.hulls, boxes.owner)
+    """List the clusters of boxes of rows; return whether there was room."""
+    cells = index.cells
+    hulls = cluster(rows, count, cells, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
-        hull = boxes.hulls[i]
-        first = answers.counts[1]
-        kind = CURVE if is_curve(tape, work, index.cells, boxes, rows, count, i, n) else OPEN_BOX
-        if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
+        if not list_cluster(tape, work, cells, boxes, rows, count, i, domain, number, n, answers):
             return False
-        if answers.counts[1] > first and kind == CURVE:
-            row = answers.open_boxes[first]
-            row[WHERE], row[WHERE + 1] = boxes.ends[0, 0], boxes.ends[1, 0]
+    return True
+
+
+@loop
+def list_cluster(tape, work, cells, boxes, rows, count, i, domain, number, n, answers):
+    """List cluster i of the boxes of rows, as a curve if it is; return whether there was room."""
+    hull, first = boxes.hulls[i], answers.counts[1]
+    kind = CURVE if is_curve(tape, work, cells, boxes, rows, count, i, n) else OPEN_BOX
+    if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
+        return False
+    if answers.counts[1] > first and kind == CURVE:
+        row = answers.open_boxes[first]
+        row[WHERE], row[WHERE + 1] = boxes.ends[0, 0], boxes.ends[1, 0]
     return True
 
 
@@ -350,7 +360,8 @@ def settles(tape, work, cells, box, n):
             e_s, e_t = (b, large - a) if abs(a) < abs(c) else (large - c, b)
             step = (e_s * p + e_t * q) / (large * (e_s * e_s + e_t * e_t))
             s, t = s - step * e_s, t - step * e_t
-        if not max(abs(s), abs(t)) <= far:
+        # At joints a box may be as far from its solutions as the tolerance of normals is.
+        if not max(abs(s), abs(t)) <= far + BESIDE * (rest_s + rest_t) / abs(large):
             return False
     return False
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gaussmap.runtime.proof.components import components_of
+from gaussmap.runtime.proof.components import boxes_of, components_of
 from gaussmap.runtime.proof.index import KINDS
 from gaussmap.runtime.proof.kernels.answers import Answers
 
@@ -44,7 +44,7 @@ JOINED: dict[str, tuple[list[list[float]], list[list[float]]]] = {
 def test_boxes_of_one_normal_that_touch_are_joined(name: str) -> None:
     boxes, expected = JOINED[name]
     for order in (boxes, boxes[::-1]):
-        found = components_of([answers(*((5, CURVE, x) for x in order))], DOMAIN)
+        found = components_of(boxes_of([answers(*((5, CURVE, x) for x in order))]), DOMAIN)
         np.testing.assert_allclose(found.boxes, expected, rtol=0.0, atol=1e-15)
         assert set(found.kinds) == {CURVE}
         # The points of curves are those of the search.
@@ -54,9 +54,8 @@ def test_boxes_of_one_normal_that_touch_are_joined(name: str) -> None:
 
 def test_components_are_those_of_one_normal_and_kind() -> None:
     one: Any = [0.1, 0.2, 0.5, 0.6]
-    found = components_of(
-        [answers((2, CURVE, one)), answers((1, OPEN, one), (2, OPEN, one))], DOMAIN
-    )
+    boxes = boxes_of([answers((2, CURVE, one)), answers((1, OPEN, one), (2, OPEN, one))])
+    found = components_of(boxes, DOMAIN)
     np.testing.assert_array_equal(found.numbers, [1, 2])
     np.testing.assert_array_equal(found.kinds, OPEN)
-    assert len(components_of([], DOMAIN).numbers) == 0
+    assert len(components_of(boxes_of([]), DOMAIN).numbers) == 0
