@@ -14,7 +14,8 @@ from .base.threads import thread_count
 from .directions.regions import Reach
 from .directions.unit import as_normals
 from .map_methods import Methods
-from .onto_surface.at_tips import samples_at
+from .onto_surface.at_creases import Creases
+from .onto_surface.at_tips import samples_at, with_creases
 from .onto_surface.on_spline import OnPatches
 from .onto_surface.on_surface import checked_place
 from .onto_surface.proved import ProvedSurface
@@ -32,6 +33,8 @@ __all__ = ["GaussMap", "check_part", "kept_map"]
 
 # The number of surfaces whose maps are cached; splines and indices take some MB each.
 KEPT = 8
+# What is compared with points of creases.
+OF_CREASES = ("points", "uv", "normal_index", "component")
 
 
 class GaussMap(Methods):
@@ -91,6 +94,10 @@ class GaussMap(Methods):
             check_part(cells, on)
         else:
             self._pieces = proved_or_fitted(self._surface, cells, on)
+        self._creases: Creases | None = None
+        proved = all(isinstance(x, ProvedSurface) for x in self._pieces)
+        if proved and isinstance(self._surface, Surface):
+            self._creases = Creases.of(self._surface)
 
     @property
     def surface(self) -> Surface | AnySpline | Whole:
@@ -219,7 +226,8 @@ class GaussMap(Methods):
         On a closed surface it is χ/2 for every normal, χ being the Euler characteristic. If the
         surface ends in tips, their degrees are added: 1 for normals in the normal cone of a convex
         tip, and in general the signed number of times that the normals at the tip cover a normal.
-        Isolated points with K = 0 count with their index, and undecided boxes with their degree.
+        Isolated points with K = 0, curves and points of creases count with their index, and
+        undecided boxes with their degree. Curves that end in an edge or in a crease count 0.
 
         Parameters
         ----------
@@ -245,16 +253,15 @@ class GaussMap(Methods):
         array([0, 0])
 
         """
-        fields, directions = (
-            ("normal_index", "gaussian_curvature", "component"),
-            as_normals(normals),
-        )
+        fields = ("points", "normal_index", "gaussian_curvature", "component")
+        directions = as_normals(normals)
         found = self.points(directions, fields=fields, threads=threads)
         asked, signs = found.report.normals or 0, np.copysign(1.0, found.gaussian_curvature)
-        special = found.component != Component.REGULAR
-        signs[special] = 0.0
+        kinds = found.component
+        assert kinds is not None
+        signs[kinds != Component.REGULAR] = 0.0
         sums = np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
-        known = np.isin(found.arrays()["component"], (Component.ISOLATED, Component.TIP))
+        known = np.isin(kinds, (Component.ISOLATED, Component.CURVE, Component.TIP))
         which = np.unique(found.normal_index[known])
         whole = self._surface
         for face in whole._space(threads).pieces if isinstance(whole, Whole) else ():
@@ -263,6 +270,9 @@ class GaussMap(Methods):
             sums += tip_degrees(piece, directions)
             if isinstance(piece, ProvedSurface):
                 sums[which] += piece.component_degrees(directions[which])
+        if self._creases is not None:
+            at = self._creases.besides(found, directions)
+            sums += np.bincount(at.numbers, at.degrees, asked).astype(np.int64)
         for place in found.report.undecided or ():
             sums[place.normal] += place.degree or 0
         return sums
@@ -295,11 +305,16 @@ class GaussMap(Methods):
         wanted = checked_fields(fields, on_surface, proved, given=True)
         memory = {} if out is None else out.arrays()
         pieces = [x.used(number, threads, memory).within(reach) for x in self._pieces]
+        more = wanted if self._creases is None else [*dict.fromkeys([*wanted, *OF_CREASES])]
         if len(pieces) == 1:
-            return samples_at(pieces[0], normals, wanted, number, progress)
-        assert isinstance(surface, Surface)
-        known = in_reach(surface, reach) if on_surface else None
-        return samples_of_pieces(surface.name, known, pieces, normals, wanted, number, progress)
+            found = samples_at(pieces[0], normals, more, number, progress)
+        else:
+            assert isinstance(surface, Surface)
+            known = in_reach(surface, reach) if on_surface else None
+            found = samples_of_pieces(surface.name, known, pieces, normals, more, number, progress)
+        if self._creases is None:
+            return found
+        return with_creases(found, self._creases, normals, wanted, number, reach)
 
 
 def check_part(cells: Sequence[int] | None, on: str | None) -> None:

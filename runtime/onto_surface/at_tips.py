@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike
 
 from ..base.aliases import Array, Indices
+from ..directions.regions import Reach
 from ..samples.fields import COLUMNS, Component, dtype_of
 from ..samples.samples import Samples
+from .at_creases import Creases, OnCreases
 from .on_spline import Fields, OnPatches, OnSpline, in_turn
 from .proved import ProvedSurface
 from .tip_degrees import Pinch, Tip, tips_on
 
-__all__ = ["samples_at", "samples_in_turn"]
+__all__ = ["samples_at", "samples_in_turn", "with_creases"]
 
 Geometry = OnPatches | ProvedSurface
 
@@ -62,8 +65,31 @@ def _with_tips(
     """Return the samples at unit normals (S, 3), including those at the given tips."""
     wanted = list(dict.fromkeys([*fields, "normal_index"]))
     found = geometry.samples_at(normals, wanted, dtype, progress, density)
-    parts = [found.arrays()]
-    parts += [_fields(geometry, *at_tip, normals, wanted, dtype) for at_tip in at_tips]
+    return _joined(found, [_fields(geometry, *x, normals, wanted, dtype) for x in at_tips], fields)
+
+
+def with_creases(
+    found: Samples, creases: Creases, normals: Array, fields: Sequence[str], dtype: DTypeLike,
+    reach: Reach | None,
+) -> Samples:  # fmt: skip
+    """Return samples with fields, and the points of creases that have one of the unit normals.
+
+    They come after the other points with a normal. `found` have components, points and indices.
+    """
+    at = creases.besides(found, normals)
+    if reach is not None:
+        at = OnCreases._make(x[reach.contains(normals[at.numbers])] for x in at)
+    more = {
+        "points": at.points, "uv": at.uv, "uv_radius": at.radius, "patch_index": -1,
+        "component": Component.CREASE,
+    }  # fmt: skip
+    rows = _special(more, at.numbers, normals, list(found.arrays()), dtype)
+    return _joined(found, [rows], fields)
+
+
+def _joined(found: Samples, more: Sequence[Fields], fields: Sequence[str]) -> Samples:
+    """Return these fields of samples, and of more of them, in the order of their normals."""
+    parts = [found.arrays(), *more]
     index = np.concatenate([x["normal_index"] for x in parts])
     order = np.argsort(index, kind="stable")
     arrays = {x: np.concatenate([part[x] for part in parts])[order] for x in fields}
@@ -86,20 +112,29 @@ def _fields(
     fields: Sequence[str], dtype: DTypeLike,
 ) -> Fields:  # fmt: skip
     """Return fields of the samples at a tip, for the normals with the given indices."""
-    given, zero = normals[numbers], np.zeros(1)
     there: Fields = {}
     if isinstance(geometry, OnSpline):
-        there = geometry.at_parameters(tip.uv[None], given[:1], zero, ("patch_index",), dtype)
-    known = there | {
-        "points": tip.point,
+        there = geometry.at_parameters(
+            tip.uv[None], normals[numbers[:1]], np.zeros(1), ("patch_index",), dtype
+        )
+    known = there | {"points": tip.point, "uv": tip.uv, "component": Component.TIP}
+    return _special(known, numbers, normals, fields, dtype)
+
+
+def _special(
+    known: Mapping[str, Any], numbers: Indices, normals: Array, fields: Sequence[str],
+    dtype: DTypeLike,
+) -> Fields:  # fmt: skip
+    """Return fields of samples that are not regular, for the normals with the given indices."""
+    given = normals[numbers]
+    own = {
         "normals": given,
-        "uv": tip.uv,
-        "support": given @ tip.point,
+        "support": np.einsum("...x,...x->...", given, known["points"]),
         "normal_index": numbers,
         "on_surface": True,
-        "component": Component.TIP,
+        **known,
     }
     shapes = {x: (len(numbers), len(COLUMNS[x]))[: 1 + (len(COLUMNS[x]) > 1)] for x in fields}
     return {
-        x: np.broadcast_to(known.get(x, 0.0), shapes[x]).astype(dtype_of(x, dtype)) for x in fields
+        x: np.broadcast_to(own.get(x, 0.0), shapes[x]).astype(dtype_of(x, dtype)) for x in fields
     }

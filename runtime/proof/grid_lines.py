@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...generated.elementary import SPLINE
 from ..base.aliases import Array
+from ..base.scales import SAME_POINT
 from ..domain.domain import Boundary, Domain
 from ..tape.kernels.points import Tape
 from ..tape.kernels.spline_bounds import SLACK
 from ..tape.tapes import jets_of
 from .kernels.cell_bounds import SMOOTH
 
-__all__ = ["joints_of", "jumps_of", "lines_of"]
+__all__ = ["PLACES", "creases_of", "joints_of", "jumps_of", "lines_of"]
 
 # Normals on both sides of a line are compared at about this number of points.
 PLACES = 64
@@ -47,14 +50,56 @@ def joints_of(tape: Tape, axis: int, domain: Domain, boundary: Boundary) -> Arra
 
     The seam of a period is one of them. Normals of both sides are compared at sampled points.
     """
-    low, high = domain[axis]
-    lines = [(x, x) for x in jumps_of(tape, axis, low, high).tolist()]
-    if boundary[axis][0] == "periodic" and len(tape.spline.breaks_u) > 0:
-        lines.append((low, high))
+    jumps = jumps_of(tape, axis, *domain[axis]).tolist()
     smooth = [
-        above for above, below in lines if _turning(tape, axis, domain, below, above) <= SMOOTH
+        above
+        for below, above in _with_seam(tape, axis, domain, boundary, jumps)
+        if _turning(tape, axis, domain, below, above) <= SMOOTH
     ]
     return np.array(smooth, dtype=np.float64)
+
+
+def creases_of(
+    tape: Tape, axis: int, domain: Domain, boundary: Boundary
+) -> list[tuple[float, float]]:
+    """Return the u (axis 0) or v just before and after lines where the tangent plane jumps.
+
+    Both ends of a domain are one if all their points are the same.
+    """
+    x = tape.spline
+    smooth = (x.smooth_u, x.smooth_v)[axis]
+    jumps = jumps_of(tape, axis, *domain[axis]).tolist() if (smooth == 0).any() else []
+    # Bounds over boxes take a parameter nearer to a knot than SLACK to be on either side.
+    step = 4.0 * SLACK * sum(map(abs, domain[axis]))
+    lines = _with_seam(tape, axis, domain, boundary, jumps)
+    if boundary[axis] == ("open", "open") and _is_closed(tape, axis, domain):
+        lines.append((domain[axis][1], domain[axis][0]))
+    return [
+        (below - step, above + step)
+        for below, above in lines
+        if _turning(tape, axis, domain, below, above) > SMOOTH
+    ]
+
+
+def _with_seam(
+    tape: Tape, axis: int, domain: Domain, boundary: Boundary, jumps: Sequence[float]
+) -> list[tuple[float, float]]:
+    """Return lines with their ends of both sides, among them the seam of the period of a spline."""
+    lines = [(x, x) for x in jumps]
+    if boundary[axis][0] == "periodic" and len(tape.spline.breaks_u) > 0:
+        lines.append((domain[axis][1], domain[axis][0]))
+    return lines
+
+
+def _is_closed(tape: Tape, axis: int, domain: Domain) -> bool:
+    """Return whether both ends of u (axis 0) or v have the same points."""
+    along = lines_of(tape, 1 - axis, np.array(domain[1 - axis]), PLACES)
+    ends = []
+    for end in domain[axis]:
+        places = [np.full_like(along, end), along]
+        ends.append(jets_of(tape, *(places if axis == 0 else places[::-1]))[:, 0])
+    size = np.ptp(np.concatenate(ends), axis=0).max()
+    return bool(np.abs(ends[1] - ends[0]).max() <= SAME_POINT * size)
 
 
 def _turning(tape: Tape, axis: int, domain: Domain, below: float, above: float) -> float:

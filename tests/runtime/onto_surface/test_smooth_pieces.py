@@ -60,13 +60,17 @@ def piece_of(samples, line):
 
 @pytest.mark.parametrize(("on", "tolerance"), [("spline", 2e-2), ("surface", 1e-11)])
 def test_every_point_with_a_normal_once(on, tolerance):
-    """The normals of the edge belong to no piece."""
+    """The normals of the edge belong to no piece: they are those of its points."""
     directions = gm.directions.fibonacci(300)
     latitude = np.arcsin(directions[:, 2])
     inside = (np.abs(latitude) > LOW) & (np.abs(latitude) < HIGH)
     clear = np.abs(np.abs(latitude) - LOW) > 0.01
     clear &= np.abs(np.abs(latitude) - HIGH) > 0.01
     samples = gm.sample(barrel(), normals=directions[clear], density="gauss", cells=CELLS, on=on)
+    if on == "surface":
+        within = np.abs(latitude[clear]) < HIGH
+        assert np.array_equal(samples.normal_index, np.flatnonzero(within))
+    samples = samples[samples.component == gm.Component.REGULAR]
     assert np.array_equal(np.sort(samples.normal_index), np.flatnonzero(inside[clear]))
     assert np.array_equal(piece_of(samples, 1.0) == 1, samples.normals[:, 2] > 0)
     sides = np.sign(samples.normals[:, 2:])
@@ -75,14 +79,15 @@ def test_every_point_with_a_normal_once(on, tolerance):
 
 
 def test_points_of_all_pieces_are_proved():
-    """Special normals belong to points of knots; those of the edge itself are listed or proved."""
+    """Special normals belong to points of knots; those of the edge to its points."""
     normals = np.concatenate([gm.icosphere(8), np.eye(3), -np.eye(3)])
     samples = gm.sample(barrel(), normals=normals)
     directions = normals / np.linalg.norm(normals, axis=1, keepdims=True)
     latitude = np.abs(np.arcsin(directions[:, 2]))
-    inside = (latitude > LOW) & (latitude < HIGH)
     counts = np.bincount(samples.normal_index, minlength=len(normals))
-    assert np.array_equal(counts, inside)
+    assert np.array_equal(counts, latitude < HIGH)
+    on_edge = samples.normal_index[samples.component == gm.Component.CREASE]
+    assert np.array_equal(on_edge, np.flatnonzero(latitude <= LOW))
     assert (report_of(samples).proved, report_of(samples).undecided) == (len(normals), ())
     assert samples.uv_radius is not None
     assert (samples.uv_radius < 1e-8).all()

@@ -1,0 +1,294 @@
+"""Points of creases whose normal is between those of both sides.
+
+On a crease u = c, a normal n is perpendicular to x_v, and n·x_u has different signs on both sides:
+across the crease the height n·x has a maximum or a minimum. Along it, the height has one or the
+other, too. The index is 1 if both are of one kind, −1 if not; it is that of points on a surface
+that rounds the crease off.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..base.aliases import Array, Flags, Indices
+from ..domain.trim import Trim
+from ..proof.grid_lines import PLACES, creases_of, lines_of
+from ..samples.fields import Component
+from ..samples.samples import Samples
+from ..surface.surface import Surface
+from ..tape.kernels.points import Tape
+from ..tape.tapes import bounds_over_boxes, jets_of
+
+__all__ = ["Creases", "OnCreases"]
+
+# Intervals in which n·x_v may have several zeros are halved at most DEEPEST times, or until there
+# are MANY for a normal, as on a straight crease. Single ones are found by STEPS of Newton's method.
+DEEPEST, MANY, STEPS = 20, 4096, 12
+# Normals of both sides are known up to SMOOTH. Components are APART, and signs of n·x_v on both
+# sides of one are taken at this distance, relative to the crease.
+SMOOTH, APART = 1e-9, 1e-6
+PRODUCTS_AT_A_TIME = 1 << 21
+# The positions of the second derivatives in jets and Taylor polynomials.
+SECOND = (3, 5)
+
+
+class OnCreases(NamedTuple):
+    """Points of creases, in the order of their normals.
+
+    numbers (k,) are those of normals; `degrees` (k,) are indices; all points of a component are
+    within `radius` (k, 2) of uv (k, 2). Points are `unsure` if their normal is that of one side, up
+    to rounding.
+    """
+
+    numbers: Indices
+    uv: Array
+    points: Array
+    degrees: Array
+    radius: Array
+    unsure: Flags
+
+
+class _Sides(NamedTuple):
+    """Vectors (k, 3) of intervals of creases: x_w and x_ww along them, and x_s across on each side.
+
+    All have a value and the largest difference from it.
+    """
+
+    first: tuple[Array, Array]
+    second: tuple[Array, Array]
+    before: tuple[Array, Array]
+    after: tuple[Array, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Creases:
+    """Creases of a surface, cut into intervals.
+
+    A row of `lines` (m, 4) has the axis that is constant, its values before and after the crease,
+    and the period along it or 0; `spans` (m, 2) are the bounds of the other parameter. `rows` (k,)
+    are the lines of intervals, with ends (k, 2) and bounds of derivatives on both `sides`.
+    """
+
+    tape: Tape
+    trim: Trim | None
+    lines: Array
+    spans: Array
+    rows: Indices
+    ends: Array
+    sides: _Sides
+
+    @classmethod
+    def of(cls, surface: Surface) -> Creases | None:
+        """Return the creases of a surface with a tape; None if there are none."""
+        tape, lines, rows, ends = surface.tape, list[Array](), list[Indices](), list[Array]()
+        spans = []
+        for axis in (0, 1) if tape is not None else ():
+            assert tape is not None
+            other = np.array(surface.domain[1 - axis])
+            closed = surface.boundary[1 - axis][0] == "periodic"
+            for line in creases_of(tape, axis, surface.domain, surface.boundary):
+                cuts = lines_of(tape, 1 - axis, other, PLACES)
+                rows.append(np.full(len(cuts) - 1, len(lines)))
+                ends.append(np.column_stack([cuts[:-1], cuts[1:]]))
+                lines.append(np.array([axis, *line, np.ptp(other) if closed else 0.0]))
+                spans.append(other)
+        if tape is None or not lines:
+            return None
+        table, row, end = np.array(lines), np.concatenate(rows), np.concatenate(ends)
+        return cls(
+            tape, surface.trim, table, np.array(spans), row, end, _sides(tape, table[row], end)
+        )
+
+    def at(self, normals: Array) -> OnCreases:
+        """Return the points with unit normals (S, 3)."""
+        numbers, rows, ends = self._intervals(normals)
+        numbers, rows, ends = self._merged(numbers, rows, ends)
+        given, middle = normals[numbers], ends.mean(axis=1)
+        jets = [self._jets(rows, middle, side) for side in (1, 2)]
+        axis = self.lines[rows, 0].astype(int)
+        index = np.arange(len(rows))
+        across = [x[index, 1 + axis] for x in jets]
+        slopes = [np.einsum("kx,kx->k", x, given) for x in across]
+        slack = [SMOOTH * np.linalg.norm(x, axis=1) for x in across]
+        facing = sum(np.einsum("kx,kx->k", _unit(np.cross(x[:, 1], x[:, 2])), given) for x in jets)
+        unsure = (np.abs(slopes[0]) <= slack[0]) | (np.abs(slopes[1]) <= slack[1])
+        keep = (facing > 0.0) & (unsure | (slopes[0] * slopes[1] < 0.0))
+        if self.trim is not None:
+            keep &= self.trim.contains(self._uv(rows, middle, 2))
+        convex = np.sign(slopes[0] - slopes[1])
+        degrees = convex * self._turning(rows, ends, given)
+        uv = self._uv(rows, middle, 2)
+        radius = np.outer(np.ptp(ends, axis=1) / 2.0, [1.0, 1.0])
+        radius[index, axis] = 0.0
+        found = OnCreases(numbers, uv, jets[1][:, 0], degrees, radius, unsure)
+        return OnCreases._make(x[keep] for x in found)
+
+    def besides(self, found: Samples, normals: Array) -> OnCreases:
+        """Return the same without points that are among samples at these normals already.
+
+        The normal of such a point is that of one side, or it is in the box of an isolated point.
+        `found` have their components and points.
+        """
+        at, kinds = self.at(normals), found.component
+        assert kinds is not None
+        keep = np.ones(len(at.numbers), np.bool_)
+        size = np.ptp(np.concatenate([found.points, at.points]), axis=0) if len(keep) > 0 else 0.0
+        special = found.normal_index[(kinds != Component.REGULAR) & (kinds != Component.CREASE)]
+        for k in np.flatnonzero(at.unsure | np.isin(at.numbers, special)).tolist():
+            own = (found.normal_index == at.numbers[k]) & (kinds != Component.CREASE)
+            near = (np.abs(found.points[own] - at.points[k]) <= APART * size).all(axis=1)
+            near &= at.unsure[k] | (kinds[own] != Component.REGULAR)
+            keep[k] = not (near | (at.unsure[k] & (kinds[own] == Component.CURVE))).any()
+        return OnCreases._make(x[keep] for x in at)
+
+    def _intervals(self, normals: Array) -> tuple[Indices, Indices, Array]:
+        """Return numbers of normals and of lines, and intervals (k, 2) with a zero of n·x_w."""
+        found: list[tuple[Indices, Indices, Array]] = []
+        size = max(PRODUCTS_AT_A_TIME // len(self.rows), 1)
+        for first in range(0, len(normals), size):
+            some = normals[first : first + size]
+            number, interval = np.nonzero(_may_be_zero(some, self.sides.first, True))
+            sides = _Sides._make((x[0][interval], x[1][interval]) for x in self.sides)
+            rows, ends = self.rows[interval], self.ends[interval]
+            for depth in range(DEEPEST + 1):
+                given = some[number]
+                keep = _may_be_zero(given, sides.first) & _may_be_between(given, sides)
+                number, rows, ends, given = number[keep], rows[keep], ends[keep], given[keep]
+                sides = _Sides._make((x[0][keep], x[1][keep]) for x in sides)
+                several = _may_be_zero(given, sides.second)
+                last = several & ((depth == DEEPEST) | (np.bincount(number)[number] > MANY))
+                zero = last & _may_be_zero(given, (sides.first[0], 0.0 * sides.first[1]))
+                found.append((first + number[zero], rows[zero], ends[zero]))
+                one = ~several
+                zeros, known = self._zeros(rows[one], ends[one], given[one])
+                found.append((first + number[one][known], rows[one][known], zeros[known]))
+                several &= ~last
+                number, rows, ends = number[several], rows[several], ends[several]
+                if len(number) == 0:
+                    break
+                middle = ends.mean(axis=1)
+                ends = np.stack([ends[:, 0], middle, middle, ends[:, 1]], axis=1).reshape(-1, 2)
+                number, rows = np.repeat(number, 2), np.repeat(rows, 2)
+                sides = _sides(self.tape, self.lines[rows], ends)
+        numbers, rows, ends = (np.concatenate(x) for x in zip(*found, strict=True))
+        return numbers, rows, ends
+
+    def _zeros(self, rows: Indices, ends: Array, normals: Array) -> tuple[Array, Flags]:
+        """Return zeros of monotonic functions n·x_w, twice each (k, 2), and whether they are."""
+        low, high = ends.T
+        at = 0.5 * (low + high)
+        along = 2 - self.lines[rows, 0].astype(int)
+        index = np.arange(len(rows))
+        for _ in range(STEPS):
+            jets = self._jets(rows, at, 2)
+            value = np.einsum("kx,kx->k", jets[index, along], normals)
+            slope = np.einsum("kx,kx->k", jets[index, np.array(SECOND)[along - 1]], normals)
+            at = np.clip(at - value / slope, low, high)
+        tangents = self._jets(rows, at, 2)[index, along]
+        value, size = np.einsum("kx,kx->k", tangents, normals), np.linalg.norm(tangents, axis=1)
+        return np.stack([at, at], axis=1), np.abs(value) <= SMOOTH * size
+
+    def _merged(
+        self, numbers: Indices, rows: Indices, ends: Array
+    ) -> tuple[Indices, Indices, Array]:
+        """Return the intervals of one normal and crease, joined where they are not apart."""
+        order = np.lexsort((ends[:, 0], rows, numbers))
+        numbers, rows, ends = numbers[order], rows[order], ends[order]
+        slack = APART * np.ptp(self.spans[rows], axis=1)
+        same = (numbers[1:] == numbers[:-1]) & (rows[1:] == rows[:-1])
+        starts = np.append(True, ~(same & (ends[1:, 0] <= ends[:-1, 1] + slack[1:])))[: len(rows)]
+        firsts = np.flatnonzero(starts)
+        lasts = np.append(firsts, len(rows))[1:] - 1
+        numbers, rows = numbers[firsts], rows[firsts]
+        ends = np.stack([ends[firsts, 0], ends[lasts, 1]], axis=1)
+        # Around a closed crease, the last interval may continue in the first one.
+        period, slack = self.lines[rows, 3], slack[firsts]
+        keep = np.ones(len(rows), np.bool_)
+        begins = np.flatnonzero((period > 0.0) & (ends[:, 0] <= self.spans[rows, 0] + slack))
+        for k in begins.tolist():
+            group = np.flatnonzero((numbers == numbers[k]) & (rows == rows[k]))
+            last = group[-1]
+            if last != k and ends[last, 1] >= self.spans[rows[k], 1] - slack[k]:
+                ends[last, 1] = ends[k, 1] + period[k]
+                keep[k] = False
+        return numbers[keep], rows[keep], ends[keep]
+
+    def _turning(self, rows: Indices, ends: Array, normals: Array) -> Array:
+        """Return 1 where the height along a crease has a maximum, −1 for a minimum, else 0."""
+        step = APART * np.ptp(self.spans[rows], axis=1)
+        signs = []
+        for at in (ends[:, 0] - step, ends[:, 1] + step):
+            low, high = self.spans[rows].T
+            turns = np.floor((at - low) / (high - low)) * self.lines[rows, 3]
+            at = np.clip(at - turns, low, high)
+            jets = self._jets(rows, at, 2)
+            along = jets[np.arange(len(rows)), 2 - self.lines[rows, 0].astype(int)]
+            signs.append(np.sign(np.einsum("kx,kx->k", along, normals)))
+        return 0.5 * (signs[0] - signs[1])
+
+    def _uv(self, rows: Indices, along: Array, side: int) -> Array:
+        """Return parameters (k, 2) just before (side 1) or after (2) creases."""
+        is_u, fixed = self.lines[rows, 0] == 0.0, self.lines[rows, side]
+        low, high = self.spans[rows].T
+        along = along - np.floor((along - low) / (high - low)) * self.lines[rows, 3]
+        return np.where(is_u[:, None], np.stack([fixed, along], 1), np.stack([along, fixed], 1))
+
+    def _jets(self, rows: Indices, along: Array, side: int) -> Array:
+        """Return jets (k, 6, 3) just before (side 1) or after (2) creases."""
+        return jets_of(self.tape, *self._uv(rows, along, side).T.copy())
+
+
+def _sides(tape: Tape, lines: Array, ends: Array) -> _Sides:
+    """Return bounds over intervals (k, 2) of creases (k, 4)."""
+    axis, index = lines[:, 0].astype(int), np.arange(len(lines))
+    middle, half = ends.mean(axis=1), np.ptp(ends, axis=1) / 2.0
+    of_sides = []
+    for k in (1, 2):
+        centres, widths = np.zeros((2, len(lines), 2))
+        centres[index, axis], centres[index, 1 - axis], widths[index, 1 - axis] = (
+            lines[:, k], middle, half
+        )  # fmt: skip
+        of_sides.append(bounds_over_boxes(tape, centres, widths))
+    below, above = of_sides
+
+    def of(bounds: Array, order: Indices) -> tuple[Array, Array]:
+        found = np.moveaxis(bounds, 1, 0)[:, index, order]
+        return found[0], found[1] * (1.0 + 1e-12)
+
+    second = np.array(SECOND)[1 - axis]
+    return _Sides(of(above, 2 - axis), of(above, second), of(below, 1 + axis), of(above, 1 + axis))
+
+
+def _may_be_zero(normals: Array, bounds: tuple[Array, Array], all_pairs: bool = False) -> Flags:
+    """Return whether products of normals and vectors may be 0, up to the tolerance of normals.
+
+    They belong together (k, 3), or `all_pairs` (S, k) of S normals and k vectors are taken.
+    """
+    reach = bounds[1] + SMOOTH * np.linalg.norm(bounds[0], axis=1, keepdims=True)
+    if all_pairs:
+        return np.abs(normals @ bounds[0].T) <= np.abs(normals) @ reach.T
+    value, slack = _product(normals, (bounds[0], reach))
+    return np.abs(value) <= slack
+
+
+def _may_be_between(normals: Array, sides: _Sides) -> Flags:
+    """Return whether the slopes of both sides may have different signs, or one may be 0."""
+    slopes = [_product(normals, x) for x in (sides.before, sides.after)]
+    zero = [_may_be_zero(normals, x) for x in (sides.before, sides.after)]
+    return zero[0] | zero[1] | (slopes[0][0] * slopes[1][0] < 0.0)
+
+
+def _product(normals: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Return products (k,) of normals and vectors, and the largest difference from them."""
+    return (
+        np.einsum("kx,kx->k", normals, bounds[0]), np.einsum("kx,kx->k", np.abs(normals), bounds[1])
+    )  # fmt: skip
+
+
+def _unit(vectors: Array) -> Array:
+    """Return vectors (k, 3) with length 1, or 0."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)

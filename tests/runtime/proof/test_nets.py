@@ -1,0 +1,216 @@
+"""Components of NURBS surfaces at special and random normals; `nets.py` judges regular points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+import pytest
+
+from .judge import Array, unit
+from .nets import Net, revolved, wrong_at
+
+pytestmark = pytest.mark.compiled
+
+HALF = np.sqrt(0.5)
+SHEAR = np.array([[2, 0.3, 0.1], [0, 1.5, 0.4], [0.2, 0, 1]])
+PLAIN = np.eye(3)
+ARCS = [1, HALF, 1, HALF, 1, HALF, 1, HALF, 1]
+CIRCLE = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)])
+MERIDIAN = [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1)]
+VASE = [(0, -6), (4, -6), (7, -3), (3.5, 0.5), (5, 4), (3, 7), (0, 7)]
+BOTTLE = [(0, -3), (3, -3), (1.2, -1), (2.5, 1.5), (2, 3.5), (0, 3.5)]
+CAPSULE = [(0, -1), (1, -1), (1, 0), (1, 0.5), (1, 1), (1, 2), (0, 2)]
+CAN = [
+    (0, -1),
+    (1.5, -1),
+    (2, -1),
+    (3, -1),
+    (3, 0),
+    (3, 0.4),
+    (3, 1),
+    (3, 2),
+    (2, 2),
+    (1, 2),
+    (0, 2),
+]
+# A square with round corners, and middles of its sides.
+ROUNDED = np.array(
+    [(1.5, 1), (2, 1), (2, 0.5), (2, 0), (2, -0.5), (2, -1), (1.5, -1), (0.5, -1), (-0.5, -1),
+     (-1, -1), (-1, -0.5), (-1, 0), (-1, 0.5), (-1, 1), (-0.5, 1), (0.5, 1), (1.5, 1)]
+)  # fmt: skip
+
+
+def clamped(degree: int, *inner: float) -> Array:
+    return np.array([*[0.0] * (degree + 1), *inner, *[1.0] * (degree + 1)])
+
+
+def bezier(degree: int, count: int) -> Array:
+    """Return the knots of joined Bézier curves with `count` control points."""
+    spans = (count - 1) // degree
+    return np.repeat(np.arange(spans + 1.0), [degree + 1, *[degree] * (spans - 1), degree + 1])
+
+
+def conics(profile: Any, weights: Any, matrix: Array = PLAIN, digits: int = 17) -> Net:
+    return revolved(profile, weights, bezier(2, len(profile)), matrix, digits)
+
+
+def graph(degrees: tuple[int, int], knots: tuple[Array, Array], height: float) -> Net:
+    """Return a graph of random heights, with random weights unless it is quadratic."""
+    rng = np.random.default_rng(7)
+    at = [
+        np.array([x[k + 1 : k + p + 1].mean() for k in range(len(x) - p - 1)])
+        for p, x in zip(degrees, knots, strict=True)
+    ]
+    x, y = np.meshgrid(*at, indexing="ij")
+    points = np.stack([x, y, height * rng.normal(size=x.shape)], axis=2)
+    weights = rng.uniform(0.6, 1.6, x.shape) if degrees != (2, 2) else np.ones(x.shape)
+    return Net(degrees, knots, points, weights)
+
+
+RING, FLAT = CIRCLE * 0.7 + np.array([2, 0]), ROUNDED + np.array([3, 0])
+# Surfaces, and their Euler characteristics if they are closed.
+NETS: dict[str, tuple[Callable[[], Net], int | None]] = {
+    "ellipsoid, sheared": (partial(conics, MERIDIAN, ARCS[:5], SHEAR), 2),
+    "ellipsoid, 10 digits": (
+        partial(conics, MERIDIAN, ARCS[:5], np.diag([15.0, 20, 5]), digits=10), 2
+    ),
+    "torus, sheared": (partial(conics, RING, ARCS, SHEAR), 0),
+    "torus, 10 digits": (partial(conics, RING, ARCS, PLAIN, digits=10), 0),
+    "vase": (partial(revolved, VASE, [1] * 7, clamped(3, 0.25, 0.5, 0.75), PLAIN), 2),
+    "bottle": (
+        partial(revolved, BOTTLE, [1, 0.8, 1.3, 0.7, 1.1, 1], clamped(5), np.diag([1, 0.8, 1])), 2
+    ),
+    "capsule": (partial(conics, CAPSULE, [1, HALF, 1, 1, 1, HALF, 1]), 2),
+    "can": (
+        partial(conics, CAN, [1, 1, 1, HALF, 1, 1, 1, HALF, 1, 1, 1], np.diag([1, 1.2, 1])), 2
+    ),
+    "rounded ring": (partial(conics, FLAT, [1, HALF, 1, 1] * 4 + [1]), 0),
+    "quartic": (
+        partial(graph, (4, 3), (clamped(4, 0.2, 0.2, 0.55, 0.8), clamped(3, 0.3, 0.3, 0.5)), 0.12),
+        None,
+    ),
+    "quadratic": (
+        partial(graph, (2, 2), (clamped(2, 0.2, 0.4, 0.6, 0.8), clamped(2, 0.25, 0.5)), 0.1), None
+    ),
+}  # fmt: skip
+
+
+# Two caps of a unit sphere, 1 rad wide; two barrels; a ring with a corner at its seam.
+C, LOW = np.cos(0.5), np.cos(1.0)
+CAP = np.array([(0, LOW - 1), (np.tan(0.5), LOW - 1), (np.sin(1), 0)])
+BARREL = [(0, -2), (1.5, -2), (1.5, -1), (1.5, -0.5), (0.5, 0)]
+CORNER = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (0.5, -1), (1, 0)])
+CREASED: dict[str, tuple[Callable[[], Net], int]] = {
+    "lens": (partial(conics, [*CAP, *(CAP[1::-1] * [1, -1])], [1, C, 1, C, 1]), 2),
+    "lens, sheared": (partial(conics, [*CAP, *(CAP[1::-1] * [1, -1])], [1, C, 1, C, 1], SHEAR), 2),
+    "hourglass": (
+        partial(conics, [*BARREL, *(np.array(BARREL[3::-1]) * [1, -1])],
+                [1, HALF, 1, 1, 1, 1, 1, HALF, 1], np.diag([1, 1.2, 1])), 2,
+    ),
+    "corner at the seam": (
+        partial(conics, CORNER * 0.7 + [3, 0], [1, 0.8, 1, 0.9, 1, 0.7, 1, 0.8, 1], SHEAR), 0
+    ),
+    # The normals of both sides differ by about 1e-8 rad.
+    "ellipsoid, 8 digits": (
+        partial(conics, MERIDIAN, ARCS[:5], np.diag([15.0, 20, 5]), digits=8), 2
+    ),
+}  # fmt: skip
+
+
+def directions(frequency: int, count: int) -> Array:
+    """Return axes, an icosphere, tilted equators and random normals."""
+    t = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
+    equator = np.stack([np.cos(t), np.sin(t), 0.0 * t], axis=1)
+    tilts = [np.linalg.qr(np.random.default_rng(k).normal(size=(3, 3)))[0] for k in range(3)]
+    tilted = [equator @ x for x in (PLAIN, *tilts, np.linalg.inv(SHEAR))]
+    axes = [np.eye(3), -np.eye(3)]
+    random = gm.directions.random(count, seed=11)
+    return unit(np.concatenate([*axes, gm.icosphere(frequency), *tilted, random]))
+
+
+def check(name: str, normals: Array) -> None:
+    make, euler = NETS[name]
+    net = make()
+    known = gm.GaussMap(net.surface)
+    found = known.points(normals)
+    listed = {x.normal for x in found.report.undecided or ()}
+    assert len(listed) <= len(normals) / 1000
+    assert not listed & set(range(6))
+    assert wrong_at(net, normals, found) <= listed
+    if euler is not None:
+        degree = known.degree(normals)
+        assert set(np.flatnonzero(degree != euler // 2).tolist()) <= listed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NETS)
+def test_components_of_nurbs(name: str) -> None:
+    check(name, directions(8, 10_000))
+
+
+@pytest.mark.parametrize("name", ["capsule", "can"])
+def test_regions_with_one_normal_have_an_index(name: str) -> None:
+    """Segments of cylinders, and discs at poles, which end inside of the surface."""
+    check(name, directions(1, 1)[:40])
+
+
+def check_creases(name: str, normals: Array) -> None:
+    """Judged by the slopes of the height on both sides, and by the sum of indices."""
+    make, euler = CREASED[name]
+    net = make()
+    known = gm.GaussMap(net.surface)
+    found = known.points(normals)
+    assert found.report.undecided == ()
+    np.testing.assert_array_equal(known.degree(normals), euler // 2)
+    assert found.component is not None
+    points = found[found.component == gm.Component.CREASE]
+    assert len(points) > 0
+    n, step = normals[points.normal_index], 1e-6
+    low, high = np.ptp(net.spans[0]), net.spans[0][0]
+    sides = [
+        net.surface.evaluate(high + (points.uv[:, 0] + x - high) % low, points.uv[:, 1])
+        for x in (-step, 0.0, step)
+    ]
+    rise = [((x - sides[1]) * n).sum(axis=1) for x in (sides[0], sides[2])]
+    assert (np.sign(rise[0]) == np.sign(rise[1])).all()
+    along = net.surface.jets(*points.uv.T)[:, 2]
+    assert (np.abs((along * n).sum(axis=1)) < 1e-8 * np.linalg.norm(along, axis=1)).all()
+    np.testing.assert_array_equal(points.gaussian_curvature, 0.0)
+
+
+def test_creases_have_the_normals_between_those_of_both_sides() -> None:
+    normals = directions(1, 1)[:60]
+    check_creases("lens", normals)
+    np.testing.assert_array_equal(gm.GaussMap(CREASED["lens"][0]().surface).count(normals), 1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CREASED)
+def test_creases_at_many_normals(name: str) -> None:
+    check_creases(name, directions(8, 10_000))
+
+
+# Where nets are cut: an axis, and how many control points the first part has.
+CUTS = {"ellipsoid, sheared": (0, 3), "torus, sheared": (1, 5), "capsule": (0, 3)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CUTS)
+def test_components_of_a_surface_in_two_parts(name: str) -> None:
+    net, (axis, count) = NETS[name][0](), CUTS[name]
+    parts = net.part(axis, 0, count), net.part(axis, count - 1, net.points.shape[axis])
+    normals = directions(8, 2000)
+    counts = []
+    for surface in (net.surface, gm.Part([x.surface for x in parts], tolerance=1e-6)):
+        found = gm.GaussMap(surface).points(normals)
+        listed = {x.normal for x in found.report.undecided or ()}
+        assert len(listed) <= len(normals) / 1000
+        assert found.component is not None
+        counts.append(np.zeros((len(normals), len(gm.Component))))
+        np.add.at(counts[-1], (found.normal_index, found.component), 1)
+        counts[-1][list(listed)] = 0
+    np.testing.assert_array_equal(*counts)
