@@ -410,6 +410,7 @@ class Meshing:
             lacking = self.count - first - int(np.count_nonzero(used >= first))
             if lacking <= 0 or cover is None:
                 break
+            cover.renew_distances(cover.radius)
             cover.fill_up(cover.count + lacking)
         assert mesh is not None
         return mesh

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.trees import tree_of
-from .cells import LIMIT, Cells
+from .cells import Cells
 from .kernels.sizing import TargetDensity
 from .trims import Trims
 
@@ -57,7 +57,7 @@ def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Ar
     limits = np.empty(len(places))
     if len(places):  # a tree takes long to load
         tree = tree_of(_apart(near.pieces, near.places, trims))
-        limits[:] = near.numbers[tree.query(_apart(pieces, inside, trims))[1], LIMIT]
+        limits[:] = near.limits[tree.query(_apart(pieces, inside, trims))[1]]
     return np.array(numbers, np.int64), np.cumsum([0, *counts]), places, inside, limits
 
 

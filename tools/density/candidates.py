@@ -18,8 +18,9 @@ __all__ = ["Block", "Candidates"]
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
 
-# About the size of the parts into which candidates are split for threads, and its maximum.
-PART, MOST = 1 << 16, 64
+# The least sizes of the parts into which candidates are split for threads, of FEW and of more
+# parts, and the largest number of parts.
+SMALL, FEW, PART, MOST = 1 << 13, 8, 1 << 16, 64
 # Candidates nearer to a sample than this part of a radius are left out of the next searches.
 LEFT_OUT = 0.7
 
@@ -45,19 +46,18 @@ class Candidates:
         should be neighbours in space.
         """
         count, self.radius, self.threads = len(rows), radius, threads
-        parts = min(max(count // PART, 1), MOST) if split else 1
+        parts = max(min(count // SMALL, FEW), min(count // PART, MOST), 1) if split else 1
         self._order, self._sorted = np.empty(count, dtype=np.int32), np.empty((count, 8))
-        self._nearest = np.full(count, -1, dtype=np.int32)
         edges = np.linspace(0, count, parts + 1).astype(np.int64)
 
         def part(k: int) -> Block:
             here = slice(int(edges[k]), int(edges[k + 1]))
             order = self._order[here]
-            made = Block(rows[here], radius, order, self._sorted[here], self._nearest[here])
+            made = Block(rows[here], radius, order, self._sorted[here])
             order += np.int32(here.start)
             return made
 
-        self.parts = self._each(part, parts)
+        self.parts = self.each(part, parts)
 
     @property
     def distances(self) -> Array:
@@ -72,21 +72,12 @@ class Candidates:
     def update_distances(self, samples: Array, radius: float) -> None:
         """Update the distances within a radius of samples (N, 6), point and unit normal."""
         samples = np.ascontiguousarray(samples)
-        self._each(lambda k: self.parts[k].update_distances(samples, radius), len(self.parts))
+        self.each(lambda k: self.parts[k].update_distances(samples, radius), len(self.parts))
 
-    def update_far(self, samples: Array, radius: float) -> None:
-        """Update the distances of all parts that contain infinite ones."""
-        samples = np.ascontiguousarray(samples)
-
-        def update(k: int) -> None:
-            if np.isinf(self.parts[k].grids.candidates[:, SQUARE]).any():
-                self.parts[k].update_distances(samples, radius)
-
-        self._each(update, len(self.parts))
-
-    def reset_distances(self) -> None:
-        """Make all distances infinite again."""
-        self._each(lambda k: self.parts[k].reset_distances(), len(self.parts))
+    def reset_distances(self, squares: Array | None = None) -> None:
+        """Make all distances infinite again, or replace their squares (M,)."""
+        for part in self.parts:
+            part.reset_distances(np.inf if squares is None else squares[part.order])
 
     def choose(self, radius: float, most: int) -> Indices:
         """Choose candidates until all others are within a radius of a sample or of a chosen one.
@@ -99,7 +90,7 @@ class Candidates:
         # would choose candidates close to one another.
         for turn in (0, 1):
             now = range(turn, len(self.parts), 2)
-            rows = self._each(lambda i, now=now: self.parts[now[i]].choose(radius), len(now))
+            rows = self.each(lambda i, now=now: self.parts[now[i]].choose(radius), len(now))
             found |= zip(now, rows, strict=True)
             self._update_other_parts(dict(zip(now, rows, strict=True)), radius)
         rows = [part.order[found[k]] for k, part in enumerate(self.parts)]
@@ -123,25 +114,24 @@ class Candidates:
                 if len(others):
                     self.parts[k].update_distances(others, radius)
 
-        self._each(update, len(self.parts))
+        self.each(update, len(self.parts))
 
-    def _each(self, work: Callable[[int], Result], count: int) -> list[Result]:
+    def each(self, work: Callable[[int], Result], count: int) -> list[Result]:
+        """Return work(k) for k < count, on the threads."""
         return list(over_ranges(lambda first, last: work(first), count, 1, self.threads))
 
 
 class Block:
     """Some of the candidates, in hash grids of their own."""
 
-    def __init__(
-        self, rows: Array, radius: float, order: Numbers, candidates: Array, nearest: Numbers
-    ) -> None:
+    def __init__(self, rows: Array, radius: float, order: Numbers, candidates: Array) -> None:
         """Sort rows into arrays of the same length."""
         count = len(rows)
         box, sizes = np.empty((2, 3)), np.zeros(LEVELS)
         finest, coarsest = measure(rows, box, sizes)
         starts = np.zeros((1 << max(count - 1, 1).bit_length()) + 1, dtype=np.int32)
         sizes = sizes[finest : coarsest + 1].copy()
-        self.grids = HashGrids(candidates, nearest, starts, sizes, box, radius)
+        self.grids = HashGrids(candidates, starts, sizes, box, radius)
         sort_candidates(rows, finest, self.grids, np.empty(count, dtype=np.int32), order)
         self.order = order
         # Candidates that are still farther than `least` from all samples.
@@ -151,11 +141,11 @@ class Block:
         """See `Candidates`."""
         update_distances(self.grids, radius, samples)
 
-    def reset_distances(self) -> None:
+    def reset_distances(self, values: Array | float) -> None:
         """See `Candidates`."""
         squares = self.grids.candidates[:, SQUARE]
-        squares[squares >= 0.0] = np.inf
-        self.grids.nearest[:], self.least = -1, np.inf
+        squares[:] = np.where(squares < 0.0, squares, values)
+        self.least = np.inf
 
     def choose(self, radius: float) -> Numbers:
         """Choose candidates; returns their rows in the grids. See `Candidates`."""

@@ -15,9 +15,11 @@ from numpy.typing import NDArray
 
 from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.memory import check_memory
+from .kernels.cells import cut_into_parts
 
 __all__ = [
     "Cells",
+    "Sides",
     "by_piece",
     "grouped",
     "halved",
@@ -30,9 +32,11 @@ __all__ = [
 ]
 
 
+Sides = NDArray[np.float32]
+
 # The columns of `numbers`, see kernels/cells.py.
-RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA, LIMIT = range(8)
-SIDES, NUMBERS = slice(8, 14), 14
+RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA = range(7)
+NUMBERS = 7
 # The size of a cell without an extent, relative to the domain of its piece.
 POINT = 1e-9
 
@@ -42,9 +46,9 @@ class Cells:
     """M cells: the indices of their `pieces` (M,), boxes (M, 4), u0, v0, u1, v1, places (M, 2).
 
     `whole` (M,) is True for cells that no boundary intersects. `limits` (M,) are least radii of
-    curvature, which replace smaller ones; 0 if unknown. `rows` (M, 8) and `numbers` (M, 14) are
+    curvature, which replace smaller ones; 0 if unknown. `rows` (M, 8) and `numbers` (M, 7) are
     those of kernels/cells.py, lengths and curvatures scaled as in `Space`. They take most of the
-    memory, and are (M, 0) for cells that are not evaluated.
+    memory, and are (M, 0) for cells that are not evaluated, or not `numbers`.
     """
 
     pieces: Indices
@@ -73,17 +77,18 @@ class Cells:
         )  # fmt: skip
 
     def with_rows(self) -> Cells:
-        """Return the same cells with rows and numbers filled with 0, except for the limits."""
-        numbers = np.zeros((len(self), NUMBERS))
-        numbers[:, LIMIT] = self.limits
-        return replace(
-            self, limits=numbers[:, LIMIT], rows=np.zeros((len(self), 8)), numbers=numbers
-        )
+        """Return the same cells with rows and numbers filled with 0."""
+        rows, numbers = np.zeros((len(self), 8)), np.zeros((len(self), NUMBERS))
+        return replace(self, limits=self.limits.copy(), rows=rows, numbers=numbers)
 
     def without_rows(self) -> Cells:
         """Return the same cells, not evaluated; their limits are known."""
         nothing = np.empty((len(self), 0))
-        return replace(self, limits=self.limits.copy(), rows=nothing, numbers=nothing)
+        return replace(self, rows=nothing, numbers=nothing)
+
+    def without_numbers(self) -> Cells:
+        """Return the same cells with their rows only."""
+        return replace(self, numbers=np.empty((len(self), 0)))
 
     def sorted(self) -> Cells:
         """Return the same cells, sorted by their pieces."""
@@ -140,13 +145,8 @@ def into_parts(cells: Cells, parts: Indices) -> Cells:
     total = parts.prod(axis=1)
     check_memory("candidates", total.sum())
     owner = np.repeat(np.arange(len(cells)), total)
-    number = np.arange(len(owner)) - np.repeat(np.cumsum(total) - total, total)
-    place = np.stack(np.divmod(number, parts[owner, 1]), axis=1)
-    low, sizes = cells.boxes[owner, :2], (cells.boxes[:, 2:] - cells.boxes[:, :2])[owner]
-    steps = sizes / parts[owner]
-    boxes = np.concatenate([low + place * steps, low + (place + 1) * steps], axis=1)
-    last = place + 1 == parts[owner]
-    boxes[:, 2:] = np.where(last, cells.boxes[owner, 2:], boxes[:, 2:])
+    boxes = np.empty((len(owner), 4))
+    cut_into_parts(np.ascontiguousarray(cells.boxes), np.ascontiguousarray(parts), boxes)
     return new_cells(cells.pieces[owner], boxes, cells.whole[owner], cells.limits[owner])
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from ...runtime.base.aliases import Array, Indices
 from .at_normals import Given
 from .candidates import Candidates
-from .cells import CHORD, LIMIT, RADIUS, Cells, joined, merged
+from .cells import CHORD, RADIUS, Cells, joined, merged, points_of
 from .grid import Grid
 from .space import Space
 from .voronoi import Voronoi
@@ -30,15 +30,12 @@ FINE, SMALLER = 0.4, 1.3
 FINEST = 0.07
 # Boundaries are covered at points whose spacing is twice this part of the covering radius.
 ON_BORDERS = 0.05
-# All but a few samples move by less than this part of the radius in a move to centres.
-HARDLY = 0.3
-# The part of the samples that `spread` keeps for the widest gaps after the others have moved. With
-# half of it, samples in a row leave wider gaps than without the move.
-REST = 0.2
+# Samples move to centres twice. Before the moves, between and after them, this part is missing.
+MISSING = (0.12, 0.06, 0.0)
 # While samples are missing, gaps are at most this factor wider than the radius.
 WIDEST_GAP = 2.0
-# Gaps between candidates are searched down to the radius, then to this part of it, and so on.
-STEP_DOWN, ROUNDS = 0.9, 3
+# Gaps between candidates are searched down to the radius, then to this part of it.
+STEP_DOWN = 0.85
 # The largest number of cells that are bisected at a time, to bound the memory.
 BLOCK = 1 << 18
 
@@ -51,8 +48,9 @@ class Cover:
     normal, and `curvatures` (N,), K. The first `given` samples are those `at_normals`. The others
     lie at the places of the cells `added`; those of the `grid`, if there is one, come first.
 
-    Samples are chosen among the places of `cells`. `show_count` is called with the number of
-    samples whenever it grows.
+    Samples are chosen among the places of `cells`, which have numbers if they are for a radius, and
+    sides if they are for a count. `show_count` is called with the number of samples whenever it
+    grows.
 
     The first `fixed` samples, given or on the grid, are never removed.
 
@@ -123,16 +121,22 @@ class Cover:
         self.fill_up(count)
 
     def spread(self, count: int) -> None:
-        """Add samples until there are `count`; most of them are moved once.
+        """Add samples until there are `count`; most of them are moved, and gaps filled after moves.
 
-        The move takes each sample towards the centre of the smallest ball around its Voronoi cell:
+        A move takes each sample towards the centre of the smallest ball around its Voronoi cell:
         Lloyd's method for a high power of the distance instead of its square.
         """
-        self.to_count(count - round(REST * (count - self.count)))
+        free = count - self.count
+        self.to_count(count - round(MISSING[0] * free))
         if self.count > self.fixed:
-            widest = WIDEST_GAP * self.radius
-            self.renew_distances(widest)
-            self.fill_gaps(self.move_to_centres(), widest, count)
+            for missing in MISSING[1:]:
+                assert self._sides is not None
+                # Fine points are within 0.75 of the radius of a cell: the sample nearest to one of
+                # them is as near to the place of the cell, unless a gap is there.
+                wide = (1.0 + 1.5 * FINE) * self.radius
+                voronoi = Voronoi(self._candidates, self.cells, self._sides, self.points, wide)
+                self.move_to_centres(voronoi)
+                self.fill_gaps(voronoi, WIDEST_GAP * self.radius, count - round(missing * free))
 
     def fill_up(self, count: int) -> None:
         """Add samples in the widest gaps until there are `count`."""
@@ -148,18 +152,22 @@ class Cover:
     def sweep(self, radius: float, most: int | None = None) -> None:
         """Add candidates until all of them are covered within a radius, or there are `most`."""
         if radius < self._candidates.radius / SMALLER:
-            self.take_candidates(radius / SMALLER, radius)
+            self.take_candidates(radius / SMALLER, radius, light=self._sides is not None)
         self.radius = radius
         self._choose(self.cells, self._candidates, radius, most)
 
-    def take_candidates(self, radius: float, widest: float) -> None:
+    def take_candidates(self, radius: float, widest: float, *, light: bool = False) -> None:
         """Make candidates for `sweep` with radii that fall from `widest` to `radius`.
 
         They are the places of cells whose radii are FINE times `radius`.
         """
         for name in ("cells", "_candidates"):  # free the old ones, which take as much memory
             vars(self).pop(name, None)
-        self.radius, self.cells = widest, self.space.cut(FINE * radius)
+        self.radius, radius_of_cells = widest, FINE * radius
+        if light:
+            self.cells, self._sides = self.space.candidates(radius_of_cells)
+        else:
+            self.cells, self._sides = self.space.cut(radius_of_cells), None
         self._candidates = self._with_distances(self.cells.rows, radius, widest)
 
     def whole(self, turn: float) -> Cells:
@@ -202,58 +210,51 @@ class Cover:
         space, added = self.space.exact, self.added
         if space is not self.space:
             self.space = space
-            self._replace_added(space.known(added, keep=True))
+            self._replace_added(space.light(added, keep=True)[0])
 
     def renew_distances(self, widest: float) -> None:
         """Recompute the distances of all candidates from the samples, within `widest`."""
         self._candidates.reset_distances()
-        # Nearly all candidates are within this distance of a sample; the others need the wide
-        # search.
-        near = min((1.0 + HARDLY) * self.radius, widest)
-        self._candidates.update_distances(self.points, near)
-        self._candidates.update_far(self.points, widest)
+        self._candidates.update_distances(self.points, widest)
 
-    def move_to_centres(self) -> Voronoi:
-        """Move the samples that are not fixed to approximate centres of their Voronoi cells.
-
-        The distances of the candidates have to be renewed before and after the call. Return the
-        Voronoi cells, for `fill_gaps`.
-        """
-        margin = HARDLY * self.radius
-        reach = self.radius + 2.0 * FINE * self.radius + margin
-        voronoi = Voronoi(self._candidates, self.cells, self.points, reach, margin)
+    def move_to_centres(self, voronoi: Voronoi) -> None:
+        """Move the samples that are not fixed to approximate centres of their Voronoi cells."""
         moved, rows, places = voronoi.centres(self.points, self.fixed)
         cells, order = self._evaluated_at(rows, places)
         regular = np.flatnonzero(cells.rows[:, 3:6].any(axis=1))
         moved, cells = moved[order][regular], cells[regular]
         self.points[moved], self.curvatures[moved] = cells.rows[:, :6], cells.rows[:, 7]
         self.added.write(moved - self.given, cells)
-        return voronoi
 
     def fill_gaps(self, voronoi: Voronoi, widest: float, count: int) -> None:
         """Add samples at fine points of the cells, the widest gaps first, until there are `count`.
 
         The search begins with gaps of the radius `widest`.
         """
-        least = self.radius
-        for _ in range(ROUNDS):
+        least, start = self.radius, self.count
+        rows, places, squares = voronoi.widest(self.points, STEP_DOWN * least)
+        for radius in (least, STEP_DOWN * least):
             if self.count == count:
                 return
-            cells, _ = self._evaluated_at(*voronoi.widest(self.points, least))
-            candidates, radius = self._with_distances(cells.rows, least, widest), widest
-            while radius > least and self.count < count:
-                radius = max(STEP * radius, least)
-                self._choose(cells, candidates, radius, count)
-            widest, least = least, STEP_DOWN * least
-        self.renew_distances(widest)
-        self.narrow(widest, 0.0, count)
+            far = np.flatnonzero(squares >= radius * radius)
+            cells, order = self._evaluated_at(rows[far], places[far])
+            candidates = Candidates(cells.rows, radius, self.space.threads, split=True)
+            candidates.reset_distances(squares[far[order]])
+            candidates.update_distances(self.points[start:], widest)
+            while widest > radius and self.count < count:
+                widest = max(STEP * widest, radius)
+                self._choose(cells, candidates, widest, count)
+        if self.count < count:
+            self.renew_distances(widest)
+            self.narrow(widest, 0.0, count)
 
     def _evaluated_at(self, rows: Indices, places: Array) -> tuple[Cells, Indices]:
         """Return cells without an extent at points (k, 2) of candidates, sorted, and the order."""
         order = np.argsort(self.cells.pieces[rows], kind="stable")
-        near = self.cells[rows[order]]
-        found = self.space.at(near.pieces, places[order], near.numbers[:, LIMIT], keep=True)
-        return found, order
+        rows = rows[order]
+        pieces, limits = self.cells.pieces[rows], self.cells.limits[rows]
+        cells = points_of(pieces, places[order], self.space.sizes[pieces], limits)
+        return self.space.light(cells, keep=True)[0], order
 
     def remove_added(self) -> None:
         """Remove all samples that were added, except those of the grid."""
@@ -273,7 +274,7 @@ class Cover:
         return max(math.sqrt(self.space.integral), 0.5 * self.space.longest)
 
     def _begin(self, radius: float, count: int) -> None:
-        self.take_candidates(radius / WIDEST, radius)
+        self.take_candidates(radius / WIDEST, radius, light=True)
         self.sweep(radius, count)
 
     def _choose(
@@ -287,11 +288,12 @@ class Cover:
 
     def _append(self, cells: Cells) -> None:
         if len(cells):
-            self._waiting.append(cells)
+            self._waiting.append(cells.without_numbers())
 
     def _replace_added(self, cells: Cells) -> None:
         self._points, self._curvatures = self._points[: self.given], self._curvatures[: self.given]
-        self._added, self._waiting = self.space.nothing(), [cells]
+        self._added, self._waiting = self.space.nothing(), list[Cells]()
+        self._append(cells)
 
     def _joined(self) -> Cover:
         """Append pending samples to the arrays: concatenating many at once is faster."""

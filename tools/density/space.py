@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Self
@@ -26,6 +26,7 @@ from .cells import (
     CHORD,
     RADIUS,
     Cells,
+    Sides,
     by_piece,
     grouped,
     halved,
@@ -36,7 +37,7 @@ from .cells import (
     runs,
 )
 from .grading import Sources, bounds_of, growth_for
-from .kernels.cells import evaluate_cells
+from .kernels.cells import evaluate_cells, evaluate_places
 from .kernels.sizing import TargetDensity
 from .piece import Piece
 from .sifting import beside, placed, sifted
@@ -321,6 +322,10 @@ class Space:
         """
         return self.known(self._cut(radius))
 
+    def candidates(self, radius: float) -> tuple[Cells, Sides]:
+        """Return the cells of `cut` without numbers, and their sides; see `light`."""
+        return self.light(self._cut(radius))
+
     def _cut(self, radius: float) -> Cells:
         """Return the cells of `cut`, not evaluated."""
         cells, parts, pixels = self.first, self.parts(radius), self._pixels(radius)
@@ -457,29 +462,48 @@ class Space:
 
         Cells that are not finite are left out, or, with `keep`, marked as singular.
         """
+        cells = cells.with_rows()
+        return self._evaluated(cells, cells.numbers, evaluate_cells, keep)[0]
+
+    def light(self, cells: Cells, *, keep: bool = False) -> tuple[Cells, Sides]:
+        """Return cells whose limits are known with rows, but without numbers; see `known`.
+
+        Also return their sides (M, 8), see kernels/cells.py. Those that a boundary intersects have
+        an area and no sides.
+        """
+        rows, sides = np.empty((len(cells), 8)), np.empty((len(cells), 8), dtype=np.float32)
+        cells, sides = self._evaluated(replace(cells, rows=rows), sides, evaluate_places, keep)
+        sides[~cells.whole, :AREA] = sides[~cells.whole, AREA + 1 :] = 0.0
+        return cells, sides
+
+    def _evaluated(
+        self, cells: Cells, others: NDArray[Any], kernel: Callable[..., object], keep: bool
+    ) -> tuple[Cells, NDArray[Any]]:
+        """Let a kernel write the rows of cells and others (M, …); see `known`."""
 
         def work(first: int, last: int) -> None:
             for parts in groups[first:last]:
                 jets = [self.pieces[k].jets(*cells.places[rows].T.copy()) for k, rows in parts]
                 (k, begin), (_, end) = parts[0], parts[-1]
                 rows = slice(begin.start, end.stop)
-                evaluate_cells(
+                kernel(
                     jets[0] if len(jets) == 1 else np.concatenate(jets),
-                    cells.boxes[rows], cells.places[rows], self.unit, self.centre,
-                    self.pieces[k].finest, self._target_of(k),
-                    cells.rows[rows], cells.numbers[rows],
+                    cells.boxes[rows], cells.places[rows], cells.limits[rows], self.unit,
+                    self.centre, self.pieces[k].finest, self._target_of(k),
+                    cells.rows[rows], others[rows],
                 )  # fmt: skip
 
-        cells = cells.with_rows()
         groups = self._groups(cells)
         list(over_ranges(work, len(groups), len(groups) // RANGES + 1, self.threads))
-        rows, numbers = (np.isfinite(x).all(axis=1) for x in (cells.rows, cells.numbers))
-        finite = np.asarray(rows & numbers)
         self.grade(cells.pieces, cells.rows)
+        with np.errstate(over="ignore", invalid="ignore"):
+            if math.isfinite(cells.rows.sum() + others.sum(dtype=np.float64)):
+                return cells, others
+        finite = np.asarray(np.isfinite(cells.rows).all(axis=1) & np.isfinite(others).all(axis=1))
         if keep:
             cells.rows[~finite] = 0.0
-            return cells
-        return cells if finite.all() else cells[finite]
+            return cells, others
+        return cells[finite], others[finite]
 
     def grade(self, pieces: Indices, rows: Array, *, far: bool = False) -> Array:
         """Raise densities in rows (M, 8) of pieces (M,); return bounds (M,) of the size.

@@ -5,80 +5,105 @@ from __future__ import annotations
 import numpy as np
 
 from ...runtime.base.aliases import Array, Indices
-from ...runtime.base.threads import over_ranges
 from .candidates import Block, Candidates
-from .cells import SIDES, Cells
-from .kernels.centres import FINER, add_moments, begin_lists, find_nearest, find_widest
-from .kernels.greedy import Lists, note_samples
+from .cells import Cells, Sides
+from .kernels import voronoi as kernels
+from .kernels.cells import FINER
 
 __all__ = ["Voronoi"]
 
-# The list of a candidate has at most this many samples, which may be the nearest ones in its cell.
-MOST = 16
+# The number of centres that are searched at a time.
+AT_ONCE = 1 << 12
 
 
 class Voronoi:
     """The nearest samples of a fine grid of points in the cells of candidates.
 
-    The distances of the candidates from the samples (N, 6) are known. The fine points are those of
-    kernels/centres.py, linear in the parameters. In a cell that a boundary intersects, or without a
-    sample within radius/√w, only the place counts. The lists remain valid for samples that move by
-    less than margin/√w.
+    The cells are those of the candidates. The fine points are those of kernels/voronoi.py, linear
+    in the parameters; in cells that a boundary intersects, only the place of the cell counts. For a
+    candidate, the samples (N, 6) within radius/√w are considered, and some others near them.
     """
 
     def __init__(
-        self, candidates: Candidates, cells: Cells, samples: Array, radius: float, margin: float
+        self, candidates: Candidates, cells: Cells, sides: Sides, samples: Array, radius: float
     ) -> None:
-        self.cells, numbers = cells, cells.numbers
-        numbers[~cells.whole, SIDES] = 0.0  # nothing else reads these arrays, and a copy is large
+        self._cells, self._each, parts = cells, candidates.each, candidates.parts
         samples = np.ascontiguousarray(samples)
-
-        def listed(first: int, last: int) -> tuple[Block, Lists]:
-            part, count = candidates.parts[first], len(candidates.parts[first].order)
-            near, counts = np.empty((count, MOST), np.int32), np.zeros(count, np.int32)
-            lists = Lists(near, counts, np.empty(count), part.order, numbers)
-            begin_lists(part.grids, lists, margin)
-            note_samples(part.grids, radius, lists, samples)
-            return part, lists
-
-        self._parts = list(over_ranges(listed, len(candidates.parts), 1, candidates.threads))
+        self._parts = self._each(lambda k: _Part(parts[k], sides, samples, radius), len(parts))
 
     def centres(self, samples: Array, first: int) -> tuple[Indices, Indices, Array]:
-        """Return the samples from index `first` on that have a Voronoi cell, with its centre.
+        """Return the samples from index `first` on that move to the centres of their Voronoi cells.
 
-        The centre is given by a cell of the candidates, and parameters (k, 2) in it.
+        Also return where these are: a cell of the candidates, and parameters (k, 2) in it.
         """
-        moments, work = np.zeros((len(samples), 4)), np.empty((5, FINER**2))
-        for part, lists in self._parts:
-            add_moments(part.grids.candidates, lists, samples, work, moments)
-        found = np.full((len(moments), 2), -1, dtype=np.int64)
-        squares = np.where(moments[:, 3] > 0.0, np.inf, -1.0)
-        squares[:first] = -1.0
-        points = moments[:, :3] / np.where(squares > 0.0, moments[:, 3], 1.0)[:, None]
-        for part, lists in self._parts:
-            find_nearest(part.grids.candidates, lists, points, found, squares)
-        moved = np.flatnonzero(found[:, 0] >= 0)
-        return moved, found[moved, 0], self._parameters(*found[moved].T)
+        parts, moments = self._parts, np.zeros((len(samples), 4))
+        sums = self._each(lambda k: parts[k].moments(samples), len(parts))
+        for part, own in zip(parts, sums, strict=True):
+            moments[part.near] += own
+        free = moments[:, 3] > 0.0
+        free[:first] = False
+        centres, squares = samples.copy(), np.where(free, np.inf, 0.0)
+        centres[free, :3] = moments[free, :3] / moments[free, 3:]
+        rows, steps = np.full(len(samples), -1), np.zeros((len(samples), 2))
 
-    def widest(self, samples: Array, least: float) -> tuple[Indices, Array]:
-        """Return the cells with a point at least least/√w from all samples.
+        def search(k: int) -> None:
+            some = [x[k * AT_ONCE : (k + 1) * AT_ONCE] for x in (centres, squares, rows, steps)]
+            for part in parts:
+                kernels.find_centres(part.grids, part.lists.sides, part.order, *some)
 
-        Also return the farthest such point of each cell, by its parameters (k, 2).
+        self._each(search, -(-len(samples) // AT_ONCE))
+        moved = np.flatnonzero(rows >= 0)
+        return moved, rows[moved], self._parameters(rows[moved], steps[moved])
+
+    def widest(self, samples: Array, least: float) -> tuple[Indices, Array, Array]:
+        """Return the cells with a point at least least/√w from all samples, and that point.
+
+        It is the farthest one of each cell, by its parameters (k, 2). Also return w times the
+        squared distances (k,).
         """
-        rows, places, work = list[Indices](), list[Indices](), np.empty((5, FINER**2))
-        for part, lists in self._parts:
-            found = np.empty(len(part.order), np.int64)
-            find_widest(part.grids.candidates, lists, samples, least, work, found)
-            far = found > -2
-            rows.append(part.order[far].astype(np.int64))
-            places.append(found[far])
-        chosen = np.concatenate(rows)
-        return chosen, self._parameters(chosen, np.concatenate(places))
-
-    def _parameters(self, rows: Indices, numbers: Indices) -> Array:
-        """Return the parameters (k, 2) of fine points in cells, by their indices (k,)."""
-        cells = self.cells[rows]
-        finer = cells.whole & (numbers >= 0)
+        parts = self._parts
+        found = self._each(lambda k: parts[k].widest(samples, least), len(parts))
+        rows, numbers, squares = (np.concatenate(x) for x in zip(*found, strict=True))
         steps = (np.stack(np.divmod(numbers, FINER), axis=1) + 0.5) / FINER - 0.5
-        offsets = np.where(finer[:, None], steps, 0.0)
-        return cells.places + offsets * (cells.boxes[:, 2:] - cells.boxes[:, :2])
+        return rows, self._parameters(rows, np.where(numbers[:, None] < 0, 0.0, steps)), squares
+
+    def _parameters(self, rows: Indices, steps: Array) -> Array:
+        """Return the parameters (k, 2) of points in cells, by their coordinates (k, 2)."""
+        cells = self._cells
+        boxes, steps = cells.boxes[rows], np.where(cells.whole[rows, None], steps, 0.0)
+        return cells.places[rows] + steps * (boxes[:, 2:] - boxes[:, :2])
+
+
+class _Part:
+    """The samples near a part of the candidates: `near` (n,) are their indices."""
+
+    def __init__(self, part: Block, sides: Sides, samples: Array, radius: float) -> None:
+        self.grids, self.order, sides = part.grids, part.order, sides[part.order]
+        counts, near = np.zeros(len(part.grids.starts), np.int32), np.empty(len(samples), np.int32)
+        last, entries = np.full(len(counts) - 1, -1, dtype=np.int32), np.empty(0, dtype=np.int32)
+        lists = kernels.Lists(sides, counts[1:], entries, last)
+        self.near = near[: kernels.list_samples(part.grids, lists, radius, samples, near)].copy()
+        starts, longest = np.cumsum(counts, dtype=np.int32), int(counts.max())
+        entries, last[:] = np.empty(starts[-1], dtype=np.int32), -1
+        lists = kernels.Lists(sides, starts[:-1].copy(), entries, last)
+        kernels.list_samples(part.grids, lists, radius, samples, near)
+        self.lists = kernels.Lists(sides, starts, entries, last)
+        numbers, squares = np.empty(longest, np.int32), np.empty(longest + 1, np.float32)
+        self._room = kernels.Room(
+            np.empty((6, longest), np.float32), squares, squares.view(np.int32), numbers,
+            np.empty((longest, 4)), np.empty(FINER**2, np.float32), np.zeros(FINER**2, np.int32),
+        )  # fmt: skip
+
+    def moments(self, samples: Array) -> Array:
+        """Return the moments (n, 4) of the samples near the part of all samples (N, 6)."""
+        moments = np.zeros((len(self.near), 4))
+        kernels.add_moments(self.grids, self.lists, samples[self.near], self._room, moments)
+        return moments
+
+    def widest(self, samples: Array, least: float) -> tuple[Indices, Indices, Array]:
+        """Return rows of candidates, indices of fine points, and w times squared distances."""
+        found, squares = np.empty(len(self.order), np.int64), np.empty(len(self.order))
+        near = samples[self.near]
+        kernels.find_widest(self.grids, self.lists, near, least, self._room, found, squares)
+        far = np.flatnonzero(found > -2)
+        return self.order[far].astype(np.int64), found[far], squares[far]

@@ -13,9 +13,12 @@ import pytest
 from gaussmap.tools.cad import part_meshing as meshing
 from gaussmap.tools.cad.examples import box, box_faces
 from gaussmap.tools.cad.face_pieces import FacePiece
-from gaussmap.tools.cad.mesh_spacing import TurnedPiece
+from gaussmap.tools.cad.mesh_edges import MeshEdges
+from gaussmap.tools.cad.mesh_grading import graded
+from gaussmap.tools.cad.mesh_spacing import Spacing, TurnedPiece
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.part_mesh import PartMesh
+from gaussmap.tools.cad.results import space_of
 
 from ...refusals import refused
 from . import made
@@ -434,6 +437,16 @@ def test_sizes_grow_slowly_from_edges():
     lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     inside = np.linalg.norm(corners.mean(axis=1)[:, :2], axis=1) < 0.6
     assert lengths[inside].mean() > 6.0 * TURN / (len(mesh.lines[0]) - 1)
+
+
+def test_candidates_for_a_count_are_as_dense_as_cells_near_edges():
+    """Light candidates have the sizes that grow from the edges; else meshes are thin there."""
+    whole = space_of(cylinder(height=0.02), None)
+    space = graded(MeshEdges.of(Spacing(whole, 1500)), 1500)
+    radius = 0.02 * np.sqrt(space.area)
+    cells, (light, _) = space.cut(radius), space.candidates(radius)
+    assert cells.rows[:, 6].max() > 5.0 * space.target.floor
+    np.testing.assert_allclose(light.rows, cells.rows, rtol=1e-12)
 
 
 def test_steps_along_edges_are_even_whatever_their_parameters():

@@ -414,7 +414,7 @@ def test_a_part_has_some_candidates_for_each_sample(cylinder, monkeypatch):
 
     With a quarter of them gaps are wider; four times as many take as much more time and memory.
     """
-    numbers = noted(monkeypatch, PartSpace, "cut", lambda _, cells: len(cells))
+    numbers = noted(monkeypatch, PartSpace, "candidates", lambda _, found: len(found[0]))
     gm.sample(cylinder, 1000, density="uniform")
     assert 4.0 < max(numbers) / 1000 < 10.0
 

@@ -88,7 +88,7 @@ def test_parts_know_of_one_another(threads, monkeypatch):
     rows = rows_of(2000, 8, 2.0)
     rows = rows[np.argsort(rows[:, 0])]
     whole = Candidates(rows, 0.15)
-    monkeypatch.setattr("gaussmap.tools.density.candidates.PART", 100)
+    monkeypatch.setattr("gaussmap.tools.density.candidates.SMALL", 100)
     candidates, radius = Candidates(rows, 0.15, threads, split=True), 0.15
     chosen = candidates.choose(2 * radius, 2000)
     chosen = np.append(chosen, candidates.choose(radius, 2000))

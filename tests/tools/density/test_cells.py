@@ -106,7 +106,7 @@ def test_cells_bound_what_the_curvature_of_a_ridge_counts():
     space = space_on(gm.fit(ridge, (31, 7)), ridge, None)
     target = space.target._replace(floor=0.0, curvature_weight=1.0)
     cells = replace(space, target=target).first
-    largest, bound = cells.rows[:, 6].max(), 1.0 / cells.numbers[:, 7] ** 2
+    largest, bound = cells.rows[:, 6].max(), 1.0 / cells.limits**2
     assert (cells.rows[:, 6] <= bound * (1 + 1e-12)).all()
     assert largest == pytest.approx(bound[cells.rows[:, 6].argmax()])
 

@@ -30,13 +30,13 @@ def test_what_is_filled_up_is_far_from_all_samples(name):
 @covering(density=["uniform", "balanced"], name=["torus", "catenoid", "wavy_graph"])
 def test_candidates_for_a_count_are_evaluated_once(name, density, monkeypatch):
     """The radius that a count leaves is known well enough before."""
-    taken, cut = [], Space.cut
+    taken, cut = [], Space.candidates
 
     def recorded(*arguments):
         taken.append(cut(*arguments))
         return taken[-1]
 
-    monkeypatch.setattr(Space, "cut", recorded)
+    monkeypatch.setattr(Space, "candidates", recorded)
     gm.sample(gm.fit(name, (32, 32)), 600, density=density)
     assert len(taken) == 1
 

@@ -72,7 +72,7 @@ def test_no_samples_are_far_from_everything():
 
 def test_many_places_are_searched_block_by_block(monkeypatch):
     """Fewer places at first, whose cells are cut once more, find about the same angles."""
-    samples = gm.sample(gm.fit("torus", (12, 12)), 60)
+    samples = gm.sample(gm.fit("torus", (12, 12)), 60, density="gauss")
     expected = samples.normal_deviation()
     for name, value in (("MOST", 5000), ("BLOCK", 1000)):
         monkeypatch.setattr(f"gaussmap.tools.density.deviation.{name}", value)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from gaussmap.tools.density import candidates as candidates_module
 from gaussmap.tools.density.candidates import Candidates
-from gaussmap.tools.density.cells import Cells, new_cells
+from gaussmap.tools.density.cells import Cells, Sides, joined, new_cells
 from gaussmap.tools.density.voronoi import Voronoi
 from numpy.typing import NDArray
 
@@ -13,16 +13,22 @@ Array = NDArray[np.float64]
 SIDE, FINER = 12, 4  # cells along a side of the unit square, and places along a side of a cell
 
 
-def plane() -> Cells:
-    """Return the cells of the unit square of a plane; the density grows along u."""
+def plane(*, cut: bool = False) -> tuple[Cells, Sides]:
+    """Return cells of the unit square of a plane, and their sides; the density grows along u.
+
+    If they are cut, a boundary intersects each third one.
+    """
     low = np.stack(np.meshgrid(*2 * [np.arange(SIDE) / SIDE], indexing="ij"), -1).reshape(-1, 2)
     boxes = np.hstack([low, low + 1.0 / SIDE])
     cells = new_cells(np.zeros(SIDE**2, dtype=np.int64), boxes, True).with_rows()
     cells.rows[:, :2], cells.rows[:, 5] = cells.places, 1.0
     cells.rows[:, 6] = 1.0 + 3.0 * cells.places[:, 0]
-    cells.numbers[:, 6] = 1.0 / SIDE**2  # the area, and the sides
-    cells.numbers[:, 8] = cells.numbers[:, 12] = 1.0 / SIDE
-    return cells
+    cells.whole[::3] = not cut
+    sides = np.zeros((SIDE**2, 8), dtype=np.float32)
+    sides[cells.whole, 0] = sides[cells.whole, 4] = 1.0 / SIDE
+    sides[:, 6] = 1.0 / SIDE**2  # the area
+    sides[cells.whole, 7] = np.sqrt(2.0) * (0.5 - 0.5 / FINER) / SIDE
+    return cells, sides
 
 
 def places_of(cells: Cells) -> tuple[Array, Array, NDArray[np.int64]]:
@@ -40,20 +46,22 @@ def samples_of(count: int, seed: int) -> Array:
     return samples
 
 
-def voronoi(cells: Cells, samples: Array, margin: float) -> Voronoi:
-    candidates = Candidates(cells.rows, 0.1)
-    candidates.update_distances(samples, 3.0)
-    return Voronoi(candidates, cells, samples, 3.0, margin)
+def voronoi(found: tuple[Cells, Sides], samples: Array) -> Voronoi:
+    cells, sides = found
+    return Voronoi(Candidates(cells.rows, 0.1, split=True), cells, sides, samples, 3.0)
 
 
 @pytest.mark.parametrize("cut", [False, True])
 @pytest.mark.compiled
-def test_samples_move_to_the_place_nearest_to_the_mean(cut):
-    """Weighted by the third derivative of w² d⁴; fixed samples and those on another side stay."""
-    cells, samples = plane(), samples_of(14, 1)
-    cells.whole[::3] = not cut
+def test_samples_move_to_the_mean(cut):
+    """Weighted by the third derivative of w² d⁴; fixed samples and those on another side stay.
+
+    The mean is computed in single precision, from coordinates relative to its neighbours. Samples
+    keep away from the edges of cells, where the surface may be singular.
+    """
+    (cells, sides), samples = plane(cut=cut), samples_of(14, 1)
     samples[9, 5] = -1.0
-    moved, rows, places = voronoi(cells, samples, 0.0).centres(samples, 4)
+    moved, rows, places = voronoi((cells, sides), samples).centres(samples, 4)
     finer, density, _ = places_of(cells)
     squares = ((finer[:, None] - samples[:, :2]) ** 2).sum(axis=2)
     squares[:, 9] = np.inf
@@ -62,21 +70,21 @@ def test_samples_move_to_the_place_nearest_to_the_mean(cut):
     for k, row, place in zip(moved, rows, places, strict=True):
         weights = np.where(owner == k, density**2 * squares[:, k], 0.0)
         mean = (weights[:, None] * finer).sum(axis=0) / weights.sum()
-        least = np.linalg.norm(finer - mean, axis=1).min()
-        # Beyond cells that are cut, the nearest place may be in a cell that is not looked at.
-        assert np.linalg.norm(place - mean) <= least + (0.5 / SIDE if cut else 1e-12)
-        assert (np.abs(place - cells.places[row]) < 0.5 / SIDE).all()
+        nearest = np.linalg.norm(cells.places - mean, axis=1).argmin()
+        assert row == nearest
+        most = 0.45 / SIDE if cells.whole[row] else 0.0
+        expected = np.clip(mean, cells.places[row] - most, cells.places[row] + most)
+        np.testing.assert_allclose(place, expected, atol=1e-5)
 
 
 @pytest.mark.compiled
 @pytest.mark.parametrize("cut", [False, True])
 def test_the_widest_gaps_are_found_after_samples_have_moved(cut):
-    cells, samples = plane(), samples_of(30, 2)
-    cells.whole[::3] = not cut
-    found = voronoi(cells, samples, 0.05)
+    (cells, sides), samples = plane(cut=cut), samples_of(30, 2)
+    found = voronoi((cells, sides), samples)
     turns = np.random.default_rng(3).random(30) * 2.0 * np.pi
     samples[:, :2] += 0.02 * np.stack([np.cos(turns), np.sin(turns)], axis=1)
-    rows, places = found.widest(samples, 0.2)
+    rows, places, squares = found.widest(samples, 0.2)
     finer, density, number = places_of(cells)
     distances = np.sqrt(((finer[:, None] - samples[:, :2]) ** 2).sum(axis=2).min(axis=1) * density)
     widest = np.zeros(len(cells))
@@ -84,36 +92,54 @@ def test_the_widest_gaps_are_found_after_samples_have_moved(cut):
     assert sorted(rows) == np.flatnonzero(widest >= 0.2).tolist()
     assert 5 < len(rows) < len(cells) / 2
     near = np.sqrt(((places[:, None] - samples[:, :2]) ** 2).sum(axis=2).min(axis=1))
-    np.testing.assert_allclose(near * np.sqrt(cells.rows[rows, 6]), widest[rows], rtol=1e-12)
+    np.testing.assert_allclose(near * np.sqrt(cells.rows[rows, 6]), widest[rows], rtol=1e-6)
+    np.testing.assert_allclose(np.sqrt(squares), widest[rows], rtol=1e-6)
 
 
 def test_places_far_from_all_samples_are_found():
-    """Where no sample is within the radius, the place of the candidate counts."""
-    cells, samples = plane(), samples_of(1, 4)
-    candidates = Candidates(cells.rows, 0.1)
-    candidates.update_distances(samples, 9.0)
-    rows, places = Voronoi(candidates, cells, samples, 0.1, 0.0).widest(samples, 0.5)
-    away = np.linalg.norm(cells.places - samples[0, :2], axis=1) * np.sqrt(cells.rows[:, 6])
-    assert set(rows) == set(np.flatnonzero(away >= 0.5))
+    """Where no sample is near the bucket of a candidate, its place counts."""
+    (cells, sides), samples = plane(cut=True), samples_of(1, 4)
+    made = Voronoi(Candidates(cells.rows, 0.1), cells, sides, samples, 0.5)
+    rows, places, squares = made.widest(samples, 0.5)
+    finer, density, number = places_of(cells)
+    away = np.linalg.norm(finer - samples[0, :2], axis=1) * np.sqrt(density)
+    assert set(rows) == set(number[away >= 0.5])
     # Others share a bucket of a grid with places that are near.
-    assert (places == cells.places[rows]).all(axis=1).mean() > 0.9
+    far = squares > 1e6
+    assert far.mean() > 0.4
+    assert (places == cells.places[rows])[far].all()
 
 
 @pytest.mark.compiled
-def test_parts_of_candidates_have_the_centres_and_gaps_of_the_whole(monkeypatch):
-    cells, samples = plane(), samples_of(30, 2)
+def test_samples_on_the_other_side_of_a_thin_wall_stay_there():
+    """The centre of a sample may be nearer to the places of the other side."""
+    cells, sides = plane()
+    below = cells[np.arange(len(cells))]
+    below.rows[:, 2], below.rows[:, 5] = -1e-3 / SIDE, -1.0
+    samples = np.concatenate([samples_of(9, 1), samples_of(9, 2)])
+    samples[9:, 2], samples[9:, 5] = -1e-3 / SIDE, -1.0
+    both = joined([cells, below])
+    found = voronoi((both, np.concatenate([sides, sides])), samples)
+    moved, rows, _ = found.centres(samples, 0)
+    assert moved.tolist() == list(range(18))
+    assert ((rows < len(cells)) == (moved < 9)).all()
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("threads", [1, 2])
+def test_parts_of_candidates_have_the_centres_and_gaps_of_the_whole(threads, monkeypatch):
+    (cells, sides), samples = plane(), samples_of(30, 2)
 
     def found(count: int) -> list[Array]:
-        candidates = Candidates(cells.rows, 0.1, split=True)
+        candidates = Candidates(cells.rows, 0.1, threads, split=True)
         assert len(candidates.parts) == count
-        candidates.update_distances(samples, 3.0)
-        made = Voronoi(candidates, cells, samples, 3.0, 0.05)
+        made = Voronoi(candidates, cells, sides, samples, 3.0)
         moved, rows, places = made.centres(samples, 4)
-        far, gaps = made.widest(samples, 0.2)
+        far, gaps, squares = made.widest(samples, 0.2)
         order = np.argsort(far)
-        return [moved, rows, places, far[order], gaps[order]]  # pyright: ignore[reportReturnType]
+        return [moved, rows, places, far[order], gaps[order], squares[order]]  # pyright: ignore[reportReturnType]
 
     whole = found(1)
-    monkeypatch.setattr(candidates_module, "PART", 20)
+    monkeypatch.setattr(candidates_module, "SMALL", 20)
     for one, other in zip(whole, found(7), strict=True):
-        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-6)

@@ -17,8 +17,11 @@ from ....runtime.machine_code.jit import inline, jit, loop
 from ....runtime.spline.kernels.jets import patch_of_jet
 from .sizing import density_of
 
-__all__ = ["evaluate_cells"]
+__all__ = ["FINER", "cut_into_parts", "evaluate_cells", "evaluate_places"]
 
+# The number of fine points along each side of a cell, and the coordinate of the last one.
+FINER = 4
+OUTERMOST = (FINER - 0.5) / FINER - 0.5
 # The surface may be farther from the centre than its osculating patch by this factor.
 BEYOND = 1.03
 
@@ -61,19 +64,29 @@ def chord_of_cell(patch, low_s, low_t, n, least):
     return math.sqrt(2.0 * square / (1.0 + math.sqrt(1.0 - square))) if square < 1.0 else 2.0
 
 
+@inline
+def write_row(rows, k, jets, size, centre, normal, density, K):
+    """Write the scaled point, the normal, the target density and K of a place."""
+    for x in range(3):
+        rows[k, x] = (jets[k, 0, x] - centre[x]) * size
+    set_row(rows[:, 3:6], k, normal)
+    rows[k, 6] = density
+    rows[k, 7] = K
+
+
 @jit
-def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numbers):
+def evaluate_cells(jets, boxes, places, limits, size, centre, finest, target, rows, numbers):
     """Write measures of cells with boxes (M, 4), from 2-jets (M, 6, 3) at their places (M, 2).
 
     Boxes are u0, v0, u1, v1. Lengths are multiplied by `size`, and points are relative to a centre.
 
     rows (M, 8): point, unit normal, target density and K; normal and K are 0 at singular points.
-    numbers (M, 14): the radius of a ball around the point that contains the cell; the largest chord
+    numbers (M, 7): the radius of a ball around the point that contains the cell; the largest chord
     between the normal and others of the cell, 0 if it is rounding error, 2 if an angle is not acute
     or there is no normal; the lengths of the cell along u and v; its bends along u and v, relative
-    to the lengths, 0 if they are rounding error; its area; the least radius of curvature, which
-    replaces smaller ones (if it is 0 on entry: the width of the cell, or of a cell with the sides
-    `finest` (2,)); and the vectors of its sides along u and v at the place.
+    to the lengths, 0 if they are rounding error; its area.
+    limits (M,): least radii of curvature, which replace smaller ones; those that are 0 on entry
+    become the width of the cell, or of a cell with the sides `finest` (2,).
     """
     for k in range(jets.shape[0]):
         du = boxes[k, 2] - boxes[k, 0]
@@ -99,18 +112,15 @@ def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numb
         longest = max(along_u, along_v)
         least = VANISHING * longest
         chord = chord_of_cell(patch, low_s, low_t, normal, least * longest)
-        limit = numbers[k, 7]
+        limit = limits[k]
         if limit == 0.0:
             wide = max(finest[0] / du, 1.0)
             high = max(finest[1] / dv, 1.0)
             across_u = (along_u + length(patch.a) * (wide - 1.0)) * wide
             across_v = (along_v + length(patch.c) * (high - 1.0)) * high
             limit = min(across_u, across_v)
-        for x in range(3):
-            rows[k, x] = (jets[k, 0, x] - centre[x]) * size
-        set_row(rows[:, 3:6], k, normal)
-        rows[k, 6] = density_of(K, H, limit, target) if regular else target.floor
-        rows[k, 7] = K if regular else 0.0
+        density = density_of(K, H, limit, target) if regular else target.floor
+        write_row(rows, k, jets, size, centre, normal, density, K if regular else 0.0)
         numbers[k, 0] = radius
         numbers[k, 1] = min(BEYOND * chord, 2.0)
         numbers[k, 2] = along_u
@@ -118,6 +128,43 @@ def evaluate_cells(jets, boxes, places, size, centre, finest, target, rows, numb
         numbers[k, 4] = length(patch.a) / along_u if along_u > least else 0.0
         numbers[k, 5] = length(patch.c) / along_v if along_v > least else 0.0
         numbers[k, 6] = area
-        numbers[k, 7] = limit
-        set_row(numbers[:, 8:11], k, patch.d)
-        set_row(numbers[:, 11:14], k, patch.e)
+        limits[k] = limit
+
+
+@jit
+def evaluate_places(jets, boxes, places, limits, size, centre, finest, target, rows, sides):
+    """Write the rows of `evaluate_cells`, and nothing else but the sides of cells.
+
+    sides (M, 8) float32: the sides along u and v at the place, which are vectors, the area, and the
+    largest distance of a fine point from the place, see kernels/voronoi.py. The limits are known.
+    """
+    for k in range(jets.shape[0]):
+        patch = patch_of_jet(jets, k, size, boxes[k, 2] - boxes[k, 0], boxes[k, 3] - boxes[k, 1])
+        area, n, K, H = at_jet(patch)
+        d, e = patch.d, patch.e
+        scale = math.sqrt(dot(d, d) * dot(e, e))
+        regular = area > VANISHING * scale and abs(K) < math.inf
+        normal = n if regular else Vector(0.0, 0.0, 0.0)
+        density = density_of(K, H, limits[k], target) if regular else target.floor
+        write_row(rows, k, jets, size, centre, normal, density, K if regular else 0.0)
+        set_row(sides[:, :3], k, d)
+        set_row(sides[:, 3:6], k, e)
+        sides[k, 6] = area
+        diagonal = math.sqrt(dot(d, d) + dot(e, e) + 2.0 * abs(dot(d, e)))
+        sides[k, 7] = OUTERMOST * diagonal
+
+
+@jit
+def cut_into_parts(cells, parts, boxes):
+    """Write the boxes of cells (M, 4) that are cut into parts (M, 2) along u and v."""
+    at = 0
+    for k in range(cells.shape[0]):
+        du = (cells[k, 2] - cells[k, 0]) / parts[k, 0]
+        dv = (cells[k, 3] - cells[k, 1]) / parts[k, 1]
+        for i in range(parts[k, 0]):
+            end = cells[k, 0] + (i + 1) * du if i + 1 < parts[k, 0] else cells[k, 2]
+            for j in range(parts[k, 1]):
+                boxes[at, 0], boxes[at, 2] = cells[k, 0] + i * du, end
+                boxes[at, 1], boxes[at, 3] = cells[k, 1] + j * dv, cells[k, 1] + (j + 1) * dv
+                at += 1
+            boxes[at - 1, 3] = cells[k, 3]

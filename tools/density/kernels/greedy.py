@@ -8,19 +8,14 @@ the surface: the angle between their normals is at most 60 degrees.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from ....generated.vectors import Vector
 from ....runtime.directions.kernels.vectors import dot, row_vector
 from ....runtime.machine_code.jit import inline, jit, loop
 from .hash_grids import CELL, DENSITY, NORMAL, SQUARE, bucket_of
 
-__all__ = ["Lists", "choose_far", "note_samples", "update_distances"]
+__all__ = ["around", "choose_far", "is_near", "normal_of", "on_side", "update_distances"]
 
-# The index of no sample; typed, so that Numba compiles one function for all indices.
-NO_NUMBER = np.int64(-1)
 # The cosine of the largest angle between normals on the same side of a surface.
 SAME_SIDE = 0.5
 
@@ -43,34 +38,16 @@ def on_side(candidates, at, n):
     return dot(normal_of(candidates, at), n) >= SAME_SIDE
 
 
-class Lists(NamedTuple):
-    """For each candidate, the samples that may be the nearest ones in its cell.
-
-    near: (M, …) int32, their indices; if they are too many, the rest is left out.
-    counts: (M,) int32, their numbers.
-    within: (M,) w times the square of the largest distance for the list.
-    order: (M,) int32, the rows of the candidates in `numbers`.
-    numbers: (M, 14), see kernels/cells.py.
-    """
-
-    near: np.ndarray
-    counts: np.ndarray
-    within: np.ndarray
-    order: np.ndarray
-    numbers: np.ndarray
-
-
 def around(meet):
-    """Return a loop that calls meet(grids, kept, at, number, square, n) near a sample.
+    """Return a loop that calls meet(grids, kept, number, bucket, x, n) near a sample.
 
-    It is called for all candidates within radius/√w of the sample x with the normal n, and for some
-    others. `square` is w times the squared distance, `kept` the output of `meet`.
+    It is called for all buckets with candidates within radius/√w of the sample x with the normal n,
+    and for some others, perhaps more than once. `number` and `kept` are for `meet`.
     """
     meets = inline(meet)
 
     @loop
     def visit(grids, radius, kept, number, x, n):
-        candidates = grids.candidates
         buckets = grids.starts.size - 1
         for level in range(grids.sizes.size):
             reach = radius * grids.sizes[level]
@@ -88,37 +65,29 @@ def around(meet):
                     y_gap = distance_to_cells(j, cell, x.y)
                     for k in range(k_first, k_last + 1):
                         z_gap = distance_to_cells(k, cell, x.z)
-                        if x_gap * x_gap + y_gap * y_gap + z_gap * z_gap > reach * reach:
-                            continue
-                        bucket = bucket_of(level, i, j, k, buckets)
-                        for at in range(grids.starts[bucket], grids.starts[bucket + 1]):
-                            dx = candidates[at, 0] - x.x
-                            dy = candidates[at, 1] - x.y
-                            dz = candidates[at, 2] - x.z
-                            square = (dx * dx + dy * dy + dz * dz) * candidates[at, DENSITY]
-                            meets(grids, kept, at, number, square, n)
+                        if x_gap * x_gap + y_gap * y_gap + z_gap * z_gap <= reach * reach:
+                            meets(grids, kept, number, bucket_of(level, i, j, k, buckets), x, n)
 
     return visit
 
 
-def update(grids, nearest, at, number, square, n):
-    """Update the distance of a candidate."""
-    if square < grids.candidates[at, SQUARE] and on_side(grids.candidates, at, n):
-        grids.candidates[at, SQUARE] = square
-        nearest[at] = number
+@inline
+def squared_distance(rows, k, x):
+    """Return the squared distance of x from the point of row k."""
+    dx, dy, dz = rows[k, 0] - x.x, rows[k, 1] - x.y, rows[k, 2] - x.z
+    return dx * dx + dy * dy + dz * dz
 
 
-def note(grids, lists, at, number, square, n):
-    """List a sample that may be the nearest one somewhere in the cell of a candidate."""
-    near, count = lists.near, lists.counts[at]
-    # Cells of a grid may share a bucket, which is then visited several times.
-    has_room = count < near.shape[1] and (count == 0 or near[at, count - 1] != number)
-    if has_room and square <= lists.within[at] and on_side(grids.candidates, at, n):
-        near[at, count] = number
-        lists.counts[at] = count + 1
+def update(grids, kept, number, bucket, x, n):
+    """Update the distances of the candidates of a bucket."""
+    candidates = grids.candidates
+    for at in range(grids.starts[bucket], grids.starts[bucket + 1]):
+        square = squared_distance(candidates, at, x) * candidates[at, DENSITY]
+        if square < candidates[at, SQUARE] and on_side(candidates, at, n):
+            candidates[at, SQUARE] = square
 
 
-update_around, note_around = around(update), around(note)
+update_around = around(update)
 
 
 @loop
@@ -136,22 +105,10 @@ def is_near(grids, radius, samples, k):
 
 @jit
 def update_distances(grids, radius, samples):
-    """Update the distances of candidates within radius/√w of samples (N, 6), point and normal.
-
-    The number of a sample is its row.
-    """
+    """Update the distances of candidates within radius/√w of samples (N, 6), point and normal."""
     for k in range(samples.shape[0]):
         if is_near(grids, radius, samples, k):
-            x, n = row_vector(samples, k), normal_of(samples, k)
-            update_around(grids, radius, grids.nearest, k, x, n)
-
-
-@jit
-def note_samples(grids, radius, lists, samples):
-    """Write samples (N, 6) to the lists of the candidates within radius/√w of them."""
-    for k in range(samples.shape[0]):
-        if is_near(grids, radius, samples, k):
-            note_around(grids, radius, lists, k, row_vector(samples, k), normal_of(samples, k))
+            update_around(grids, radius, 0, k, row_vector(samples, k), normal_of(samples, k))
 
 
 @jit
@@ -168,14 +125,8 @@ def choose_far(grids, radius, least, searched, chosen):
         at = searched[k]
         square = candidates[at, SQUARE]
         if square > radius * radius:
-            update_around(
-                grids,
-                radius,
-                grids.nearest,
-                NO_NUMBER,
-                row_vector(candidates, at),
-                normal_of(candidates, at),
-            )
+            x, n = row_vector(candidates, at), normal_of(candidates, at)
+            update_around(grids, radius, 0, 0, x, n)
             chosen[count] = at
             count += 1
         elif square > least * least:

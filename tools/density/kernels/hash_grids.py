@@ -38,7 +38,6 @@ class HashGrids(NamedTuple):
 
     candidates: (M, 8) float64, point, unit normal, density w, and w times the squared distance to
         the nearest sample so far, or −1 for a candidate without a normal.
-    nearest: (M,) int32, the number of that sample, or −1.
     starts: (buckets + 1,) int32, the first candidate of each bucket; a power of two of them.
     sizes: (grids,) the largest 1/√w of each grid.
     box: (2, 3) the bounding box of the points.
@@ -46,7 +45,6 @@ class HashGrids(NamedTuple):
     """
 
     candidates: np.ndarray
-    nearest: np.ndarray
     starts: np.ndarray
     sizes: np.ndarray
     box: np.ndarray
