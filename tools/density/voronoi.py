@@ -12,6 +12,7 @@ from .kernels.cells import FINER
 
 __all__ = ["Voronoi"]
 
+Bounds = tuple[float, float, float]
 # The number of centres that are searched at a time.
 AT_ONCE = 1 << 12
 
@@ -55,17 +56,17 @@ class Voronoi:
         moved = np.flatnonzero(rows >= 0)
         return moved, rows[moved], self._parameters(rows[moved], steps[moved])
 
-    def widest(self, samples: Array, least: float) -> tuple[Indices, Array, Array]:
+    def widest(self, samples: Array, bounds: Bounds) -> tuple[Indices, Array, Array]:
         """Return the cells with a point at least least/√w from all samples, and that point.
 
-        It is the farthest one of each cell, by its parameters (k, 2). Also return w times the
-        squared distances (k,).
+        It is the farthest one of each cell, by its parameters (k, 2). Also return the gaps (k, 2),
+        w and w times the squared distance. `find_widest` says what angles count, and how.
         """
         parts = self._parts
-        found = self._each(lambda k: parts[k].widest(samples, least), len(parts))
-        rows, numbers, squares = (np.concatenate(x) for x in zip(*found, strict=True))
+        found = self._each(lambda k: parts[k].widest(samples, bounds), len(parts))
+        rows, numbers, gaps = (np.concatenate(x) for x in zip(*found, strict=True))
         steps = (np.stack(np.divmod(numbers, FINER), axis=1) + 0.5) / FINER - 0.5
-        return rows, self._parameters(rows, np.where(numbers[:, None] < 0, 0.0, steps)), squares
+        return rows, self._parameters(rows, np.where(numbers[:, None] < 0, 0.0, steps)), gaps
 
     def _parameters(self, rows: Indices, steps: Array) -> Array:
         """Return the parameters (k, 2) of points in cells, by their coordinates (k, 2)."""
@@ -100,10 +101,10 @@ class _Part:
         kernels.add_moments(self.grids, self.lists, samples[self.near], self._room, moments)
         return moments
 
-    def widest(self, samples: Array, least: float) -> tuple[Indices, Indices, Array]:
-        """Return rows of candidates, indices of fine points, and w times squared distances."""
-        found, squares = np.empty(len(self.order), np.int64), np.empty(len(self.order))
-        near = samples[self.near]
-        kernels.find_widest(self.grids, self.lists, near, least, self._room, found, squares)
+    def widest(self, samples: Array, bounds: Bounds) -> tuple[Indices, Indices, Array]:
+        """Return rows of candidates, indices of fine points, and gaps; see `Voronoi`."""
+        found, gaps = np.empty(len(self.order), np.int64), np.empty((len(self.order), 2))
+        near, room = samples[self.near], self._room
+        kernels.find_widest(self.grids, self.lists, near, bounds, room, found, gaps)
         far = np.flatnonzero(found > -2)
-        return self.order[far].astype(np.int64), found[far], squares[far]
+        return self.order[far].astype(np.int64), found[far], gaps[far]

@@ -58,6 +58,16 @@ def piece_of(samples, line):
     return (samples.uv[:, 1] > line).astype(int)
 
 
+def share(surface, count, density):
+    """Return the mean share of the second piece in five counts of samples around `count`.
+
+    That of one count is off by 2 % as often as not, by what fits between borders.
+    """
+    counts = np.linspace(2 / 3, 4 / 3, 5) * count
+    found = [gm.sample(surface, int(x), density=density, cells=CELLS) for x in counts]
+    return np.mean([piece_of(x, 1.0).mean() for x in found])
+
+
 @pytest.mark.parametrize(("on", "tolerance"), [("spline", 2e-2), ("surface", 1e-11)])
 def test_every_point_with_a_normal_once(on, tolerance):
     """The normals of the edge belong to no piece: they are those of its points."""
@@ -124,13 +134,11 @@ def test_pieces_of_other_sizes_share_a_count_by_the_target_density(density, fact
     assert len(surface.pieces()) == 2
     scales = [gm.fit(x, (4, 12)).scale for x in surface.pieces()]
     assert scales[0] > 4.0 * scales[1]
-    samples = gm.sample(surface, 600, density=density, cells=CELLS)
     needs = np.array([small, large])
     if density == "balanced":
         floor = 0.8 * (1.0 / small + 1.0 / large) / (small + large)
         needs = np.array([1.0 / small, floor * large])
-    counts = np.bincount(piece_of(samples, 1.0), minlength=2)
-    assert np.abs(counts - 600 * needs / needs.sum()).max() <= 30
+    assert abs(share(surface, 600, density) - needs[1] / needs.sum()) <= 0.05
 
 
 def test_curvature_counts_up_to_20_times_the_root_of_the_floor():
@@ -223,5 +231,4 @@ def test_poles_and_apexes_of_pieces():
     assert len(samples) == 200
     assert report_of(samples).apexes == 1
     areas = 2 * math.pi, math.pi * math.sqrt(2.0)
-    cone = gm.sample(buoy, 400, density="uniform", cells=CELLS).uv[:, 1] > 1.0
-    assert cone.mean() == pytest.approx(areas[1] / sum(areas), rel=0.02)
+    assert share(buoy, 400, "uniform") == pytest.approx(areas[1] / sum(areas), rel=0.02)

@@ -84,7 +84,7 @@ def test_the_widest_gaps_are_found_after_samples_have_moved(cut):
     found = voronoi((cells, sides), samples)
     turns = np.random.default_rng(3).random(30) * 2.0 * np.pi
     samples[:, :2] += 0.02 * np.stack([np.cos(turns), np.sin(turns)], axis=1)
-    rows, places, squares = found.widest(samples, 0.2)
+    rows, places, gaps = found.widest(samples, (0.2, 0.0, 1.0))
     finer, density, number = places_of(cells)
     distances = np.sqrt(((finer[:, None] - samples[:, :2]) ** 2).sum(axis=2).min(axis=1) * density)
     widest = np.zeros(len(cells))
@@ -93,21 +93,44 @@ def test_the_widest_gaps_are_found_after_samples_have_moved(cut):
     assert 5 < len(rows) < len(cells) / 2
     near = np.sqrt(((places[:, None] - samples[:, :2]) ** 2).sum(axis=2).min(axis=1))
     np.testing.assert_allclose(near * np.sqrt(cells.rows[rows, 6]), widest[rows], rtol=1e-6)
-    np.testing.assert_allclose(np.sqrt(squares), widest[rows], rtol=1e-6)
+    np.testing.assert_allclose(np.sqrt(gaps[:, 1]), widest[rows], rtol=1e-6)
+    np.testing.assert_allclose(gaps[:, 0], cells.rows[rows, 6])
 
 
 def test_places_far_from_all_samples_are_found():
     """Where no sample is near the bucket of a candidate, its place counts."""
     (cells, sides), samples = plane(cut=True), samples_of(1, 4)
     made = Voronoi(Candidates(cells.rows, 0.1), cells, sides, samples, 0.5)
-    rows, places, squares = made.widest(samples, 0.5)
+    rows, places, gaps = made.widest(samples, (0.5, 0.0, 1.0))
     finer, density, number = places_of(cells)
     away = np.linalg.norm(finer - samples[0, :2], axis=1) * np.sqrt(density)
     assert set(rows) == set(number[away >= 0.5])
     # Others share a bucket of a grid with places that are near.
-    far = squares > 1e6
+    far = gaps[:, 1] > 1e6
     assert far.mean() > 0.4
     assert (places == cells.places[rows])[far].all()
+
+
+@pytest.mark.compiled
+def test_angles_to_nearest_samples_are_gaps_up_to_a_bound():
+    """Samples with another normal make gaps around them, as wide as the chord between normals.
+
+    The density of such a gap has a ceiling.
+    """
+    (cells, sides), samples = plane(), samples_of(30, 2)
+    samples[:15, 3:] = 0.6, 0.0, 0.8
+    squares = ((cells.places[:, None] - samples[:, :2]) ** 2).sum(axis=2)
+    turned, chord = squares.argmin(axis=1) < 15, np.sqrt(0.4)
+    least = squares.min(axis=1)
+    for most, ceiling in ((1.01, 1e9), (0.99, 1e9), (1.01, 20.0)):
+        made = voronoi((cells, sides), samples)
+        rows, places, gaps = made.widest(samples, (0.99 * chord, most * chord, ceiling))
+        found = turned & (most > 1.0) & (ceiling * least >= (0.99 * chord) ** 2)
+        assert sorted(rows) == np.flatnonzero(found).tolist()
+        np.testing.assert_allclose(places, cells.places[rows])
+        np.testing.assert_allclose(gaps[:, 1], np.minimum(0.4, ceiling * least[rows]), rtol=1e-5)
+        np.testing.assert_allclose(gaps[:, 0] * least[rows], gaps[:, 1], rtol=1e-5)
+    assert len(rows) > 1
 
 
 @pytest.mark.compiled
@@ -135,9 +158,9 @@ def test_parts_of_candidates_have_the_centres_and_gaps_of_the_whole(threads, mon
         assert len(candidates.parts) == count
         made = Voronoi(candidates, cells, sides, samples, 3.0)
         moved, rows, places = made.centres(samples, 4)
-        far, gaps, squares = made.widest(samples, 0.2)
+        far, widest, gaps = made.widest(samples, (0.2, 0.0, 1.0))
         order = np.argsort(far)
-        return [moved, rows, places, far[order], gaps[order], squares[order]]  # pyright: ignore[reportReturnType]
+        return [moved, rows, places, far[order], widest[order], gaps[order]]  # pyright: ignore[reportReturnType]
 
     whole = found(1)
     monkeypatch.setattr(candidates_module, "SMALL", 20)

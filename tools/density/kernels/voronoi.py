@@ -130,14 +130,12 @@ def gather(grids, lists, samples, bucket, room):
     """Write the samples listed for a bucket to the room; return their number."""
     start = lists.starts[bucket]
     count = lists.starts[bucket + 1] - start
-    origin = row_vector(grids.candidates, grids.starts[bucket])
+    first = grids.starts[bucket]
     for c in range(count):
         k = lists.entries[start + c]
-        room.near[0, c] = samples[k, 0] - origin.x
-        room.near[1, c] = samples[k, 1] - origin.y
-        room.near[2, c] = samples[k, 2] - origin.z
-        for x in range(3, 6):
-            room.near[x, c] = samples[k, x]
+        for x in range(3):
+            room.near[x, c] = samples[k, x] - grids.candidates[first, x]
+            room.near[3 + x, c] = samples[k, 3 + x]
     return count
 
 
@@ -208,9 +206,7 @@ def add_moments(grids, lists, samples, room, moments):
         count = gather(grids, lists, samples, bucket, room)
         if count == 0:
             continue
-        for c in range(count):
-            for x in range(4):
-                sums[c, x] = 0.0
+        sums[:count] = 0.0
         first = grids.starts[bucket]
         for at in range(first, grids.starts[bucket + 1]):
             p, density = place_of(candidates, at, first), candidates[at, DENSITY]
@@ -262,27 +258,53 @@ def find_centres(grids, sides, order, points, squares, rows, steps):
             steps[k, 1] = min(max(t / determinant, -INNER), INNER)
 
 
+@loop
+def turn_of(candidates, at, square, count, room):
+    """Return the squared chord between the normals of a candidate and of the nearest sample.
+
+    `square` is the result of `nearest_square` for the candidate.
+    """
+    n, near = normal_of(candidates, at), room.near
+    for k in range(count):
+        c = np.uint64(k)
+        if room.squares[c] == square:
+            dx, dy, dz = near[3, c] - n.x, near[4, c] - n.y, near[5, c] - n.z
+            return dx * dx + dy * dy + dz * dz
+    return 0.0
+
+
 @jit
-def find_widest(grids, lists, samples, least, room, found, squares):
+def find_widest(grids, lists, samples, bounds, room, found, gaps):
     """Find the point of each cell that is farthest from all samples, if at least least/√w away.
 
-    found (M,) are the indices of the points, −2 if none is as far, and −1, for the candidate
-    itself, if its bucket has no samples; squares (M,) are w times the squared distances.
+    found (M,) are the indices of the points, −2 if none is as far, and −1 for the candidate itself,
+    if its bucket has no samples. gaps (M, 2) are w, and w times the squared distance. If w is κ²,
+    the latter is about the squared chord between the normals of the point and the nearest sample.
+    Where κ jumps, the chord of the candidate may be larger, and replaces it, with another w up to
+    the ceiling; but not a chord above `most`, which is that of two sides of an edge. The bounds are
+    `least`, `most` and the ceiling.
     """
     candidates, sides = grids.candidates, lists.sides
+    least, most, ceiling = bounds
     for bucket in range(grids.starts.size - 1):
         count, first = gather(grids, lists, samples, bucket, room), grids.starts[bucket]
         for at in range(first, grids.starts[bucket + 1]):
             p, density = place_of(candidates, at, first), candidates[at, DENSITY]
             square = nearest_square(p, candidates, at, count, room)
-            found[at], squares[at] = -2, least * least
+            found[at], gaps[at, 0], gaps[at, 1] = -2, density, least * least
+            if candidates[at, SQUARE] < 0.0:
+                continue
+            turn = turn_of(candidates, at, square, count, room)
+            if least * least <= min(turn, ceiling * square) and turn <= most * most:
+                turn = min(turn, ceiling * square)
+                found[at], gaps[at, 0], gaps[at, 1] = -1, turn / square, turn
             wide = math.sqrt(square) + sides[at, EXTENT]
-            if candidates[at, SQUARE] < 0.0 or wide * wide * density < squares[at]:
+            if wide * wide * density < gaps[at, 1]:
                 continue
             if square >= FAR:
-                found[at], squares[at] = -1, FAR * density
+                found[at], gaps[at, 1] = -1, FAR * density
             else:
                 find_in_cell(p, sides, at, square, count, room)
                 for m in range(PLACES):
-                    if room.least[m] * density >= squares[at]:
-                        squares[at], found[at] = room.least[m] * density, m
+                    if room.least[m] * density >= gaps[at, 1]:
+                        found[at], gaps[at, 0], gaps[at, 1] = m, density, room.least[m] * density
