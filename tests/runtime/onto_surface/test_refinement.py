@@ -264,7 +264,10 @@ def kept(*samples: tuple[float, float, float, int, bool], at_pole: bool = False)
 
 # A place of the torus, the patch in which it is, and another one.
 HERE, ELSEWHERE = (1.23, 0.77), (1.23, 2.34)
-OWN, OTHER = gm.sample(TORUS, normals=TORUS.normals([1.23], [0.77])).patch_index[:1].tolist()[0], 7
+OWN, OTHER = (
+    gm.sample(TORUS, normals=TORUS.normals([1.23], [0.77])).arrays()["patch_index"][:1].tolist()[0],
+    7,
+)
 
 
 def test_samples_that_meet_are_one() -> None:

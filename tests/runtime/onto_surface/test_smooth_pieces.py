@@ -109,7 +109,9 @@ def test_points_of_all_pieces_are_proved():
 def test_patches_are_numbered_through_all_pieces():
     samples = gm.sample(barrel(), 200, cells=CELLS)
     assert samples.report.patches == 2 * 4 * 24 * 12
-    assert np.array_equal(samples.patch_index >= 4 * 24 * 12, piece_of(samples, 1.0) == 1)
+    assert np.array_equal(
+        samples.arrays()["patch_index"] >= 4 * 24 * 12, piece_of(samples, 1.0) == 1
+    )
     assert samples.spline is None
     assert samples.report.surface == "barrel"
 

@@ -240,7 +240,9 @@ def test_the_search_finds_what_brute_force_finds(
         inside = (np.minimum(np.minimum(U, V), W) > 0) | (np.maximum(np.maximum(U, V), W) < 0)
         found |= {(int(k), index) for k in np.flatnonzero(inside & (towards > 0) & (D != 0))}
     samples = gm.sample(spline, normals=normals)
-    pairs = list(zip(samples.normal_index.tolist(), samples.patch_index.tolist(), strict=True))
+    pairs = list(
+        zip(samples.normal_index.tolist(), samples.arrays()["patch_index"].tolist(), strict=True)
+    )
     assert pairs == sorted(found)
     assert len(pairs) > 500
 

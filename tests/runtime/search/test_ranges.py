@@ -36,7 +36,7 @@ def test_samples_of_one_patch_and_of_the_next_have_their_normals():
     """Samples of hundreds of patches are filled at a time, and there is a rest."""
     spline, normals = gm.fit("torus", (4, 3)), gm.fibonacci(4000)
     samples = gm.sample(spline, normals=normals)
-    assert np.bincount(samples.patch_index).max() > 200
+    assert np.bincount(samples.arrays()["patch_index"]).max() > 200
     np.testing.assert_array_equal(samples.normals, normals[samples.normal_index])
     u, v = samples.uv.T
     np.testing.assert_allclose(spline.evaluate(u, v), samples.points, rtol=0, atol=1e-12)

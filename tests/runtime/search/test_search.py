@@ -24,8 +24,14 @@ def test_the_order_of_normals_is_that_of_samples(name: str) -> None:
     usual = gm.sample(spline, normals=normals, fields=fields)
     other = gm.sample(spline, normals=np.array(normals)[order], fields=fields)
     for samples in (usual, other):
-        keys = list(zip(samples.normal_index.tolist(), samples.patch_index.tolist(), strict=True))
+        keys = list(
+            zip(
+                samples.normal_index.tolist(), samples.arrays()["patch_index"].tolist(), strict=True
+            )
+        )
         assert keys == sorted(keys)
-    found = zip(order[other.normal_index], other.patch_index, strict=True)
-    assert sorted(found) == sorted(zip(usual.normal_index, usual.patch_index, strict=True))
+    found = zip(order[other.normal_index], other.arrays()["patch_index"], strict=True)
+    assert sorted(found) == sorted(
+        zip(usual.normal_index, usual.arrays()["patch_index"], strict=True)
+    )
     assert len(usual) > spline.patches

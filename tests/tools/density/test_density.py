@@ -117,7 +117,7 @@ def test_samples_of_normals_come_first(asked):
     given = int((samples.kind == "normal").sum())
     assert 0 < given < len(samples)
     assert (samples.kind[:given] == "normal").all()
-    pairs = samples.normal_index[:given] * 10**9 + samples.patch_index[:given]
+    pairs = samples.normal_index[:given] * 10**9 + samples.arrays()["patch_index"][:given]
     assert (np.diff(pairs) > 0).all()
 
 

@@ -46,8 +46,10 @@ def test_every_beginning_is_spread_as_the_whole(waves: gm.Spline, density: str) 
 def test_the_samples_are_the_same_in_another_order() -> None:
     samples = gm.sample(gm.surfaces.torus(), count=1_000)
     ordered = samples.progressive()
-    back = np.lexsort((ordered.normal_index, ordered.patch_index, ordered.points[:, 0]))
-    again = np.lexsort((samples.normal_index, samples.patch_index, samples.points[:, 0]))
+    back = np.lexsort((ordered.normal_index, ordered.arrays()["patch_index"], ordered.points[:, 0]))
+    again = np.lexsort(
+        (samples.normal_index, samples.arrays()["patch_index"], samples.points[:, 0])
+    )
     for name in samples.fields:
         np.testing.assert_array_equal(getattr(ordered, name)[back], getattr(samples, name)[again])
     np.testing.assert_array_equal(samples.progressive().points, ordered.points)

@@ -112,7 +112,7 @@ def test_its_normals_are_those_of_the_spline_there() -> None:
 @compiled
 def test_samples_are_ordered_by_normal_and_then_by_patch() -> None:
     samples = gm.silhouette(TORUS, [1, 2, 3], count=200, cells=(16, 16))
-    order = np.lexsort((samples.patch_index, samples.normal_index))
+    order = np.lexsort((samples.arrays()["patch_index"], samples.normal_index))
     assert (order == np.arange(len(samples))).all()
     assert isinstance(samples.spline, gm.Spline)
     assert samples.spline.cells == (16, 16)

@@ -311,6 +311,7 @@ class TestShape:
         assert normals.smallest_angles.min() > NO_AREA
         # Flips leave triangles that are farther than 30 degrees from normals, and turn none as far;
         # the cosine falls by 0.1 more where an edge is collapsed.
+        assert isinstance(samples.spline, gm.Spline)
         state, least = triangulated(samples, samples.spline), np.cos(np.radians(30.0))
         flip_edges(state, "shape", least)
         assert np.cos(np.radians(shape.angles.max())) > min(state.cosines().min(), least) - 0.1

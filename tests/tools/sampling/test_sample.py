@@ -191,7 +191,7 @@ def test_samples_answer_their_normals(name, cells):
     assert (report.surface, report.normals, report.samples) == (name, 700, len(samples))
     assert report.patches == spline.patches
     np.testing.assert_array_equal(samples.normals, normals[samples.normal_index])
-    pairs = samples.normal_index * spline.patches + samples.patch_index
+    pairs = samples.normal_index * spline.patches + samples.arrays()["patch_index"]
     assert (np.diff(pairs) > 0).all()  # by normal, then by patch, and no pair twice
     np.testing.assert_allclose(
         samples.support, (samples.normals * samples.points).sum(axis=1), rtol=0, atol=4e-15
@@ -210,10 +210,10 @@ def test_samples_answer_their_normals(name, cells):
 def test_patch_index_is_that_of_uv(name, cells):
     spline = gm.fit(gm.surfaces.surface(name), cells)
     samples = gm.sample(spline, normals=gm.icosphere(10))
-    assert (samples.patch_index >= 0).all()
-    assert (samples.patch_index < spline.patches).all()
+    assert (samples.arrays()["patch_index"] >= 0).all()
+    assert (samples.arrays()["patch_index"] < spline.patches).all()
     place = (samples.uv - spline.frame[:2]) / spline.frame[2:]
-    cell, turn = np.divmod(samples.patch_index, 4)
+    cell, turn = np.divmod(samples.arrays()["patch_index"], 4)
     local = place - np.stack(np.divmod(cell, cells[1]), axis=1) - 0.5
     matrices = np.stack([CORNERS[turn], CORNERS[turn + 1]], axis=-1)
     weights = np.linalg.solve(matrices, local[..., None])[..., 0]

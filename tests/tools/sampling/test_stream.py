@@ -39,7 +39,7 @@ def test_fields_and_types(fields, dtype):
 def test_one_patch_with_more_samples_than_a_chunk():
     spline = gm.fit(gm.surfaces.torus(), (3, 3))
     whole = gm.sample(spline, normals=gm.fibonacci(500))
-    assert np.bincount(whole.patch_index).max() > 3 * 5
+    assert np.bincount(whole.arrays()["patch_index"]).max() > 3 * 5
     chunks = list(gm.sample_stream(spline, normals=gm.fibonacci(500), chunk=5))
     assert max(map(len, chunks)) == 5
     same(gm.Samples.concatenate(chunks), whole)

@@ -93,7 +93,7 @@ def test_it_is_the_offset_of_the_support_function(d: float) -> None:
     spline, normals = gm.fit(gm.surfaces.torus(), (32, 24)), gm.fibonacci(1500)
     moved = gm.sample(spline, normals=normals).offset(d)
     assert moved.spline is None
-    order = np.lexsort((moved.patch_index, moved.normal_index))
+    order = np.lexsort((moved.arrays()["patch_index"], moved.normal_index))
     branches = gm.SupportFunction.of_spline(spline).offset(d).branches(normals)
     assert (moved.normal_index[order] == branches.normal_index).all()
     assert (moved.gaussian_curvature[order] == branches.gaussian_curvature).all()
