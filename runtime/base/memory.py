@@ -59,10 +59,10 @@ COSTS: dict[str, Cost] = {
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or a stream"),
     # The others have several candidates per sample.
     "balanced": Cost("samples", 3900.0, 0.0, FEWER),
-    "uniform": Cost("samples", 3900.0, 0.0, FEWER),
+    "uniform": Cost("samples", 3600.0, 0.0, FEWER),
     "aligned": Cost("samples", 900.0, 0.0, FEWER),
     "candidates": Cost("candidates for samples", 600.0, 0.0, LARGER),
-    "part": Cost("samples", 6.6e3, 0.0, "use fewer"),
+    "part": Cost("samples", 4.6e3, 0.0, "use fewer"),
     "curve": Cost("samples", 420.0, 0.0, "use fewer"),
     # 450 bytes in arrays, the rest in Qhull.
     "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples, or parts of patches"),

@@ -106,26 +106,8 @@ class Reach:
         """The smallest of the caps whose intersection is the reach."""
         return min(self._caps, key=lambda cap: cap.angle)
 
-    def contains(self, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return which unit normals are in reach.
-
-        Parameters
-        ----------
-        normals : (N, 3) float64 array
-            Unit normals; rows of NaN or 0 are not in reach.
-
-        Returns
-        -------
-        (N,) bool array
-            Whether all conditions hold.
-
-        Examples
-        --------
-        >>> import gaussmap as gm
-        >>> gm.Reach((0, 0, 1), 100).contains(gm.icosphere(1)).sum()
-        np.int64(8)
-
-        """
+    def _contains(self, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return which unit normals (N, 3) are in reach; rows of NaN or 0 are not."""
         return np.logical_and.reduce([cap.contains(normals) for cap in self._caps])
 
     def __repr__(self) -> str:

@@ -140,7 +140,7 @@ class ProvedSurface:
         del progress, density  # a search takes no time to speak of; the report is without a fit
         surface, found = self.surface, self.index.query(normals, self.threads)
         if self.reach is not None:
-            surface, found = self.fitted.surface, found.only(self.reach.contains(normals))
+            surface, found = self.fitted.surface, found.only(self.reach._contains(normals))
         trim, georeference = self.surface.trim, self.surface.georeference
         left = found.undecided
         if len(left.numbers) > 0:

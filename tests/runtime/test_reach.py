@@ -152,7 +152,6 @@ def test_slopes_and_aspects_are_sectors_of_normals() -> None:
     area = inside.mean() * 4.0
     farthest = KDTree(samples.points[:, :2]).query(np.stack([u, v], axis=1)[inside])[0].max()
     assert farthest <= 2.0 * np.sqrt(area / 400.0)
-    assert reach.contains(samples.normals).all()
 
 
 @pytest.mark.parametrize(

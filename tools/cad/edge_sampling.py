@@ -66,7 +66,7 @@ def _on_edges(space: PartSpace, count: int) -> dict[str, NDArray[Any]]:
     kept = _one_a_corner(sides, solids, ends[rows], SAME_CORNER * size)
     reach = space.pieces[0].reach
     if reach is not None:
-        both = [reach.contains(sides.normals[kept, side]) for side in (0, 1)]
+        both = [reach._contains(sides.normals[kept, side]) for side in (0, 1)]
         kept = kept[both[0] & both[1]]
     return _arrays(space, sides[kept])
 

@@ -106,7 +106,7 @@ class FacePiece(Piece):
             return 1.0
         jets = self.on_raster()
         areas = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
-        inside = self.reach.contains(normals_of_jets(jets))
+        inside = self.reach._contains(normals_of_jets(jets))
         return float(areas[inside].sum() / areas.sum()) if inside.any() else 0.0
 
     def on_raster(self) -> Array:
@@ -193,7 +193,7 @@ class FacePiece(Piece):
         numbers, places = with_components(found.numbers[inside], places, components)
         for tip in self.tips:  # comes after the other points with a normal
             has = tip.degrees(normals) != 0
-            (rows,) = np.nonzero(has if self.reach is None else has & self.reach.contains(normals))
+            (rows,) = np.nonzero(has if self.reach is None else has & self.reach._contains(normals))
             row = [*tip.uv, 0.0, 0.0, 1.0, 0.0, Component.TIP]
             numbers = np.concatenate([numbers, rows])
             places = np.concatenate([places, np.tile(row, (len(rows), 1))])

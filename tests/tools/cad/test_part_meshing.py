@@ -112,7 +112,7 @@ def test_a_ball_has_one_vertex_at_each_pole(count):
 def test_faces_of_all_kinds_are_open():
     faces = KINDS.faces
     mesh = sound(KINDS, 2000, euler=len(faces))  # disks
-    assert mesh.smallest_angles.min() > 17.0  # 11.5 if vertices of thin triangles do not move
+    assert mesh.smallest_angles.min() > 16.0  # 11.5 if vertices of thin triangles do not move
     assert np.quantile(mesh.smallest_angles, 0.01) > 25.0  # 21.8
     assert np.isnan(mesh.volume)
     assert set(mesh.face_index.tolist()) == set(range(len(faces)))

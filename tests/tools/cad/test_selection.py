@@ -134,7 +134,7 @@ def test_source_indices_of_files_are_checked(tmp_path, bad):
         ({"color": (1, 2)}, "color must"),
         ({"index": [6]}, "index holds 6, and the faces are 0 to 5"),
         ({"index": [-1]}, "index holds -1"),
-        ({"index": [0.5]}, "index must be whole numbers, places"),
+        ({"index": [0.5]}, "index must be whole numbers, indices"),
         ({"index": [0, [1, 2]]}, "index must be an array of real numbers, with equal rows"),
         ({"normal": (0, 0, 1)}, "normal must be"),
         ({"normal": ((0, 0, 0), 1)}, "the direction of normal is the zero vector"),

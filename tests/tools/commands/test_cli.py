@@ -445,7 +445,7 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["formulas", "--tape", "--latex", "torus"], "--tape is not allowed with --latex"),
         (["formulas", "--tape", "torus", "--formula", "u", "v", "u"], "--tape needs"),
         (["formulas", "--formula", "u", "v", "u"], "--formula is for --tape"),
-        (["formulas", "--tape", "--formula", "u", "v", "Abs(u)"], "has no tape"),
+        (["formulas", "--tape", "--formula", "u", "v", "floor(u)"], "has no tape"),
     ],
 )  # fmt: skip
 def test_an_error_is_one_line(command, message, capsys):
