@@ -13,6 +13,7 @@ from ...runtime.base.extras import from_extra
 from ...runtime.samples.fields import columns_of
 from ...runtime.samples.samples import Samples
 from .content import report_to_json
+from .of_terrain import in_world
 from .reference_systems import wkt_of
 
 __all__ = ["write_las"]
@@ -36,7 +37,7 @@ def write_las(samples: Samples, path: Path) -> None:
     """
     laspy = from_extra("laspy", "gis", f"a {path.suffix} file")
     report = samples.report
-    points = samples.points.astype(np.float64) + np.array(report.origin or (0.0, 0.0, 0.0))
+    points = in_world(samples)
     header = laspy.LasHeader(point_format=FORMAT, version=VERSION)
     header.scales, header.offsets = _steps(points)
     header.generating_software = "gaussmap"

@@ -14,7 +14,7 @@ from ...runtime.samples.fields import columns_of
 from ...runtime.samples.samples import Samples
 from .reference_systems import wkt_of
 
-__all__ = ["columns_of_terrain", "write_points"]
+__all__ = ["columns_of_terrain", "in_world", "write_points"]
 
 # A point with three coordinates in the format WKB.
 POINT = np.dtype([("order", "u1"), ("type", "<u4"), ("place", "<f8", 3)])
@@ -31,6 +31,11 @@ def columns_of_terrain(samples: Samples) -> dict[str, NDArray[np.floating]]:
     return {"slope": samples.slope, "aspect": samples.aspect}
 
 
+def in_world(samples: Samples) -> NDArray[np.float64]:
+    """Return the points (N, 3) in world coordinates: with the origin of the samples added."""
+    return samples.points.astype(np.float64) + np.array(samples.report.origin or (0.0, 0.0, 0.0))
+
+
 def write_points(samples: Samples, path: Path) -> None:
     """Write a .gpkg or .geojson file of points with all other columns and the reference system.
 
@@ -40,22 +45,25 @@ def write_points(samples: Samples, path: Path) -> None:
     report = samples.report
     points = np.empty(len(samples), POINT)
     points["order"], points["type"] = 1, POINT_Z
-    points["place"] = samples.points + np.array(report.origin or (0.0, 0.0, 0.0))
+    points["place"] = in_world(samples)
     columns = columns_of({x: y for x, y in samples.arrays().items() if x != "points"})
     columns |= columns_of_terrain(samples)
+    file, date = BytesIO(), library.get_gdal_config_option(DATE)
     library.set_gdal_config_options({DATE: "1970-01-01T00:00:00.000Z"})
-    file = BytesIO()
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="'crs' was not provided")
-        library.raw.write(
-            file,
-            geometry=np.array([x.tobytes() for x in points], dtype=object),
-            field_data=[np.ascontiguousarray(x) for x in columns.values()],
-            field_mask=[~np.isfinite(x) for x in columns.values()],
-            fields=list(columns),
-            driver={".gpkg": "GPKG", ".geojson": "GeoJSON"}[path.suffix.lower()],
-            geometry_type="Point Z",
-            crs=None if report.crs is None else wkt_of(report.crs),
-            layer="samples",
-        )
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="'crs' was not provided")
+            library.raw.write(
+                file,
+                geometry=np.array([x.tobytes() for x in points], dtype=object),
+                field_data=[np.ascontiguousarray(x) for x in columns.values()],
+                field_mask=[~np.isfinite(x) for x in columns.values()],
+                fields=list(columns),
+                driver={".gpkg": "GPKG", ".geojson": "GeoJSON"}[path.suffix.lower()],
+                geometry_type="Point Z",
+                crs=None if report.crs is None else wkt_of(report.crs),
+                layer="samples",
+            )
+    finally:  # for other files that this process writes
+        library.set_gdal_config_options({DATE: date})
     path.write_bytes(file.getbuffer())

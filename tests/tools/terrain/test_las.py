@@ -108,11 +108,12 @@ def test_files_that_are_read_are_spared(folder, capsys, main):
 
 @pytest.mark.parametrize("suffix", [".gpkg", ".geojson"])
 def test_points_for_geographic_information_systems(samples, suffix, tmp_path):
-    raw = pytest.importorskip("pyogrio.raw")
+    raw, options = pytest.importorskip("pyogrio.raw"), pytest.importorskip("pyogrio")
     path = tmp_path / f"hills{suffix}"
     samples.write(path)
     about, _, shapes, columns = raw.read(path)
     found = dict(zip(about["fields"].tolist(), columns, strict=True))
+    assert options.get_gdal_config_option("OGR_CURRENT_DATE") is None
     assert about["geometry_type"] == "Point Z"
     assert about["crs"] == "EPSG:32617"
     places = np.array([np.frombuffer(x[-24:]) for x in shapes])
