@@ -165,7 +165,7 @@ def mesh(
           happens where distances change by a factor of two from one sample to the next: no
           triangles of theirs have large angles. Of a closed surface with a count of samples of
           ``density="balanced"``, none is left out beside most narrow bends, and up to 8 %
-          beside the sharpest. A grid, or a part of one, keeps its samples, in long cells, too.
+          beside the sharpest. Of samples on a grid, none is left out, even if its cells are long.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction only. A
           sample is left out where a triangle would have no area. On a CAD part, planes, cylinders

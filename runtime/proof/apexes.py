@@ -87,7 +87,7 @@ def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
     """
     lines = [(axis, end) for axis in (0, 1) for end in domain[axis]]
     sides = len(lines)
-    lines += [(axis, x) for axis in (0, 1) for x in _turning(tape, domain, axis, periods[axis])]
+    lines += [(axis, x) for axis in (0, 1) for x in _reversals(tape, domain, axis, periods[axis])]
     points = np.stack([_jets_on(tape, domain, axis, np.array([x]))[0, :, 0] for axis, x in lines])
     slack = ROUNDINGS * np.spacing(np.fmax.reduce(np.abs(points), axis=None))
     with np.errstate(invalid="ignore"):  # infinity minus infinity
@@ -99,7 +99,7 @@ def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
     return tuple(x for x, yes in zip(found, is_point.tolist(), strict=True) if yes)
 
 
-def _turning(tape: Tape, domain: Domain, axis: int, period: float) -> list[float]:
+def _reversals(tape: Tape, domain: Domain, axis: int, period: float) -> list[float]:
     """Return the u (axis 0) or v of lines inside beyond which all tangents along are turned round.
 
     A surface of which one line is a point, and the lines beside it are not, has tangents of

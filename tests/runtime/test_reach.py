@@ -142,8 +142,7 @@ def test_slopes_and_aspects_are_sectors_of_normals() -> None:
     assert samples.slope.min() >= 5.0 - ROUNDING
     assert samples.slope.max() <= 20.0 + ROUNDING
     assert np.abs(turn).max() <= 60.0 + ROUNDING
-    # The whole sector is sampled: places of a grid in it have a sample that is as near as
-    # elsewhere.
+    # The samples cover the whole sector: no place of a grid in it is far from all of them.
     side = (np.arange(300) + 0.5) / 150.0 - 1.0
     u, v = (x.ravel() for x in np.meshgrid(side, side))
     x, y, z = waves.normals(u, v).T

@@ -83,8 +83,8 @@ def checked_request(
         )
     kind = _density(density, "gauss" if given == ["normals"] else "balanced")
     _check_that_they_fit(kind, given)
-    cap = checked_reach(reach)
-    if cap is not None and kind == "aligned":
+    within = checked_reach(reach)
+    if within is not None and kind == "aligned":
         raise InputError(
             'density "aligned" is a grid on all of a surface; with a reach use "balanced".'
         )
@@ -94,7 +94,7 @@ def checked_request(
         None if angle is None else positive_number(angle, "angle", " degrees", most=90.0),
         None if coverage is None else positive_number(coverage, "coverage"),
         kind,
-        cap,
+        within,
     )
 
 

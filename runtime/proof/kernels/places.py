@@ -310,9 +310,9 @@ def list_cluster(tape, work, cells, boxes, rows, count, i, domain, number, n, an
 
 @loop
 def is_curve(tape, work, cells, boxes, rows, count, owner, n):
-    """Return whether solutions lie beside all boxes of a cluster, up to rounding.
+    """Return whether each box of a cluster has a solution next to it, up to rounding.
 
-    Up to CHECKED boxes are checked. The solution near the middle one is written to `ends`.
+    At most CHECKED boxes are tried. The solution near the middle one is written to `ends`.
     """
     own = 0
     for k in range(count):

@@ -197,7 +197,7 @@ def test_c1_inside(name, rng):
 
 @pytest.mark.parametrize("name", ["torus", "moebius_band", "klein", "swapped"])
 def test_seams_of_coefficients_are_bitwise_equal(name):
-    """So that the spline is C¹ there, too, as it is inside."""
+    """Equal coefficients make the spline C¹ across a seam."""
     band = gm.surfaces.moebius_band()
     surface = made(name) if name != "swapped" else gm.Surface.from_callable(
         lambda u, v: band.evaluate(v, u), band.domain[::-1], (False, "mirrored")
