@@ -116,11 +116,11 @@ class Creases:
         facing = sum(np.einsum("kx,kx->k", _unit(np.cross(x[:, 1], x[:, 2])), given) for x in jets)
         unsure = (np.abs(slopes[0]) <= slack[0]) | (np.abs(slopes[1]) <= slack[1])
         keep = (facing > 0.0) & (unsure | (slopes[0] * slopes[1] < 0.0))
+        uv = self._uv(rows, middle, 2)
         if self.trim is not None:
-            keep &= self.trim.contains(self._uv(rows, middle, 2))
+            keep &= self.trim.contains(uv)
         convex = np.sign(slopes[0] - slopes[1])
         degrees = convex * self._turning(rows, ends, given)
-        uv = self._uv(rows, middle, 2)
         radius = np.outer(np.ptp(ends, axis=1) / 2.0, [1.0, 1.0])
         radius[index, axis] = 0.0
         found = OnCreases(numbers, uv, jets[1][:, 0], degrees, radius, unsure)
