@@ -58,7 +58,7 @@ COSTS: dict[str, Cost] = {
     "stored": Cost("samples", 0.0, 1.0, "use fewer normals, fewer fields or float32"),
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or a stream"),
     # The others have several candidates per sample.
-    "balanced": Cost("samples", 3900.0, 0.0, FEWER),
+    "balanced": Cost("samples", 3700.0, 0.0, FEWER),
     "uniform": Cost("samples", 3600.0, 0.0, FEWER),
     "aligned": Cost("samples", 900.0, 0.0, FEWER),
     "candidates": Cost("candidates for samples", 600.0, 0.0, LARGER),

@@ -110,10 +110,10 @@ def test_what_is_known_later(name: str, monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_counts_on_parts(parts: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a box, whose faces are flat, samples take less than half of what they take of others."""
+    """Of a box, whose faces are flat, samples take two fifths of what is expected of others."""
     asked_for, peak = measured(lambda: gm.sample(parts.box(), 10_000), monkeypatch)
-    assert 0.8 < asked_for[0] / peak < 2.5
-    assert max(asked_for) / peak < 2.5
+    assert 0.8 < asked_for[0] / peak < 3.0
+    assert max(asked_for) / peak < 3.0
 
 
 # --- what is refused ------------------------------------------------------------------------------
