@@ -1,8 +1,8 @@
 """Cells: rectangles of parameters, each with a place, a parameter pair that may become a sample.
 
 The place of a cell is inside the trim: its midpoint, or a subplace if the trim cuts the cell. Where
-the inside is too narrow for that, the cell is replaced by points next to the boundary, which are
-cells without an extent.
+the inside is too narrow for that, the cell is replaced by points next to the boundary: *point
+cells*, which have almost no extent.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ Sides = NDArray[np.float32]
 # The columns of `numbers`, see kernels/cells.py.
 RADIUS, CHORD, ALONG_U, ALONG_V, BEND_U, BEND_V, AREA = range(7)
 NUMBERS = 7
-# The size of a cell without an extent, relative to the domain of its piece.
+# Half the size of a point cell, relative to the domain of its piece.
 POINT = 1e-9
 
 
@@ -183,7 +183,7 @@ def new_cells(
 
 
 def points_of(pieces: Indices, places: Array, sizes: Array, limits: Array | float = 0.0) -> Cells:
-    """Return unevaluated cells without an extent at parameters (k, 2) of pieces (k,).
+    """Return unevaluated point cells at parameters (k, 2) of pieces (k,).
 
     `sizes` (k, 2) are the lengths of the domains of these pieces.
     """

@@ -17,7 +17,7 @@ from .voronoi import Voronoi
 
 __all__ = ["STEP", "Cover"]
 
-# The radii of the choice fall from WIDEST times the expected radius, by the factor STEP.
+# The radii at which samples are chosen fall from WIDEST times the expected one, by the factor STEP.
 WIDEST, STEP = 1.25, 0.98
 # For a maximal set of n samples with mutual distances of at least r, relative to the sizing
 # function, n r² is about this part of the integral of the target density.
@@ -30,10 +30,11 @@ FINE, SMALLER = 0.4, 1.4
 FINEST = 0.07
 # Boundaries are covered at points whose spacing is twice this part of the covering radius.
 ON_BORDERS = 0.05
-# Samples move to centres twice. Before the moves, between and after them, this part is missing. If
-# it is .12 before, samples in a row leave wider gaps than without the moves.
+# Samples move to centres twice. MISSING are the parts of them that are not yet chosen before the
+# first move, between both, and after the second. With 0.12 before the first, samples in a row leave
+# wider gaps than without the moves.
 MISSING = (0.2, 0.05, 0.0)
-# While samples are missing, gaps are at most this factor wider than the radius.
+# While samples are missing, the radii of gaps are at most this multiple of the covering radius.
 WIDEST_GAP = 2.0
 # Gaps between candidates are searched down to the radius, then to this part of it.
 STEP_DOWN = 0.85
@@ -122,7 +123,7 @@ class Cover:
         self.fill_up(count)
 
     def spread(self, count: int) -> None:
-        """Add samples until there are `count`; most of them are moved, and gaps filled after moves.
+        """Choose most of the missing samples up to `count`; then move samples and fill gaps, twice.
 
         A move takes each sample towards the centre of the smallest ball around its Voronoi cell:
         Lloyd's method for a high power of the distance instead of its square.
@@ -132,8 +133,8 @@ class Cover:
         if self.count > self.fixed:
             for missing in MISSING[1:]:
                 assert self._sides is not None
-                # Fine points are within 0.75 of the radius of a cell: the sample nearest to one of
-                # them is as near to the place of the cell, unless a gap is there.
+                # Fine points are at most 0.75 radii of a cell from its place. The sample nearest to
+                # one of them is therefore within `wide` of the place, unless a gap is there.
                 wide = (1.0 + 1.5 * FINE) * self.radius
                 voronoi = Voronoi(self._candidates, self.cells, self._sides, self.points, wide)
                 self.move_to_centres(voronoi)
@@ -188,7 +189,7 @@ class Cover:
         return self.space.middles(np.setdiff1d(self.space.first.pieces, held))
 
     def remove_last(self, number: int) -> None:
-        """Remove the samples that were added last, but not the last one of a piece."""
+        """Remove the samples that were added last, but leave one on each piece."""
         numbers = np.bincount(self.added.pieces, minlength=len(self.space.pieces))
         removed: list[int] = []
         for k in range(len(self.added) - 1, self.fixed - self.given - 1, -1):
@@ -254,7 +255,7 @@ class Cover:
             self.narrow(widest, 0.0, count)
 
     def _evaluated_at(self, rows: Indices, places: Array) -> tuple[Cells, Indices]:
-        """Return cells without an extent at points (k, 2) of candidates, sorted, and the order."""
+        """Return point cells at parameters (k, 2) in cells `rows`, sorted, and their order."""
         order = np.argsort(self.cells.pieces[rows], kind="stable")
         rows = rows[order]
         pieces, limits = self.cells.pieces[rows], self.cells.limits[rows]

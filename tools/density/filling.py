@@ -1,4 +1,4 @@
-"""Samples for all densities except "gauss": at normals, and in the gaps between these."""
+"""Samples of pieces: at prescribed normals, and in the gaps between these."""
 
 from __future__ import annotations
 
@@ -39,17 +39,18 @@ HEXAGON = 3.0 * math.sqrt(3.0)
 GREEDY = 1.85
 # Balanced: the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
-# Balanced: the floor of the target density, relative to the mean of κ². For a count or a coverage,
-# the ceiling of κ, relative to the root of the floor. For an angle, that of a narrow face needs no
-# samples as close as its radius: with 20, a wing with a round trailing edge takes 6 times as many.
+# Balanced: the floor of the target density, relative to the mean of κ²; the ceiling of κ, relative
+# to the root of the floor, for a count or a coverage; and that for an angle. The latter is lower:
+# with 20, samples on narrow faces are as close as their radius, and a wing with a round trailing
+# edge takes 6 times as many.
 FLOOR, MOST_CURVED, MOST_FOR_NORMALS = 0.8, 20.0, 10.0
 # For an angle, the mean of κ² is that of the capped κ: mean and ceiling are iterated until the
 # ratio of consecutive means exceeds this.
 SETTLED = 0.9
-# An angle is refused if it would take more samples than this, minutes of work, and more than on
-# this number of spheres. The reason is then narrow faces, and not a small angle.
+# An angle is refused if it takes more samples than MOST_FOR_ANGLE, minutes of work, and more than
+# it takes on SPHERES spheres: then narrow faces are the reason, and not a small angle.
 MOST_FOR_ANGLE, SPHERES = 2e6, 300.0
-# On parts with narrow tips, places with larger angles are searched at most this many times.
+# The largest number of searches for points with too large an angle, on parts with narrow tips.
 MOST_SEARCHES = 8
 # |K|^α vanishes with K; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
@@ -63,7 +64,7 @@ LATTICE = 0.1
 # farthest from those of all samples.
 FOR_NORMALS = 0.05
 # For these samples: the chord between the normals of candidates, relative to the spacing of as many
-# points on a sphere; and about the number of candidates beyond the number of samples.
+# points on a sphere; and about the number of candidates minus the number of samples.
 NORMALS_APART, CANDIDATES = 0.2, 200_000
 # The smallest such chord.
 LEAST_CHORD = math.radians(0.5)
@@ -71,8 +72,8 @@ LEAST_CHORD = math.radians(0.5)
 DIGITS = 6
 # Each piece gets a sample if there are at least this many samples per piece.
 SAMPLES_A_PIECE = 2
-# The bisection for the radius of a balanced cover that leaves enough samples for a coverage: its
-# steps, the part of the count at which it ends, and the logarithm of the ratio of its bounds.
+# Bisection for the radius of a balanced cover within a count and a coverage: the largest number of
+# steps, the part of the count that ends it, and the logarithm of the ratio of the first bounds.
 BISECTIONS, NEAR_ENOUGH, WIDEST_RADIUS = 10, 0.97, 10.0
 
 
@@ -191,10 +192,10 @@ class Filling:
     # --- the target density -----------------------------------------------------------------------
 
     def balanced(self, *, capped: bool = False) -> Space:
-        """Return the space with the floor of "balanced", and with a ceiling if it is capped.
+        """Return the space with the floor of "balanced", and with a ceiling if `capped`.
 
-        For an angle, the floor follows from the capped density. Otherwise tiny fillets would make
-        all flat parts dense.
+        For an angle, the floor follows from the density with this ceiling: without it, tiny fillets
+        would make all flat parts dense.
         """
         floor = self._floor(math.inf)
         if not capped:
@@ -209,7 +210,7 @@ class Filling:
     def _floor(self, ceiling: float) -> float:
         """Return the floor of "balanced" for a target density with a ceiling."""
         request, space = self.request, self.space.between(self.space.target.floor, ceiling)
-        # Normals and angles do not depend on the size: flat parts count as parts of a sphere.
+        # Normals or an angle fix the radius: a flat surface counts as one that has all normals.
         absolute = request.normals is not None or request.angle is not None
         least = request.solid_angle if absolute else FLAT_SURFACE
         return FLOOR * max(space.integral, least) / space.area
@@ -218,8 +219,8 @@ class Filling:
     def _by_power(self) -> Space:
         """The space with the floor of "uniform" or a power of |K|.
 
-        A power of |K| is replaced by a constant on pieces whose curvature is an error of their
-        spline.
+        A power of |K| is replaced by a constant on pieces whose curvature is only the error of
+        their spline.
         """
         if self.request.density == "uniform":
             return self.space.between(1.0)
@@ -281,7 +282,8 @@ class Filling:
     def _by_count(self, space: Space, count: int) -> Cover:
         """Divide a count into samples at normals and samples that fill gaps.
 
-        On several pieces, some of the latter cover the normals of pieces without a lattice.
+        If some of several pieces have no lattice of normals, a part of the filling samples are
+        where normals are farthest from those of all samples.
         """
         given, rest = Given(space), 0
         if self.request.density in BY_CURVATURE:

@@ -217,7 +217,7 @@ class Space:
     def to_power(self, exponent: float) -> Self:
         """Return the space with another exponent of the target density; its cells are kept.
 
-        The target density is a power of κ, without a Gauss weight.
+        The target density has to be a power of κ, without a Gauss weight.
         """
         first, borders = (replace(x, rows=x.rows.copy()) for x in (self.first, self.borders))
         for found in (first, borders):
@@ -236,8 +236,7 @@ class Space:
     def graded(self, count: int) -> Self:
         """Return the same space with sizes that grow slowly, for a number of samples.
 
-        Where few samples are distributed by curvature, their spacing may halve from one to the
-        next, beside a narrow bend.
+        Without it, the spacing of few samples may halve from one to the next beside a narrow bend.
         """
         growth, sizes = growth_for(count, self.integral), self.densities**-0.5
         found = {
@@ -248,7 +247,7 @@ class Space:
         return self.with_sources(sources) if sources else self
 
     def with_sources(self, sources: Mapping[int, Sources]) -> Self:
-        """Return the same space with bounds of sizes, and its cells and boundaries."""
+        """Return the same space with other bounds of sizes; its cells and boundaries are kept."""
         first = replace(self.first, rows=self.first.rows.copy())
         borders = replace(self.borders, rows=self.borders.rows.copy())
         made = replace(self, sources=sources, _held={"first": first, "borders": borders})
@@ -292,13 +291,13 @@ class Space:
         return self._held["borders"]
 
     def along_borders(self, step: float, turn: float = math.inf) -> Cells:
-        """Return cells without an extent along boundaries; see `places_along`."""
+        """Return point cells along boundaries; see `places_along`."""
         return self.known(self._beside_borders(step, turn))
 
     def at(
         self, pieces: Indices, places: Array, limits: Array | float = 0.0, *, keep: bool = False
     ) -> Cells:
-        """Return cells without an extent at parameters (k, 2) of pieces (k,), as `known` does."""
+        """Return point cells at parameters (k, 2) of pieces (k,), as `known` does."""
         return self.known(points_of(pieces, places, self.sizes[pieces], limits), keep=keep)
 
     def middles(self, pieces: Indices) -> Cells:
@@ -318,7 +317,7 @@ class Space:
     def cut(self, radius: float) -> Cells:
         """Return cells within radius/√w of their places, w the target density there.
 
-        Also return cells without an extent along boundaries, about as far apart.
+        Also return point cells along boundaries, about as far apart.
         """
         return self.known(self._cut(radius))
 
@@ -357,9 +356,10 @@ class Space:
         )
 
     def cut_by_normals(self, chord: float, most: float) -> Iterator[Cells]:
-        """Yield blocks of cells whose normals are within about a chord of that at their place.
+        """Yield blocks of cells whose normals differ little from the normal at their place.
 
-        The chord is increased until there are at most about `most` cells.
+        The chord between these normals is at most about `chord`, which is increased until there are
+        at most about `most` cells.
         """
         first = self.first
         bends = np.where(first.numbers[:, [CHORD]] > chord, first.numbers[:, [BEND_U, BEND_V]], 0.0)
@@ -443,7 +443,11 @@ class Space:
         return np.full(len(self.pieces), FEWEST_PIXELS)
 
     def _pixels(self, radius: float) -> Indices:
-        """Return the numbers of pixels of the pieces: half a radius wide, within the limits."""
+        """Return the numbers (P,) of pixels of the rasters of pieces, along u and along v.
+
+        They are powers of two from FEWEST_PIXELS to MOST_PIXELS; within these limits, a pixel is at
+        most about half of radius/√w wide.
+        """
         cells, count = self.first, len(self.pieces)
         rates = np.sqrt(self.densities)
         low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
@@ -466,10 +470,10 @@ class Space:
         return self._evaluated(cells, cells.numbers, evaluate_cells, keep)[0]
 
     def light(self, cells: Cells, *, keep: bool = False) -> tuple[Cells, Sides]:
-        """Return cells whose limits are known with rows, but without numbers; see `known`.
+        """Return the same cells with rows, but without numbers; see `known`.
 
-        Also return their sides (M, 8), see kernels/cells.py. Those that a boundary intersects have
-        an area and no sides.
+        Their limits have to be known. Also return their sides (M, 8), see kernels/cells.py. Cells
+        that a boundary intersects have an area, but no sides.
         """
         rows, sides = np.empty((len(cells), 8)), np.empty((len(cells), 8), dtype=np.float32)
         cells, sides = self._evaluated(replace(cells, rows=rows), sides, evaluate_places, keep)
@@ -522,7 +526,8 @@ class Space:
     def _groups(self, cells: Cells) -> list[list[tuple[int, slice]]]:
         """Return groups of cells to evaluate at a time: pieces, with the rows of each.
 
-        Cells of a group have the same `finest` and target density: each piece may have few cells.
+        A group has cells of several pieces, since each may have few, if `finest` and the target
+        density of these pieces are equal.
         """
         groups, last, room = list[list[tuple[int, slice]]](), None, 0
         for k, rows in by_piece(cells):
