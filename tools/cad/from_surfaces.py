@@ -41,11 +41,11 @@ def part_of_surfaces(
     name: str,
     unit: str | None,
 ) -> Part:
-    """Return the part `Part([...])`, with the exceptions of `Part`."""
+    """Return the result of `Part([...])`; raises the exceptions of `Part`."""
     held, known = _checked(surfaces), None if unit is None else checked_unit(unit)
     most = None if tolerance is None else positive_number(tolerance, "tolerance")
     faces = [_face(x) for x in held]
-    # Areas are not known yet, and a face without an area would not become a piece.
+    # Areas are not known yet, and a face without an area is no piece: all faces have the area 1.
     bare = part_of(
         PartRecord(text(name, "name"), known or "", METRES.get(known or "", 1.0), False, faces)
     )

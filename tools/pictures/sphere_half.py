@@ -80,7 +80,7 @@ def draw_sphere(
 
 
 def _kinds(samples: Samples, normals: NDArray[np.float64]) -> list[_Kind]:
-    """Return the normals of each kind: those of filling samples, and each prescribed one once."""
+    """Return the normals of each kind; each prescribed normal is in one of them, once."""
     index, kind = samples.normal_index, samples.kind
     found, first = np.unique(index[index >= 0], return_index=True)
     missed = np.ones(len(normals), dtype=bool)
@@ -148,10 +148,10 @@ def draw_globe(axes: Axes, view: NDArray[np.float64], labelled: bool = True) -> 
 def view_of(
     normals: NDArray[np.floating], old: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
-    """Return the rows (3, 3) right, up, and towards a viewer who sees most of the normals.
+    """Return the axes (3, 3) of a view of most of the normals: right, up, towards the viewer.
 
-    The viewer is `old`, by default that of `view()`, turned towards the mean normal; the more
-    concentrated the normals are, the farther.
+    The view `old`, by default that of `view()`, is turned towards the mean normal: not at all if
+    the normals are evenly spread, and fully if all are equal.
     """
     old = view() if old is None else old
     mean = normals.mean(axis=0)

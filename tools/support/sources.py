@@ -47,7 +47,7 @@ class Source(Protocol):
         ...
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the condition on n_x, n_y, n_z for a branch; None without a single one."""
+        """Return the condition on n_x, n_y, n_z for a branch; None if there is no single one."""
         ...
 
     def splines(self) -> list[tuple[float, AnySpline]]:
@@ -61,9 +61,10 @@ COLLAPSED, RAYS = 1e-7, (0.0, 1 / 3, 2 / 3)
 
 
 class SurfaceSource:
-    """The points of one surface itself, for one set of normals, see `GaussMap.points`.
+    """The support function of a surface itself, not of its spline; see `GaussMap.points`.
 
-    `report` is that of its last answer, and `on_surface` says which points are on the surface.
+    After a call of `sheets`, `report` is the report on its result, and `on_surface` (k,) says which
+    of its points are on the surface.
     """
 
     def __init__(self, known: GaussMap, surface: Surface) -> None:
@@ -239,7 +240,7 @@ def _hessians_on_surface(
         found = _matrices(A, B, C, A * C - B * B, vector(x_u), vector(x_v))
         large = np.linalg.norm(np.cross(x_u, x_v), axis=1)
     for k in np.flatnonzero(~(large > COLLAPSED * np.maximum(*lengths) ** 2)):
-        axis = int(lengths[1][k] > lengths[0][k])  # from the rays
+        axis = int(lengths[1][k] > lengths[0][k])  # along the rays
         found[k] = _hessian_at_pole(surface, normals[k], uv[k], axis)
     return found
 
