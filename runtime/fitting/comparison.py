@@ -60,8 +60,8 @@ NORMAL_ERROR = 1e-4
 # Rounding of the difference of two coordinates, relative to the largest: eight roundings.
 DIFFERENCE = 2.0**-49
 # The surface is evaluated again at AROUND points around each of the WORST test points, within a
-# cell, and its normal at every EACH_AROUND-th of them. Each of the WORST is in another one of
-# GROUPS groups.
+# cell, and its normal at every EACH_AROUND-th of them. At most one of the WORST is in each of
+# GROUPS groups of consecutive test points.
 AROUND, WORST, GROUPS, EACH_AROUND = 30, 16, 100, 4
 # The number of points on each line of a cross around a test point, within a cell on either side.
 CROSS = 17
@@ -119,7 +119,7 @@ def evaluated(spline: Spline, u: Array, v: Array) -> tuple[Array, Array]:
 
 
 def squared_lengths(differences: Array, scale: float) -> Array:
-    """Return the squares of lengths times `scale`."""
+    """Multiply vectors (k, 3) by `scale`, in place; return their squared lengths."""
     differences *= scale
     return np.einsum("ij,ij->i", differences, differences)
 
@@ -152,7 +152,10 @@ class Known:
     normals: Array
 
     def errors(self, spline: Spline) -> tuple[Array, Array]:
-        """Return squared scaled distances (k,) of a spline, and angles in degrees (l,)."""
+        """Return the errors of a spline at the points of the surface.
+
+        They are the squared scaled distances (k,), and the angles (l,) of normals, in degrees.
+        """
         points, vectors = evaluated(spline, *self.parts)
         squares = squared_lengths(points - self.points, spline.scale)
         return squares, angles_between(vectors[self.with_normals], self.normals)

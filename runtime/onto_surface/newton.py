@@ -37,8 +37,8 @@ __all__ = ["FOUND", "Target", "evaluate_on_surface", "near_poles", "refine"]
 Jets = Callable[[Array, Array], Array]
 
 ROWS_AT_A_TIME = 4096
-# Rows that need more steps than most are postponed when they are this part of a batch, and solved
-# together with those of other batches.
+# The last unsolved rows of a batch, at most this part of it, are solved together with those of
+# other batches.
 FEW = 1 / 32
 MOST_STEPS = 32
 
@@ -69,14 +69,14 @@ class Parameters:
 
     @classmethod
     def of_chart(cls, chart: PoleChart, spline: Spline) -> Parameters:
-        """Return s and t in a chart at a pole: without ends, with the rounding of u and v."""
+        """Return s and t in a chart at a pole: unbounded, and with the noise of u and v."""
         largest = max(abs(chart.end), abs(chart.other))
         ends = (-largest, largest, -largest, largest)
         box = Box(ends, (FREE, FREE), (chart.cell, chart.cell))
         return cls(chart.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
 
     def solve(self, target: Target, numbers: Indices, few: int) -> Indices:
-        """Solve for rows, starting at target.uv; return the unfinished ones, at most `few`."""
+        """Solve for rows, from target.uv on, until at most `few` are unsolved; return these."""
         count, rows = len(numbers), Rows.new(numbers)
         begin(target.uv, count, rows, self.box)
         for _ in range(MOST_STEPS):
@@ -112,7 +112,7 @@ def _refine_away(
     target: Target,
     threads: int | None,
 ) -> list[Indices]:
-    """Move the samples that are not next to poles; return the others for each chart."""
+    """Move the samples that are not next to poles; return the indices of the others, by chart."""
     domain = Parameters.of_domain(surface, spline)
 
     def work(first: int, last: int) -> tuple[Indices, list[Indices]]:
@@ -161,7 +161,7 @@ def _refine_at_pole(
         part.uv[:] = chart.places(part.uv)
         parameters.solve(part, np.arange(len(part.uv)), 0)
         part.uv[:] = chart.parameters(part.uv)
-        # Not the rounding of the chart: its finite differences have larger errors.
+        # Evaluated by u and v: finite differences in the chart have larger errors.
         found = part.state == FOUND
         points, _, gaussian, mean = evaluate_on_surface(
             chart.surface, spline, part.uv[found], threads=1

@@ -35,21 +35,22 @@ __all__ = ["PoleDisc", "pole_disc"]
 
 
 SECTORS = 512
-# Bounds may need narrower sectors. For quotients of splines they do, since these have a power of u
-# in each knot span. Their values at the pole are exact, so that they need no smaller rings.
+# The factor by which sectors are narrowed if bounds need it, as quotients of splines always do:
+# these have a power of u in each knot span. The numbers of rings: values of quotients at the pole
+# are exact, so that they need no smaller rings.
 NARROW, RINGS, RINGS_OF_QUOTIENTS = 4, 8, 2
 # Bounds hold up to this distance, relative to the radius of the disc.
 WHOLE = 2.0
 # Discs down to this fraction of a row of cells are tried.
 SMALLEST = 2.0**-8
-# The Hessian may change by this part of it in a disc.
+# The largest change of the Hessian in a disc, relative to the Hessian.
 CHANGE = 0.4
-# Bounds have to hold this much farther than the disc, as a factor.
+# The least multiple of the radius of a disc up to which bounds have to hold.
 BEYOND = 1.25
 # Creases are looked for at these parts of the radius.
 PARTS = (0.25, 0.5, 1.0)
-# Angles of tangents with the tangent plane, and of normals on both sides of a line, are roundings
-# up to this size.
+# Angles of tangents with the tangent plane, and of normals on both sides of a line, count as
+# rounding errors up to this size.
 SMOOTH = 1e-9
 # Taylor coefficients: U1R2 is that of u r², …
 ONE, U1, R1, U2, U1R1, R2, _, U2R1, U1R2, _ = range(10)
@@ -71,8 +72,8 @@ class Bounds(NamedTuple):
     hessian: the three entries of the Hessian of h by q1 and q2, each (sectors,).
     q: the least and the largest length of (q1, q2) / r.
     slope: the largest length of the gradient of h by q1 and q2.
-    by_q: the largest lengths of two gradients by q1 and q2: of u, times r, and of r.
-    along: the largest lengths of the derivatives of (q1, q2) by u, divided by r, and by r.
+    by_q: the largest lengths of r ∇u and ∇r, where ∇ is the gradient by q1 and q2.
+    along: the largest lengths of q_u / r and q_r, where q is (q1, q2).
     """
 
     hessian: list[Ball]
@@ -82,7 +83,7 @@ class Bounds(NamedTuple):
     along: tuple[float, float]
 
     def changes(self, middle: Array) -> Array:
-        """Return bounds of the distance of the Hessian from a given one (3,)."""
+        """Return bounds (3,) of the differences of the entries of the Hessian from `middle`."""
         pairs = zip(self.hessian, middle.tolist(), strict=True)
         return np.array([(np.abs(x.middle - y) + x.radius).max() for x, y in pairs])
 
@@ -92,8 +93,8 @@ class Pole:
     """A pole: its tapes, with the coordinates q1, q2 and h, and the interval of u around it.
 
     The columns of `basis` are the derivatives of x by q1, q2 and h. `tilt` is the largest
-    derivative of h at the pole, or its largest jump across lines where the surface may have
-    creases.
+    derivative of h at the pole, or the largest jump of derivatives across lines where the surface
+    may have creases, if that is larger.
     """
 
     tapes: PolarTapes
@@ -225,9 +226,10 @@ class _Coefficients:
 
 
 def pole_disc(tape: Tape, domain: Domain, angle: int, end: float, radius: float) -> PoleDisc | None:
-    """Return a disc around a pole of at most some radius; None if the surface is not smooth there.
+    """Return a disc around a pole; None if the surface is not smooth there.
 
-    Parameter number `angle` runs around the pole, the other one is `end` there.
+    Its radius is at most `radius`. Parameter `angle`, 0 for u and 1 for v, runs around the pole;
+    the other one is `end` there.
     """
     if not _is_point(tape, domain, angle, end):
         return None
@@ -345,7 +347,7 @@ def _length(x: Ball, y: Ball) -> float:
 
 
 def _is_steady(bounds: Bounds, middle: Array) -> bool:
-    """Return whether the Hessian is close to a regular one (3,)."""
+    """Return whether the Hessian changes little, relative to a regular matrix `middle` (3,)."""
     y11, y12, y22 = middle.tolist()
     hessian = np.array([[y11, y12], [y12, y22]])
     if not np.isfinite(hessian).all() or np.linalg.det(hessian) == 0.0:

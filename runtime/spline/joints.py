@@ -19,10 +19,10 @@ __all__ = ["EDGES", "Edge", "Joints", "Topology", "linked", "merged_points"]
 
 
 class Edge(NamedTuple):
-    """Rows of a net b200, b020, b002, b110, b101, b011: an edge, and the points beside it.
+    """Indices in a net b200, b020, b002, b110, b101, b011: an edge, and the points beside it.
 
-    The edge has the control points `start`, `middle`, `end`. The differences of `start_beside` and
-    `end_beside`, in the next row, from `start` and `middle` point inwards.
+    The edge has the control points `start`, `middle`, `end`. The vectors from `start` to
+    `start_beside`, and from `middle` to `end_beside`, point inwards.
     """
 
     start: int
@@ -34,8 +34,8 @@ class Edge(NamedTuple):
 
 # The edges u = 0, v = 0, w = 0, counterclockwise.
 EDGES = (Edge(1, 5, 2, 3, 4), Edge(2, 4, 0, 5, 3), Edge(0, 3, 1, 4, 5))
-# The indices of the corners in the control normals N200, N110, N101, N020, N011, N002; then of the
-# edges.
+# The indices of the corners in the control normals N200, N110, N101, N020, N011, N002; then those
+# of the edges.
 CORNER_NORMALS = (0, 3, 5)
 EDGE_NORMALS = ((3, 4, 5), (5, 2, 0), (0, 1, 3))
 # Parameters of an edge at which the normals of its patches are compared.
@@ -77,7 +77,7 @@ class Joints(NamedTuple):
 
 
 def merged_points(points: Array) -> tuple[Array, Indices]:
-    """Return points without duplicates up to rounding, and the index of each point (N, 3)."""
+    """Return the distinct points, up to rounding, and the index among them of each point (N, 3)."""
     size = float(np.abs(points).max()) * SAME_POINT
     number = np.arange(len(points))
     if size == 0.0:
@@ -96,9 +96,10 @@ def merged_points(points: Array) -> tuple[Array, Indices]:
 
 
 def linked(count: int, one: Indices, other: Indices) -> tuple[int, Indices]:
-    """Return the number of connected components of a graph on [0, count), and that of each node.
+    """Return the number of connected components of a graph, and the component of each node.
 
-    Its edges link `one` and `other` (k,). Components are numbered by their first nodes.
+    The nodes are [0, count); edge i joins one[i] and other[i]. Components are numbered by their
+    first nodes.
     """
     from scipy.sparse import coo_array  # imported late: most splines have a grid
     from scipy.sparse.csgraph import connected_components
@@ -110,7 +111,7 @@ def linked(count: int, one: Indices, other: Indices) -> tuple[int, Indices]:
 
 @dataclass(frozen=True, eq=False)
 class Topology:
-    """Nets (T, 6, 3) with the indices (T, 6) of their points and control normals (T, 6, 3).
+    """Nets (T, 6, 3), the indices (T, 6) of their points, and their control normals (T, 6, 3).
 
     Joints whose normals differ by at most `smooth` degrees are smooth.
     """
@@ -181,7 +182,11 @@ class Topology:
 
     @cached_property
     def owner(self) -> tuple[Indices, NDArray[np.int8]]:
-        """For each edge (3 T,), the edge whose boundary cone decides, and the sign of its form."""
+        """The edge whose boundary cone decides for each edge (3 T,), and a sign.
+
+        Both edges of a smooth joint have the same one. The sign is that of the form of an edge
+        relative to the form of the edge that decides.
+        """
         owner, side = np.arange(3 * len(self.nets)), np.ones(3 * len(self.nets), np.int8)
         pairs = self.pairs[self.joints.smooth]
         one, other = np.concatenate([pairs, pairs[:, ::-1]]).T
@@ -192,7 +197,7 @@ class Topology:
 
     @cached_property
     def on_border(self) -> Flags:
-        """Which edges (3 T,) are not on a smooth joint, collapsed edges excepted."""
+        """Which edges (3 T,) are boundaries or creases: neither collapsed nor in `smooth_pairs`."""
         free = ~self.is_point
         free[self.smooth_pairs.ravel()] = False
         return free
@@ -232,10 +237,10 @@ class Topology:
 
     @cached_property
     def polar(self) -> tuple[Indices, Indices]:
-        """The end, 0 or 1, of each edge (3 T,) at a smooth pole, and an edge with its tangent.
+        """The end, 0 or 1, of each edge (3 T,) at a smooth pole, and an edge with the same tangent.
 
-        The end is −1 if none or both are poles. Edges of one tangent at a pole are those of patches
-        that have a singular corner there.
+        The end is −1 if neither or both are poles. Edges have the same tangent at a pole if they
+        form a joint, or meet at a singular corner of a patch; the first of them stands for all.
         """
         shared, fan = self.corners
         row = np.arange(3 * len(self.nets))
@@ -300,7 +305,7 @@ class Topology:
 
 
 def _firsts(numbers: Indices) -> Iterator[tuple[int, int]]:
-    """Yield a row and a column in the array of points for each index."""
+    """Yield the first position in the flattened array of each index, and the index."""
     values, places = np.unique(numbers, return_index=True)
     return zip(places.tolist(), values.tolist(), strict=True)
 
@@ -327,7 +332,7 @@ def _normals_along(normals: Array, edges: Indices) -> Array:
 
 
 def _largest_angles(left: Array, right: Array) -> Array:
-    """Return the largest angle (J,) between vectors (J, k, 3), zero vectors excepted."""
+    """Return the largest angle (J,) between vectors (J, k, 3), without zero vectors."""
     left, right = _unit(left), _unit(right)
     known = left.any(axis=-1) & right.any(axis=-1)
     chord = np.where(known, np.linalg.norm(left - right, axis=-1), 0.0)
