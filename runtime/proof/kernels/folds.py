@@ -1,4 +1,4 @@
-"""Folds: small boxes with a singular Hessian that have no solution for a normal, or two."""
+"""Folds: small boxes with a singular Hessian, in which a normal has no solution or two."""
 
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ STEPS, SMALL = 30, 1e-10
 def at_fold(tape, work, tile, n):
     """Classify the first cell of a tile: no solution for the normal n, a double one, or unknown.
 
-    For a double one, the cell is replaced by a box with all solutions for n, none or two.
+    For a double one, the cell is replaced by a box that contains all of its solutions for n: none,
+    or two that are close to each other.
     """
     write_cells(tape, work, WIDER, tile, 1)
     if tile.noise[0, REACH] < WIDER:

@@ -67,13 +67,14 @@ __all__ = ["Boxes", "decide_normals"]
 
 # The number of levels of bisection, and the levels after which clusters are tested.
 DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
-# The boxes along a curve of solutions about double on each level. More boxes than MANY are a curve
-# if their number grows by GROWTH on TIMES levels; at most MOST cells, or MOST/4 boxes, are
-# processed.
+# The boxes along a curve of solutions about double on each level. More than MANY boxes count as a
+# curve if their number grows by more than the factor GROWTH on TIMES consecutive levels. At most
+# MOST cells and 4 MOST boxes are processed.
 MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
 # The columns of boxes: u, v, the index of a cell, and half the widths relative to the cell's.
 BOX_COLUMNS = 5
-# A box is cut into two if one side is longer by SLENDER, with sides relative to those of its cell.
+# A box is cut into two if one side is more than SLENDER times as long as the other, relative to the
+# sides of its cell.
 # Contraction leaves at least the part SHRUNK of a side, so that clusters have a width.
 SLENDER, SHRUNK = 4.0, 2.0**-5
 # A cluster is a curve of solutions if SETTLING steps from the centres of up to CHECKED of its boxes
@@ -186,7 +187,7 @@ def keep_boxes(t, lanes, boxes, cells, following):
             min(max(0.5 * (high_s - low_s), SHRUNK), 1.0),
             min(max(0.5 * (high_t - low_t), SHRUNK), 1.0),
         )
-        # Parts stay in the cell: beyond a joint derivatives are different.
+        # The box stays inside the cell: derivatives may jump at the boundary of the cell.
         u = t[i + U0] + inside(0.5 * (low_s + high_s), half_s) * t[i + HU]
         v = t[i + V0] + inside(0.5 * (low_t + high_t), half_t) * t[i + HV]
         size_u = half_s * t[i + HU] / cells.place[j, 2]
@@ -297,7 +298,7 @@ def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
 
 @loop
 def list_cluster(tape, work, cells, boxes, rows, count, i, domain, number, n, answers):
-    """List cluster i of the boxes of rows, as a curve if it is; return whether there was room."""
+    """List cluster i of boxes, as a curve if it is one; return whether there was room."""
     hull, first = boxes.hulls[i], answers.counts[1]
     kind = CURVE if is_curve(tape, work, cells, boxes, rows, count, i, n) else OPEN_BOX
     if not add_open(answers, number, hull[0], hull[1], hull[2], hull[3], kind, domain):
@@ -335,7 +336,7 @@ def is_curve(tape, work, cells, boxes, rows, count, owner, n):
 def settles(tape, work, cells, box, n):
     """Move from the centre of a box to a solution by Gauss–Newton steps, to work.u, work.v.
 
-    Return whether rounding explains its residual, and whether it is near the box.
+    Return whether there is one near the box, with a residual that rounding explains.
     """
     j, outputs = int(box[2]), tape.outputs
     h_u, h_v = cells.place[j, 2], cells.place[j, 3]
@@ -360,7 +361,7 @@ def settles(tape, work, cells, box, n):
             e_s, e_t = (b, large - a) if abs(a) < abs(c) else (large - c, b)
             step = (e_s * p + e_t * q) / (large * (e_s * e_s + e_t * e_t))
             s, t = s - step * e_s, t - step * e_t
-        # At joints a box may be as far from its solutions as the tolerance of normals is.
+        # At joints, the tolerance of normals lets solutions be this much farther from a box.
         if not max(abs(s), abs(t)) <= far + BESIDE * (rest_s + rest_t) / abs(large):
             return False
     return False

@@ -1,4 +1,4 @@
-"""The steps of a graded grid along both parameters, as long as the error limits allow."""
+"""The longest steps of a graded grid along both parameters that the error limits allow."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def longest_step(e, f, g, a, limit):
     """Return the largest b with e a² + 2 |f| a b + g b² ≤ limit; 0 if none exists."""
     left = limit - e * a * a
     if f == 0.0 and g == 0.0:
-        return math.inf if left >= -8.0 * EPS * limit else 0.0  # a may have reached the limit
+        return math.inf if left >= -8.0 * EPS * limit else 0.0  # e a² = limit up to rounding
     if left <= 0.0:
         return 0.0
     mixed = abs(f) * a
@@ -28,7 +28,7 @@ def longest_step(e, f, g, a, limit):
 def longest_steps(third, first, limits, along, least, most, steps):
     """Write the longest steps (l,) along v for steps (k,) along u, between `least` and `most`.
 
-    `third` and `first` (3, k, l) are two forms with a limit each.
+    `third` and `first` (3, k, l) are these fundamental forms, each with a limit.
     """
     limit_of_third, limit_of_first = limits
     for j in range(steps.size):
@@ -51,9 +51,9 @@ def longest_steps(third, first, limits, along, least, most, steps):
 def shared_steps(forms, swapped, limits, share, shortest, longest, along_u, along_v):
     """Write steps along u (k,) and v (l,), where steps along u use a share of the limits.
 
-    `forms` are two forms (3, k, l), the largest first entry of each along u (k,), and the width of
-    the domain; `swapped` are the same with u and v exchanged. Steps are at least the part
-    `shortest` of the domain, and at most `longest`.
+    `forms` are the third and the first fundamental form (3, k, l), the maxima (k,) along v of the
+    entry e of each, and the width of the domain; `swapped` are the same with u and v exchanged.
+    Steps are at least the part `shortest` of the domain, and at most `longest`.
     """
     third, first, largest_of_third, largest_of_first, width = forms
     for i in range(along_u.size):

@@ -41,8 +41,8 @@ class Lists(NamedTuple):
 
     sides: (M, 8) float32, the sides of the cells of candidates, see kernels/cells.py.
     starts: (buckets + 1,) int32, the first entry of each bucket.
-    entries: (E,) int32, numbers of samples; (0,) while they are counted.
-    last: (buckets,) int32, the last sample of each bucket so far, −1 on entry.
+    entries: (E,) int32, indices of samples; (0,) to count the samples of each bucket first.
+    last: (buckets,) int32, the index of the last sample entered for each bucket; −1 for none.
     """
 
     sides: np.ndarray
@@ -56,9 +56,9 @@ class Room(NamedTuple):
 
     near: (6, m) float32, points relative to the first candidate of the bucket, and unit normals.
     squares: (m + 1,) float32, squared distances from a candidate, FAR for another side.
-    bits: (m + 1,) int32, the same memory: numbers that are not negative are ordered as their bits.
+    bits: (m + 1,) int32, the memory of `squares`: floats ≥ 0 and their bits have the same order.
     few: (m,) int32, samples that may be nearest to a fine point, by their positions in the list.
-    moments: (m, 4), those of the samples.
+    moments: (m, 4), the moments of the samples, see `add_moments`.
     least: (FINER²,) float32, squared distances of the fine points from the nearest samples.
     nearest: (FINER²,) int32, the nearest samples, by their positions in the list.
     """
@@ -99,9 +99,10 @@ enter_around, approach_around = around(enter), around(approach)
 def list_samples(grids, lists, radius, samples, near):
     """Enter samples (N, 6) in the lists of all buckets with candidates within radius/√w of them.
 
-    Write the indices of those near the box of all candidates; the lists have their positions among
-    these. Return their number. Without entries, the starts become the numbers of the samples of
-    each bucket; otherwise they have to be the first entries, and become the last ones + 1.
+    Write the indices of the samples near the box of all candidates to `near`, and return their
+    number; the lists hold positions in `near`. If `lists.entries` is empty, `lists.starts` become
+    the numbers of samples of the buckets. Otherwise they have to be the positions of their first
+    entries, and become those of their last entries, plus 1.
     """
     count = 0
     for k in range(samples.shape[0]):
@@ -143,7 +144,7 @@ def gather(grids, lists, samples, bucket, room):
 def nearest_square(p, candidates, at, count, room):
     """Return the squared distance of a candidate at p from the nearest sample on its side.
 
-    Write those from all samples to the room.
+    Write the squared distances from all samples to the room.
     """
     n = single(candidates[at, NORMAL], candidates[at, NORMAL + 1], candidates[at, NORMAL + 2])
     near, squares, bits, end = room.near, room.squares, room.bits, np.uint64(count)
@@ -155,7 +156,7 @@ def nearest_square(p, candidates, at, count, room):
         squares[c] = square if cosine >= COSINE else FAR
     squares[end] = FAR
     least = bits[end]
-    for k in range(count):  # integers: for numbers that may be NaN there are no vectors
+    for k in range(count):  # integers: minima of floats, which may be NaN, are not vectorized
         least = min(least, bits[np.uint64(k)])
     bits[end] = least
     return squares[end]
@@ -163,9 +164,9 @@ def nearest_square(p, candidates, at, count, room):
 
 @loop
 def find_in_cell(p, sides, at, square, count, room):
-    """Write squared distances of the fine points of a cell from the nearest samples to the room.
+    """Write the nearest sample of each fine point of a cell, and its squared distance, to the room.
 
-    Also write these samples. `square` is the result of `nearest_square` for the candidate at p.
+    `square` is the result of `nearest_square` for the candidate at p.
     """
     near, squares, least, nearest = room.near, room.squares, room.least, room.nearest
     u, v = row_vector(sides, at), row_vector(sides[:, 3:], at)
@@ -195,11 +196,11 @@ def find_in_cell(p, sides, at, square, count, room):
 def add_moments(grids, lists, samples, room, moments):
     """Add the fine points in the cells of candidates to the moments (N, 4) of the nearest samples.
 
-    Moments are the sums of weights times the points, and of the weights: area times w² times the
-    squared distance from the sample. The gradient, by the sample, of the integral of w² times the
-    fourth power of the distance over the Voronoi cell vanishes at the mean, with these weights. The
-    mean is near the centre of the smallest ball around the cell. Candidates without a listed sample
-    are left out.
+    The moments of a sample are the sum of weights times points (3), and the sum of weights. The
+    weight of a point is the area times w² times the squared distance from the sample. A sample at
+    the weighted mean is a critical point of the integral, over its Voronoi cell, of w² times the
+    fourth power of the distance. The mean is near the centre of the smallest ball around the cell.
+    Candidates without a listed sample are left out.
     """
     candidates, sides, sums = grids.candidates, lists.sides, room.moments
     for bucket in range(grids.starts.size - 1):
@@ -235,8 +236,9 @@ def find_centres(grids, sides, order, points, squares, rows, steps):
     """Find the point of a cell nearest to each of the points (N, 6), with the normals of samples.
 
     The cell is that of the nearest candidate on the side of the normal, in the grids around the
-    point. If it is nearer than the root of `squares` (N,), these are updated, `rows` (N,) become
-    the row of the cell by `order`, and `steps` (N, 2) coordinates in it, INNER at most.
+    point. If the squared distance from it is less than that in `squares` (N,), it is written there,
+    order[candidate] to `rows` (N,), and the coordinates of the found point in the cell, of absolute
+    value INNER at most, to `steps` (N, 2).
     """
     for k in range(points.shape[0]):
         x, n, before = row_vector(points, k), normal_of(points, k), squares[k]
@@ -277,12 +279,12 @@ def turn_of(candidates, at, square, count, room):
 def find_widest(grids, lists, samples, bounds, room, found, gaps):
     """Find the point of each cell that is farthest from all samples, if at least least/√w away.
 
-    found (M,) are the indices of the points, −2 if none is as far, and −1 for the candidate itself,
-    if its bucket has no samples. gaps (M, 2) are w, and w times the squared distance. If w is κ²,
-    the latter is about the squared chord between the normals of the point and the nearest sample.
-    Where κ jumps, the chord of the candidate may be larger, and replaces it, with another w up to
-    the ceiling; but not a chord above `most`, which is that of two sides of an edge. The bounds are
-    `least`, `most` and the ceiling.
+    found (M,) are the indices of these fine points; −1 for the candidate itself, if its bucket has
+    no samples or a chord counts; −2 if all points are nearer. gaps (M, 2) are w, and w times the
+    squared distance d², which is about the squared chord c² between the normals of the point and of
+    the nearest sample if w = κ². Where κ jumps, c² at the candidate may be larger: then it counts
+    instead, with w = c²/d² up to the ceiling. A chord above `most` never counts: it is between the
+    two sides of an edge. `bounds` are `least`, `most` and the ceiling.
     """
     candidates, sides = grids.candidates, lists.sides
     least, most, ceiling = bounds
