@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..runtime.base.checks import known_name, listed, positive_number, whole_number
 from ..runtime.base.errors import InputError, shown
 from ..runtime.base.progress import busy
-from ..runtime.samples.samples import spline_or
+from ..runtime.samples.samples import Samples, spline_or
 from ..runtime.samples.whole import Whole
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..runtime.samples.samples import Samples
     from ..runtime.spline.nets import AnySpline
     from ..runtime.surface.surface import Surface
     from .cad.part import Part
@@ -126,7 +125,7 @@ def _only(samples: Samples, fields: Sequence[str]) -> Samples:
         raise InputError(f"fields must be a tuple of names, not {shown(fields)}.")
     arrays = {x: held[known_name(x, samples.fields, "field of these samples")] for x in names}
     known = {x: getattr(samples, x) for x in ("report", "spline", "surface", "offset_of")}
-    return type(samples)(**arrays, **known)
+    return Samples(**arrays, **known)
 
 
 def mesh(

@@ -174,7 +174,7 @@ class Samples(SampleArrays, Methods):
     def __repr__(self) -> str:
         label = short_label(self.report.surface)
         points = plural(len(self), "point")
-        return f"Samples({points} on {label}{kinds_of_points(self)})"
+        return f"{type(self).__name__}({points} on {label}{kinds_of_points(self)})"
 
 
 def spline_or(samples: Samples, spline: AnySpline | None) -> Spline:

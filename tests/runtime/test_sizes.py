@@ -102,7 +102,7 @@ def support_functions(exponent: int) -> list[Any]:
             np.ldexp(x.hessian, -exponent), np.ldexp(x.principal_radii, -exponent),
             mean, np.signbit(x.gaussian_curvature),
         ])  # fmt: skip
-    sums = gm.convolve(spline(exponent), surface, normals=gm.icosphere(1)).samples
+    sums = gm.convolve(spline(exponent), surface, normals=gm.icosphere(1))
     return [
         *found, np.ldexp(sums.points, -exponent), np.ldexp(sums.mean_curvature, exponent),
         np.signbit(sums.gaussian_curvature),

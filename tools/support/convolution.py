@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -42,17 +43,15 @@ PIECE = 1 << 14
 
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
-class Convolution:
+class Convolution(Samples):
     """The k sums of two points with the same normal, sorted by normal, then by branch of the first.
 
-    A boolean mask (k,), an index array or a slice selects some of them:
-    ``sums[sums.samples.elliptic]``.
+    They are `Samples` of the convolution surface, without `uv` and `patch_index`: each sum has two
+    of these. Selected rows are a `Convolution`; offsets, and parts joined by
+    ``Samples.concatenate``, are `Samples`.
 
     Attributes
     ----------
-    samples : Samples
-        Samples of the convolution surface, without `uv` and `patch_index`: each sum has two of
-        these.
     first, second : Branches
         The branches of both surfaces at the prescribed normals.
     rows : (k, 2) int64 array
@@ -64,20 +63,21 @@ class Convolution:
     >>> import numpy as np
     >>> ball = gm.surfaces.ellipsoid(a=0.2, b=0.1, c=0.1)
     >>> sums = gm.convolve("torus", ball, [[1, 0, 0], [0, 1, 1]], cells=(16, 16))
-    >>> sums[sums.samples.elliptic]
-    Convolution(Samples(2 points on torus + ellipsoid: 2 with K > 0))
+    >>> sums[sums.elliptic]
+    Convolution(2 points on torus + ellipsoid: 2 with K > 0)
     >>> i, j = sums.rows.T
-    >>> np.allclose(sums.samples.points, sums.first.points[i] + sums.second.points[j])
+    >>> np.allclose(sums.points, sums.first.points[i] + sums.second.points[j])
     True
     >>> sums.first_uv.shape, sums.second_uv.shape
     ((4, 2), (4, 2))
 
     """
 
-    samples: Samples
-    first: Branches
-    second: Branches
-    rows: NDArray[np.int64]
+    first: Branches = field(kw_only=True)
+    second: Branches = field(kw_only=True)
+    rows: NDArray[np.int64] = field(kw_only=True)
+
+    concatenate = Samples.concatenate  # pyright: ignore[reportAssignmentType]
 
     @property
     def first_uv(self) -> NDArray[np.float64]:
@@ -89,16 +89,19 @@ class Convolution:
         """(k, 2) float64 array: parameters of the point of the second surface, or NaN."""
         return self.second.uv[self.rows[:, 1]]
 
-    def __len__(self) -> int:
-        """Return the number of sums."""
-        return len(self.rows)
-
     def __getitem__(self, key: ArrayLike | slice) -> Convolution:
         rows = key if isinstance(key, slice) else checked_rows(key, len(self))
-        return replace(self, samples=self.samples[rows], rows=self.rows[rows])
+        arrays: dict[str, Any] = {name: array[rows] for name, array in self.arrays().items()}
+        summands: dict[str, Any] = self._summands | {"rows": self.rows[rows]}
+        return Convolution(**arrays, report=self.report, **summands)
 
-    def __repr__(self) -> str:
-        return f"Convolution({self.samples!r})"
+    def __reduce__(self) -> tuple[Any, ...]:
+        make, nothing = Samples.__reduce__(self)
+        return partial(make, **self._summands), nothing
+
+    @property
+    def _summands(self) -> dict[str, Any]:
+        return {name: getattr(self, name) for name in ("first", "second", "rows")}
 
 
 def convolve(
@@ -129,7 +132,7 @@ def convolve(
     Returns
     -------
     Convolution
-        The sums as samples, and the points of both surfaces. The report has `on`, with "surface"
+        `Samples`: the sums, with the points of both surfaces. The report has `on`, with "surface"
         `proved`, `undecided` (boxes of the first surface, then of the second) and `unrefined`, with
         "spline" `fit_distance`, `fit_rms` and `fit_angle`: the sums of the distances, and the
         larger angle.
@@ -167,7 +170,7 @@ def convolve(
     >>> import gaussmap as gm
     >>> ball = gm.SupportFunction.from_sympy("1/10")
     >>> sums = gm.convolve("torus", ball, gm.icosphere(2))
-    >>> bool((abs(sums.samples.support - sums.first.support[sums.rows[:, 0]] - 0.1) < 1e-15).all())
+    >>> bool((abs(sums.support - sums.first.support[sums.rows[:, 0]] - 0.1) < 1e-15).all())
     True
 
     """
@@ -188,8 +191,8 @@ def convolve(
         name, len(directions), len(i), None, None, None,
         infinite_curvatures=count_infinite(arrays), **_accuracy(sources, len(directions), arrays),
     )  # fmt: skip
-    samples = Samples(**arrays, report=report)
-    return Convolution(samples, one, two, np.stack([i, j], axis=1))
+    rows = np.stack([i, j], axis=1)
+    return Convolution(**arrays, report=report, first=one, second=two, rows=rows)
 
 
 def _sums(

@@ -144,7 +144,7 @@ def test_tips_are_samples_and_no_area(on: str) -> None:
 def test_the_offset_of_a_tip_is_round() -> None:
     ball = gm.SupportFunction.from_sympy("1/10")
     n, surface = directions(), lemon("round", False)
-    moved = gm.convolve(surface, ball, n).samples
+    moved = gm.convolve(surface, ball, n)
     np.testing.assert_array_equal(moved.normal_index, np.arange(len(n)))
     is_tip = np.abs(n[:, 2]) > np.sin(np.pi / 3)
     centres = np.array([0.0, 0.0, 3**0.5]) * np.sign(n[is_tip, 2:])

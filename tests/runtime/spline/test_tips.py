@@ -112,7 +112,7 @@ def test_everything_that_searches_leaves_tips_out(shape: str) -> None:
     outline = gm.silhouette(spline, (1, 0, 0.9), count=200)
     streamed = regular(gm.Samples.concatenate(list(gm.sample_stream(spline, normals=n))))
     dense = gm.sample(spline, 500, density="gauss")
-    sum_ = gm.convolve(spline, gm.SupportFunction.from_sympy("1/10"), n).samples
+    sum_ = gm.convolve(spline, gm.SupportFunction.from_sympy("1/10"), n)
     for found in (outline, streamed, dense):
         assert len(found) > 0
         assert not collapsed(spline)[found.patch_index].any()

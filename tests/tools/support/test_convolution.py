@@ -1,5 +1,6 @@
 """Convolution: against exact sums, and against the convex hull of all sums of two points."""
 
+import pickle
 from typing import Any
 
 import gaussmap as gm
@@ -27,12 +28,11 @@ BEAM = given("sqrt((n_x + n_y)**2 + 1/9) + sqrt((n_x - n_y)**2 + 1/9) + 3*sqrt(n
 
 def test_spheres() -> None:
     sums = gm.convolve(given("2 + n_x"), given("1 - 3*n_y"), NORMALS)
-    samples = sums.samples
-    assert np.abs(samples.points - [1, -3, 0] - 3 * NORMALS).max() <= 16 * EPS * 4
-    np.testing.assert_allclose(samples.gaussian_curvature, 1 / 9, rtol=64 * EPS)
-    np.testing.assert_allclose(samples.mean_curvature, 1 / 3, rtol=64 * EPS)
+    assert np.abs(sums.points - [1, -3, 0] - 3 * NORMALS).max() <= 16 * EPS * 4
+    np.testing.assert_allclose(sums.gaussian_curvature, 1 / 9, rtol=64 * EPS)
+    np.testing.assert_allclose(sums.mean_curvature, 1 / 3, rtol=64 * EPS)
     assert np.isnan(sums.first_uv).all()
-    assert repr(sums).startswith("Convolution(Samples(400 points on SupportFunction(h = ")
+    assert repr(sums).startswith("Convolution(400 points on SupportFunction(h = ")
 
 
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
@@ -50,17 +50,16 @@ def test_points_of_surfaces_are_exact() -> None:
     normals = np.concatenate([gm.icosphere(6), AXES])
     sums = gm.convolve(BODY, SMALL, normals)
     exact = (EXACT + EXACT_SMALL).branches(normals)
-    samples = sums.samples
-    assert (samples.normal_index == np.arange(len(normals))).all()
-    np.testing.assert_allclose(samples.points, exact.points, rtol=0, atol=64 * EPS * 4)
+    assert (sums.normal_index == np.arange(len(normals))).all()
+    np.testing.assert_allclose(sums.points, exact.points, rtol=0, atol=64 * EPS * 4)
     np.testing.assert_allclose(sums.first.hessian, EXACT.branches(normals).hessian, atol=1e-12)
-    np.testing.assert_allclose(samples.gaussian_curvature, exact.gaussian_curvature, rtol=1e-11)
-    np.testing.assert_allclose(samples.mean_curvature, exact.mean_curvature, rtol=1e-11)
-    report = samples.report
+    np.testing.assert_allclose(sums.gaussian_curvature, exact.gaussian_curvature, rtol=1e-11)
+    np.testing.assert_allclose(sums.mean_curvature, exact.mean_curvature, rtol=1e-11)
+    report = sums.report
     assert (report.on, report.unrefined, report.fit_distance) == ("surface", 0, None)
     assert (report.proved, report.undecided) == (len(normals), ())
-    assert samples.on_surface is not None
-    assert samples.on_surface.all()
+    assert sums.on_surface is not None
+    assert sums.on_surface.all()
 
 
 @pytest.mark.compiled
@@ -68,11 +67,11 @@ def test_what_is_not_proved_is_listed() -> None:
     """The normals ±z of a torus are those of circles, of which a trim leaves hardly anything."""
     normals = np.concatenate([NORMALS, AXES])
     part = gm.surfaces.torus().trimmed(within=lambda u, v: (v < 1.0) | (abs(u - 0.01) < 1e-3))
-    report = gm.convolve(part, BODY, normals).samples.report
+    report = gm.convolve(part, BODY, normals).report
     assert report.undecided is not None
     assert {x.normal for x in report.undecided} == {402, 405}
     assert report.proved == 404
-    whole = gm.convolve("torus", BODY, normals).samples
+    whole = gm.convolve("torus", BODY, normals)
     assert whole.report.proved == 406
     np.testing.assert_array_equal(np.bincount(whole.normal_index)[[402, 405]], 1)
     np.testing.assert_allclose(
@@ -94,7 +93,7 @@ def test_how_far_sums_of_splines_are_off_is_said() -> None:
         ((one, twice), exact + reflected, [(1, one.misfit), (2, two.misfit)]),
     ]
     for pair, points, misfits in asked:
-        samples = gm.convolve(*pair, NORMALS).samples
+        samples = gm.convolve(*pair, NORMALS)
         report: Any = samples.report
         assert report.on == "spline"
         assert report.proved is None
@@ -134,10 +133,10 @@ def test_against_the_hull_of_all_sums(pair: tuple[Any, Any]) -> None:
     hull = ConvexHull(everything)
     size = np.abs(everything).max()
     diagonal = np.arange(len(NORMALS)) * (len(NORMALS) + 1)
-    assert (everything[diagonal] == sums.samples.points).all()
+    assert (everything[diagonal] == sums.points).all()
     assert np.isin(diagonal, hull.vertices).all()
     farthest = (NORMALS @ everything.T).max(axis=1)
-    assert np.abs(farthest - sums.samples.support).max() <= 32 * EPS * size
+    assert np.abs(farthest - sums.support).max() <= 32 * EPS * size
     directions, distances = hull.equations[:, :3], -hull.equations[:, 3]
     angle = np.arccos((directions @ NORMALS.T).max(axis=1).min())
     assert np.degrees(angle) < 8.5
@@ -150,7 +149,7 @@ def test_against_the_hull_of_all_sums(pair: tuple[Any, Any]) -> None:
 def test_a_sum_with_the_reflected_body() -> None:
     """For bodies A, B: x ∈ A ⊕ (−B) where A and x + B meet; h is h_A(n) + h_B(−n)."""
     away = given("sqrt(n_x**2 + n_y**2 + 4*n_z**2) + 5*n_x + n_y*n_z*n_x/9")
-    samples = gm.convolve(BOX, away.scaled(-1).reversed(), NORMALS).samples
+    samples = gm.convolve(BOX, away.scaled(-1).reversed(), NORMALS)
     assert np.abs(samples.support - BOX(NORMALS) - away(-NORMALS)).max() <= 64 * EPS * 8
     assert np.abs(np.einsum("ij,ij->i", samples.points, NORMALS) - samples.support).max() < 1e-13
     assert samples.elliptic.all()
@@ -165,27 +164,25 @@ def test_all_pairs_of_branches() -> None:
     turned = of_spline(torus).rotated(np.eye(3)[[1, 2, 0]])
     normals = gm.icosphere(6)
     sums = gm.convolve(torus, turned, normals)
-    samples, (i, j) = sums.samples, sums.rows.T
-    assert len(sums) == len(samples) == len(i)
-    assert (samples.points == sums.first.points[i] + sums.second.points[j]).all()
+    i, j = sums.rows.T
+    assert len(sums) == len(i)
+    assert (sums.points == sums.first.points[i] + sums.second.points[j]).all()
     for rows, branches in ((i, sums.first), (j, sums.second)):
-        assert (samples.normal_index == branches.normal_index[rows]).all()
+        assert (sums.normal_index == branches.normal_index[rows]).all()
     counts = [
         np.bincount(x.normal_index, minlength=len(normals)) for x in (sums.first, sums.second)
     ]
-    assert (
-        np.bincount(samples.normal_index, minlength=len(normals)) == counts[0] * counts[1]
-    ).all()
+    assert (np.bincount(sums.normal_index, minlength=len(normals)) == counts[0] * counts[1]).all()
     assert len(set(zip(i.tolist(), j.tolist(), strict=True))) == len(sums)
-    assert (np.diff(samples.normal_index) >= 0).all()
-    assert (samples.normals == normals[samples.normal_index]).all()
+    assert (np.diff(sums.normal_index) >= 0).all()
+    assert (sums.normals == normals[sums.normal_index]).all()
     assert np.abs(torus.evaluate(*sums.first_uv.T) - sums.first.points[i]).max() < 1e-12
     assert sums.second_uv.shape == (len(sums), 2)
     together = (of_spline(torus) + turned).branches(normals)
-    assert (together.points == samples.points).all()
-    assert np.array_equal(together.gaussian_curvature, samples.gaussian_curvature, equal_nan=True)
-    assert samples.report.surface.startswith("torus + SupportFunction((torus, ")
-    assert (samples.report.normals, samples.report.samples) == (362, len(sums))
+    assert (together.points == sums.points).all()
+    assert np.array_equal(together.gaussian_curvature, sums.gaussian_curvature, equal_nan=True)
+    assert sums.report.surface.startswith("torus + SupportFunction((torus, ")
+    assert (sums.report.normals, sums.report.samples) == (362, len(sums))
 
 
 @pytest.mark.compiled
@@ -200,18 +197,18 @@ def test_far_and_of_any_size(factor: float, shift: float) -> None:
     )
     assert (moved.rows == first.rows).all()
     np.testing.assert_allclose(
-        moved.samples.gaussian_curvature * factor**2, first.samples.gaussian_curvature, rtol=1e-9
+        moved.gaussian_curvature * factor**2, first.gaussian_curvature, rtol=1e-9
     )
-    expected = factor * first.samples.points + [shift, 0, 0]
-    assert np.abs(moved.samples.points - expected).max() <= 16 * EPS * (4 * factor + shift)
+    expected = factor * first.points + [shift, 0, 0]
+    assert np.abs(moved.points - expected).max() <= 16 * EPS * (4 * factor + shift)
 
 
 @pytest.mark.compiled
-def test_a_convolution_is_written_and_picked(tmp_path: Any) -> None:
+def test_a_convolution_is_samples(tmp_path: Any) -> None:
     sums = gm.convolve(gm.fit(gm.surfaces.torus(), (16, 16)), ELLIPSOID, gm.icosphere(4))
-    outer = sums[sums.samples.elliptic]
+    outer = sums[sums.elliptic]
     i, j = outer.rows.T
-    assert (outer.samples.points == outer.first.points[i] + outer.second.points[j]).all()
+    assert (outer.points == outer.first.points[i] + outer.second.points[j]).all()
     assert [len(sums[x]) for x in ([], [3], slice(2, 7), [True] * len(sums))] == [
         0,
         1,
@@ -220,8 +217,14 @@ def test_a_convolution_is_written_and_picked(tmp_path: Any) -> None:
     ]
     with pytest.raises(gm.errors.InputError, match="index is out of range"):
         sums[[len(sums)]]
-    outer.samples.write(tmp_path / "sum.ply")
+    outer.write(tmp_path / "sum.ply", fields=("points", "normals"))
     assert len(gm.read_samples(tmp_path / "sum.ply")) == len(outer) > 100
+    again = pickle.loads(pickle.dumps(outer))
+    assert (again.rows == outer.rows).all()
+    assert again.summary() == outer.summary()
+    assert outer.summary().startswith(f"{len(outer)} of {len(sums)} samples at ")
+    both = type(sums).concatenate([outer, sums])
+    assert (type(both), len(both)) == (gm.Samples, len(outer) + len(sums))
 
 
 @pytest.mark.compiled
@@ -245,7 +248,7 @@ def test_surfaces_without_a_common_normal() -> None:
 @pytest.mark.compiled
 def test_one_normal() -> None:
     sums = gm.convolve(gm.surfaces.torus(), ELLIPSOID, [[0, 3, 4]], cells=(16, 16))
-    assert sums.samples.normals.tolist() == [[0, 0.6, 0.8]] * 2
+    assert sums.normals.tolist() == [[0, 0.6, 0.8]] * 2
     assert sums.rows.tolist() == [[0, 0], [1, 0]]
 
 
