@@ -35,7 +35,10 @@ def public() -> dict[str, Any]:
 
 
 def members(cls: type) -> dict[str, Any]:
-    """Return the public members of a class that gaussmap defines, and the names of its fields."""
+    """Return the public members of a class that gaussmap defines, and the names of its fields.
+
+    Those of a public class that it extends, such as `Samples`, are members of that one.
+    """
     found: dict[str, Any] = dict.fromkeys(getattr(cls, "__dataclass_fields__", ()))
     for base in reversed(cls.__mro__):
         if base.__module__.startswith("gaussmap"):
@@ -43,7 +46,9 @@ def members(cls: type) -> dict[str, Any]:
             for x in names:
                 getattr(cls, x)  # some methods are put into the class when first asked for
             found |= {x: vars(base)[x] for x in names}
-    return {name: x for name, x in found.items() if not name.startswith("_")}
+    bases = [x for x in cls.__mro__[1:] if x in PUBLIC.values()]
+    others = {x for base in bases for x in members(base)} - {*vars(cls)}
+    return {x: y for x, y in found.items() if not x.startswith("_") and x not in others}
 
 
 def methods_of(cls: type) -> dict[str, Callable[..., Any]]:

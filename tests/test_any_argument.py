@@ -112,6 +112,7 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "curve_samples": lambda: gm.curves.sample(USABLE.curve_spline, 10),
     "curve_support": lambda: gm.curves.SupportFunction.of_spline(USABLE.curve_spline),
     "support": lambda: gm.SupportFunction.from_sympy("1"),
+    "sums": lambda: gm.convolve(USABLE.support, USABLE.support, gm.icosphere(2)),
     "image": lambda: gm.gauss_map.GaussianImage.of_patch(PATCH),
     "images": lambda: gm.gauss_map.GaussianImages(USABLE.spline),
     "arc": lambda: USABLE.image.arcs[0],
@@ -166,7 +167,8 @@ KNOTS = ((0.0, 0.0, 1.0, 1.0), (0.0, 0.0, 1.0, 1.0))
 FLAT = np.array([[[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [1.0, 1.0, 0.5]]])
 # What `self` is, by the class.
 SELF = {
-    "Dataset": Of("dataset"), "GaussMap": Of("map"), "Mesh": Of("mesh"), "Part": Of("part"),
+    "Convolution": Of("sums"), "Dataset": Of("dataset"), "GaussMap": Of("map"),
+    "Mesh": Of("mesh"), "Part": Of("part"),
     "Samples": Of("samples"), "Spline": Of("spline"), "SupportFunction": Of("support"),
     "Surface": Of("torus"), "curves.Curve": Of("circle"),
     "curves.CurveSamples": Of("curve_samples"), "curves.CurveSpline": Of("curve_spline"),

@@ -19,7 +19,7 @@ from ...runtime.surface.surface import Surface
 from .links import neighbours
 from .mesh import Mesh
 from .places import boundary_of, uv_at
-from .triangulated import Triangulated, checked_prefer, flip_edges, improved, too_few
+from .triangulated import Prefer, Triangulated, checked_prefer, flip_edges, improved, too_few
 from .triangulation import triangulations
 from .trimming import trimmed_triangles
 from .vertices import Vertices, before_offset, check_fields
@@ -27,7 +27,7 @@ from .vertices import Vertices, before_offset, check_fields
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
 
-__all__ = ["mesh_of", "triangulated"]
+__all__ = ["checked_angle", "finished", "mesh_of", "triangulated"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -37,21 +37,28 @@ WHOLE = 180.0  # degrees: no triangle deviates more
 
 def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) -> Mesh:
     """Return the mesh of `Samples.mesh`."""
-    preferred = checked_prefer(prefer)
-    largest = WHOLE if angle is None else _checked_angle(angle)
+    preferred, largest = checked_prefer(prefer), checked_angle(angle)
     check_fields(samples)
     check_memory("mesh", len(samples))
     mesh = triangulated(samples, spline, must_be_whole=angle is None)
+    return finished(mesh, len(samples), preferred, largest)
+
+
+def finished(mesh: Triangulated, samples: int, prefer: Prefer, largest: float) -> Mesh:
+    """Return the mesh with better triangles, which deviate from normals by less than an angle."""
     if largest < WHOLE:
         flip_edges(mesh, "normals")
         mesh = mesh.within(largest)
-    mesh = improved(mesh, preferred, largest)
+    mesh = improved(mesh, prefer, largest)
     if largest < WHOLE:
         mesh = mesh.within(largest)
-    return mesh.mesh(len(samples))
+    return mesh.mesh(samples)
 
 
-def _checked_angle(angle: object) -> float:
+def checked_angle(angle: object) -> float:
+    """Return the largest angle of triangles with normals, 180° for None."""
+    if angle is None:
+        return WHOLE
     if isinstance(angle, bool) or not isinstance(angle, int | float | np.number):
         raise InputError(f"angle must be a number of degrees, not {shown(angle)}.")
     if not 0.0 < angle <= WHOLE:

@@ -23,7 +23,7 @@ from ...runtime.base.tolerances import CIRCLE_HEIGHT_ERROR
 from ...runtime.domain.domain import Boundary
 from ...runtime.surface.kernels import surfaces as kernels
 
-__all__ = ["Triangulation", "delaunay", "triangulations"]
+__all__ = ["Triangulation", "convex_hull", "delaunay", "triangulations"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -116,12 +116,20 @@ def _turned(triangles: NDArray[Any], which: NDArray[np.bool_]) -> Indices:
     return result
 
 
+def convex_hull(points: Array) -> Indices:
+    """Return the triangles (k, 3) of the convex hull of points (n, 3), counterclockwise outside."""
+    from scipy.spatial import ConvexHull
+
+    hull = ConvexHull(points)
+    a, b, c = np.moveaxis(points[hull.simplices], 1, 0)
+    is_inwards = np.einsum("kx,kx->k", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
+    return _turned(hull.simplices, is_inwards)
+
+
 # --- spheres, disks, bands: periodic in one parameter ---------------------------------------------
 
 
 def _on_sphere(positions: Array, boundary: Boundary, lengths: Array, axis: int) -> Triangulation:
-    from scipy.spatial import ConvexHull
-
     is_mirrored = boundary[axis][0] == "mirrored"
     turn = math.pi if is_mirrored else 2.0 * math.pi
     lowest, middle, highest = LATITUDES
@@ -137,10 +145,8 @@ def _on_sphere(positions: Array, boundary: Boundary, lengths: Array, axis: int) 
     kernels.positions("sphere")(1.0, longitude, latitude, points)
     if is_mirrored:
         points = np.concatenate([points, -points])
-    hull = ConvexHull(points)
-    a, b, c = np.moveaxis(points[hull.simplices], 1, 0)
-    is_inwards = np.einsum("kx,kx->k", np.cross(b - a, c - a), hull.equations[:, :3]) < 0.0
-    triangles = _turned(hull.simplices, is_inwards == (axis == 0))
+    triangles = convex_hull(points)
+    triangles = triangles if axis == 0 else triangles[:, [0, 2, 1]]
     for end, latitude in zip(boundary[1 - axis], latitudes, strict=True):
         if end == "open":
             off_circle = np.abs(points[:, 2] - math.sin(latitude)) > CIRCLE_HEIGHT_ERROR

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...runtime.base.checks import checked_rows
 from ...runtime.base.errors import GaussmapWarning, InputError
+from ...runtime.base.later import Later
 from ...runtime.base.threads import over_ranges
 from ...runtime.directions.unit import as_normals
 from ...runtime.fitting.fit import patches_of
@@ -77,7 +78,7 @@ class Convolution(Samples):
     second: Branches = field(kw_only=True)
     rows: NDArray[np.int64] = field(kw_only=True)
 
-    concatenate = Samples.concatenate  # pyright: ignore[reportAssignmentType]
+    mesh = Later("gaussmap.tools.meshes.of_sums")
 
     @property
     def first_uv(self) -> NDArray[np.float64]:

@@ -223,7 +223,7 @@ def test_a_convolution_is_samples(tmp_path: Any) -> None:
     assert (again.rows == outer.rows).all()
     assert again.summary() == outer.summary()
     assert outer.summary().startswith(f"{len(outer)} of {len(sums)} samples at ")
-    both = type(sums).concatenate([outer, sums])
+    both = gm.Samples.concatenate([outer, sums])
     assert (type(both), len(both)) == (gm.Samples, len(outer) + len(sums))
 
 
@@ -236,6 +236,51 @@ def test_what_normals_cannot_see_is_said(cells: Any) -> None:
         assert said[0].filename == __file__
         assert len(sums) == 0
         assert sums.first_uv.shape == (0, 2)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize("prefer", ["shape", "normals"])
+@pytest.mark.parametrize("scale", [1.0, 1e-9, -1e9])
+def test_the_mesh_of_a_minkowski_sum(scale: float, prefer: Any) -> None:
+    """Closed, outwards; its support function is h₁ + h₂ at the normals, and not far off between.
+
+    Normals on the side of a negative scale point inwards.
+    """
+    sums = gm.convolve(ELLIPSOID.scaled(scale), TURNED.scaled(scale), NORMALS)
+    mesh = sums.mesh(prefer=prefer)
+    assert (len(mesh.boundary_edges), mesh.euler_characteristic) == (0, 2)
+    assert len(mesh.vertices) + mesh.left_out == len(sums) == 400
+    a, b, c = np.moveaxis(mesh.vertices[mesh.triangles], 1, 0)
+    across = np.cross(b - a, c - a)
+    assert (np.einsum("kx,kx->k", across, mesh.normals[mesh.triangles[:, 0]]) > 0).all()
+    assert (np.einsum("kx,kx->k", across, a) * scale > 0).all()  # the origin is inside
+    farthest = (NORMALS @ mesh.vertices.T * np.sign(scale)).max(axis=1)
+    off = np.sign(scale) * sums.support - farthest
+    assert off.min() >= -32 * EPS * 5 * abs(scale)
+    rows = mesh.sample_index
+    assert np.abs(off[rows]).max() <= 32 * EPS * 5 * abs(scale)
+    if prefer == "normals":
+        np.testing.assert_array_equal(np.sort(rows), np.arange(400))
+        hull, volume = ConvexHull(mesh.vertices), np.einsum("kx,kx", across, a) / 6
+        assert volume == pytest.approx(np.sign(scale) * hull.volume, rel=1e-12)
+
+
+@pytest.mark.compiled
+def test_sums_without_a_mesh() -> None:
+    """Those that fold, of which there are few, and with gaps, unless these are to stay."""
+    folded = given("sqrt(n_x**2 + 4*n_y**2 + 9*n_z**2) - 1")  # the least radius is 1/3
+    torus = gm.fit("torus", (16, 16))
+    for first, second, message in [
+        (torus, ELLIPSOID, "sums on both sides of the tangent planes of [1-9]"),
+        (folded, given("0*n_x"), "are not on a convex body"),
+        (given("n_x"), given("n_y"), "400 in all, do not bound a body"),
+    ]:
+        refused(message, gm.convolve(first, second, NORMALS).mesh)
+    sums = gm.convolve(ELLIPSOID, TURNED, NORMALS)
+    refused("do not bound a body", sums[:0].mesh)
+    upper = sums[sums.normals[:, 2] > 0]
+    refused("200 in all, are too few, or leave too large ga", upper.mesh)
+    assert upper.mesh(angle=45).euler_characteristic == 1
 
 
 def test_surfaces_without_a_common_normal() -> None:
