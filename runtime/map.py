@@ -33,7 +33,7 @@ __all__ = ["GaussMap", "check_part", "kept_map"]
 
 # The number of surfaces whose maps are cached; splines and indices take some MB each.
 KEPT = 8
-# What is compared with points of creases.
+# The fields in which samples are compared with points of creases.
 OF_CREASES = ("points", "uv", "normal_index", "component")
 
 
@@ -121,7 +121,7 @@ class GaussMap(Methods):
     def _with_fit(self, samples: Samples, reach: Reach | None = None) -> Samples:
         """Return samples with their spline, and with the entries on it in their report.
 
-        They are in a `reach`, if it is not None.
+        With a `reach`, spline and entries are those of the part whose normals are in it.
         """
         if len(self._pieces) != 1:
             return samples
@@ -166,7 +166,7 @@ class GaussMap(Methods):
         -------
         Samples
             The same as ``sample(surface, normals=normals)``, which warns if there are none. Where
-            points are proved, the entries of the report on a spline are None: there is none.
+            points are proved, no spline is needed, and the entries of the report on it are None.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""The methods of `GaussMap` that folders above define; `map_methods.pyi` has their signatures.
+"""The methods of `GaussMap` that are defined in tools/; `map_methods.pyi` has their signatures.
 
 Each is imported at first use, so that this module does not import modules that use the map.
 """

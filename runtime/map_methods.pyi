@@ -1,4 +1,4 @@
-"""The methods of `GaussMap` that folders above define; `map_methods.py` loads them."""
+"""The methods of `GaussMap` that are defined in tools/; `map_methods.py` loads them."""
 
 class Methods:
     from ..tools.gauss_map.image_curves import border_image as border_image

@@ -233,7 +233,7 @@ class SampleArrays:
 
     @property
     def _regular(self) -> NDArray[np.bool_]:
-        """(N,) bool array: the samples that stand for a part of the surface."""
+        """(N,) bool array: the samples that represent a part of the surface."""
         component = self.arrays().get("component")
         return np.ones(len(self), bool) if component is None else component == Component.REGULAR
 
@@ -266,7 +266,7 @@ class SampleArrays:
 
     @property
     def aspect(self) -> NDArray[np.floating]:
-        """(N,) float64: where slopes face, in degrees clockwise from north, +y; NaN if level."""
+        """(N,) float64: directions that slopes face, in degrees clockwise from +y; NaN if level."""
         x, y, _ = self.normals.T
         return np.where(np.hypot(x, y) > 0.0, np.degrees(np.arctan2(x, y)) % 360.0, np.nan)
 
@@ -301,7 +301,7 @@ def _if_it_pickles(surface: Whole | Surface | None) -> Any:  # noqa: ANN401 - of
 def _pickles(value: object) -> bool:
     try:
         pickle.dumps(value)
-    except Exception:  # pickling raises anything
+    except Exception:  # pickling may raise anything
         return False
     return True
 
@@ -313,10 +313,10 @@ def _common_dtype(arrays: Mapping[str, object]) -> np.dtype[np.floating]:
 
 
 def _is_parabolic(samples: SampleArrays) -> NDArray[np.bool_]:
-    """Return at which samples (N,) one principal curvature is zero, up to rounding.
+    """Return whether a principal curvature is zero, up to rounding, as booleans (N,).
 
-    If both have the error t, κ₁ κ₂ has the error t (|κ₁| + |κ₂| + t), and |κ₁| + |κ₂| = 2|H| where
-    κ₂ is about 0. If H is unknown, H = 1/D is assumed, D the diagonal of the bounding box.
+    If κ₁ and κ₂ have errors up to t, that of κ₁ κ₂ is at most t (|κ₁| + |κ₂| + t); if κ₂ ≈ 0, then
+    |κ₁| + |κ₂| = 2|H|. Unknown H is assumed to be 1/D, where D is the diagonal of the bounding box.
     """
     K = samples.gaussian_curvature.astype(np.float64)
     diagonal, error = _size_and_error(samples)
@@ -332,7 +332,7 @@ def _is_parabolic(samples: SampleArrays) -> NDArray[np.bool_]:
 def _size_and_error(samples: SampleArrays) -> tuple[float, float]:
     """Return the diagonal of the bounding box, and the error of a curvature relative to 1/D.
 
-    The diagonal is 0 if it is unknown: without points, and without the spline.
+    Without a spline, the box is that of the points. Without points as well, both numbers are 0.
     """
     spline = samples.spline
     if spline is not None:

@@ -56,9 +56,9 @@ class Component(IntEnum):
         A point with K = 0 that is the only one with this normal nearby, or several that cannot be
         told apart.
     CURVE
-        A curve or a region of points with one normal; the sample is one of these. Each piece inside
-        a trim has a sample, if pieces and gaps are longer than 1/256 of a line, or 1/64 of another
-        curve or region.
+        A curve or a region of points with one normal; the sample is one of these points. Each piece
+        inside a trim has a sample, if the pieces and the gaps between them are longer than 1/256 of
+        a line u = const or v = const, or than 1/64 of any other curve or region.
     TIP
         A tip of the surface, such as that of a cone, whose normal cone contains the normal.
     CREASE
@@ -84,10 +84,11 @@ class Component(IntEnum):
 
 
 class Field(NamedTuple):
-    """An array of `Samples`: its columns in a table, one per component, and their type.
+    """An array of `Samples`: the names of its columns in a table, and the kind of its entries.
 
-    `only` is the group of samples that have it, if not all do. `unit` is the unit of real numbers:
-    L is that of the surface; u and v have units of their own.
+    `only` is the group of samples that have the array, a key of ONLY; "" if all samples have it.
+    `unit` is the unit of real numbers: L for lengths of the surface, "parameter" for u and v, which
+    may have different units.
     """
 
     columns: tuple[str, ...]
@@ -116,7 +117,7 @@ FIELDS: dict[str, Field] = {
     "other_uv": Field(("other_u", "other_v"), "parameter", only="edges"),
     "other_face_index": Field(("other_face_index",), kind="index", only="edges"),
 }
-# Groups of samples with fields that other samples lack, as worded in messages.
+# Groups of samples with fields that other samples lack, and their descriptions in messages.
 ONLY = {
     "surface": "on the surface only, not on its spline",
     "proved": "at prescribed normals of surfaces with bounds of their derivatives only",
@@ -185,9 +186,9 @@ def new_field(
     dtype: DTypeLike,
     memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> NDArray[Any]:
-    """Return an array for the field of `count` samples, not yet filled.
+    """Return an uninitialized array for a field of `count` samples.
 
-    It is a part of that field of `memory`, if that is large enough and has the same dtype.
+    It is a part of the same field of `memory`, if this is large enough and has the same dtype.
     """
     import numpy as np
 
@@ -202,7 +203,7 @@ def regular(
     fields: Sequence[str],
     memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> dict[str, NDArray[Any]]:
-    """Return the field `component` for `count` regular points, if it is requested."""
+    """Return the field `component` of `count` regular points; no field if it is not requested."""
     found = {x: new_field(x, count, dtype_of(x, "f8"), memory) for x in GIVEN_NAMES if x in fields}
     for array in found.values():
         array[:] = Component.REGULAR
@@ -229,9 +230,9 @@ def checked_fields(
 ) -> tuple[str, ...]:
     """Return the requested fields, in the order of `COLUMNS`; None means all.
 
-    They are for samples on the surface (`surface`), at prescribed normals (`given`), of a proved
-    search (`proved`; None: unknown), on a grid (`grid`), of a CAD part (`part`), on its sharp edges
-    (`edges`). Raises UnknownNameError for an unknown name, and InputError for anything but a tuple
+    The flags describe the samples: on the surface (`surface`), at prescribed normals (`given`), of
+    a proved search (`proved`; None if unknown), on a grid (`grid`), of a CAD part (`part`), on its
+    sharp edges (`edges`). Raises UnknownNameError for an unknown name, InputError unless a tuple
     of names, for no names, for a repeated name, and for an attribute that is computed from fields.
     """
     from ..base.checks import known_name, listed
@@ -275,7 +276,7 @@ def checked_fields(
 def missing_fields(
     held: Sequence[str], lacking: Sequence[str], subject: str = ""
 ) -> MissingFieldError:
-    """Return the error for samples that lack fields which a subject needs."""
+    """Return the error for samples that have the fields `held`, but not `lacking`."""
     needs = f"{subject} needs {_listed(lacking)}, but " if subject else ""
     return MissingFieldError(
         f"{needs}these samples hold {', '.join(held)} only; "

@@ -13,16 +13,16 @@ __all__ = ["OffsetOf"]
 
 @dataclass(frozen=True)
 class OffsetOf:
-    """The origin of the samples of an offset, from which they can be meshed.
+    """The distance and the surface from which samples of an offset were moved; meshes need both.
 
     Attributes
     ----------
     distance : float
-        The distance by which they were moved along the normals, in L.
+        The distance by which the samples were moved along the normals, in L.
     spline : Spline or None
         The spline that was sampled, None if it is unknown.
     surface : Surface, Part or None
-        The surface, or the CAD part, on which the samples were before.
+        The surface, or the CAD part, on which the samples were before they were moved.
 
     Examples
     --------

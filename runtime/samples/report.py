@@ -36,8 +36,8 @@ __all__ = [
 
 # A larger share of the area, of the length of a curve, or of samples causes a warning.
 WORTH_A_WARNING = 0.01
-# A count is missed if the difference exceeds this share of it plus this number of samples: on a
-# symmetric surface several samples appear or vanish together.
+# A requested count is missed if the number of samples differs from it by more than this share of it
+# plus FEW: on a symmetric surface several samples appear or vanish together.
 COUNT_TOLERANCE, FEW = 0.02, 5
 # A share is a quotient of sums: rounding may carry it this far beyond 0 or 1.
 ROUNDING = 1e-9
@@ -87,20 +87,21 @@ class UndecidedNormal(NamedTuple):
     normal : int
         The row of the normal among the prescribed ones.
     box : (u0, u1, v0, v1) of float
-        The rectangle of parameters. All points outside these boxes are known.
+        The rectangle of parameters. All points outside of the boxes of a report are known.
     kind : {"isolated", "curve", "open", "unmoved"}
         "isolated": a point where K is 0, or several that cannot be told apart. "curve": a curve or
-        a region with this normal, such as a ruling of a cylinder. "open": it is not known whether
-        there is a point, as next to a fold, up to rounding, or where x_u × x_v may vanish.
-        "unmoved": points of the spline could not be moved to the surface. The first two are
-        components without a sample: none of their points was found inside the trim.
+        a region with this normal, such as a ruling of a cylinder. "open": it is unknown whether the
+        box contains a point, as next to a fold, up to rounding, or where x_u × x_v may vanish.
+        "unmoved": points of the spline could not be moved to the surface. "isolated" and "curve"
+        are components without a sample: none of their points was found inside the trim.
     border : bool
         Whether the box reaches an open side of the domain, or may meet the boundary of the trim.
     face : int or None
         For a CAD part: the index of the face to which the parameters belong.
     degree : int or None
-        The degree of the Gauss map around what is in the box, if it is known: the sum of the signs
-        of K of points in the box with any normal nearby. If it is not 0, there is a point.
+        The degree of the Gauss map on the box, if it is known: the sum of the signs of K over the
+        points in the box that have a generic normal close to this one. If it is not 0, the box
+        contains a point.
 
     Examples
     --------
@@ -128,8 +129,8 @@ class UndecidedNormal(NamedTuple):
         return cls(int(normal), box, str(kind), bool(border), face, degree)
 
 
-# Functions that convert the entries to plain values and refuse others; only KNOWN entries are never
-# None.
+# Functions that convert the entries to plain values, and refuse invalid ones. All entries may be
+# None, except those in KNOWN.
 KNOWN = ("surface", "samples")
 CHECKS: dict[str, Callable[[Any, str], Any]] = {
     **dict.fromkeys(("surface", "crs", "unit"), text),
@@ -163,7 +164,7 @@ class SamplingReport:
         The developable share of the area (K ≈ 0), from 0 to 1; no set of normals samples it.
     developable_patches : int or None
         The number of patches that are developable up to the rounding of their coordinates, and so
-        have no support function (including those at a pole).
+        have no support function (including the patches at poles).
     coverage : float or None
         A bound of the distance from any point of the surface to the nearest sample on its side
         (with a normal within 60°, if there is one), in the unit of the surface. Known if a coverage
@@ -172,10 +173,9 @@ class SamplingReport:
         A bound of the angle, in degrees, from the normal of any point of the surface to the nearest
         normal of a sample. Known if an angle was requested.
     infinite_curvatures : int or None
-        The number of samples with infinite Gaussian curvature: at singular points of the spline,
-        which a coarse one may have, and where 1/L² exceeds the largest number of its type, on
-        surfaces smaller than 1e-154 (1e-19 with float32). Known if `gaussian_curvature` was
-        requested.
+        The number of samples with infinite Gaussian curvature: at singular points, which a coarse
+        spline may have, and where 1/L² exceeds the largest number of the dtype, on surfaces smaller
+        than 1e-154 (1e-19 with float32). Known if `gaussian_curvature` was requested.
     on : {"surface", "spline"} or None
         Where the samples lie: on the surface, or on the spline that approximates it.
     unrefined : int or None
@@ -183,13 +183,13 @@ class SamplingReport:
         False): at singular points, and those of a silhouette that could not be moved there.
     proved : int or None
         The number of prescribed normals whose samples are proved to stand for all points; the
-        others are `undecided`. That all of a curve has the normal is known up to rounding. None if
-        nothing is proved: on splines, on surfaces whose derivatives have no bounds, and on parts
-        with `estimated_faces`.
+        others are `undecided`. For curves, it is known up to rounding that all of their points have
+        the normal. None if nothing is proved: on splines, on surfaces whose derivatives have no
+        bounds, and on parts with `estimated_faces`.
     undecided : tuple of UndecidedNormal, or None
-        The boxes that may contain further points: entries (normal, box, kind, border, face). On
-        surfaces without a proof, those around points of the spline that could not be moved to the
-        surface, at most one for each normal; points of others may be missing, too.
+        The boxes that may contain further points, see `UndecidedNormal`. On surfaces without a
+        proof, they are boxes around points of the spline that could not be moved to the surface, at
+        most one for each normal; points with other normals may be missing, too.
     fit_distance, fit_rms : float or None
         The largest distance of the spline from the surface, or from the data, that it approximates,
         and the root mean square of the distance; see `Spline.misfit`.
@@ -199,7 +199,7 @@ class SamplingReport:
         The number of collapsed sides of the domain at which the surface is not smooth; see
         `Spline.apexes`.
     index : int or None
-        The number of the surface among those of `sample_many`.
+        The position of the surface among those of `sample_many`, from 0 on.
     density : {"aligned", "gauss", "uniform", "power"} or None
         "aligned" if samples are on a grid, whether or not they have the fields row and column. For
         a CAD part: the density, "power" for a power of |K|; None for "balanced".
@@ -214,7 +214,7 @@ class SamplingReport:
         For a CAD part with ``edges=True``: the number of samples on sharp edges.
     reach : tuple of float or None
         For a CAD part with ``reach=(axis, angle)``: the unit vector of the axis, and the angle in
-        degrees; for a `Reach`, four such numbers for each condition. `Samples.coverage`,
+        degrees; for a `Reach`, four such numbers for each of its conditions. `Samples.coverage`,
         `normal_deviation` and `weights` refer to the points in reach.
     unit : str or None
         For a CAD part: the unit of lengths, such as "mm", if it is known.
@@ -320,8 +320,8 @@ def sampling_report(
 ) -> SamplingReport:
     """Return the report of a sampling with `density` normals per steradian and its `arrays`.
 
-    `cells` are those of the surface, if the samples are on it and not on its spline; `known` are
-    other entries of the report.
+    `cells` are measured on the surface, if the samples are on it, otherwise on the spline; `known`
+    are other entries of the report.
     """
     misfit, place = spline.misfit, spline.georeference
     return SamplingReport(

@@ -32,9 +32,9 @@ class Samples(SampleArrays, Methods):
     AttributeError. All arrays are C-contiguous; one that is not is copied.
 
     With ``on="surface"`` (see `sample`), points, normals and curvatures are those of the surface at
-    `uv`. A sample with a `normal_index` has the prescribed normal; that of the surface differs from
-    it by rounding, 1e-12 at regular points. With ``on="spline"``, and where `on_surface` is False,
-    all of these are those of the spline.
+    `uv`. A sample with a `normal_index` has the prescribed normal; the normal of the surface at its
+    `uv` differs from it by rounding, 1e-12 at regular points. With ``on="spline"``, and where
+    `on_surface` is False, points, normals and curvatures are those of the spline.
 
     Attributes
     ----------
@@ -49,14 +49,14 @@ class Samples(SampleArrays, Methods):
     gaussian_curvature : (N,) float64 array
         Gaussian curvature K, in 1/L². Points are hyperbolic if its sign bit is set, −0.0 included,
         and also `parabolic` if it is zero up to rounding. On surfaces smaller than 1e-154 it may
-        overflow to infinity, on those larger than 1e154 underflow to zero.
+        overflow to infinity, and on surfaces larger than 1e154 underflow to zero.
     mean_curvature : (N,) float64 array
         Mean curvature H, in 1/L, positive for a sphere with outward normals.
     normal_index : (N,) int64 array
         Rows of the prescribed normals; −1 for a sample that fills a gap.
     patch_index : (N,) int64 array or None
-        Patches of the spline in which the samples were found. None if points are proved to be all
-        with prescribed normals, which are found on the surface itself, and on CAD parts.
+        Indices of the patches of the spline in which the samples were found. None on CAD parts, and
+        at prescribed normals whose points are proved to be complete: no spline is used for these.
     on_surface : (N,) bool array or None
         Whether the sample is on the surface, with the normal of the surface up to 1e-9. False at
         singular points, and for a sample of a silhouette that could not be moved there from the
@@ -64,13 +64,13 @@ class Samples(SampleArrays, Methods):
         may be entirely different, even the sign of K. None with ``on="spline"``, or if it was not
         requested.
     uv_radius : (N, 2) float64 array or None
-        For points that are proved to be all with prescribed normals: bounds of the errors of `uv`,
-        and for samples of other components how far points of these may be from `uv`;
-        NaN on faces of parts where points are estimated. None for others.
+        At prescribed normals whose points are proved to be complete: bounds of the errors of `uv`;
+        for a `component` that is not regular, bounds of the differences from `uv` to all of its
+        points. NaN on faces of parts where points are estimated. None for other samples.
     component : (N,) uint8 array or None
-        For samples at prescribed normals: what the points near a sample with its normal are, see
-        `Component`. None for others, which are regular. Samples that are not regular have K = 0,
-        and are no vertices of meshes; their `weights` are 0.
+        For samples at prescribed normals: the kind of the component of points with this normal that
+        a sample represents, see `Component`. None for other samples, which are regular. Samples
+        that are not regular have K = 0, and are no vertices of meshes; their `weights` are 0.
     row, column : (N,) int64 array or None
         For samples on a grid (see ``density="aligned"`` of `sample`): the indices, from 0 on, of
         the lines v = const and u = const that meet at a sample; −1 for a sample that is not on a
@@ -94,7 +94,7 @@ class Samples(SampleArrays, Methods):
         With ``edges=True``: the second face of a sample on a sharp edge; −1 for other samples.
     surface : Surface, Part or None
         The surface, or the CAD part, on which the samples are; None with ``on="spline"``, for
-        samples from a file, and after pickling if the surface does not pickle.
+        samples from a file, and after pickling if the surface cannot be pickled.
     offset_of : OffsetOf or None
         For samples of an `offset`: its distance, and the spline and the surface of the samples that
         were moved.
@@ -102,7 +102,7 @@ class Samples(SampleArrays, Methods):
     Raises
     ------
     InputError
-        If an array has another shape or dtype, or if there is none.
+        If an array has another shape or dtype, or if there is no array.
 
     Examples
     --------
@@ -178,9 +178,9 @@ class Samples(SampleArrays, Methods):
 
 
 def spline_or(samples: Samples, spline: AnySpline | None) -> Spline:
-    """Return the given spline, or that of the samples, or one of their surface.
+    """Return the given spline, or else that of the samples, or else that of their surface.
 
-    Raises InputError without one.
+    Raises InputError if there is none.
     """
     spline, surface = samples.spline if spline is None else spline, samples.surface
     if spline is None and isinstance(surface, Surface) and len(surface.pieces()) == 1:

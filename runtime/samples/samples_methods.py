@@ -1,4 +1,4 @@
-"""The methods of `Samples` that folders above define; `samples_methods.pyi` has their signatures.
+"""The methods of `Samples` that are defined in tools/; `samples_methods.pyi` has their signatures.
 
 Each is imported at first use, as are the names of the package (see `__init__.pyi`), so that this
 module does not import modules that use samples.

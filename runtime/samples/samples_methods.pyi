@@ -1,4 +1,4 @@
-"""The methods of `Samples` that folders above define; `samples_methods.py` loads them."""
+"""The methods of `Samples` that are defined in tools/; `samples_methods.py` loads them."""
 
 class Methods:
     from ...tools.density.methods import coverage as coverage

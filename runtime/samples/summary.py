@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["kinds_of_points", "misfit_clause", "summary_of"]
 
-# In the singular and in the plural.
+# The names of special components, in the singular and in the plural.
 SPECIAL = {
     Component.ISOLATED: ("isolated with K = 0",) * 2,
     Component.CURVE: ("on a curve with one normal", "on curves with one normal"),

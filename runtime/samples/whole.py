@@ -17,7 +17,7 @@ __all__ = ["FaceColumn", "NormalDeviation", "Whole"]
 class FaceColumn(NamedTuple):
     """A column of tables with a property of faces: its type, and a value for each face.
 
-    None means no value. `unit` is that of lengths, L, or empty.
+    A value may be None. `unit` is "L" for lengths, otherwise "".
     """
 
     name: str
