@@ -14,7 +14,7 @@ from .surface_values import SurfaceValues
 
 __all__ = ["close_seams", "closed_points"]
 
-# Points at one end of a parameter are compared with points this many roundings from the other.
+# If both ends of a parameter differ, points this many roundings away from the ends are computed.
 ROUNDINGS = 2.0
 
 
@@ -57,7 +57,10 @@ def close_seams(surface: SurfaceValues, vertices: NDArray[np.float64]) -> None:
 def _by_rounding(
     surface: SurfaceValues, axis: int, last: NDArray[np.float64], first: NDArray[np.float64]
 ) -> str:
-    """Return a clause: how far both ends of a parameter differ, and if its rounding explains it."""
+    """Return a clause: the distance of the points at both ends, and whether rounding explains it.
+
+    The rounding is that of the parameter: 2π, for example, is no number in float64.
+    """
     low, high = surface.domain[axis]
     other = np.linspace(*surface.domain[1 - axis], len(last))
     far = float(np.abs(last - first).max())

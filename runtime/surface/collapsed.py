@@ -28,13 +28,13 @@ __all__ = ["closed_grid", "with_found_sides"]
 
 Values = TypeVar("Values", bound=SurfaceValues)
 
-# The number of steps of a line along a side, an even number.
+# The number of intervals between points along a side, an even number.
 STEPS = 16
 # The distance of the lines near a side, as a part of the domain. For a surface far from the origin,
 # relative to its size, it is the cube root of the rounding error, if that is larger.
 LEAST_STEP, MOST_STEP = 1e-4, 1e-2
-# A line continues smoothly if three points predict the next one up to this part of the step. The
-# error is of second order in the step; for data, the step is that of the grid.
+# A line continues smoothly if three points predict the next one up to this part of the step. This
+# relative error is of second order in the step; for data, the step is that of the grid.
 KINK, KINK_OF_DATA = 1e-2, 0.3
 
 

@@ -1,8 +1,8 @@
 """Creases, parameter lines where a NURBS surface is not smooth, and smoothly closed parameters.
 
-Both are measured: a surface may be smooth at a multiple knot, as is a circle of four arcs. It is
-smooth across a line if neither the normal jumps there, nor the length of the tangent across the
-line so much that a spline would fold.
+Both are detected from points and derivatives, not from multiplicities: a surface may be smooth at a
+multiple knot, as is a circle of four arcs. It is smooth across a line if its normal does not jump
+there, and the length of the tangent across the line not so much that a spline would fold.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from .nurbs import Nurbs
 __all__ = ["CREASE_ANGLE", "creases", "smoothly_closed"]
 
 
-# The least jump of the normal at a crease, in degrees. CAD data are at best this smooth.
+# The least jump of the normal at a crease, in degrees. Smooth joints of CAD data jump by less.
 CREASE_ANGLE = 0.1
-# The largest smooth ratio of tangent lengths. The spline of a surface has no folds at this ratio,
-# and some from 5 on.
+# The largest ratio of tangent lengths that counts as smooth. At this ratio, splines of surfaces
+# have no folds; from a ratio of 5 on, they have some.
 LARGEST_JUMP = 3.0
 # Where |x_u × x_v| on a knot line is below SINGULAR times the largest |x_u| |x_v|, x_u or x_v
 # vanishes. The normal is then evaluated at a distance of BESIDE times the knot span from the line.
@@ -71,7 +71,8 @@ def _candidates(nurbs: Nurbs, axis: int) -> list[float]:
 def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
     """Return the largest angle in degrees between the normals below a line and above it.
 
-    For the ends of a domain, the line has two parameter values. NaN if no point has normals.
+    `below` and `above` are one parameter, or both ends of a domain that meet at a seam. NaN if no
+    point has normals.
     """
     low, high = nurbs.domain[axis]
     first = _normals_along(nurbs, axis, (low, below), 1)
@@ -119,7 +120,7 @@ def _normals_along(nurbs: Nurbs, axis: int, part: tuple[float, float], end: int)
 
 
 def _jets_along(nurbs: Nurbs, axis: int, t: float) -> Array:
-    """Return jets (k, 6, 3) at points on the line u = t or v = t: some in each knot span of it."""
+    """Return jets (k, 6, 3) at points on the line u = t or v = t, several in each knot span."""
     other = 1 - axis
     knots, (low, high) = nurbs.knots[other], nurbs.domain[other]
     ends = np.unique(np.concatenate([[low, high], knots[(knots > low) & (knots < high)]]))

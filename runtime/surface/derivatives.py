@@ -58,11 +58,11 @@ CHUNK = 4096  # number of rows in one batch
 # LARGE.
 SAME, LARGE = 1e-10, 1e-3
 FINER, LEVELS = 4.0, 5
-ROUNDING = 2.0**-46  # of values: smaller differences are rounding errors
+ROUNDING = 2.0**-46  # relative to values: smaller differences are rounding errors
 # The number of points where given derivatives are compared with numerical ones.
 PLACES = 48
-# They may differ by TOLERANCE, relative to the largest derivative of the same order, plus DOUBT
-# times the change of the numerical ones when their steps are doubled.
+# Given and numerical derivatives may differ by TOLERANCE, relative to the largest derivative of the
+# same name, plus DOUBT times the change of the numerical ones when their steps are doubled.
 TOLERANCE = 1e-5
 DOUBT = 10.0
 
@@ -101,7 +101,7 @@ class Differentiable(ABC):
 
 @dataclass(frozen=True)
 class Differences:
-    """The derivatives of a function by differences; it is only called inside the domain."""
+    """The derivatives of a function by differences; the function is only called in the domain."""
 
     function: Function
     domain: Domain
@@ -123,7 +123,7 @@ class Differences:
         return jets
 
     def _refined(self, u: Array, v: Array, steps: tuple[float, float], bounds: Bounds) -> Array:
-        """Return 2-jets (k, 6, 3), with smaller steps where these make a difference."""
+        """Return 2-jets (k, 6, 3), with smaller steps where these reduce the estimated error."""
         jets, doubts = differences(self._inside, u, v, steps, bounds)
         rows = np.flatnonzero(doubts > SAME)
         for _ in range(LEVELS):
@@ -160,7 +160,7 @@ def power_of_two(value: float) -> float:
 
 
 def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tuple[Array, Array]:
-    """Return parameters of the same points inside the domain, by its boundary conditions.
+    """Return parameters of the same points inside the domain, from its boundary conditions.
 
     Beyond open ends, parameters are unchanged.
     """
@@ -205,8 +205,8 @@ def differences(
         value, that of a second derivative h⁸/3150 of the tenth plus 8 ε/h². Next to a bound it is
         ten to a thousand times larger.
     (k,) float64 array
-        The distances from differences of seven points, relative to the differences of values;
-        infinity if a value is not finite, unless x itself is not.
+        Estimated errors: the changes of derivatives if only seven points are used, relative to the
+        differences of values. Infinity if a derivative is not finite, but 0 if x itself is not.
 
     """
     (shift_u, inward_u), (shift_v, inward_v) = (
@@ -242,7 +242,11 @@ def differences(
 
 
 def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
-    """Return the change if two points are omitted, relative to differences of (9, k, 3)."""
+    """Return relative changes (k,) of derivatives if two of the nine points are omitted.
+
+    `values` (9, k, 3) are differences from the central points, of which the largest is 1 on this
+    scale; `least` (k,) are their rounding errors.
+    """
     changes = np.array([weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
     size, change = (np.abs(x).max(axis=0).max(axis=1) for x in (values, changes))
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -252,9 +256,9 @@ def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
 def shifts_inside(
     values: Array, step: float | Array, low: float | Array, high: float | Array
 ) -> tuple[Indices, Indices]:
-    """Return the steps by which points are shifted to stay inside, and the inward sign.
+    """Return the numbers of steps by which nodes are shifted to stay inside, and inward signs.
 
-    Step and bounds are common to all values (k,), or arrays (k,).
+    The step and the bounds are the same for all values (k,), or arrays (k,).
     """
     before = np.clip(np.floor((values - low) / step), 0, HALF)
     after = np.clip(np.floor((high - values) / step), 0, HALF)
@@ -269,12 +273,12 @@ def nodes_between(
     low: float | Array,
     high: float | Array,
 ) -> Array:
-    """Return the nodes of a difference, which rounding does not move out of the bounds."""
+    """Return the nodes of a difference; rounding does not move them out of the bounds."""
     return np.clip(values + offsets * step, np.minimum(low, values), np.maximum(high, values))
 
 
 def weighted(weights: Array, shifts: Indices, values: Array) -> Array:
-    """Return the sums (k, 3) of values (9, k, 3) with the weights of their shifts."""
+    """Return sums (k, 3) over values (9, k, 3) at nodes, weighted according to shifts (k,)."""
     return np.einsum("kj,jkc->kc", weights[shifts + HALF], values)
 
 

@@ -31,7 +31,8 @@ __all__ = [
 def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tuple[Any, ...]:
     """Return three expressions in two symbols, or two in one; InputError if they are unusable.
 
-    Symbols of an expression with the same name are replaced by these, whatever their assumptions.
+    Symbols in the expressions that have the names of `symbols` are replaced by these, whatever
+    their assumptions are.
     """
     by_name = {symbol.name: symbol for symbol in symbols}
     expressions = [as_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]
@@ -49,9 +50,9 @@ def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tup
 
 
 def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
-    """Return a domain or an interval with its bounds, which may be expressions, as floats.
+    """Return a domain or an interval with bounds as floats; the given bounds may be expressions.
 
-    Raises InputError, with the required form, if it is invalid.
+    Raises InputError, which states the required form, if the domain is invalid.
     """
 
     def number(end: object) -> Any:  # noqa: ANN401
@@ -65,7 +66,7 @@ def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
 
 
 def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
-    """Return the coordinates, one more than there are parameters."""
+    """Return the coordinates: one more than there are parameters; InputError otherwise."""
     names = "(x, y, z)" if parameters == 2 else "(x, y)"
     coordinates = tuple(listed(position) or ())
     if len(coordinates) != parameters + 1:
@@ -77,7 +78,7 @@ def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
 
 
 def two_symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
-    """Return real symbols for the parameters of a surface, symbols or names; InputError if not."""
+    """Return real symbols for two parameters, given as symbols or names; otherwise InputError."""
     try:
         u, v = (_symbol(x) for x in parameters)
     except Exception:  # iteration may raise anything
@@ -88,7 +89,7 @@ def two_symbols(parameters: Sequence[Any]) -> list[sympy.Symbol]:
 
 
 def one_symbol(parameter: sympy.Symbol | str) -> list[sympy.Symbol]:
-    """Return a real symbol for the parameter of a curve, a symbol or a name; InputError if not."""
+    """Return a real symbol for a parameter, given as symbol or name; otherwise InputError."""
     symbol = _symbol(parameter)
     if symbol is None:
         raise InputError(f"the parameter must be a SymPy symbol such as t, not {shown(parameter)}.")
@@ -106,9 +107,9 @@ def _symbol(entry: object) -> sympy.Symbol | None:
 
 
 def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return an expression, or the expression of a text; `symbols` are its names.
+    """Return an expression, or the expression in a text; `symbols` are the symbols by name.
 
-    Raises InputError, with the reason, if it is invalid, or if kernels cannot compute it.
+    Raises InputError, which states the reason, if the expression is invalid or cannot be compiled.
     """
     import sympy as sp
 
@@ -131,7 +132,7 @@ def as_condition(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - 
 def _read(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401
     """Return the SymPy object for a text, a number or an expression; None for anything else.
 
-    SymPy would run texts as Python, even those in lists, so none is passed to it.
+    SymPy would run texts as Python, even those in lists, so texts are never passed to it.
     """
     import sympy as sp
 

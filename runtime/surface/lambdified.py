@@ -129,7 +129,7 @@ def _with_floor(expression: Any) -> Any:  # noqa: ANN401 - SymPy has no types
 
 
 def _derivative(expression: Any, by: sympy.Symbol) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Differentiate away from kinks and jumps, such as those of |u| and of floor(u)."""
+    """Differentiate, without contributions of kinks and jumps, as in |u| and floor(u)."""
     import sympy as sp
 
     flat = sp.sign, sp.floor, sp.ceiling, sp.Heaviside
@@ -143,7 +143,7 @@ def _derivative(expression: Any, by: sympy.Symbol) -> Any:  # noqa: ANN401 - Sym
 
 
 def _differentiated(expression: Any) -> Any:  # noqa: ANN401
-    """Return the function in a derivative, f for f'(g)."""
+    """Return the function f of an unevaluated derivative f'(g); None if there is none."""
     return expression.args[0].args[0] if expression.args[0].args else None
 
 
@@ -154,7 +154,7 @@ def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> 
     modules: list[Any] = ["numpy"]
     reading, found = bridge.reading(), list(expressions)
     if any(isinstance(x, sp.erf | sp.erfc) for e in found for x in reading.parts(e)):
-        # NumPy does not have them.
+        # NumPy has no erf and erfc.
         from scipy.special import erf, erfc
 
         modules.insert(0, {"erf": erf, "erfc": erfc})
@@ -169,5 +169,5 @@ def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> 
 
 
 def _defined(definitions: Any, expressions: Any) -> tuple[Any, Any]:  # noqa: ANN401
-    """Return what the option `cse` of SymPy's lambdify needs."""
+    """Return definitions and expressions: a function for the option `cse` of SymPy's lambdify."""
     return definitions, expressions

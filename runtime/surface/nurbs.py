@@ -71,7 +71,7 @@ class Nurbs(Differentiable):
         return nurbs_tape(self._net)
 
     def restricted(self, domain: Domain) -> Nurbs:
-        """Return the surface over a part of its domain; whole parameters stay periodic."""
+        """Return the surface over a part of its domain, periodic only along whole periods."""
         whole = zip(self.periodic, domain, self.domain, strict=True)
         u, v = (periodic and part == ends for periodic, part, ends in whole)
         lines_u, lines_v = (
@@ -114,6 +114,6 @@ class Nurbs(Differentiable):
         )
 
     def _scratch(self) -> kernels.Scratch:
-        """Return memory for one call; threads share none."""
+        """Return memory for one call: threads share no memory."""
         p, q = self.degrees
         return kernels.Scratch(np.empty((3, p + 1)), np.empty((3, q + 1)), np.zeros((6, 4)))

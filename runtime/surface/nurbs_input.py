@@ -43,8 +43,8 @@ def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nur
         )
     )
     factors = np.ones(points.shape[:2]) if weights is None else _weights(weights, points.shape[:2])
-    # Where one weight outweighs all others, quotients are small differences of large numbers,
-    # unless its point is the origin.
+    # Where one weight outweighs all others, its control point has to be about the origin: otherwise
+    # quotients are small differences of large numbers.
     heavy = points[factors >= LIGHT * factors.max()]
     centre = heavy.min(axis=0) / 2 + heavy.max(axis=0) / 2
     points = points - centre
@@ -126,8 +126,8 @@ def _weights(values: ArrayLike, shape: tuple[int, ...]) -> Array:
 def _definition_of(value: object) -> tuple[Any, ...]:
     """Return degrees, knots, points and weights of a geomdl or Splipy surface.
 
-    The attributes tell which it is. Raises InputError for other objects, and for features that
-    cannot be converted.
+    The attributes of the object tell which kind it is. Raises InputError for other objects, and for
+    features that cannot be converted.
     """
     if is_of_geomdl(value):
         return _of_geomdl(value)
@@ -169,7 +169,7 @@ def _of_splipy(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not impor
     """Return the definition of a `splipy.Surface`.
 
     Its control points are w x, w y, w z, w if it is rational. In a periodic direction, the first
-    ones are not repeated at the end.
+    control points are not repeated at the end.
     """
     bases = tuple(value.bases)
     points = real_array(value.controlpoints, "control points")

@@ -29,7 +29,7 @@ MOST_NUMBERS = 4_000_000  # of the coefficients of all polynomials: 64 MB with t
 
 
 class Axis(NamedTuple):
-    """The spans of one parameter: ends, continuity, frames, and the basis (k, p + 1, p + 1)."""
+    """The k spans of one parameter: ends, continuity, frames, and the basis (k, p + 1, p + 1)."""
 
     breaks: Array
     smooth: NDArray[np.int64]

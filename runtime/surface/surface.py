@@ -65,12 +65,12 @@ class Surface(SurfaceValues):
     trim : Trim or None
         The part of the domain that belongs to the surface, None for all of it; see `trimmed`.
     assumed_open : (bool, bool)
-        For u and for v, whether sides are open by assumption: ``periodic=False``, not "open". Then
-        `fit` tests whether one of them is a single point at which the surface is smooth; such a
-        side becomes a pole, and the other parameter periodic. If points were given, `boundary` has
-        these poles, and points that repeat the first ones are left out.
+        For u and for v, whether sides are open by assumption, for ``periodic=False``, and not by
+        declaration, for "open". Then `fit` tests whether one of them is a single point at which the
+        surface is smooth; such a side becomes a pole, and the other parameter periodic. For points,
+        this is done at once: `boundary` has the poles, and `grid` no points that repeat others.
     georeference : Georeference or None
-        Of a `terrain`: the coordinate reference system `crs`, as "EPSG:number" or WKT, and the
+        For a `terrain`: the coordinate reference system `crs`, as "EPSG:number" or WKT, and the
         `origin` (x, y, z) that was subtracted from coordinates.
 
     Examples
@@ -427,8 +427,8 @@ class Surface(SurfaceValues):
     def transformed(self, matrix: ArrayLike) -> Surface:
         """Return the image of the surface under an affine map, such as a rotation or a scaling.
 
-        Derivatives are mapped exactly. A reflection also reverses
-        u, u → u0 + u1 - u, so that normals stay on the same side: outward ones stay outward.
+        Derivatives are mapped exactly. A reflection also reverses u, u → u0 + u1 - u, so that
+        normals stay on the same side: outward ones stay outward.
 
         Parameters
         ----------

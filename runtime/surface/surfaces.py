@@ -162,8 +162,8 @@ def surface(name: str, /, **parameters: float) -> Surface:
 def named(value: T | str) -> T | Surface:
     """Return the surface of the catalogue for a name, and any other value unchanged.
 
-    Every function that takes a surface calls this first. UnknownNameError for unknown names has
-    advice on names of files.
+    Every function that takes a surface calls this first. It raises UnknownNameError for unknown
+    names, with advice if the name is that of a file.
     """
     if isinstance(value, str) and value not in CATALOGUE and (advice := file_advice(value)):
         raise UnknownNameError(f"there is no surface {shown(value)}; {advice}.")

@@ -34,8 +34,8 @@ ROUNDING = 64.0
 def traced_tape(function: Function, domain: Domain) -> Tape | None:
     """Return the tape of a callable f(u, v) → (..., 3); None if it cannot be traced.
 
-    A callable has none if it depends on comparisons, single precision, or variables other than u
-    and v.
+    A callable cannot be traced if it depends on comparisons, single precision, or variables other
+    than u and v.
     """
     for called in (function, _with_object_arrays(function)):
         try:
@@ -66,7 +66,7 @@ class ObjectArrays:
 def _with_object_arrays(function: Function) -> Function:
     """Return a Python function that fills its new arrays with traced numbers.
 
-    It runs with other globals: a call that assigns to one of them raises TypeError.
+    It runs with a copy of its globals: a call that assigns to a global raises TypeError.
     """
     if not isinstance(function, FunctionType):
         return function
@@ -89,7 +89,7 @@ def _with_object_arrays(function: Function) -> Function:
 def traced_condition(function: Function, domain: Domain) -> Condition | None:
     """Return the inequalities in a callable f(u, v) → booleans; None if they are unknown.
 
-    They are joined by &, | and ~, and compared with the callable at some points.
+    The inequalities are joined by &, | and ~. At some points, they are compared with the callable.
     """
     writer = TapeWriter()
     try:
