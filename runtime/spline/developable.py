@@ -21,9 +21,9 @@ LEAST_DENSITY = 10_000 / (4 * math.pi)
 class CellMeasure:
     """The cells (m n,): areas, absolute solid angles of their images, and the largest |K| nearby.
 
-    K of a cell is its signed solid angle divided by its area: on a developable surface, where the
-    spline has elliptic and hyperbolic errors, these cancel in it. It also vanishes where K changes
-    its sign, hence the maximum over the cell and its neighbours.
+    K of a cell is the sum of its signed solid angles divided by its area: the spline of a
+    developable surface has elliptic and hyperbolic patches, whose solid angles cancel. This K also
+    vanishes where K changes its sign, hence the maximum over the cell and its neighbours.
     """
 
     areas: Array

@@ -182,10 +182,10 @@ class Topology:
 
     @cached_property
     def owner(self) -> tuple[Indices, NDArray[np.int8]]:
-        """The edge whose boundary cone decides for each edge (3 T,), and a sign.
+        """The owner of the boundary cone of each edge (3 T,), which is an edge, and a sign.
 
-        Both edges of a smooth joint have the same one. The sign is that of the form of an edge
-        relative to the form of the edge that decides.
+        Both edges of a smooth joint have the same owner, whose cone decides on which side a normal
+        is. The sign is that of the quadratic form of an edge relative to the form of its owner.
         """
         owner, side = np.arange(3 * len(self.nets)), np.ones(3 * len(self.nets), np.int8)
         pairs = self.pairs[self.joints.smooth]
@@ -269,7 +269,10 @@ class Topology:
 
     @cached_property
     def angles(self) -> Array:
-        """The largest angle (T,), in radians, of normals of a patch and those of its joints."""
+        """The largest angle (T,), in radians, between normals of a patch and of smooth neighbours.
+
+        Normals are compared along smooth joints, and with the shared normals at corners.
+        """
         found = np.zeros(len(self.nets))
         joints = self.joints
         for side in (0, 1):

@@ -11,8 +11,8 @@ __all__ = ["Misfit"]
 class Misfit:
     """The distance of a spline from the surface or the data that it approximates.
 
-    Both are compared at equal parameters. So `distance` is an upper bound of the distance of the
-    surfaces at these points, and a close one: tangential differences are small.
+    Points of both are compared at equal parameters. So `distance` is an upper bound of the distance
+    of the surfaces at these points, and a close one: tangential differences are small.
 
     Attributes
     ----------
@@ -23,8 +23,8 @@ class Misfit:
         The root mean square of the distance, in L, over points that are evenly distributed in the
         domain; for data, over all points.
     angle : float or None
-        The largest angle, in degrees, between the normals of spline and surface, poles and singular
-        points themselves excepted; None for data, which have no normals.
+        The largest angle, in degrees, between the normals of spline and surface at parameters other
+        than poles and singular points; None for data, which have no normals.
 
     Examples
     --------

@@ -37,7 +37,7 @@ USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)
 # A lowest or highest value that differs from the given `nodata` by at most this part of itself may
 # be the same number, printed with six digits.
 NEAR = 1e-5
-# The least number of heights in a block, and its least part of all heights.
+# The least number of heights in a block of missing data, and the least part of all heights.
 FEWEST, SMALLEST = 16, 1e-3
 # Shores are about as steep as the land. A block is missing data if the median step at its boundary
 # exceeds the QUANTILE of the steps elsewhere by this factor.
@@ -58,7 +58,7 @@ class Known:
     patches: Flags
 
     def contains(self, uv: Array, threads: int | None = None) -> Flags:
-        """Return whether points (k, 2) of the domain are in such patches, as booleans (k,)."""
+        """Return whether points (k, 2) of the domain are in known patches, as booleans (k,)."""
         low, high = np.array(self.domain).T
         cells, found = (uv - low) / (high - low) * self.cells, np.empty(len(uv), dtype=np.int64)
         patches_at(*self.cells, cells, found, np.empty((len(uv), 2)))
@@ -176,7 +176,7 @@ def _jumps(heights: Array, block: Flags) -> bool:
 
 
 def known_of_grid(points: Array, domain: Domain, boundary: Boundary, name: str) -> Known | None:
-    """Return the patches of the spline of a grid that do not depend on NaN; None if none is NaN.
+    """Return the patches of the spline of a grid that do not depend on NaN; None without any NaN.
 
     Raises InputError if no patch is left.
     """
@@ -200,7 +200,7 @@ def known_of_values(
 ) -> Known:
     """Return the patches of a quasi-interpolant that depend only on existing values.
 
-    `exists` (k,) returns whether values exist at points (k, 2) of the domain.
+    `exists` takes points (k, 2) of the domain and returns whether they have values, (k,).
     """
 
     def values(u: Array, v: Array) -> Array:

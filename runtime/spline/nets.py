@@ -41,7 +41,7 @@ class NetSpline(PatchSpline, NetMethods):
     control_nets : (T, 6, 3) float64 array
         The nets, each in the order b200, b020, b002, b110, b101, b011.
     triangles : (T, 6) int64 array
-        The indices of their points, equal for points that patches share.
+        The indices of the points of the nets; points that patches share have one index.
 
     Examples
     --------
@@ -170,7 +170,7 @@ class NetSpline(PatchSpline, NetMethods):
 
     @property
     def cap(self) -> tuple[Array, float]:
-        """A unit vector, and its least cosine with a normal; −1 unless all are positive."""
+        """A unit vector, and its least cosine with normals; −1 unless all cosines are positive."""
         control = self.topology.normals.reshape(-1, 3)
         lengths = np.linalg.norm(control, axis=1)
         unit = control[lengths > 0.0] / lengths[lengths > 0.0, None]
@@ -237,9 +237,9 @@ def from_nets(
     """Return a spline of quadratic Bézier triangles on any triangulation.
 
     Joints are edges with the same ends and the same middle control point, up to rounding, or with
-    the same indices. Where normals are continuous, a normal on the joint belongs to one of the two
-    patches, and every point with a given normal is found exactly once. A joint where they differ is
-    a crease, and part of the boundary of both patches.
+    the same indices. If the normals of both patches agree along a joint, each normal there belongs
+    to one of the two patches, and every point with a given normal is found exactly once. Otherwise
+    the joint is a crease, and part of the boundary of both patches.
 
     Parameters
     ----------

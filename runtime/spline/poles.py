@@ -4,8 +4,8 @@ The coefficients around a pole are exactly in one plane, so that the pole has on
 patches next to a pole have an edge that is collapsed to a point p. With the first ring of
 coefficients at p + d and the ghosts at p − d, the normal there is along the cross product of two
 sums of neighbouring d: the same for all patches if all d lie in one plane, and the Gaussian images
-close around it without a gap. On a smooth surface the distances from such a plane are of third
-order in the size of a cell. They must be zero in exact arithmetic: d is rounded to x a + y b with
+close around it without a gap. On a smooth surface the distances of d from such a plane are of third
+order in the size of a cell. They must be exactly zero: therefore d is rounded to x a + y b with
 integers x, y and two vectors a, b of integers, all in units of the rounding of the coordinates.
 """
 
@@ -43,7 +43,7 @@ def broken_poles(points: Array, boundary: Boundary, axis: int) -> list[int]:
 
 
 def spread_missing(bad: Flags, boundary: Boundary, rows: int) -> None:
-    """Mark all of the `rows` next to a pole as missing (m, n) if any of their points is."""
+    """Mark all points of the `rows` next to a pole as bad if any of them is, in flags (m, n)."""
     for axis, end in np.ndindex(2, 2):
         near = np.swapaxes(bad, 0, axis)[-rows:] if end else np.swapaxes(bad, 0, axis)[:rows]
         if boundary[axis][end] == "pole" and near.any():
@@ -69,8 +69,8 @@ def close_pole(rows: Array, outside: int, first: int) -> None:
 def ring_around(ring: Array) -> tuple[Array, Array]:
     """Return a ring of coefficients (m, 3) moved into one plane, and the pole in its middle.
 
-    All coordinates are multiples of a small power of two, so that 2 p − ring is exact. A ring that
-    does not run around p once, due to rounding, is only rounded.
+    All coordinates are multiples of a small power of two, so that 2 p − ring is exact. If a ring
+    does not run around p once, due to rounding, it is not moved into a plane.
     """
     grain = 4.0 * float(np.spacing(np.abs(ring).max()))
     ring = np.round(ring / grain)

@@ -1,4 +1,4 @@
-"""Methods of splines that modules above define; `spline_methods.pyi` has their signatures."""
+"""Methods of splines that later modules define; `spline_methods.pyi` has their signatures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Methods of `Spline` and `NetSpline` that modules above define; `spline_methods.py` loads them."""
+"""Methods of `Spline` and `NetSpline` that later modules define; `spline_methods.py` loads them."""
 
 from numpy.typing import ArrayLike
 

@@ -1,8 +1,8 @@
 """Tips of splines: edges of patches that are one point, as at the apex of a cone.
 
-A quadratic patch with such an edge is developable: its normals depend only on the distance from the
-tip. It has no samples, since its other normals are rounding errors. Smooth poles, with one normal,
-are no tips.
+A quadratic patch with such an edge is developable: its normals depend only on one parameter, the
+distance from the tip. It has no samples, since all other normals that it seems to have are rounding
+errors. Smooth poles, with one normal, are no tips.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Tips(NamedTuple):
     same: float
 
     def hold(self, points: NDArray[np.floating]) -> Flags:
-        """Return which points (k, 3) are a tip."""
+        """Return whether points (k, 3) are tips, as booleans (k,)."""
         away = points[:, None] - self.points
         return (np.linalg.norm(away, axis=2) <= self.same).any(axis=1)
 
