@@ -42,8 +42,9 @@ SAME_PLACE = 1e-6
 class Decision:
     """The pairs of a patch and a normal that are hits.
 
-    `which` (k,) are their positions among all pairs. `local` (k, 5) holds u, v, the sign of K, and
-    the parameters at which curvatures are evaluated: u, v, or a nearby point if that is singular.
+    `which` (k,) are the positions of the hits among all pairs. `local` (k, 5) holds u, v, the sign
+    of K, and the parameters at which curvatures are evaluated: u, v, or those of a nearby point if
+    the point is singular.
     """
 
     which: NDArray[np.int64]
@@ -149,9 +150,9 @@ def uncancelled(
     """Return which of the hits (k,) to keep: at a pole, hits of opposite signs cancel.
 
     `poles` (k,) are the indices of poles, −1 for hits elsewhere. Around a pole the Gaussian image
-    of a spline has folds, due to rounding, or where the curvatures of the surface differ there. The
-    remaining hits are as many as the image winds around the normal: one, at a regular point of the
-    surface. If it does not wind around it, all hits remain.
+    of a spline has folds, due to rounding, or where the principal curvatures of the surface differ
+    there. The number of remaining hits is the winding number of the image around the normal: one,
+    at a regular point of the surface. If hits cancel completely, all of them remain.
     """
     keep = np.ones(len(numbers), dtype=bool)
     at = np.flatnonzero(poles >= 0)
@@ -187,7 +188,7 @@ def _first_of_each_place(
     place: NDArray[np.float64],
     near: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
-    """Return which hits to keep: near the boundary, those that coincide with no earlier hit."""
+    """Return which hits to keep; near the boundary, only one of several that coincide."""
     keep = np.ones(len(place), dtype=bool)
     if not near.any():
         return keep

@@ -29,9 +29,10 @@ SAMPLES_AT_A_TIME = 1 << 16
 class Hits:
     """Pairs of a normal and a patch that has it, sorted by normal and then by patch.
 
-    `keys` (N,) are index of the normal << 32 | patch. `exact` (k,) are the indices of the hits that
-    were decided exactly, with `local` (k, 5) as in `Decision`. `developable` is the number of
-    patches that are developable up to the rounding of their coordinates.
+    `keys` (N,) are (index of the normal) << 32 | index of the patch. `exact` (k,) are the positions
+    of hits that were decided exactly, and `local` (k, 5) their results, as in `Decision`.
+    `developable` is the number of patches that are developable up to the rounding of their
+    coordinates.
     """
 
     keys: Indices
@@ -63,7 +64,7 @@ class Hits:
 
     @cached_property
     def patch_index(self) -> Indices:
-        """The patch number of each hit."""
+        """The index of the patch of each hit."""
         return self.keys & NUMBER
 
     @cached_property
@@ -110,7 +111,7 @@ def fill(
 ) -> dict[str, NDArray[Any]]:
     """Return fields of samples at hits of normals (S, 3), see `Samples`; floats become `dtype`.
 
-    They are written to those fields in `memory` that are large enough.
+    The fields are written to the arrays of the same names in `memory` that are large enough.
     """
     if isinstance(spline, NetSpline):
         known = {"normal_index": hits.normal_index, "patch_index": hits.patch_index}

@@ -40,7 +40,7 @@ from .long_integers import (
 
 __all__ = ["decide_in_nets", "edge_signs", "errors_of", "fields_in_nets", "flat_nets"]
 
-# Permutations of a net that turn the edges u = 0, v = 0, w = 0 to v = 0, from start to end.
+# Permutations of a net that turn the edges u = 0, v = 0, w = 0 to the edge v = 0.
 TURNED = tuple(
     (x.end, k, x.start, x.end_beside, x.middle, x.start_beside) for k, x in enumerate(EDGES)
 )

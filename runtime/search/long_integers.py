@@ -92,7 +92,7 @@ def displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[n
 def monomials_of_forms(vectors: Integers, n: Integers) -> Integers:
     """Return the coefficients (10, 4, k) of the quadratic forms D, U, V, W.
 
-    Mixed ones are F(x + y) − F(x) − F(y), for two of n and the axes.
+    The coefficients of mixed monomials are F(x + y) − F(x) − F(y), for two of n and the axes.
     """
     axes = [
         n,
@@ -113,7 +113,7 @@ def leading_sign(n: Integers) -> Integers:
     """Return the sign of the first nonzero component of each column.
 
     The forms are even in n. A normal and its opposite must be displaced to opposite normals: where
-    a surface is joined to its own mirror image, one patch has the one and its neighbour the other.
+    a surface is joined to its own mirror image, one patch has a normal, its neighbour the opposite.
     """
     signs = sign(n)
     first = np.argmax(signs != 0, axis=0)

@@ -135,7 +135,7 @@ def listed(cones: Array) -> Lists:
     level = _level_of(cones, faces, tangent)
     caps = np.empty((faces << 2 * level, 4))
     write_caps(inverse, faces, level, caps)
-    # The least height of a direction on its face.
+    # The least cosine between a direction and the axis of its face.
     least = (1.0 - 1e-12) / math.sqrt(1.0 + 2.0 * tangent**2)
     keys = np.empty(0, np.int64)
     room = KEYS_PER_PIECE * len(cones)
@@ -148,9 +148,10 @@ def listed(cones: Array) -> Lists:
 
 
 def _frame_of(cones: Array) -> tuple[Array, float]:
-    """Return the linear map (3, 3) of a cap with all cones to a face, and the cap's tangent.
+    """Return the linear map (3, 3) of a cap with all cones to a face of a cube, and a tangent.
 
-    The tangent is that of half the opening angle. Without such a cap, return the identity and 1.
+    It is the tangent of half the opening angle of the cap. If the cones need a wider cap than
+    WIDEST_CAP, return the identity and 1, for all faces of a cube.
     """
     axes, chords = cones[:, :3], cones[:, CHORD]
     mean = axes.mean(axis=0)
@@ -173,9 +174,9 @@ def _frame_of(cones: Array) -> tuple[Array, float]:
 
 
 def _level_of(cones: Array, faces: int, tangent: float) -> int:
-    """Return how often faces are halved, so that a piece is in BINS_PER_PIECE bins on average.
+    """Return how often faces are halved: a piece is in at most BINS_PER_PIECE bins on average.
 
-    There are at most as many bins as pieces.
+    There are at most as many bins as pieces, or four on each face.
     """
     chords = cones[:: max(len(cones) // LOOKED_AT, 1), CHORD] / tangent
     level = 0
@@ -188,9 +189,10 @@ def _level_of(cones: Array, faces: int, tangent: float) -> int:
 
 
 def ordered(normals: Array, lists: Lists, threads: int | None) -> Indices:
-    """Return keys bin << 32 | index of the normals (S, 3) that may be in bins, roughly in order.
+    """Return keys bin << 32 | index of the normals (S, 3) that may be in bins, partly sorted.
 
-    They are sorted by bins with at least NORMALS_PER_BIN normals on average.
+    The bins are the finest ones; keys are sorted by coarser bins, which have at least
+    NORMALS_PER_BIN normals on average.
     """
     keys = np.empty(len(normals), np.int64)
 

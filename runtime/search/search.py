@@ -30,7 +30,7 @@ from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sor
 
 __all__ = ["Hits", "developable_patches", "find", "find_in_turn", "on_border"]
 
-# The largest numbers of normals, and of hits, that are found, sorted and decided together.
+# The largest number of normals that are searched together, and of hits that are sorted together.
 NORMALS_AT_A_TIME, MOST_HITS = 1 << 20, 1 << 23
 # The number of normals in the range of a thread, and the initial room for keys.
 RANGE, ROOM = 1 << 13, 1 << 15
@@ -69,9 +69,9 @@ def find_in_turn(
 def _keys(
     spline: AnySpline, normals: Array, threads: int | None, progress: bool
 ) -> tuple[list[Indices], Indices, Array] | None:
-    """Return keys of hits, certain and undecided, and the errors of the forms of undecided ones.
+    """Return keys of certain hits, of undecided ones, and the errors of the forms of the latter.
 
-    None if there are several normals and more hits than MOST_HITS.
+    Return None if there are more than MOST_HITS hits, and more than one normal.
     """
     certain, undecided, bounds, total = [], [], [], 0
     for first in range(0, spline.patches, MOST_PATCHES):
@@ -113,10 +113,10 @@ def _decided(
     spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
     bounds: Array, first: int, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
-    """Return the hits, including those of undecided keys; normals count from `first` on."""
+    """Return the hits, and decide undecided keys; the index of the first normal is `first`."""
     exact, local = np.empty(0, np.int64), np.empty((0, 5))
     if len(undecided) > 0:
-        # Patches with several normals are decided faster one after the other.
+        # Sorted by patches: pairs of the same patch are decided faster one after the other.
         patches, numbers = undecided & NUMBER, undecided >> 32
         order = np.lexsort((numbers, patches))
         patches, numbers = patches[order], numbers[order]
@@ -128,7 +128,8 @@ def _decided(
         decided = undecided[order][decision.which]
         order = np.argsort(decided)
         exact, local = decided[order], decision.local[order]
-    # Hits of a normal come in the order of patches, except those that were decided exactly.
+    # Hits of a normal are in the order of patches, but those that were decided exactly come last;
+    # `order_few` moves these.
     keys = sorted_keys([*certain, exact], 32, len(normals))
     if len(exact) > 0:
         order_few(keys)
