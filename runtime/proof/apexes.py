@@ -1,4 +1,4 @@
-"""Apexes: sides of the domain, or lines inside, that are one point, and normals not near them.
+"""Apexes, sides of the domain or lines inside that are one point, and normals absent near them.
 
 On such a line u = u₁, x_v = 0. By the mean value theorem n·x_v(u, v) = (u − u₁) n·x_uv(ξ, v) with ξ
 between u₁ and u, on both sides of a line. So a point with the normal n near the line, but not on
@@ -25,8 +25,8 @@ __all__ = ["Apex", "apexes_of"]
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the index of the coefficient of u v in Taylor polynomials; those of u and v are 1 and 2
 BOXES_AT_A_TIME = 1 << 14  # 8 MB of bounds
-# Lines inside of the domain are searched between LINES ones, shifted by this part of their distance
-# from the side, so that none of them is likely to be one point.
+# Lines inside of the domain that are one point are searched between LINES equidistant lines. Their
+# distance from the side is this part of a step, so that none of them is likely to be one point.
 LINES, SHIFT = 32, 0.381966
 
 
@@ -34,8 +34,9 @@ LINES, SHIFT = 32, 0.381966
 class Apex:
     """A line that is one point of the surface: there u (axis 0) or v (axis 1) is `end`.
 
-    It is a side of the domain, or `inside`, up to a rounding `error`. The tape of the surface gives
-    bounds over boxes beside it. The `period` along the axis is 0 if there is none.
+    The line is a side of the domain, or `inside`; `end` may have a rounding `error`. The tape of
+    the surface gives bounds over boxes beside the line. The `period` of parameter `axis` is 0 if
+    there is none.
     """
 
     tape: Tape
@@ -48,7 +49,7 @@ class Apex:
     def decided(self, open_: Undecided, normals: Array) -> Undecided:
         """Return undecided boxes without those at the line that have no point with their normal.
 
-        The normals (S, 3) are those of the search, to which the numbers of boxes belong.
+        The normals (S, 3) are those to which `open_.numbers` refer.
         """
         sides = open_.boxes.copy()
         low, high = sides.reshape(-1, 2, 2)[:, self.axis].T
@@ -67,7 +68,7 @@ class Apex:
         return Undecided._make(x[keep] for x in open_)
 
     def _may_have_points(self, boxes: Array, normals: Array) -> Flags:
-        """Return whether boxes (k, 4) that touch the side may have points with normals (k, 3)."""
+        """Return whether boxes (k, 4) that touch the line may have points with normals (k, 3)."""
         sides = boxes.reshape(-1, 2, 2)
         half = (sides[:, :, 1] - sides[:, :, 0]) / 2.0
         bounds = bounds_over_boxes(self.tape, sides.mean(axis=2), half)
@@ -100,10 +101,10 @@ def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
 
 
 def _reversals(tape: Tape, domain: Domain, axis: int, period: float) -> list[float]:
-    """Return the u (axis 0) or v of lines inside beyond which all tangents along are turned round.
+    """Return the u (axis 0) or v of inner lines across which all tangents of lines are reversed.
 
-    A surface of which one line is a point, and the lines beside it are not, has tangents of
-    opposite directions on both sides of it.
+    If a line is one point, and the lines beside it are not, the tangents along lines on one side of
+    it are opposite to those on the other side.
     """
     low, high = domain[axis]
     places = low + (high - low) * (np.arange(LINES + (period > 0.0)) + SHIFT) / LINES

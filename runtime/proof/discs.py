@@ -35,9 +35,9 @@ __all__ = ["PoleDisc", "pole_disc"]
 
 
 SECTORS = 512
-# The factor by which sectors are narrowed if bounds need it, as quotients of splines always do:
-# these have a power of u in each knot span. The numbers of rings: values of quotients at the pole
-# are exact, so that they need no smaller rings.
+# The factor by which sectors are narrowed if bounds are too wide otherwise, as they always are for
+# quotients of splines, which have powers of u in each knot span. The number of rings, and that for
+# quotients: these have exact values at the pole, so that they need no smaller rings.
 NARROW, RINGS, RINGS_OF_QUOTIENTS = 4, 8, 2
 # Bounds hold up to this distance, relative to the radius of the disc.
 WHOLE = 2.0
@@ -58,7 +58,7 @@ ONE, U1, R1, U2, U1R1, R2, _, U2R1, U1R2, _ = range(10)
 
 @dataclass(frozen=True, eq=False)
 class PoleDisc:
-    """The disc around a pole: its radius, its tape by u and r, its bounds, and its cell."""
+    """The disc around a pole: its radius, the tape of u and r, its bounds, and its cell."""
 
     radius: float
     tape: Tape
@@ -131,7 +131,7 @@ class Pole:
         return replace(pole, tilt=float(tilt)) if is_smooth else None
 
     def _jump(self, radius: float) -> float:
-        """Return the largest jump of derivatives of h across lines, up to a radius."""
+        """Return the largest jump of derivatives of h across lines u = const, up to a radius."""
         low, high = self.around
         inner = jumps_of(self.tapes.tape, 0, low, high)
         step = 4.0 * np.spacing(max(abs(low), abs(high)))
@@ -357,7 +357,7 @@ def _is_steady(bounds: Bounds, middle: Array) -> bool:
 
 
 def _cell(hot: Array, changes: Array, noise: float) -> CellBounds | None:
-    """Return a disc as a cell with a cone of normals; None if that is wide."""
+    """Return a disc as a cell with a cone of normals; None if the cone is wide."""
     if not noise < math.inf:
         return None
     cell = CellBounds.new(1)

@@ -48,7 +48,8 @@ def lines_of(tape: Tape, axis: int, ends: Array, count: int) -> Array:
 def joints_of(tape: Tape, axis: int, domain: Domain, boundary: Boundary) -> Array:
     """Return the u (axis 0) or v where derivatives may jump, but the tangent plane does not.
 
-    The seam of a period is one of them. Normals of both sides are compared at sampled points.
+    The seam of a periodic spline is such a line, too. Normals of both sides are compared at sampled
+    points.
     """
     jumps = jumps_of(tape, axis, *domain[axis]).tolist()
     smooth = [
@@ -64,7 +65,7 @@ def creases_of(
 ) -> list[tuple[float, float]]:
     """Return the u (axis 0) or v just before and after lines where the tangent plane jumps.
 
-    Both ends of a domain are one if all their points are the same.
+    Both ends of a domain are one line if all their points are the same.
     """
     x = tape.spline
     smooth = (x.smooth_u, x.smooth_v)[axis]
@@ -84,7 +85,7 @@ def creases_of(
 def _with_seam(
     tape: Tape, axis: int, domain: Domain, boundary: Boundary, jumps: Sequence[float]
 ) -> list[tuple[float, float]]:
-    """Return lines with their ends of both sides, among them the seam of the period of a spline."""
+    """Return parameters below and above lines: for the seam of a periodic spline, both its ends."""
     lines = [(x, x) for x in jumps]
     if boundary[axis][0] == "periodic" and len(tape.spline.breaks_u) > 0:
         lines.append((domain[axis][1], domain[axis][0]))

@@ -59,10 +59,12 @@ PROBES, SMALL = 16, 2.0**-5
 CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
 # The initial lengths of arrays: of cells, of pairs of a normal and a cell, and of answers.
 CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
-# Cells without a cone of normals, which are in all bins, are at most this part of the domain.
+# Cells without a cone of normals are in all bins. There is no index if they cover more than this
+# part of the domain.
 MOST_OPEN = 0.25
-# How far mirrored parameters go on: far more than rounding, for both sides of a seam must agree on
-# the half of it where one of them ends and the other begins.
+# Mirrored parameters are continued beyond their upper ends by this part of their length. In the
+# middle of that strip one side of the seam ends and the other begins; strips are far wider than
+# rounding errors, so that both sides agree.
 BEYOND = 2.0**-30
 NO_PAIRS = np.empty((0, 2), np.int64)
 
@@ -131,9 +133,9 @@ class ProvedIndex:
     """The index of a surface: immutable, and shared by threads.
 
     `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v, 0 if there is none. A mirrored
-    parameter, of an axis in `seams`, has no period here: normals change their sides at its ends. It
-    goes on beyond the upper one by BEYOND times its length. Nothing is known in the boxes
-    `unbounded` (m, 4) of parameters, u₀, u₁, v₀, v₁: derivatives have no bounds there.
+    parameter, of an axis in `seams`, has no period here, since normals change their sides at its
+    ends; its upper end is beyond that of the surface by BEYOND times its length. In the boxes
+    `unbounded` (m, 4), u₀, u₁, v₀, v₁, derivatives have no bounds, and nothing is known.
     """
 
     tape: Tape
@@ -243,9 +245,10 @@ class ProvedIndex:
         return ProvedPlaces(*places, open_)
 
     def _once_at_seams(self, places: Sorted) -> Sorted:
-        """Return places without those at the lower ends of mirrored parameters.
+        """Return places so that those at seams of mirrored parameters occur once.
 
-        They are beyond the upper ends, too, for the opposite normals. Those are moved to the ends.
+        A place at the lower end is also beyond the upper end, with the opposite normal: it is left
+        out at the lower end, and places beyond the upper end are moved to this end.
         """
         keep, rows = np.ones(len(places.numbers), np.bool_), places.places
         for axis in self.seams:
@@ -273,12 +276,12 @@ class ProvedIndex:
     def _search(
         self, normals: NDArray[np.float64], threads: int | None
     ) -> tuple[list[Places], NDArray[np.int64]]:
-        """Return the places that are found at once, and hard pairs (k, 2) of normals and cells."""
+        """Return places that need no bisection, and hard pairs (k, 2) of normals and cells."""
         order = ordered(normals, self.lists, threads)
 
         def work(first: int, last: int) -> list[tuple[Places, NDArray[np.int64]]]:
             numbers, count, parts, start = order[first:last] & NUMBER, last - first, [], 0
-            # Normals of a range side by side, since those of a bin are read for each of its cells.
+            # Normals are copied side by side: those of a bin are read for each of its cells.
             some = np.take(normals, numbers, axis=0)
             keys = (order[first:last] & ~NUMBER) | np.arange(count)
             with self.room() as rooms:
@@ -300,9 +303,9 @@ class ProvedIndex:
     def _evaluated(
         self, normals: NDArray[np.float64], numbers: NDArray[np.int64], rooms: Rooms
     ) -> tuple[Places, NDArray[np.int64]]:
-        """Return what is found of the pairs of normals and cells in a room; see `_search`.
+        """Return the places and the hard pairs of the pairs in `rooms.pairs`; see `_search`.
 
-        `numbers` (k,) are those of the normals (k, 3) in the query.
+        `numbers` (k,) are the indices of the normals (k, 3) in the query.
         """
         certain, undecided = rooms.pairs[0].counts
         keys = rooms.pairs[0].certain[:certain]
@@ -361,9 +364,10 @@ class ProvedIndex:
         parts: list[Places],
         count: int,
     ) -> tuple[Places, list[Answers]]:
-        """Return each place of the answers once, and answers with boxes that may contain two.
+        """Return each place of the answers once, without those in `parts`, and undecided answers.
 
-        `parts` are the places that were found at once; there are `count` normals.
+        `parts` are the places found without bisection, and `count` is the number of normals. Places
+        that may or may not be the same are undecided: their boxes are in the returned answers.
         """
         slow = np.concatenate([x.places for x in answers])
         of_slow = np.concatenate([x.numbers for x in answers])
@@ -394,7 +398,7 @@ class ProvedIndex:
     ) -> list[Answers]:
         """Return the answers of `step` for all of [0, count).
 
-        `step` works on a range [first, last), and returns where its room ended.
+        `step` works on a range [first, last), and returns the number at which it ran out of room.
         """
 
         def work(first: int, last: int) -> list[Answers]:
@@ -429,7 +433,7 @@ class ProvedIndex:
 
 
 def _has_no_normals(tape: Tape, grid: Array) -> bool:
-    """Return whether a few small cells have no cones of normals, as if the surface were a curve.
+    """Return whether some small cells all lack cones of normals, as if the surface were a curve.
 
     All cells of such a surface would be cut as often as allowed, which takes seconds.
     """

@@ -34,7 +34,7 @@ PLACES, SMOOTH = 16, 1e-9
 class Cap(NamedTuple):
     """A box u₀, u₁, v₀, v₁ of parameters around a pole, its size, and the cone of its normals.
 
-    A cap in a plane is a region with one normal, of the `kind` CURVE; others are left open.
+    A cap in a plane is a region with one normal, of the `kind` CURVE; other caps are open boxes.
     """
 
     box: Array
@@ -97,7 +97,7 @@ def poles_of(tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, i
 
 
 def _cap_of(tape: Tape, domain: Domain, angle: int, end: float, size: float) -> Cap | None:
-    """Return the cap around a pole of at most some size; None if its normals are not bounded.
+    """Return the cap around a pole, of at most `size`; None if its normals are not bounded.
 
     Parameter `angle` (0 or 1) runs around the pole, the other one is `end` there.
     """

@@ -29,9 +29,9 @@ ROUNDINGS = 2.0**10
 def spline_quotient(tape: Tape, angle: int, end: float, inward: float) -> tuple[Tape, float] | None:
     """Return the tape of (x − p) / r, where a parameter is end + inward r.
 
-    Its second parameter is r, the first one is parameter `angle` (0 or 1). The largest r for which
-    the tape is valid is returned as well. Return None if the side r = 0 of the spline is not one
-    point, or if another operation depends on r.
+    The parameters of this tape are parameter `angle` (0 or 1) of the spline, and r. The largest r
+    for which the tape is valid is returned as well. Return None if the side r = 0 of the spline is
+    not one point, or if an operation other than the spline depends on r.
     """
     (row,) = np.nonzero(tape.operations[:, 0] == codes.SPLINE)
     turned, total = int(tape.operations[row[0], 3]), tuple(tape.numbers[row[0]].tolist())
@@ -54,7 +54,7 @@ def spline_quotient(tape: Tape, angle: int, end: float, inward: float) -> tuple[
 def _quotients(
     spline: Polynomials, axis: int, end: float, inward: float, is_rational: bool
 ) -> tuple[Polynomials, float] | None:
-    """Return the polynomials by r instead of a parameter, and the length of their span in r."""
+    """Return polynomials in r in place of a parameter, and the largest r, where their span ends."""
     breaks, frames = (spline.breaks_u, spline.breaks_v)[axis], (spline.frames_u, spline.frames_v)
     at = 0 if inward > 0.0 else -1
     if not abs(breaks[at] - end) <= SLACK * np.abs(breaks[[0, -1]]).sum():
@@ -93,7 +93,7 @@ def _expanded(
 ) -> tuple[Array, Array]:
     """Return the coefficients of powers of inward (s − `place`), with bounds of their errors.
 
-    The last axis but one is that of the powers of s; `place` has an error bound `off`.
+    Axis −2 of the tables is that of the powers of s; `place` has an error bound `off`.
     """
     degree = table.shape[2] - 1
     shift, sizes, slopes = np.zeros((3, degree + 1, degree + 1))
@@ -127,7 +127,9 @@ def _as_polynomials(
 
 
 def _replayed(writer: TapeWriter, tape: Tape, first: int, is_rational: bool) -> list[int] | None:
-    """Write a tape for other coordinates of its spline, without the constants added to them.
+    """Write a tape again, with rows from `first` on in place of the coordinates of its spline.
+
+    Constants that are added to the coordinates are left out.
 
     Return None if the outputs are not linear in the coordinates.
     """
