@@ -3,7 +3,8 @@
 On a crease u = c, a normal n is perpendicular to x_v, and n·x_u has different signs on both sides:
 across the crease the height n·x has a maximum or a minimum. Along it, the height has one or the
 other, too. The index is 1 if both are of one kind, −1 if not; it is that of points on a surface
-that rounds the crease off.
+that rounds the crease off. For creases u = c or v = c, w is the parameter along the crease, and s
+the parameter across.
 """
 
 from __future__ import annotations
@@ -24,11 +25,11 @@ from ..tape.tapes import bounds_over_boxes, jets_of
 
 __all__ = ["Creases", "OnCreases"]
 
-# Intervals in which n·x_v may have several zeros are halved at most DEEPEST times, or until there
-# are MANY for a normal, as on a straight crease. Single ones are found by STEPS of Newton's method.
+# Intervals in which n·x_w may have several zeros are halved at most DEEPEST times, or until there
+# are MANY for a normal, as on a straight crease. STEPS of Newton's method find single zeros.
 DEEPEST, MANY, STEPS = 20, 4096, 12
-# Normals of both sides are known up to SMOOTH. Components are APART, and signs of n·x_v on both
-# sides of one are taken at this distance, relative to the crease.
+# Normals of both sides are known up to SMOOTH. The distance of two components is at least APART,
+# relative to the crease; at this distance from a component, the signs of n·x_w beside it are taken.
 SMOOTH, APART = 1e-9, 1e-6
 PRODUCTS_AT_A_TIME = 1 << 21
 # The positions of the second derivatives in jets and Taylor polynomials.
@@ -38,9 +39,9 @@ SECOND = (3, 5)
 class OnCreases(NamedTuple):
     """Points of creases, in the order of their normals.
 
-    numbers (k,) are those of normals; `degrees` (k,) are indices; all points of a component are
-    within `radius` (k, 2) of uv (k, 2). Points are `unsure` if their normal is that of one side, up
-    to rounding.
+    `numbers` (k,) are the rows of the normals; `degrees` (k,) are the indices of the points; all
+    points of a component are within `radius` (k, 2) of uv (k, 2). Points are `unsure` if the normal
+    is that of one side, up to rounding.
     """
 
     numbers: Indices
@@ -54,7 +55,7 @@ class OnCreases(NamedTuple):
 class _Sides(NamedTuple):
     """Vectors (k, 3) of intervals of creases: x_w and x_ww along them, and x_s across on each side.
 
-    All have a value and the largest difference from it.
+    Each is a pair: the value in the middle of the interval, and the largest difference from it.
     """
 
     first: tuple[Array, Array]
@@ -67,9 +68,10 @@ class _Sides(NamedTuple):
 class Creases:
     """Creases of a surface, cut into intervals.
 
-    A row of `lines` (m, 4) has the axis that is constant, its values before and after the crease,
-    and the period along it or 0; `spans` (m, 2) are the bounds of the other parameter. `rows` (k,)
-    are the lines of intervals, with ends (k, 2) and bounds of derivatives on both `sides`.
+    A row of `lines` (m, 4) has the axis of the parameter that is constant, its values before and
+    after the crease, and the period of the other parameter or 0; `spans` (m, 2) are the bounds of
+    the latter. `rows` (k,) are the lines to which the intervals belong; intervals have `ends`
+    (k, 2), and bounds of derivatives on both `sides`.
     """
 
     tape: Tape
@@ -127,10 +129,10 @@ class Creases:
         return OnCreases._make(x[keep] for x in found)
 
     def besides(self, found: Samples, normals: Array) -> OnCreases:
-        """Return the same without points that are among samples at these normals already.
+        """Return the points `at` normals, without those that are among the samples `found`.
 
         The normal of such a point is that of one side, or it is in the box of an isolated point.
-        `found` have their components and points.
+        The samples have the fields `component` and `points`.
         """
         at, kinds = self.at(normals), found.component
         assert kinds is not None
@@ -177,7 +179,7 @@ class Creases:
         return numbers, rows, ends
 
     def _zeros(self, rows: Indices, ends: Array, normals: Array) -> tuple[Array, Flags]:
-        """Return zeros of monotonic functions n·x_w, twice each (k, 2), and whether they are."""
+        """Return zeros of monotonic n·x_w, as intervals (k, 2) of length 0, and if they exist."""
         low, high = ends.T
         at = 0.5 * (low + high)
         along = 2 - self.lines[rows, 0].astype(int)
@@ -265,7 +267,8 @@ def _sides(tape: Tape, lines: Array, ends: Array) -> _Sides:
 def _may_be_zero(normals: Array, bounds: tuple[Array, Array], all_pairs: bool = False) -> Flags:
     """Return whether products of normals and vectors may be 0, up to the tolerance of normals.
 
-    They belong together (k, 3), or `all_pairs` (S, k) of S normals and k vectors are taken.
+    Normals (k, 3) belong to the vectors of the same row. With `all_pairs`, the result is (S, k) for
+    S normals and k vectors.
     """
     reach = bounds[1] + SMOOTH * np.linalg.norm(bounds[0], axis=1, keepdims=True)
     if all_pairs:

@@ -74,7 +74,8 @@ def with_creases(
 ) -> Samples:  # fmt: skip
     """Return samples with fields, and the points of creases that have one of the unit normals.
 
-    They come after the other points with a normal. `found` have components, points and indices.
+    For each normal, they come after the other points. The samples `found` have components, points
+    and the indices of normals.
     """
     at = creases.besides(found, normals)
     if reach is not None:
@@ -88,7 +89,7 @@ def with_creases(
 
 
 def _joined(found: Samples, more: Sequence[Fields], fields: Sequence[str]) -> Samples:
-    """Return these fields of samples, and of more of them, in the order of their normals."""
+    """Return the given fields of the samples `found` and of `more`, in the order of normals."""
     parts = [found.arrays(), *more]
     index = np.concatenate([x["normal_index"] for x in parts])
     order = np.argsort(index, kind="stable")

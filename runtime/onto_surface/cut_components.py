@@ -29,9 +29,9 @@ PLACES, SIDE, THIN = 257, 65, 1e-3
 # Points are neighbours within this multiple of the step of the grid; of points within half a step,
 # one is kept.
 NEIGHBOURS, HALVES = 1.5, 2.0
-# At most STEPS steps lead to a point: there the angles between the normal and the tangents differ
-# from 90° by at most NEAR, and the last step is at most SETTLED. An eigenvalue of the Hessian is 0
-# if it is less than SINGULAR times the other one.
+# At most STEPS steps lead to a point. They end where the angles between the normal and the tangents
+# differ from 90° by at most SETTLED; points where they differ by more than NEAR are left out. An
+# eigenvalue of the Hessian counts as 0 if it is less than SINGULAR times the other one.
 STEPS, SETTLED, NEAR, SINGULAR = 16, 1e-14, 1e-9, 1e-4
 
 
@@ -66,9 +66,9 @@ def _rows(open_: Undecided, rows: Indices | Flags | list[int]) -> Undecided:
 
 
 class Grid(NamedTuple):
-    """A grid on a box with the step 1: point (k, 2) has the parameters `low` + `step` · point.
+    """A grid on a box: points (k, 2) of integers, with the parameters `low` + `step` · point.
 
-    The step is 0 across a line. Points have the `periods` (2,), or 0.
+    The step is 0 across a box that is a line. `periods` (2,) are those of the points, 0 for none.
     """
 
     places: Array
@@ -110,7 +110,10 @@ def _grid(trim: Trim, box: Array) -> Grid:
 
 
 def _with_normal(grid: Grid, ends: Array, normal: Array, jets: Jets) -> Array:
-    """Return points (k, 2) with a normal between the ends (2, 2) of a box, starting from a grid."""
+    """Return points (k, 2) in a box that have a normal, by Gauss–Newton steps from a grid.
+
+    `ends` (2, 2) are the lowest and the highest parameters of the box.
+    """
     uv, scale = grid.low + grid.step * grid.places, np.ptp(ends, axis=0)
     for _ in range(STEPS):
         jet = jets(*uv.T.copy())

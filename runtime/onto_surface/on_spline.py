@@ -362,7 +362,7 @@ def on_grids(geometries: Sequence[OnPatches]) -> list[OnSpline]:
 
 
 def in_turn(found: Samples, size: int) -> Iterator[Samples]:
-    """Yield at most `size` of the samples at a time; the first ones report undecided normals."""
+    """Yield at most `size` of the samples at a time; the first part reports undecided normals."""
     yield found[:size]
     report = found.report
     proved, undecided = report.proved and 0, report.undecided and ()

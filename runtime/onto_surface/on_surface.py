@@ -31,9 +31,9 @@ from .repeats import kept_once
 
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
 
-# Samples in turn are tested for repeats in groups of about this number.
+# Samples that are yielded in parts are tested for repeats in groups of about this number.
 TOGETHER = 1 << 17
-# About this many hits are moved to estimate the share of hits that can be.
+# About this many hits are moved to estimate the share of hits that can be moved.
 TRIED = 1 << 12
 
 
@@ -150,7 +150,7 @@ class OnSurface(OnSpline):
     ) -> FieldsOfSamples:
         """Return the requested fields of the samples at hits.
 
-        Coincident samples become one. Hits that cannot be moved to the surface become none.
+        Coincident samples become one sample. A hit that cannot be moved to the surface gives none.
         """
         arrays, left = self._found(normals, hits)
         return as_fields(arrays, fields, dtype)._replace(undecided=left)
@@ -178,7 +178,7 @@ class OnSurface(OnSpline):
     ) -> Iterator[FieldsOfSamples]:
         """Yield at most `size` samples at a time; the hits of the normals come in `parts`.
 
-        Samples that meet have the same normal, so that whole normals are looked at together.
+        Samples that coincide have the same normal, so that all hits of a normal are moved together.
         """
         came, rest, left = False, list[Fields](), tuple[UndecidedNormal, ...]()
         for hits in (x for part in parts for x in part.whole_normals(TOGETHER)):

@@ -21,8 +21,8 @@ __all__ = ["PoleChart", "pole_charts"]
 
 
 # Within four cells of a pole the spline is inaccurate and may have folds; its samples are up to a
-# cell away from those of the surface. With one cell samples are lost; beyond three only rounding
-# errors change.
+# cell away from those of the surface. If this number is 1, samples are lost; above 3 it only
+# changes rounding errors.
 POLE_CELLS = 6
 # Closer to a pole than this part r of the domain, the 2-jet of the pole is used. Its error is of
 # order r; derivatives by the angle have errors of up to ε/r² by cancellation.
@@ -60,7 +60,7 @@ class PoleChart:
 
     @property
     def turn(self) -> float:
-        """The change of φ with its parameter."""
+        """The derivative of φ by the parameter that runs around the pole."""
         low, high = self.surface.domain[self.angle]
         return 2.0 * math.pi / (high - low)
 

@@ -45,7 +45,7 @@ CURVE = KINDS.index("curve")
 
 
 class Proof(NamedTuple):
-    """The number of normals whose points are all known, and where other normals may have more."""
+    """The number of normals whose points are all known, and boxes where others may have more."""
 
     proved: int
     undecided: tuple[UndecidedNormal, ...]
@@ -122,7 +122,7 @@ class ProvedSurface:
         return self if threads == self.threads else replace(self, threads=threads)
 
     def within(self, reach: Reach | None) -> ProvedSurface:
-        """Return the part whose normals are in a cap; all of it for None."""
+        """Return the part whose normals are in a reach; all of it for None."""
         return self if reach is None else replace(self, reach=reach)
 
     def samples_at(
@@ -135,9 +135,9 @@ class ProvedSurface:
     ) -> Samples:
         """Return all points that have unit normals (S, 3), and the proof.
 
-        They come in the order of normals, then of u and v. Each component has one sample.
+        The points are in the order of normals, then of u and v. Each component has one sample.
         """
-        del progress, density  # a search takes no time to speak of; the report is without a fit
+        del progress, density  # searches take little time; the report has no entries on a fit
         surface, found = self.surface, self.index.query(normals, self.threads)
         if self.reach is not None:
             surface, found = self.fitted.surface, found.only(self.reach._contains(normals))

@@ -52,7 +52,7 @@ class InReach:
         return ~((2.0 * low - high > limit) | (2.0 * high - low < limit))
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Return 1 for boxes whose normal, of (k, 3), is in the cap, −1 for others."""
+        """Return 1 for boxes (k, 4) whose normals (k, 3) are in the cap, −1 for others."""
         return np.where(self.cap.contains(normals), 1, -1).astype(np.int8)
 
     def _cosines(self, domain: Domain, cells: tuple[int, int], shift: float) -> Array:

@@ -25,7 +25,7 @@ def kept_once(spline: Spline, arrays: Fields, at_pole: Flags) -> Flags:
 
     Samples are repeated if they have the same normal, sign of K and point, and the same parameters
     modulo periods; next to a pole, parameters are ignored. All but one are removed, those outside
-    their patch first. Away from poles they are removed in pairs, each with a sample of the same
+    their patch first. Away from poles, each of them is removed together with a sample of the same
     normal and the other sign of K that is not on the surface: the other side of a fold that the
     surface does not have. So the sum of the signs does not change.
     """

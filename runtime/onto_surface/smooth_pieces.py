@@ -108,7 +108,7 @@ def cells_of_piece(
 
 
 def with_area(geometries: Sequence[OnSpline]) -> list[tuple[int, OnSpline]]:
-    """Return the geometries that have an area, with the number of the first patch of each.
+    """Return the geometries that have an area, with the index of the first patch of each.
 
     Raises SurfaceError if none has.
     """

@@ -109,8 +109,8 @@ class Tip(NamedTuple):
 class Pinch(NamedTuple):
     """A line inside of the domain that is one point: a tip `above` it and one `below`.
 
-    The surface near it is no disk but an annulus, with the Euler characteristic 0 and not 2: the
-    degree is the sum of those of both tips, less 1.
+    Near the line the surface is one annulus, and not two disks: its Euler characteristic is 0, and
+    not 2. So the degree is the sum of those of both tips, less 1.
     """
 
     above: Tip
@@ -231,7 +231,8 @@ class Tipped(NamedTuple):
         if not np.abs(rays @ mean[0]).max() > ROUNDING:
             return None  # a smooth pole, whose opposite meridians have other parameters
         cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
-        # A cap smaller than a half-sphere contains all normals at the tip, and the arcs between.
+        # A cap smaller than a half-sphere contains all normals at the tip, and the arcs between
+        # them.
         cosine = cosine if cosine > 0.0 else -math.inf
         outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
         uv = uv_at(np.zeros(1) if axis == end else np.full(1, parts - 1.0))
