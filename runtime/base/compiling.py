@@ -24,8 +24,8 @@ class Notice(event.Listener):
     """Shows a line while kernels of gaussmap compile, on standard error unless that is a file.
 
     The line appears when compilation has taken longer than `PATIENCE` in this process. Numba sends
-    events under a lock, so that there is one compilation at a time; each of its passes updates the
-    line.
+    events under a lock, so that there is one compilation at a time; each pass of the compiler
+    updates the line.
     """
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""Methods that are defined in folders above that of their class, imported at first use."""
+"""Methods that are defined in folders which import that of their class; loaded at first use."""
 
 from __future__ import annotations
 

@@ -30,9 +30,9 @@ VERSION_2 = ("", "memory.max", "memory.current", "inactive_file")
 
 
 class Cost(NamedTuple):
-    """The peak memory of a request: bytes per item, and the number of copies of its stored row.
+    """The peak memory of a request: bytes for each item, and the number of copies of stored rows.
 
-    The last column is advice for requests that are too large.
+    `things` are the items, in words; `instead` is advice for requests that are too large.
     """
 
     things: str
@@ -57,7 +57,7 @@ COSTS: dict[str, Cost] = {
     "search": Cost("normals", 52.0, 0.0, FEWER),
     "stored": Cost("samples", 0.0, 1.0, "use fewer normals, fewer fields or float32"),
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or a stream"),
-    # The others have several candidates per sample.
+    # The other densities have several candidates for each sample.
     "balanced": Cost("samples", 3700.0, 0.0, FEWER),
     "uniform": Cost("samples", 3600.0, 0.0, FEWER),
     "aligned": Cost("samples", 900.0, 0.0, FEWER),

@@ -105,8 +105,9 @@ SAME_PARAMETER = 1e-12
 TRIPLE_PRODUCT_ERROR = 2.0**-50
 # Of the normal of a sample on a surface, as an angle (radians).
 NORMAL_ERROR = 1e-12
-# The same where Newton's method stagnates because of the rounding of parameters and derivatives, or
-# of the error of finite differences: a sample with a larger error is not on the surface.
+# Of the same angle where Newton's method stagnates because of the rounding of parameters and
+# derivatives, or of the error of finite differences: a sample with a larger error is not on the
+# surface.
 NORMAL_NOISE = 1e-9
 # Of the distance at which two samples of one normal coincide on the surface, relative to a cell of
 # the spline: the error of points found with numerical derivatives, far from the origin.

@@ -19,7 +19,7 @@ def covering_radius(normals: ArrayLike) -> float:
     """Return the largest angle from any direction to the nearest of some normals.
 
     If the normals cover the Gaussian image of a surface, every normal of the surface is within this
-    angle of that of a sample.
+    angle of the normal of a sample.
 
     Parameters
     ----------

@@ -49,8 +49,8 @@ class Reach:
     slope : (float, float), optional
         The least and the largest angle between a normal and +z, in degrees.
     aspect : (float, float), optional
-        For terrain: the direction that a slope faces, in degrees clockwise from north, and how far
-        it may be from that to either side, at most 90. Level ground is included.
+        For terrain: the direction that a slope faces, in degrees clockwise from north, and the
+        largest difference from it to either side, at most 90. Level ground is included.
 
     Raises
     ------

@@ -15,9 +15,8 @@ from .trim import Trim
 __all__ = ["FINEST", "Inside", "extremes_around", "subcentroids"]
 
 
-# A patch is tested at the centroids of a number of triangles, the square of this: COARSE for all
-# patches, if the cells at the boundary of the trim are unknown, and FINEST for patches at the
-# boundary.
+# A patch is tested at the centroids of COARSE² triangles, if the cells at the boundary of the trim
+# are unknown, and a patch at the boundary at those of FINEST² triangles.
 COARSE, FINEST = 4, 8
 POINTS_AT_A_TIME = 1 << 20
 

@@ -149,7 +149,7 @@ class Loops:
         scales = np.array([scale_to_one(float(x)) for x in sizes])
         ends = [np.stack([x, np.roll(x, -1, axis=0)], axis=1) for x in self.polygons]
         segments = np.concatenate(ends) * scales
-        # From the lower end, so that a segment of two polygons is the same for both.
+        # Segments start at their lower end, so that two polygons have the same common segments.
         (u, v), (w, z) = segments[:, 0].T, segments[:, 1].T
         turned = (v > z) | ((v == z) & (u > w))
         segments[turned] = segments[turned][:, ::-1]
@@ -175,7 +175,7 @@ class Loops:
 
 
 def _may_meet(segments: Array, middles: Array, halves: Array) -> Flags:
-    """Return whether segments (n, 4) may meet boxes (k, 2), middles and half sizes: (k, n).
+    """Return booleans (k, n): whether segments (n, 4) may meet boxes of given half sizes (k, 2).
 
     If they are disjoint, a line parallel to u, to v or to the segment separates them.
     """

@@ -168,8 +168,8 @@ class Trim:
         Returns
         -------
         (k,) int8 array
-            1 and −1 are proved up to rounding. It is 0 for boxes that may meet the boundary, and
-            for predicates that are not inequalities between NumPy functions.
+            1 and −1 are proved up to rounding. The result is 0 for boxes that may meet the
+            boundary, and for predicates that are not inequalities between NumPy functions.
 
         Examples
         --------
