@@ -32,9 +32,9 @@ class Counts(NamedTuple):
 
 
 # Test points are on lines along u and along v, and scattered over the domain. Each line has three
-# of them in a strip of 1 % of the domain that it crosses.
+# test points in any strip of 1 % of the domain that it crosses.
 MANY = Counts(steps=301, lines=4, spread=2048)
-# The same for a spline with fewer cells than FEW_CELLS: the surface is evaluated at most twice as
+# The counts for a spline with fewer cells than FEW_CELLS: the surface is evaluated at most twice as
 # often as for the fit, and at most 8,000 times.
 FEW_CELLS, FEW = 2048, Counts(steps=202, lines=1, spread=512)
 # More lines in both directions are this close to the sides: at poles and open sides the spline is
@@ -46,13 +46,13 @@ COLLAPSED, NEXT_TO_POLE = 0.01, 1.0 / 16.0
 # Normals take four evaluations, points one: normals are compared at every third test point on
 # lines, and at every fourth of the scattered ones.
 EACH_ON_LINES, EACH_SPREAD = 3, 4
-# Multiples of irrational numbers, modulo 1, are evenly spread: of 1/g in one dimension, g the
-# golden ratio, and of 1/ρ and 1/ρ² in two, ρ³ = ρ + 1 (Roberts' R2 sequence). Parameters of fits
-# are rational.
+# Multiples of irrational numbers, modulo 1, are evenly spread: those of 1/g in one dimension, where
+# g is the golden ratio, and those of 1/ρ and 1/ρ² in two, where ρ³ = ρ + 1 (Roberts' R2 sequence).
+# They are never parameters of fits, which are rational.
 GOLDEN = 0.6180339887498949
 PLASTIC = 0.7548776662466927
-# Central differences of positions over ± this part of the domain: errors of directions are of
-# second order in it, rounding errors of order −1. On surfaces far from the origin, relative to
+# Normals are computed from central differences over ± this part of the domain: their errors are of
+# second order in it, and rounding errors of order −1. On surfaces far from the origin, relative to
 # their size, it is the cube root of the rounding.
 SHORTEST_STEP, LONGEST_STEP = 2.0**-17, 2.0**-11
 # Normals of the surface with a larger error than this (radians), near singular points, are ignored.

@@ -146,8 +146,8 @@ def fit(
     Notes
     -----
     By default, cells are increased from 64 × 64 until the distance is 1e-4 of the diagonal, and the
-    angle 0.1°, next to poles excepted: up to 1024 along u or v, and 2¹⁶ in all. If doubling the
-    cells does not reduce the error, as at creases, the smaller number is kept.
+    angle, except next to poles, 0.1°: up to 1024 cells along u or v, and 2¹⁶ in all. If doubling
+    the cells does not reduce the error, as at creases, the smaller number is kept.
 
     Examples
     --------

@@ -26,7 +26,7 @@ class KernelCache(NullCache):
         self._lock: disk.FileLock | None = None
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return a kernel, waiting for a process that compiles it; None if this process has to."""
+        """Return a kernel, waiting for a process that compiles it; None to compile it here."""
         if self._lock is not None:
             self._lock.release()  # the last compilation has failed
         key = key_of(self._function, sig)

@@ -63,9 +63,9 @@ class TapeWriter:
         return self.row(codes.CONSTANT, number=(value, distance))
 
     def spline(self, polynomials: Polynomials, turned: int = 0, number: Number = (0.0, 0.0)) -> int:
-        """Return the first of the four rows of a spline.
+        """Return the first of the four rows of a spline: x, y, z, and the weight.
 
-        If `turned`, its parameter is total − u; `number` is the total, with its error.
+        If `turned`, its first parameter is total − u; `number` is the total, with its error.
         """
         self._spline = polynomials
         row = self.row(codes.SPLINE, last=turned, number=number)
