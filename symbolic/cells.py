@@ -55,7 +55,7 @@ def turning(corners: Sequence[Corner], place: Corner) -> sp.Expr:
 def legs() -> tuple[sp.Expr, sp.Expr]:
     """Return the sides, along x and y, of the rectangle of area A in which normals turn least.
 
-    They turn most between the middle and a corner.
+    The largest angle is that between the normals in the middle and at a corner.
     """
     p = sp.Symbol("p", positive=True)
     squared = (kappa1 * p / 2) ** 2 + (kappa2 * area / p / 2) ** 2
@@ -75,13 +75,14 @@ def _hexagon() -> sp.Expr:
     return found
 
 
-# The angle in the best rectangle over sqrt(κ₁ κ₂ A). It is also the angle between the normal of a
-# triangle, half of the rectangle, and the normals at its corners.
+# The angle in the best rectangle, divided by sqrt(κ₁ κ₂ A). It is also the angle between the normal
+# of a triangle, half of the rectangle, and the normals at its corners.
 ALIGNED = _aligned()
-# The angle in a regular hexagon over κ₁ sqrt(A), where κ₁ = κ₂. Equilateral triangles of the area
-# A/2 have the same circumradius.
+# The angle in a regular hexagon, divided by κ₁ sqrt(A), for κ₁ = κ₂. Equilateral triangles of the
+# area A/2 have the same circumradius.
 HEXAGON = _hexagon()
-# The distance between patch and equilateral triangle over κ₁ A, where κ₁ = κ₂: R²/2 at its centre.
+# The distance between the patch and an equilateral triangle, divided by κ₁ A, for κ₁ = κ₂: R²/2, at
+# the centre of the triangle.
 CHORD = HEXAGON**2 / 2
 
 

@@ -68,7 +68,8 @@ FUNCTIONS = {
     ),
     # Rounding x² adds x² units to w: the sums of moduli, times 1 + x², are at most 2/√π.
     "erf": Function(sp.erf(x), {sp.exp(-(x**2)): w}, cancelling=sp.Rational(8, 7)),
-    # It is the integral of cos(t x) over t from 0 to 1. Terms are those for |x| ≥ 1.
+    # sin(x)/x is the integral of cos(t x) over t from 0 to 1, which gives the slopes. The bound of
+    # terms that cancel is for |x| ≥ 1.
     "sinc": Function(
         sp.sin(x) / x, {sp.sin(x): x * y, sp.cos(x): w}, cancelling=sp.Integer(3),
         slopes=tuple(1 / (sp.factorial(k) * (k + 2)) for k in range(HIGHEST + 1)),
@@ -127,7 +128,7 @@ def _critical(function: Function) -> tuple[float, list[float]]:
         return float(sp.pi / 2), []
     if function.of.has(sp.sign):
         return 0.0, [0.0]
-    # SymPy does not know that the integral of exp(-x²) is continuous wherever that is.
+    # SymPy does not know that the integral of exp(-x²) is continuous wherever exp(-x²) is.
     of = sp.diff(function.of, x) if function.of.has(sp.erf) else function.of
     domain = sp.calculus.util.continuous_domain(of, x, sp.S.Reals).interior
     slopes = [sp.diff(f, x) for f in function.coefficients]

@@ -77,9 +77,9 @@ def derivatives_of_extension(function: sp.Expr, order: int) -> sp.Matrix:
 
 
 def _to_second_order() -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
-    """Return a function with value h, gradient dh, second derivatives h_xx … at c; and c = n.
+    """Return a polynomial with value h, gradient dh, second derivatives h_xx … at c, and c = n.
 
-    It represents all functions: first and second derivatives depend on no higher terms.
+    It stands for all functions: first and second derivatives depend on no higher terms.
     """
     (c,) = vectors("c")
     step = n.column - c.column

@@ -100,10 +100,10 @@ def is_homogeneous(h: sp.Expr, gradient: Sequence[sp.Expr] | None = None) -> boo
 
 
 def _vanishes(defect: sp.Expr, h: sp.Expr) -> bool:
-    """Return whether the defect at a point is rounding error, which excludes most other functions.
+    """Return whether the defect n·∇h − h is rounding error at one point.
 
-    The test is in float64, as evalf takes exponential time for nested sums and products, and longer
-    for exp(exp(exp(n_x))).
+    This quickly excludes most functions that are not homogeneous. The test is in float64, as evalf
+    takes exponential time for nested sums and products, and longer for exp(exp(exp(n_x))).
     """
     try:
         evaluate = sp.lambdify(NORMAL, [defect, h], modules="math", cse=True)

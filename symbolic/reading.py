@@ -60,7 +60,10 @@ class ReadingError(ValueError):
 
 
 class Function(NamedTuple):
-    """Its name in SymPy, the type of its arguments (numbers or truth values), and their number."""
+    """A function of SymPy that texts may use; it takes numbers or truth values.
+
+    `counts` are the possible numbers of arguments. If it `asks`, SymPy queries their signs.
+    """
 
     of: Callable[..., Any]
     takes: type
@@ -251,7 +254,7 @@ def replaced(expression: Any, rules: Mapping[Any, Any]) -> Any:  # noqa: ANN401 
 def with_shared_parts(
     expressions: Iterable[Any],
 ) -> tuple[list[tuple[sp.Symbol, Any]], list[Any]]:
-    """Return definitions of the parts that are used several times, and the expressions in these."""
+    """Return definitions of parts that are used several times, and the expressions with them."""
     expressions = list(expressions)
     uses = Counter(y for x in {y for e in expressions for y in parts(e)} for y in x.args)
     uses.update(expressions)

@@ -74,7 +74,7 @@ def _weights(order: int, places: Sequence[int]) -> list[sp.Expr]:
 
 
 def _changes(order: int, places: Sequence[int]) -> list[sp.Expr]:
-    """Return the weights minus those of the difference with the fewer nodes nearest to zero."""
+    """Return the weights minus those of the difference without the two nodes farthest from zero."""
     near = sorted(sorted(places, key=abs)[:-2])
     fewer = dict(zip(near, _weights(order, near), strict=True))
     pairs = zip(places, _weights(order, places), strict=True)

@@ -91,7 +91,8 @@ def _roundings(value: sp.Expr) -> int:
 def _radii(of: Coefficients, inputs: Sequence[sp.Symbol], errors: Symbols) -> Parts:
     """Return bounds for coefficients that are sums of products.
 
-    Named terms are the absolute values increased by their errors, and the coefficients of these.
+    Named terms are the absolute values increased by their errors, and the coefficients that follow
+    from these.
     """
     symbols = {x for value in of.values() for x in value.free_symbols}
     largest = {x: scalar(x.name.translate(LARGEST)) for x in errors if x in symbols}
