@@ -94,7 +94,7 @@ def _shapes_that_differ(values: object, shape: tuple[int, ...]) -> list[tuple[in
 
 
 def _hint(values: ArrayLike, found: tuple[int, ...], expected: tuple[int, ...]) -> str:
-    """Return how to join coordinates that were returned one by one."""
+    """Return a hint on how to join coordinates that were returned one by one."""
     number = expected[-1] if len(expected) else 0
     if found[1:] != expected[:-1] or not found:
         return ""

@@ -35,7 +35,7 @@ STEP: ContextVar[Step | None] = ContextVar("step", default=None)
 
 
 def tell(name: str, share: Callable[[], float] | None = None) -> None:
-    """Set the current step, if a terminal shows the task; `share` is called while it goes on."""
+    """Set the current step, if a terminal shows the task; `share` is called during the step."""
     if (step := STEP.get()) is not None:
         step.name, step.share = name, share
 

@@ -24,7 +24,7 @@ __all__ = [
 LARGEST_EXPONENT = 1000
 # Points that are declared to coincide may be this far apart, relative to the size of the surface.
 SAME_POINT = 1e-6
-# Rounding of coordinates, in units of the last place; each results from several operations.
+# Rounding of coordinates, in units of the last place: coordinates result from several operations.
 ROUNDING = 64.0
 
 

@@ -38,7 +38,7 @@ class Cap(NamedTuple):
 
 
 class Reach:
-    """The normals that samples may have: within an angle of an axis, of some slopes and aspects.
+    """The normals that samples may have: near an axis, and in ranges of slope and aspect.
 
     Parameters
     ----------

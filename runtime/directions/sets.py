@@ -192,8 +192,8 @@ def random(count: int, *, seed: int = 0) -> NDArray[np.float64]:
 
     Notes
     -----
-    They are less evenly distributed than a lattice: about a fraction 1/e of all regions of area
-    4π/count contains no normal.
+    These normals are less evenly distributed than a lattice: about a fraction 1/e of all regions of
+    area 4π/count contains no normal.
 
     Examples
     --------

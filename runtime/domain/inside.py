@@ -79,5 +79,5 @@ def _shares(trim: Trim, frame: Array, columns: int, patches: Indices, parts: int
 
 
 def extremes_around(values: Array) -> tuple[Array, Array]:
-    """Return the extremes (m, n), (m, n) of the values (m, n, 4) of cells and their neighbours."""
+    """Return minima and maxima (m, n) of the values (m, n, 4) of each cell and its neighbours."""
     return -widened(-values.min(axis=2)), widened(values.max(axis=2))

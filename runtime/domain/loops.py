@@ -175,7 +175,7 @@ class Loops:
 
 
 def _may_meet(segments: Array, middles: Array, halves: Array) -> Flags:
-    """Return booleans (k, n): whether segments (n, 4) may meet boxes of given half sizes (k, 2).
+    """Return flags (k, n): whether segments (n, 4) may meet boxes; middles, half sizes (k, 2).
 
     If they are disjoint, a line parallel to u, to v or to the segment separates them.
     """

@@ -2,9 +2,9 @@
 
     python -m gaussmap.runtime.machine_code.building [--usual] [FOLDER]
 
-compiles all of them, or with --usual those that usual calls need, for the level of this
-architecture, without running them, in one process per core, into FOLDER/compiled (by default of the
-package). Entries of a file of the same sources and versions are reused. With GAUSSMAP_KERNELS=0
+compiles all of them, or with --usual those that usual calls need, without running them. One process
+per core compiles for the level of this architecture. The file is in FOLDER/compiled, by default in
+the package. Entries of a file of the same sources and versions are reused. With GAUSSMAP_KERNELS=0
 nothing is compiled, and no file used.
 """
 

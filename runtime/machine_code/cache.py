@@ -1,4 +1,4 @@
-"""Numba's cache of kernels: the machine code of the package, and what was compiled here."""
+"""Numba's cache of kernels: machine code of the package, and machine code compiled here."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["KernelCache", "say_why"]
 
 
 class KernelCache(NullCache):
-    """The machine code of one kernel: the package's, or what was compiled here."""
+    """The machine code of one kernel: that of the package, or compiled here."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         """Touch no file before the first call."""
@@ -55,7 +55,7 @@ class KernelCache(NullCache):
         return found
 
     def save_overload(self, sig: Any, cres: Any) -> None:
-        """Cache what was compiled here, and let waiting processes load it."""
+        """Cache a kernel that was compiled here, and let waiting processes load it."""
         folder = disk.kept_folder()
         if folder is not None:
             key, processor = key_of(self._function, sig), _processor(cres.target_context)

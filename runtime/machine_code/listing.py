@@ -3,7 +3,7 @@
     python -m gaussmap.runtime.machine_code.listing [--write | --usual] [FOLDER]
 
 Kernels that the package's file lacks are compiled and cached in the folder (by default that of this
-machine): after a run of tests, they are what the list lacks. Exit code 1 means that some are
+machine): after a run of tests, the list lacks these kernels. Exit code 1 means that some are
 missing. With --usual, the kernels cached there become the list of those that usual calls need.
 """
 

@@ -1,4 +1,4 @@
-"""Write access to files and folders of machine code: what others can write is not run."""
+"""Write access to files and folders of machine code: code that others can write is not run."""
 
 from __future__ import annotations
 

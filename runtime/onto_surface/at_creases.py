@@ -29,7 +29,7 @@ __all__ = ["Creases", "OnCreases"]
 # are MANY for a normal, as on a straight crease. STEPS of Newton's method find single zeros.
 DEEPEST, MANY, STEPS = 20, 4096, 12
 # Normals of both sides are known up to SMOOTH. The distance of two components is at least APART,
-# relative to the crease; at this distance from a component, the signs of n·x_w beside it are taken.
+# relative to the crease; at this distance from a component, signs of n·x_w on both sides are taken.
 SMOOTH, APART = 1e-9, 1e-6
 PRODUCTS_AT_A_TIME = 1 << 21
 # The positions of the second derivatives in jets and Taylor polynomials.
@@ -69,9 +69,9 @@ class Creases:
     """Creases of a surface, cut into intervals.
 
     A row of `lines` (m, 4) has the axis of the parameter that is constant, its values before and
-    after the crease, and the period of the other parameter or 0; `spans` (m, 2) are the bounds of
-    the latter. `rows` (k,) are the lines to which the intervals belong; intervals have `ends`
-    (k, 2), and bounds of derivatives on both `sides`.
+    after the crease, and the period of the parameter along the crease or 0; `spans` (m, 2) are the
+    bounds of the parameter along it. `rows` (k,) are the lines to which the intervals belong;
+    intervals have `ends` (k, 2), and bounds of derivatives on both `sides`.
     """
 
     tape: Tape

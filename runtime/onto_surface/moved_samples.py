@@ -33,7 +33,7 @@ def moved_samples(
 ) -> Fields:
     """Return the samples at hits, moved to the surface where Newton's method succeeds.
 
-    They have all fields but the support, in float64.
+    The samples have all fields but the support, in float64.
     """
     check_memory("stored", len(hits), bytes_of(NEEDED, np.float64))
     arrays = fill(spline, normals, hits, threads, NEEDED, np.float64)

@@ -341,7 +341,7 @@ class OnSpline(OnPatches):
 
     @property
     def _size(self) -> float:
-        """The factor from lengths to scaled ones."""
+        """The factor from lengths to scaled lengths."""
         return SCALE * self.spline.scale
 
     def _in_parts(self, work: Callable[[int, int], None], count: int) -> None:

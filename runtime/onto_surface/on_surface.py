@@ -105,7 +105,7 @@ class OnSurface(OnSpline):
 
         Each patch has an equal part of the solid angle of its cell, from K at the Gauss points. If
         derivatives are differences of many evaluations, the solid angles are those of the spline.
-        They are kept with the spline, which belongs to one surface.
+        Both arrays are kept with the spline, which belongs to one surface.
         """
         return kept(self.spline, "measure of the surface", self._measured)
 

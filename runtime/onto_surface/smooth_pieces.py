@@ -128,7 +128,7 @@ def with_area(geometries: Sequence[OnSpline]) -> list[tuple[int, OnSpline]]:
 
 
 def _size_of(geometry: OnSpline, is_one_of_many: bool) -> float:
-    """Return the size of a piece; 0 if there are others, and the trim leaves nothing of it."""
+    """Return the size of a piece; 0 for one of several pieces of which the trim leaves nothing."""
     try:
         return geometry.size
     except SurfaceError:

@@ -207,7 +207,7 @@ class Tipped(NamedTuple):
         def uv_at(numbers: Array, away: float = 0.0) -> Array:
             """Return parameters at fractional indices of rays, all anticlockwise or all clockwise.
 
-            They are `away` from the line, relative to the domain.
+            Their distance from the line is `away`, relative to the domain.
             """
             turns = (numbers if axis == end else parts - 1.0 - numbers) / parts
             along = low + (high - low) * (turns % 1.0)

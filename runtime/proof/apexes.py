@@ -101,7 +101,7 @@ def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
 
 
 def _reversals(tape: Tape, domain: Domain, axis: int, period: float) -> list[float]:
-    """Return the u (axis 0) or v of inner lines across which all tangents of lines are reversed.
+    """Return the u (axis 0) or v of inner lines across which tangents along lines are reversed.
 
     If a line is one point, and the lines beside it are not, the tangents along lines on one side of
     it are opposite to those on the other side.

@@ -132,7 +132,7 @@ def with_kinds(open_: Undecided, around: Array, places: Sorted, domain: Array) -
 def _others(number: int, path: Array, boxes: Array, places: Sorted, periods: Array) -> float:
     """Return the sum of the indices of the regular points of a normal inside a path's box.
 
-    It is NaN if the path's box meets two of the boxes (k, 4) or more.
+    The sum is NaN if the path's box meets two of the boxes (k, 4) or more.
     """
     low, high = path[0::2], path[1::2]
 

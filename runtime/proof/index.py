@@ -222,7 +222,7 @@ class ProvedIndex:
     def query(self, normals: NDArray[np.float64], threads: int | None = None) -> ProvedPlaces:
         """Return all points with unit normals (S, 3).
 
-        The answer for a normal does not depend on the other ones, or on the number of threads.
+        The answer for a normal depends neither on the other normals nor on the number of threads.
         """
         normals = np.ascontiguousarray(normals, np.float64)
         parts, hard = self._search(normals, threads)
@@ -398,7 +398,7 @@ class ProvedIndex:
     ) -> list[Answers]:
         """Return the answers of `step` for all of [0, count).
 
-        `step` works on a range [first, last), and returns the number at which it ran out of room.
+        `step` works on a range [first, last), and returns the first number that was not processed.
         """
 
         def work(first: int, last: int) -> list[Answers]:

@@ -202,7 +202,7 @@ class SampleArrays:
     def parabolic(self) -> NDArray[np.bool_]:
         """(N,) bool array: where the Gaussian curvature is zero, up to rounding.
 
-        Its sign is meaningless there: on planes, cylinders, and along parabolic curves.
+        The sign of K is meaningless there: on planes, cylinders, and along parabolic curves.
 
         Examples
         --------

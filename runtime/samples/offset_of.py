@@ -13,7 +13,9 @@ __all__ = ["OffsetOf"]
 
 @dataclass(frozen=True)
 class OffsetOf:
-    """The distance and the surface from which samples of an offset were moved; meshes need both.
+    """The surface from which the samples of an offset were moved, and the distance.
+
+    Meshes of the samples need both.
 
     Attributes
     ----------

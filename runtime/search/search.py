@@ -69,7 +69,7 @@ def find_in_turn(
 def _keys(
     spline: AnySpline, normals: Array, threads: int | None, progress: bool
 ) -> tuple[list[Indices], Indices, Array] | None:
-    """Return keys of certain hits, of undecided ones, and the errors of the forms of the latter.
+    """Return keys of certain and of undecided hits, and the errors of forms of undecided hits.
 
     Return None if there are more than MOST_HITS hits, and more than one normal.
     """

@@ -43,8 +43,8 @@ class CellMeasure:
     def curved(self, density: float) -> Flags:
         """Return which cells are curved enough to be sampled, as booleans (m n,).
 
-        A cell counts if |K| times the density is at least 1, in units of the diagonal of the
-        bounding box: a surface of that size with this |K| would have a sample.
+        A cell counts if |K| times the density is at least 1, where the diagonal of the bounding box
+        is the unit of length: a surface of that size with this |K| would have a sample.
         """
         return self.curvatures * max(density, LEAST_DENSITY) >= 1.0
 

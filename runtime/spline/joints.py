@@ -34,8 +34,8 @@ class Edge(NamedTuple):
 
 # The edges u = 0, v = 0, w = 0, counterclockwise.
 EDGES = (Edge(1, 5, 2, 3, 4), Edge(2, 4, 0, 5, 3), Edge(0, 3, 1, 4, 5))
-# The indices of the corners in the control normals N200, N110, N101, N020, N011, N002; then those
-# of the edges.
+# The positions of the control normals of corners, and of edges from start to end. Control normals
+# are in the order N200, N110, N101, N020, N011, N002.
 CORNER_NORMALS = (0, 3, 5)
 EDGE_NORMALS = ((3, 4, 5), (5, 2, 0), (0, 1, 3))
 # Parameters of an edge at which the normals of its patches are compared.
@@ -182,7 +182,7 @@ class Topology:
 
     @cached_property
     def owner(self) -> tuple[Indices, NDArray[np.int8]]:
-        """The owner of the boundary cone of each edge (3 T,), which is an edge, and a sign.
+        """The edge that owns the boundary cone of each edge (3 T,), and a sign.
 
         Both edges of a smooth joint have the same owner, whose cone decides on which side a normal
         is. The sign is that of the quadratic form of an edge relative to the form of its owner.
@@ -308,7 +308,7 @@ class Topology:
 
 
 def _firsts(numbers: Indices) -> Iterator[tuple[int, int]]:
-    """Yield the first position in the flattened array of each index, and the index."""
+    """Yield for each index its first position in the flattened array, and the index."""
     values, places = np.unique(numbers, return_index=True)
     return zip(places.tolist(), values.tolist(), strict=True)
 

@@ -39,7 +39,7 @@ def points_of_elevations(
 ) -> tuple[NDArray[np.float64], Domain]:
     """Return the points (m, n, 3) of elevations (rows along y, columns along x), and their domain.
 
-    Their order makes normals point upward.
+    The order of the points makes normals point upward.
     """
     if boundary != (("open", "open"), ("open", "open")):
         raise InputError("elevations are a graph and cannot be periodic.")

@@ -33,7 +33,7 @@ BALANCE = 1.0 / 32.0
 
 
 def broken_poles(points: Array, boundary: Boundary, axis: int) -> list[int]:
-    """Return the ends, 0 or 1, of an axis that are poles but not one point in (m, n, 3)."""
+    """Return the ends, 0 or 1, of an axis that are declared poles, but not one point of a grid."""
     rows, found = np.swapaxes(points, 0, axis), list[int]()
     for end in (0, 1):
         row = rows[-end][~np.isnan(rows[-end]).any(axis=1)]
@@ -96,7 +96,7 @@ def _planar(offsets: Array) -> Array | None:
 def _axes(offsets: Array) -> tuple[Array, float]:
     """Return an orthonormal basis (2, 3) of the plane of a ring, and the smaller radius in it.
 
-    Its normal is the vector area of the ring, so that the ring turns counterclockwise.
+    The normal of the plane is the vector area of the ring, which turns counterclockwise around it.
     """
     normal = np.cross(offsets, np.roll(offsets, -1, axis=0)).sum(axis=0)
     _, _, rows = np.linalg.svd(normal[None] / (np.abs(normal).max() or 1.0))

@@ -126,7 +126,7 @@ class Spline(PatchSpline, Methods):
     def control_nets(self) -> NDArray[np.float64]:
         """(patches, 6, 3) float64 array: the Bézier nets.
 
-        Each is in the order b200, b020, b002, b110, b101, b011.
+        Each net is in the order b200, b020, b002, b110, b101, b011.
         """
         nets = np.empty((self.patches, 6, 3))
         kernels.control_nets(self.coefficients, nets)
@@ -148,7 +148,7 @@ class Spline(PatchSpline, Methods):
 
     @property
     def extent(self) -> tuple[float, int]:
-        """The diagonal of the bounding box, and the larger number of cells.
+        """The diagonal of the bounding box, and the larger of the numbers of cells along u and v.
 
         Examples
         --------

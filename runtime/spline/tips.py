@@ -71,7 +71,7 @@ def tips_of(spline: AnySpline) -> Tips | None:
 
 
 def _of_grid(spline: Spline) -> Tips | None:
-    """Return the tips of a spline on a grid of cells: open sides."""
+    """Return the tips of a spline on a grid of cells: open sides that are one point."""
     sides = collapsed_sides(spline)
     if not sides:
         return None
@@ -87,7 +87,7 @@ def _of_grid(spline: Spline) -> Tips | None:
 def _of_nets(spline: NetSpline) -> Tips | None:
     """Return the tips of a spline of nets.
 
-    They are collapsed edges at which the normals of the patches differ, unlike at smooth poles.
+    Tips are collapsed edges at which the normals of the patches differ, unlike at smooth poles.
     """
     nets, size = spline.control_nets, float(np.ptp(spline.control_nets, axis=(0, 1)).max())
     rows = [[x.start, x.middle, x.end] for x in EDGES]

@@ -59,7 +59,7 @@ def _by_rounding(
 ) -> str:
     """Return a clause: the distance of the points at both ends, and whether rounding explains it.
 
-    The rounding is that of the parameter: 2π, for example, is no number in float64.
+    The rounding is that of the parameter: 2π, for example, is not a float64 number.
     """
     low, high = surface.domain[axis]
     other = np.linspace(*surface.domain[1 - axis], len(last))

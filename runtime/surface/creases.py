@@ -85,7 +85,7 @@ def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
 def _jump(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
     """Return the largest ratio of the lengths of x_u, or x_v, below a line and above it.
 
-    It is 1 where both lengths vanish, relative to other points.
+    The ratio is 1 where both lengths vanish, relative to those at other points.
     """
     low, high = nurbs.domain[axis]
     first, second = (

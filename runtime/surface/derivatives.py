@@ -244,8 +244,8 @@ def differences(
 def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
     """Return relative changes (k,) of derivatives if two of the nine points are omitted.
 
-    `values` (9, k, 3) are differences from the central points, of which the largest is 1 on this
-    scale; `least` (k,) are their rounding errors.
+    `values` (9, k, 3) are differences from the central points. Changes are divided by the largest
+    of these plus its rounding error `least` (k,).
     """
     changes = np.array([weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
     size, change = (np.abs(x).max(axis=0).max(axis=1) for x in (values, changes))
@@ -335,7 +335,7 @@ def filled(function: Differentiable, numerical: Differences) -> Function:
 def compare(derivatives: Function, numerical: Differences, label: str) -> None:
     """Raise SurfaceError if derivatives are not finite, or not those of the function.
 
-    The message has the derivative, the parameters, and the difference.
+    The message names the derivative, the parameters, and the difference.
     """
     u, v = places_in(numerical.domain, PLACES)
     coarser = replace(numerical, step=2.0 * numerical.step)

@@ -65,10 +65,10 @@ class Surface(SurfaceValues):
     trim : Trim or None
         The part of the domain that belongs to the surface, None for all of it; see `trimmed`.
     assumed_open : (bool, bool)
-        For u and for v, whether sides are open by assumption, for ``periodic=False``, and not by
-        declaration, for "open". Then `fit` tests whether one of them is a single point at which the
-        surface is smooth; such a side becomes a pole, and the other parameter periodic. For points,
-        this is done at once: `boundary` has the poles, and `grid` no points that repeat others.
+        For u and for v, whether open sides were assumed (``periodic=False``) and not declared
+        ("open"). Then `fit` tests whether one of them is a single point at which the surface is
+        smooth; such a side becomes a pole, and the other parameter periodic. A surface of points is
+        tested at once: `boundary` has the poles, and `grid` no points that repeat the first ones.
     georeference : Georeference or None
         For a `terrain`: the coordinate reference system `crs`, as "EPSG:number" or WKT, and the
         `origin` (x, y, z) that was subtracted from coordinates.
@@ -498,7 +498,7 @@ class Surface(SurfaceValues):
     def bounds(self) -> NDArray[np.float64]:
         """The smallest and the largest x, y, z (2, 3) of the surface inside its trim.
 
-        They are six values of `GaussMap.support`, which says how exact they are.
+        These numbers are six values of `GaussMap.support`, which states how exact they are.
 
         Examples
         --------

@@ -120,9 +120,9 @@ class SurfaceValues(Immutable):
     def derivatives(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points and their first and second derivatives.
 
-        They are exact for the catalogue, for SymPy expressions and for NURBS, given by the user for
-        a callable with `derivatives`, and numerical otherwise: by differences of nine points with
-        steps of about 1/400 of the domain, which evaluate the callable only inside the domain.
+        Derivatives are exact for the catalogue, for SymPy expressions and for NURBS, given by the
+        user for a callable with `derivatives`, and numerical otherwise: by differences of nine
+        points with steps of about 1/400 of the domain, which evaluate the callable only inside it.
 
         Parameters
         ----------
