@@ -116,9 +116,9 @@ class BoundaryArc:
 
     @cached_property
     def parts(self) -> tuple[BoundaryArc, ...]:
-        """The great-circle arcs between singular points; the arc itself if there are none.
+        """The parts of the arc between its singular points; the arc itself if there are none.
 
-        At singular points their normals are the limits.
+        At a singular point, a part ends with the limit of its normals.
         """
         if not self.singular_points:
             return (self,)

@@ -16,10 +16,10 @@ Segment = tuple[Hashable, Hashable, Array]
 
 
 def chained(pieces: Sequence[Ends]) -> list[tuple[list[tuple[int, bool]], bool]]:
-    """Chain pieces, given by their ends, into curves through nodes of exactly two pieces.
+    """Chain pieces, given by the nodes at their ends, into curves.
 
-    A curve is a list of indices of its pieces, each with a flag for reversal. Also return whether
-    the curve is closed.
+    A curve continues through a node at which exactly two pieces end. It is returned as a list of
+    the indices of its pieces, each with a flag for reversal, and a flag whether it is closed.
     """
     at_node: dict[Hashable, list[int]] = {}
     for number, ends in enumerate(pieces):

@@ -22,8 +22,9 @@ TOUCHING = 1e-7
 FARTHEST, FARTHEST_BY_NODES = 2.0, 1.5
 # Critical points closer than this, in cells, are one point.
 SAME = 1e-2
-# K is constant in a direction if its growth there is less than this factor of the growth in the
-# other. The second number is for differences between nodes, which are not close to the zeros.
+# K is constant in one principal direction of its Hessian if its growth in that direction is less
+# than this factor of its growth in the other. The second number is for differences between nodes,
+# which are not close to the zeros.
 CONSTANT, CONSTANT_BY_NODES = 1e-5, 1e-2
 
 

@@ -49,8 +49,8 @@ class Known(NamedTuple):
 class Curvature:
     """K of a surface at parameters (k, 2), which may lie beyond a periodic end.
 
-    Derivatives of the surface come from its formulas, from those of its operations, or from
-    differences, whose error is estimated by steps twice as long.
+    Derivatives of the surface come from its formulas; for a callable, from its tape of NumPy
+    operations, or else from differences, whose error is estimated by steps twice as long.
     """
 
     def __init__(self, surface: Surface) -> None:
@@ -84,7 +84,7 @@ class Curvature:
         return Known(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
     def derivatives(self, places: Array) -> tuple[Array, Array, Array]:
-        """Return K (k,), its gradient (k, 2) and its Hessian (k, 2, 2) by shares of the domain."""
+        """Return K (k,), its gradient (k, 2) and Hessian (k, 2, 2), u and v scaled to [0, 1]."""
         u, v = places.T.copy()
         steps, (in_u, in_v) = STEP * self.extent, np.stack(self.ends, axis=1).tolist()
         jets, _ = differences(self._thrice, u, v, (steps[0], steps[1]), (in_u, in_v))

@@ -130,9 +130,9 @@ class GaussianImage:
     def cones(self) -> Array:
         """The symmetric matrices M (3, 3, 3) of the cones nᵀ M n = 0 on which the sides lie.
 
-        They are the matrices of U, V, W, of the edges u = 0, v = 0 and w = 1 − u − v = 0, up to a
-        common positive factor. The three forms have the same sign at the normals of the patch and
-        at their opposites, and only there.
+        They are the matrices of the quadratic forms U, V, W, up to a common positive factor; the
+        edges are u = 0, v = 0 and w = 1 − u − v = 0. The three forms have the same sign at the
+        normals of the patch and at their opposites, and only there.
         """
         rows = self._patch.apply(formulas.boundary_cones)
         return np.array([[x[0] for x in row] for row in rows]).reshape(3, 3, 3)
@@ -313,7 +313,8 @@ class GaussianImages:
     def solid_angles(self) -> Array:
         """(patches,) float64 array: the integral of the Gaussian curvature over each patch.
 
-        On a closed surface they sum to 2π χ: 4π on one of the type of the sphere, 0 on a torus.
+        On a closed surface they sum to 2π χ: to 4π if it has the topology of a sphere, to 0 on a
+        torus.
         """
         return self._measures[0]
 

@@ -23,8 +23,9 @@ __all__ = ["Curves", "ImageCurve", "Traced", "Zeros", "jets_of_spline"]
 OfPlaces = Callable[[Array], Array]
 # Curves whose ends are closer than this, relative to their size, are closed.
 CLOSED = 1e-6
-# The nearest point of a curve is searched among this number of vertices, then among as many between
-# the neighbours of the nearest one, and so on; finally on the chords at it.
+# The point whose normal is nearest to a given one is searched among PLACES points of a curve,
+# between the two neighbours of the nearest vertex; ROUNDS times in all, each time between the two
+# neighbours of the nearest point so far. The last points are joined by chords.
 PLACES, ROUNDS = 9, 5
 
 
@@ -68,10 +69,7 @@ class ImageCurve:
 
 @dataclass(frozen=True, eq=False)
 class Traced:
-    """A curve on a surface or a spline.
-
-    `of` is the surface or the spline.
-    """
+    """A curve, and the functions `of` of the surface or spline on which it lies."""
 
     curve: ImageCurve
     of: Curves
@@ -112,9 +110,10 @@ class Traced:
 
 
 class Curves:
-    """Curves on a surface or a spline: polylines in the parameters, or moved by `onto`.
+    """The functions that evaluate and refine curves on a surface or a spline.
 
-    `jets` returns 2-jets (k, 6, 3) at parameters (k, 2); `size` is that of the surface.
+    Here the curves are polylines of the parameter plane; a subclass for other curves overrides
+    `onto`. `jets` returns 2-jets (k, 6, 3) at parameters (k, 2); `size` is that of the surface.
     """
 
     jets: OfPlaces
@@ -131,7 +130,8 @@ class Curves:
     def traced(self, uv: Array, tolerance: float) -> Traced:
         """Insert vertices into a polyline (k, 2) until it and its image are close to a curve.
 
-        The tolerance is relative to the size of the surface, and in radians.
+        The tolerance is a distance in space, relative to the size of the surface, and also an angle
+        in radians on the sphere.
         """
 
         def both(uv: Array) -> Array:

@@ -28,11 +28,11 @@ LONGEST_SQUARED = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Members:
-    """Whether each of k vectors is the normal of a regular, non-parabolic point.
+    """Decisions whether each of k vectors is the normal of a regular, non-parabolic point.
 
-    `inside` (k,) says so, and `uv` (k, 2) are the parameters; `signs` (k,) is the sign of K where
-    it was decided exactly, else 0. Where `vanishing` (k,) is true, D, U, V, W are all zero: the
-    vector may be the normal along a parabolic line.
+    `inside` (k,) are the decisions, and `uv` (k, 2) the parameters of the points. `signs` (k,) is
+    the sign of K where it was decided exactly, else 0. Where `vanishing` (k,) is true, D, U, V, W
+    are all zero: the vector may be the normal along a parabolic line.
     """
 
     inside: NDArray[np.bool_]

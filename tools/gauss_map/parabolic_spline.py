@@ -20,7 +20,7 @@ from .patches import Patches
 
 __all__ = ["ZerosOfSpline"]
 
-# The corners of the triangle by their parameters.
+# The parameters u, v of the corners of a patch.
 CORNERS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
 # A point of an edge within this distance of a corner, in cells, is the corner.
 AT_CORNER = 1e-9
@@ -49,7 +49,7 @@ class ZerosOfSpline(Zeros):
         self.periodic = np.array([ends[0] == "periodic" for ends in spline.boundary])
 
     def polylines(self) -> list[Array]:
-        """Return the curves (k, 2)."""
+        """Return the curves as polylines (k, 2) of the parameters."""
         lines = [
             (int(k), self._places(np.array([k]), line.segment)[0])
             for k in np.flatnonzero(self.classes == PatchClass.MIXED)

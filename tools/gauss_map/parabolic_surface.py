@@ -24,17 +24,18 @@ CELLS, MOST_CELLS, CROWDED = 128, 512, 1 / 8
 WORTH_A_WARNING = 1e-4
 # Isolated zeros of K whose cells are this close are one zero.
 TOGETHER = 4
-# Derivatives of K below this bound count as zero. In the direction in which the normal is constant,
-# they are relative to the gradient of K: so on curves with one normal, such as the top circle of a
-# torus. The gradient itself is relative to its maximum on the curve: it vanishes where curves
-# cross.
+# Derivatives of K below this bound count as zero. The derivative in the direction in which the
+# normal is constant is relative to the gradient of K; it vanishes all along a curve with a single
+# normal, such as the top circle of a torus. The gradient is relative to its maximum on the curve;
+# it vanishes where curves cross.
 NO_CHANGE = 1e-6
 
 
 class ZerosOfSurface(Zeros):
     """The zeros of K of a surface.
 
-    Curves closer to each other than `size`, relative to the domain, cross or are a point.
+    Branches closer to each other than `size`, relative to the domain, count as crossing curves, or
+    as one point if they form a closed curve.
     """
 
     def __init__(self, surface: Surface, cells: tuple[int, int], size: float) -> None:

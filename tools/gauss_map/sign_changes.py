@@ -23,10 +23,11 @@ def sign_changes(
 ) -> list[tuple[list[Array], bool]]:
     """Return the lines between nodes with values ≥ 0 and < 0, and whether each is closed.
 
-    Cells with NaN have none. In a cell with four crossed sides, the sign of the mean of its corners
-    decides which sides are joined. `places` returns the points (k, 2) of a line on sides between
-    nodes (k, 2) and (k, 2). A line has several parts (k, 2) if it crosses seams: `kinds` are
-    "periodic" or "mirrored" where the ends along u or along v are identified.
+    No line crosses a cell that has NaN at a corner. In a cell with four crossed sides, the sign of
+    the mean of its corners decides which sides are joined. `places` returns the points (k, 2) in
+    which a line crosses the sides between nodes (k, 2) and (k, 2). A line has several parts (k, 2)
+    if it crosses seams: `kinds` are "periodic" or "mirrored" where the ends along u or along v are
+    identified.
     """
     from contourpy import LineType, contour_generator
 

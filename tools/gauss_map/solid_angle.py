@@ -29,7 +29,8 @@ NARROW = 0.5
 SMALL = 1e-9
 # Around a singular point inside, wide triangles remain at any depth. Those that remain after DEPTH
 # subdivisions are omitted, a solid angle of about 2^-26 (deeper, rounding errors are larger). Along
-# a curve of singular points their number soon exceeds MOST_WIDE, and about 2^-12 is omitted.
+# a curve of singular points their number soon exceeds MOST_WIDE, and about 2^-12 is omitted. No
+# more than LEFT_OUT is added by the integral along the boundary.
 DEPTH = 26
 MOST_WIDE = 20_000
 LEFT_OUT = 2.0**-6
@@ -71,8 +72,8 @@ def by_boundary(normals: Array, about: float) -> float:
     """Return the solid angle of one triangle (3, 3, 3, 3) by the integral along its boundary alone.
 
     The integral is known up to whole spheres, which `about` decides. It is also accurate at a
-    singular corner, where subdivision has to omit something. Returns `about` if the boundary is not
-    closed.
+    singular corner, where subdivision has to omit something. Returns `about` if the integral
+    differs from it by more than LEFT_OUT, as where the boundary is not closed.
     """
     arcs = np.concatenate(boundary_of(normals[None]))
     columns = map(vector, np.moveaxis(arcs[..., None, :], 1, 0))
