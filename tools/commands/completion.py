@@ -70,7 +70,7 @@ def surfaces_and_files(
 
 def settings(context: click.Context, _: click.Parameter, begun: str) -> list[str]:
     """Complete the name of a parameter of the surface named earlier on the line."""
-    # While an option, such as this one, has no value yet, Click leaves words in `args`.
+    # Click leaves words in `args` while an option, here --set, has no value yet.
     words = [context.params.get("surface"), *context.args]
     surfaces = [x for word in words if (x := _catalogue().get(word or "")) is not None]
     return _begun([f"{name}=" for x in surfaces[:1] for name in x["parameters"]], begun)

@@ -44,13 +44,13 @@ _TYPES = {
     **{"float": "f4", "double": "f8", "float32": "f4", "float64": "f8"},
     **{"int64": "i8", "uint64": "u8"},
 }
-# The first name of a type is the standard's; some readers know only this.
+# Of several names of a type, the standard's is written; some readers know no other.
 _NAMES = {kind: name for name, kind in reversed(_TYPES.items())}
 
 _REPORT = "gaussmap report "
-# Only in a file that lacks some of the fields.
+# The beginning of a comment that lists the fields, in a file that lacks some of them.
 _FIELDS = "gaussmap fields "
-# Some readers hold a header line in a buffer of 256 or 1,024 bytes.
+# The length of a comment: some readers hold a header line in a buffer of 256 or 1,024 bytes.
 _CHUNK = 200
 _LARGEST_HEADER = 1 << 20
 _LARGEST_INTEGER = 2**31 - 1

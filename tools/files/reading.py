@@ -13,13 +13,13 @@ from .paths import reason_of
 
 __all__ = ["UnusableError", "opened", "readable", "regular_file"]
 
-# The beginning of the files that Git leaves in place of large ones, and what they are.
+# The beginning of a pointer file, which Git LFS leaves in place of a large file, and the error.
 LFS = b"version https://git-lfs.github.com/spec/"
 POINTER = "is a Git LFS pointer, not the file itself; get that with 'git lfs pull'."
 
 
 class UnusableError(Exception):
-    """The content of a file is invalid; the text continues "'path' …"."""
+    """An error for a file with invalid content; its text is the sentence after "'path'"."""
 
 
 def regular_file(path: Path | str) -> BufferedReader:

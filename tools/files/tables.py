@@ -20,7 +20,7 @@ from .of_terrain import columns_of_terrain
 
 __all__ = ["write_csv", "write_rows", "write_xyz"]
 
-# As many digits as it takes to read the same number again.
+# The formats of numbers: as many digits as it takes to read the same number again.
 _DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%r", "O": "%s"}
 _ROWS = 4096
 # The least number of rows for which importing Polars pays, and the number of rows it writes at
@@ -49,10 +49,11 @@ def write_xyz(samples: Samples, path: Path) -> None:
 
 
 def write_rows(file: BinaryIO, line: str, columns: Sequence[NDArray[Any]]) -> None:
-    """Write columns as lines, whose braces are replaced by the numbers and texts of a row.
+    """Write `line` for each row of the columns; each {} in it becomes the row's value of a column.
 
-    Words are separated by spaces or by commas. If Polars is installed, it writes many rows, ten
-    times as fast as Python, with as few digits as it takes to read the same numbers again.
+    The words of a line are separated by spaces or by commas. If Polars is installed, it writes many
+    rows, ten times as fast as Python, with as few digits as it takes to read the same numbers
+    again.
     """
     columns = [column.view(np.uint8) if column.dtype == np.bool_ else column for column in columns]
     polars = if_installed("polars") if len(columns[0]) >= WORTH_AN_IMPORT else None

@@ -39,9 +39,8 @@ def plot(self: GaussMap, *, view: Sequence[float] = VIEW) -> Figure:
 
     On the right, the surface with samples coloured by K, which changes its sign at the parabolic
     curves; on the left, the normals of the samples, and the images of these curves with their
-    cusps. The number of points with a
-    normal changes by two at a fold, and by one at the image of a boundary. Parts hidden by the
-    surface are not drawn; parts behind the sphere are pale.
+    cusps. The number of points with a normal changes by two at a fold, and by one at the image of a
+    boundary. Parts hidden by the surface are not drawn; parts behind the sphere are pale.
 
     Parameters
     ----------

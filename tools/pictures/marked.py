@@ -11,7 +11,8 @@ from ...runtime.samples.samples import Samples
 
 __all__ = ["Marked", "marked"]
 
-BETWEEN = np.array([0.6, 0.35, 0.8])  # the arrow of the normal is then seen from the side
+# A direction right, up and towards the viewer: an arrow along it is not seen end on.
+BETWEEN = np.array([0.6, 0.35, 0.8])
 
 
 class Marked(NamedTuple):
@@ -34,8 +35,8 @@ def marked(
 ) -> Marked | None:
     """Return a normal with many visible samples, or None if no visible sample is at a normal.
 
-    Among the normals with at least as many visible samples as the mean, it is the one nearest to a
-    direction between the rows of `view`: right, up, and towards the viewer.
+    Among the normals with at least as many visible samples as the mean, it is the one nearest to
+    the direction BETWEEN, whose components are along the rows of `view`.
     """
     index = samples.normal_index
     chosen = visible & (index >= 0)

@@ -22,7 +22,7 @@ __all__ = ["Branch", "branches_of", "draw_branch", "values_on_globe"]
 ROOM = 1.13  # half of the side of the axes; the globe has the radius 1
 PIXELS = 256  # along the diameter of the globe
 FAR = 1.5  # beyond this, relative to the distance between normals, a branch is not drawn
-BEHIND = {"facecolor": "white", "edgecolor": "none", "pad": 1.2, "alpha": 0.85}  # a text
+BEHIND = {"facecolor": "white", "edgecolor": "none", "pad": 1.2, "alpha": 0.85}  # behind a text
 
 
 class Branch(NamedTuple):

@@ -74,9 +74,9 @@ def _mark(
     scene: Scene,
     size: float,
 ) -> None:
-    """Mark points with their normal; only a few get arrows, and none if heights are rescaled.
+    """Mark points with their normal; arrows are drawn if points are few and heights not rescaled.
 
-    If there are many, marks have about the `size` of samples, in points.
+    If points are many, marks have about the `size` of samples, in points of print.
     """
     few = len(points) <= ARROWS
     if few and scene.factor == 1.0:

@@ -115,11 +115,12 @@ def convolve(
     """Return every sum of two points of two surfaces that have the same normal.
 
     Support functions add, h = h₁ + h₂ (7), and so do points and Hessians. A normal with i points on
-    the first surface and j on the second has i j sums; on folded surfaces these are very many.
+    the first surface and j on the second has i j sums, which are very many on folded surfaces.
 
-    Points of a `Surface` are those of `GaussMap.points`, exact up to rounding; where they are
-    proved to be all, the report says so. Points of splines, of grids, and of surfaces with creases
-    lie on the spline, and the report has the sum of its distances from both surfaces.
+    Points of a `Surface` are those of `GaussMap.points`, exact up to rounding; the report says for
+    how many normals they are proved to be all points. Points of splines, of grids, and of surfaces
+    with creases lie on the spline; the report has the sum of the distances of both splines from
+    their surfaces.
 
     Parameters
     ----------
@@ -133,10 +134,10 @@ def convolve(
     Returns
     -------
     Convolution
-        `Samples`: the sums, with the points of both surfaces. The report has `on`, with "surface"
-        `proved`, `undecided` (boxes of the first surface, then of the second) and `unrefined`, with
-        "spline" `fit_distance`, `fit_rms` and `fit_angle`: the sums of the distances, and the
-        larger angle.
+        `Samples`: the sums, with the points of both surfaces. If `on` in the report is "surface",
+        the report has `proved`, `undecided` (boxes of the first surface, then of the second) and
+        `unrefined`. If it is "spline", the report has `fit_distance`, `fit_rms` and `fit_angle`:
+        the sums of the distances of both surfaces, and the larger one of their angles.
 
     Raises
     ------
@@ -163,8 +164,8 @@ def convolve(
     On splines a point differs from that of the surface with the same normal by up to about
     `fit_distance`, plus `fit_angle` in radians times the largest radius of curvature.
 
-    K and H come from the sum of the Hessians: an infinite radius (a parabolic point) makes them
-    NaN, a sum of radii that is 0 infinite or NaN.
+    K and H come from the sum of the Hessians. They are NaN where a radius is infinite (at a
+    parabolic point), and infinite or NaN where a sum of radii is 0.
 
     Examples
     --------

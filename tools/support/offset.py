@@ -32,7 +32,7 @@ NEEDED = {
 
 
 def offset(samples: Samples, distance: float) -> Samples:
-    """Return `samples.offset(distance)`."""
+    """Return the samples moved by a distance along their normals; see `Samples.offset`."""
     d = finite_number(distance, "distance")
     _check_fields(samples)
     arrays: dict[str, Any] = {x: getattr(samples, x) for x in samples.fields}

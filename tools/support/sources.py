@@ -36,10 +36,10 @@ FOR_CUBICS = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)]
 
 
 class Source(Protocol):
-    """A support function: its values at unit normals (S, 3), and its expression."""
+    """A support function that can be evaluated, and may have a symbolic expression."""
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
-        """Return all branches, by normal."""
+        """Return all branches at unit normals (S, 3), by normal."""
         ...
 
     def expression(self) -> sympy.Expr | None:
