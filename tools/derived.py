@@ -69,9 +69,9 @@ def write(
           back bit for bit. Indices are 32-bit. Needs the field `points`.
         - `.csv`: a header row and one row a sample; as many digits as it takes to read the same
           numbers again. Where the unit of length is known, of parts and of terrain with a
-          reference system, columns of lengths and curvatures name it: `x [mm]`. Of a CAD part
-          there are `source_index`, `face_name`, `face_kind` and `face_radius` of the face, too,
-          if the samples have `face_index` and know their part. With the extra "tables" Polars
+          reference system, columns of lengths and curvatures name it: `x [mm]`. Samples of a CAD
+          part that have `face_index` and know their part also have the columns `source_index`,
+          `face_name`, `face_kind` and `face_radius` of the face. With the extra "tables" Polars
           writes the file, ten times as fast.
         - `.xyz`: rows `x y z nx ny nz`, digits as in `.csv`, no header. Needs `points` and
           `normals`.
@@ -160,11 +160,12 @@ def mesh(
         - "shape": triangles are Delaunay on the surface, and have angles as large as the
           samples allow. A sample so close to others that a smallest angle stays below 5° is
           left out, and further ones until 95 % of the smallest angles are 25° at least, or
-          until a tenth of the others would be left out (`Mesh.left_out` counts all). That
-          happens where distances change by a factor of two from one sample to the next: no
-          triangles of theirs have large angles. Of a closed surface with a count of samples of
-          ``density="balanced"``, none is left out beside most narrow bends, and up to 8 %
-          beside the sharpest. Of samples on a grid, none is left out, even if its cells are long.
+          until a tenth of the others would be left out (`Mesh.left_out` counts all). Samples are
+          left out where distances change by a factor of two from one sample to the next, since
+          triangles there cannot have large angles. Of a count of samples with
+          ``density="balanced"`` on a closed surface, none is left out beside most narrow bends,
+          and up to 8 % beside the sharpest. Samples on a grid are never left out, even if its
+          cells are long.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction only. A
           sample is left out where a triangle would have no area. On a CAD part, planes, cylinders
@@ -184,10 +185,10 @@ def mesh(
         Unless the samples have the fields points, normals and uv; those on a grid (`density` of
         the report) need row and column, too.
     InputError
-        Without samples or spline, if a sample lies outside its domain, if `angle` leaves no
-        triangle, and, without `angle`, if there are too few samples for a mesh that closes. For a
-        CAD part, if there are fewer samples than its edges need, its file has no loops of edges,
-        or, for "shape", the density is neither "balanced" nor "uniform".
+        Without samples or spline, if a sample lies outside the domain of the spline, if `angle`
+        leaves no triangle, and, without `angle`, if there are too few samples for a mesh that
+        closes. For a CAD part, if there are fewer samples than its edges need, its file has no
+        loops of edges, or, for "shape", the density is neither "balanced" nor "uniform".
     SurfaceError
         If no face of a CAD part can be meshed.
     MissingExtraError
@@ -196,8 +197,8 @@ def mesh(
     Warns
     -----
     GaussmapWarning
-        If faces of a CAD part are missing, see `PartMesh.failed`, or triangles of it point inward
-        and no larger count is known to avoid that.
+        If faces of a CAD part are missing, see `PartMesh.failed`, or if triangles of a CAD part
+        point inward, and no larger count is known that avoids this.
 
     Notes
     -----
@@ -205,8 +206,8 @@ def mesh(
     simulation, smoothing, simplification, discrete curvatures, and files of single precision,
     in which thin triangles lose their area. They cost accuracy: with the same number of
     vertices, distances and angles to the surface are larger by about a third than with
-    "normals", see docs/guides/meshes.md. That is the better choice for rendering, and for areas,
-    volumes and other integrals: `weights` uses it.
+    "normals", see docs/guides/meshes.md. So "normals" is the better choice for rendering, and for
+    areas, volumes and other integrals: `weights` uses it.
 
     Examples
     --------
@@ -299,9 +300,9 @@ def weights(
     Σ w f(points) approximates the integral of f over the surface: its area for f = 1, the volume of
     a closed surface for f = support / 3, 2π times the Euler characteristic for f =
     gaussian_curvature. The error falls with the square of the distance between samples, that is as
-    1 / N; the error of the area as 1 / N², down to that of the spline (1,000 samples of a NURBS
-    ellipsoid: 2e-5), and as 1 / N where a boundary is curved (a disc: 4e-4). The weights come from
-    the mesh of the samples, whose triangles are curved according to the normals, and whose
+    1 / N. For the area it falls as 1 / N², down to the error of the spline (1,000 samples of a
+    NURBS ellipsoid: 2e-5), but as 1 / N if a boundary is curved (a disc: 4e-4). The weights come
+    from the mesh of the samples, whose triangles are curved according to the normals, and whose
     boundary is a polygon.
 
     Parameters
@@ -427,7 +428,7 @@ def unobstructed(
 
     Examples
     --------
-    In the hole of a torus, whose radius is 0.65, ways end at the opposite side:
+    In the hole of a torus, whose radius is 0.65, a segment longer than 1.3 meets the other side:
 
     >>> import gaussmap as gm
     >>> samples = gm.sample("torus", normals=[[1, 0, 0]])

@@ -69,8 +69,8 @@ class SupportPoints(NamedTuple):
     face_index : (S,) int64 array
         For a part: the indices of the faces. −1 for other surfaces.
     on_border : (S,) bool array
-        Whether the point was found on a boundary of the surface, of a face or of a net. A tip may
-        be found as a sample (`gm.Component`).
+        Whether the point was found on a boundary of the surface, of a face or of a net; False for a
+        tip that was found as a point with this normal (`gm.Component`).
 
     Examples
     --------
@@ -119,9 +119,9 @@ class SupportPoints(NamedTuple):
 def support(self: GaussMap, directions: ArrayLike) -> SupportPoints:
     """Return the farthest point of the surface in each direction, wherever it lies.
 
-    It is a point with this normal or the opposite one, or a point of a boundary, a corner, a tip,
-    or one point of a curve or a region of farthest points, always the same one. The values are
-    those of the support function of the convex hull.
+    It is a point with this normal or the opposite one, a point of a boundary, a corner, or a tip.
+    If all points of a curve or a region are farthest ones, one of them is returned, always the same
+    one. The values are those of the support function of the convex hull.
 
     Parameters
     ----------
@@ -217,9 +217,9 @@ class HasJets(Protocol):
 class Segments:
     """M segments `starts` + t `steps` (M, 2) of the parameters of a surface, 0 ≤ t ≤ 1.
 
-    Each curve turns by less than half a turn. `face` is the index of the face of a part, and
-    `border` is False for lines inside a surface. The boundary is within `errors` (M,) of the
-    curves.
+    The tangent of each segment in space is assumed to turn by less than half a turn. `face` is the
+    index of the face of a part, and `border` is False for lines inside a surface. The boundary is
+    within `errors` (M,) of the segments in space.
     """
 
     surface: HasJets
@@ -487,7 +487,10 @@ def _developable(spline: Spline) -> Flags:
 def _add_undecided(
     found: SupportPoints, gauss_map: GaussMap, normals: Array, places: Sequence[UndecidedNormal]
 ) -> None:
-    """Take points of undecided boxes, such as one of a circle of points with the same normal."""
+    """Take farther points that Newton's method finds in undecided boxes.
+
+    Such boxes cover, for example, a circle of points with the same normal.
+    """
     if not places:
         return
     repeated = [x for x in places for _ in IN_BOXES]

@@ -27,14 +27,14 @@ from .workers import Tally, Worker, sampled
 
 __all__ = ["connected", "run_on_cluster"]
 
-# The number of times a task may lose its worker and be given to another one.
+# The number of times that a task is given to another worker because its worker is lost.
 LOST = 10
 # Seconds that a scheduler, or its first worker, may take to answer.
 PATIENCE = 30
-# The number of waiting tasks for each worker: the scheduler knows of no others.
+# The number of tasks that the scheduler holds for each thread of a worker; others are sent later.
 AHEAD = 2
-# The largest number of parts of a task, and the least number of tasks for each worker if there
-# are enough parts.
+# The largest number of parts of a task, and the least number of tasks for each thread of a worker
+# if there are enough parts.
 MOST_PARTS, LEAST_TASKS = 64, 8
 
 _HERE = threading.local()
@@ -103,8 +103,8 @@ def run_on_cluster(
 
 def work(plan: Plan, parts: Sequence[Input]) -> Tally:
     """Sample parts on a worker of Dask, in a process that belongs to the worker's thread."""
-    # Dask's nanny starts workers that may have no child processes, lest these are left behind. The
-    # processes of a task end with it.
+    # Dask forbids its workers to have child processes, which could be left behind. The process that
+    # samples ends with its parent (`end_with_parent`), so it cannot.
     multiprocessing.current_process().daemon = False
     worker = getattr(_HERE, "worker", None)
     if worker is None or worker.plan.run != plan.run:

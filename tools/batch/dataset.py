@@ -114,7 +114,7 @@ class Dataset:
 
     @property
     def units(self) -> dict[str, str]:
-        """The units of fields by their names; L is `unit_of_length` of the part in the manifest."""
+        """The units of fields by name; L is the part's `unit_of_length` in the manifest."""
         return {name: UNITS[name] for name in self.fields if name in UNITS}
 
     def __len__(self) -> int:
@@ -312,8 +312,8 @@ class Dataset:
         Parameters
         ----------
         points : int, default 2048
-            The number of points of each part. The samples of a part with fewer are repeated: each
-            of its points comes about equally often, and a warning says so once.
+            The number of points of each part. If a part has fewer samples, they are repeated, each
+            about equally often, and a warning says so once.
         parts : int, default 16
             The number of parts in a batch; parts without samples are left out.
         fields : sequence of str, default ("points", "normals")

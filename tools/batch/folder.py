@@ -55,7 +55,7 @@ POINTS, PARTIAL, FILES = FOLDERS = "points", "partial", "files"
 FORMAT = 3
 CODECS = ("zstd", "snappy", "gzip", "lz4", "none")
 FIELDS = tuple(name for name in COLUMNS if name not in EDGE_NAMES)
-LONGEST_NAME = 60  # of the name of a part, in the name of its file
+LONGEST_NAME = 60  # the most characters of a part's name that the name of its file contains
 
 
 @dataclass(frozen=True, slots=True)
@@ -329,7 +329,7 @@ def _remove(path: Path) -> None:
 
 
 def _lock(file: IO[bytes], folder: Path) -> None:
-    """Raise FileError if another run holds the lock; the system releases that of a killed run.
+    """Lock the folder of a data set; FileError if another run holds the lock.
 
     The system releases the lock of a killed run. On a file system without locks, nothing is locked.
     """

@@ -167,7 +167,7 @@ def opened_manifest(folder: Path) -> Iterator[Any]:
 
 @contextmanager
 def _opened(path: Path, schema: Any) -> Iterator[Any]:  # noqa: ANN401
-    """Yield an open Parquet file; FileError if it is damaged, even if only reading reveals that."""
+    """Yield an open Parquet file; FileError if it is damaged, which may show only on reading."""
     parquet = _parquet()
     try:
         with parquet.ParquetFile(path, page_checksum_verification=True) as file:

@@ -65,7 +65,7 @@ def serve(pipe: Connection, memory: float, parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent process
     limit(RLIMIT_DATA=int(memory * GIB))
     os.dup2(2, 1)
-    from ..sampling.sample import sample  # noqa: F401 - which takes its time, and that is not a part's
+    from ..sampling.sample import sample  # noqa: F401 - loaded before a part's time limit begins
 
     _say(pipe, {})
     while True:
@@ -83,7 +83,7 @@ def _say(pipe: Connection, about: dict[str, Any]) -> None:
 
 
 def _answers(task: Task) -> Iterator[dict[str, Any]]:
-    """Yield the content of a part, and then its results when its samples have been written."""
+    """Yield the columns that identify a part, then its results once its samples are written."""
     from ...runtime.base.errors import FileError, GaussmapError
     from .manifest import FAILED, OK
     from .part_files import write_part

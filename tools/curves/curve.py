@@ -176,9 +176,9 @@ class Curve:
     def from_points(cls, points: ArrayLike, closed: bool = False, *, name: str = "points") -> Curve:
         """Make a curve that approximates points, which should be almost evenly spaced.
 
-        The parameter is t = k near ``points[k]``; the spline does not interpolate the points. There
-        is one piece of the spline between any two neighbouring points, unless `fit(pieces=...)` has
-        another number.
+        The parameter is t = k near ``points[k]``; the spline does not interpolate the points. The
+        spline has one piece between any two neighbouring points, unless `fit` gets another number
+        of `pieces`.
 
         Parameters
         ----------

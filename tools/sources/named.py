@@ -14,7 +14,7 @@ __all__ = ["Named"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Named:
-    """The name of a surface and its options, those of `gaussmap sample`; None if not given.
+    """The name of a surface, and the options of `gaussmap sample` for it, None if not given.
 
     Raises
     ------

@@ -14,7 +14,7 @@ __all__ = ["LIMITS", "OF_FACES", "read_part_file"]
 
 # The options of `read_cad`.
 LIMITS = ("unit", "time_limit", "memory_limit")
-# Those of `Part.select`.
+# The options of `Part.select`.
 OF_FACES = ("kind", "name", "faces")
 
 

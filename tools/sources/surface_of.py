@@ -112,7 +112,7 @@ def _grid(named: Named, source: str) -> Surface:
 def with_tolerance(
     surface_: Surface | Spline, named: Named
 ) -> tuple[Surface | Spline, tuple[int, int] | None]:
-    """Return the surface, and the cells from --cells or --tolerance; for data, the spline."""
+    """Return the surface, or the spline of data, and the cells from --cells or --tolerance."""
     if named.tolerance is None or isinstance(surface_, Spline):
         return surface_, named.cells
     spline = fit(surface_, tolerance=named.tolerance, progress=not named.quiet)

@@ -60,19 +60,20 @@ def terrain(
     source : str, os.PathLike, rasterio.DatasetReader or (m, n) array_like
         Name of a GeoTIFF, or an open dataset of rasterio in any format, whose transform, CRS,
         nodata, mask, scale and offset are respected; or elevations, with rows along y and columns
-        along x. All are in the unit of x and y.
+        along x. Heights are in the unit of x and y.
     x, y : (n,) and (m,), or (m, n) array_like, optional
         The coordinates of an array: one for each column and one for each row, or for each height.
         They need not be equally spaced.
     spacing : (float, float), optional
-        Instead: the distances dx and dy of an array, or of a raster that states none, starting at
-        (0, 0). A negative dy means that rows run from north to south.
+        In place of x and y: the distances dx between columns and dy between rows of an array, or of
+        a raster that states none; the first height is at (0, 0). A negative dy means that rows run
+        from north to south.
     band : int, default 1
         The band of a raster.
     nodata : float, optional
-        The number that marks missing heights, in place of that of the file, before scale and
-        offset. NaN and masked entries always do. Parts that depend on missing heights are left out,
-        see `Surface.from_grid`.
+        The number that marks missing heights, in place of that of the file; it is compared before
+        scale and offset. NaN and masked entries are always missing. Parts that depend on missing
+        heights are left out, see `Surface.from_grid`.
     crs : str or int, optional
         The coordinate reference system of the points, such as "EPSG:32617" or its number, in
         lengths. By default that of the source or, if that has degrees, the zone of UTM that
