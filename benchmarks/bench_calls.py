@@ -1,7 +1,7 @@
-"""Whole calls as users make them: with memory that is used again, streams, densities, threads.
+"""Whole calls as users make them: with reused memory, streams, densities, threads.
 
-Limits are those of `bench_sample`. A baseline of streams is `gm.sample`, of threads one thread, and
-of densities the same number of samples at normals alone.
+Limits are those of `bench_sample`. The baseline of a stream is `gm.sample`, that of several threads
+is one thread, and that of a density is as many samples at normals alone.
 """
 
 from __future__ import annotations

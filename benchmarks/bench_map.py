@@ -1,8 +1,8 @@
 """Points with given normals of a map that is built once, on the surface and on its spline.
 
 The limit is the writing of the same samples into new arrays, as in `bench_sample`; for few normals
-calls cost more than samples, so that the ratio says how much. The baseline of the surface is the
-same question to the spline, whose points are not proved to be all.
+the ratio is that of the fixed costs of a call. The baseline of the surface is the same query to the
+spline, whose points are not proved to be all.
 """
 
 from __future__ import annotations

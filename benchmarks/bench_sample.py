@@ -1,9 +1,9 @@
 """Sampling, compared with the time of writing the same arrays.
 
 The writing limit is a compiled loop on the same number of threads that stores constants into arrays
-of the same shapes. It stores into memory it holds (`of_writing_limit`): no sampler that returns new
-arrays can get there, because the system has to give it that memory. `of_new_array_limit` is against
-the same loop on new arrays.
+of the same shapes. `of_writing_limit` is relative to a loop that stores into memory it holds, which
+no sampler that returns new arrays can reach, because the system has to give it new memory.
+`of_new_array_limit` is relative to the same loop on new arrays.
 """
 
 from __future__ import annotations

@@ -23,8 +23,8 @@ from typing import NamedTuple
 
 __all__ = ["CALLS", "COMMANDS", "Cost", "cost", "main"]
 
-# Seconds of the processor: of a first call, beyond those of its repetition; with SymPy's import and
-# derivatives, too.
+# The most seconds of processor time that a first call may take beyond its repetition, and the most
+# of a call that imports SymPy and computes derivatives.
 MOST, MOST_OF_SYMPY = 1.5, 3.0
 TORUS = "gm.sample('torus', 10_000{})"
 WAVES = "np.hypot(*np.mgrid[-1:1:40j, -1:1:50j])**3"
@@ -64,7 +64,7 @@ CALLS = {
     "all surfaces of the catalogue": "[gm.sample(x, 100) for x in gm.surfaces.names()]",
     "a part from an .npz file": "gm.sample(gm.read_part('part.npz'), 2000)",
 }
-# Their processes start others, or are the command line: nothing is repeated.
+# The following calls start other processes, or are the command line: they are not repeated.
 BATCH = """
 import gaussmap as gm
 if __name__ == "__main__":
@@ -105,14 +105,14 @@ HERE_ONLY = {"GAUSSMAP_KERNELS": "0"}
 
 
 class Cost(NamedTuple):
-    """What a process cost: seconds of the processor in all, and of its first call."""
+    """What a process cost, in seconds of processor time, and how many kernels it compiled."""
 
     seconds: float
-    """From the start of Python to the end of the first call; NaN if it was not repeated: of all."""
+    """From the start of Python to the end of the first call, or of a process without repetition."""
     beyond: float
-    """Those of the first call beyond its repetition."""
+    """The seconds of the first call beyond those of its repetition; 0 without a repetition."""
     compiled: int
-    """How many kernels are kept in its folder afterwards."""
+    """The number of kernels in the folder of the cache afterwards."""
 
 
 def cost(arguments: Sequence[str], cache: Path, options: Mapping[str, str] | None = None) -> Cost:
@@ -146,7 +146,7 @@ def programs() -> dict[str, list[str]]:
 
 
 def check(names: Iterable[str]) -> int:
-    """Return how many calls of these compile, or cost too much; print each."""
+    """Return how many of these calls compile kernels or cost too much; print the cost of each."""
     failed = 0
     with tempfile.TemporaryDirectory() as folder:
         cost(["-c", PART], Path(folder, "cache"))

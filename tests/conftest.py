@@ -15,8 +15,8 @@ settings.register_profile("large", max_examples=200, deadline=None)
 settings.load_profile("quick")
 
 HERE = Path(__file__).parent
-# The tests that run formulas and kernels: `make coverage` runs them without compilation, and reads
-# no other file. In those of SOME only the tests that are marked do.
+# Files of tests that run formulas and kernels: `make coverage` runs them without compilation, and
+# reads no other file. In the files of SOME it runs only the tests marked `kernels`.
 OF_KERNELS = (
     "generated", "tools/curves", "tools/density", "tools/gauss_map", "runtime/tape", "tools/meshes",
     "tools/support", "runtime/search/test_exact.py", "runtime/search/test_search.py",

@@ -1,4 +1,4 @@
-"""The public interface, found and not listed: what tests go through that hold for all of it."""
+"""The public interface, found and not listed, for tests that hold for all of it."""
 
 import inspect
 from collections.abc import Callable

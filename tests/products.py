@@ -1,4 +1,4 @@
-"""Products of values: quick tests try each value, or each pair, and all others are slow."""
+"""Products of values: quick cases cover each value, or each pair; the other cases are slow."""
 
 from collections.abc import Iterable
 from itertools import combinations, product
@@ -10,14 +10,14 @@ import pytest
 def covering(**axes: Iterable[Any]) -> pytest.MarkDecorator:
     """Parametrize a test by all combinations of values, of which a covering array is quick.
 
-    Of two axes each value is in a quick case, of more of them each pair of values. A key may name
-    several arguments, as that of `pytest.mark.parametrize`.
+    With two axes each value is in a quick case, with more axes each pair of values. A key may name
+    several arguments, as in `pytest.mark.parametrize`.
     """
     sizes = [[*values] for values in axes.values()]
     cases = [*product(*(range(len(x)) for x in sizes))]
     quick, strength = set(), 1 if len(sizes) < 3 else 2
     left = {x for case in cases for x in combinations(enumerate(case), strength)}
-    while left:  # the case that has most of what is left, of the first of these
+    while left:  # take the first case that covers most of what is left
         best = max(cases, key=lambda case: len(left & {*combinations(enumerate(case), strength)}))
         quick.add(best)
         left -= {*combinations(enumerate(best), strength)}

@@ -1,4 +1,4 @@
-"""Surfaces that tests of several folders take: closed ones without a name, and moved ones."""
+"""Surfaces for tests of several folders: closed ones outside the catalogue, and moved ones."""
 
 from typing import Any
 
@@ -73,7 +73,7 @@ def revolved(
 
 
 def same(one: gm.Samples, other: gm.Samples) -> None:
-    """Check that all fields are there again, in all bits."""
+    """Check that two samplings have the same fields, bit for bit."""
     assert one.fields == other.fields
     for name, array in one.arrays().items():
         found = getattr(other, name)

@@ -22,7 +22,7 @@ STARTED = monotonic()
 
 
 def machine() -> list[str]:
-    """Return the items of a list in Markdown; the time is that since this module was imported."""
+    """Return the items of a list in Markdown; the minutes count from the import of this module."""
     minutes = (monotonic() - STARTED) / 60.0
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     return [

@@ -18,10 +18,10 @@ from .triangles import Triangles
 __all__ = ["FEW", "PARTS", "Quality", "quality", "to_surface"]
 
 PARTS = 6  # every triangle is compared at the barycentric lattice of step 1/PARTS
-FEW = 0.05  # of the smallest angles are below the one that is told
+FEW = 0.05  # the share of triangles with a smallest angle below `Quality.small`
 STEPS = 12
 DIFFERENCE = 1e-5  # of parameters
-SETTLED = 1e-6  # how far, in the unit of the surface, the last step may still go
+SETTLED = 1e-6  # the greatest length of the last step, in the unit of the surface
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Quality:
     """How well a mesh of so many vertices represents a surface.
 
     Distances are the largest from the surface to the mesh and back, in the unit of the surface;
-    `worst` and `mean` are angles between the normals of both, in degrees. Of `small` degrees at
-    least are the angles of 95 % of the triangles.
+    `worst` and `mean` are angles between the normals of both, in degrees. In 95 % of the triangles
+    the smallest angle is at least `small` degrees.
     """
 
     vertices: int
@@ -94,9 +94,9 @@ def on_mesh(corners: Array) -> Iterator[Array]:
 def to_surface(form: ClosedForm, points: Array) -> Array:
     """Return the distances of points near the surface from it.
 
-    The foot of the perpendicular moves by what separates the point from the normal there. A
-    parameter that would leave an open domain is held, and the foot moves along the border.
-    ArithmeticError if it does not settle.
+    The foot of the perpendicular is found in steps: it moves by the tangential component of its
+    vector to the point. A parameter that would leave an open domain is held, and the foot moves
+    along the border. ArithmeticError if the steps do not converge.
     """
     place = inside(form, np.stack(form.parameters(points)))
     moved = np.zeros(len(points))

@@ -1,6 +1,6 @@
 """Triangle meshes of about as many vertices: Gmsh, Open CASCADE, and a grid of parameters.
 
-Vertices at one place, as on both sides of a seam, are one.
+Vertices at equal positions, as on both sides of a seam, are merged.
 """
 
 # Only `make bench-peers` installs these packages.
@@ -19,7 +19,7 @@ from .peer import Points, tuned
 
 __all__ = ["Triangles", "by_grid", "gmsh_triangles", "joined", "opencascade_triangles"]
 
-Triangles = tuple[Array, np.ndarray]  # vertices (M, 3) and their numbers (T, 3)
+Triangles = tuple[Array, np.ndarray]  # vertices (M, 3), corners of triangles as indices (T, 3)
 SAME = 1e-9  # the forms have the size 1
 
 
@@ -98,7 +98,7 @@ def _opencascade_arrays(form: ClosedForm, shape: Any) -> Triangles:
 
 
 def joined(points: Array, faces: np.ndarray) -> Triangles:
-    """Return a mesh with one vertex at a place, of those that triangles have."""
+    """Return a mesh without two vertices at one position, and without unused vertices."""
     _, first, place = np.unique(
         np.round(points / SAME), axis=0, return_index=True, return_inverse=True
     )

@@ -17,7 +17,7 @@ from .ways import WAYS
 
 
 def load() -> float | None:
-    """Return how many processes ran during the last minute, for each core."""
+    """Return the mean number of running processes of the last minute, per core."""
     return os.getloadavg()[0] / (os.cpu_count() or 1) if hasattr(os, "getloadavg") else None
 
 

@@ -23,10 +23,10 @@ LAST = COUNTS[-1]
 
 @dataclass(frozen=True)
 class Found:
-    """What a way did for a count: how many points came, their errors, points a second.
+    """What a way did for a count: how many points it gave, their errors, points a second.
 
-    `times` is how many times as fast gaussmap is with density="balanced", timed in turns; not a
-    number but for the last count.
+    `times` is how many times as fast gaussmap is with density="balanced", timed in turns; NaN for
+    all counts but the last.
     """
 
     points: int

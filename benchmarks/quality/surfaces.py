@@ -110,7 +110,7 @@ class BentPipe(ClosedForm):
         return points, stacked(n_x, n_y, n_z)
 
     def curvature(self, u: Array, v: Array) -> Array:
-        """Return K: 1/radius round the pipe, and along it what the curve and u leave."""
+        """Return K: the curvature 1/radius round the pipe, times the curvature along it."""
         _, near = self.bent(u, v)
         return (near - 1.0) / (self.radius**2 * near)
 

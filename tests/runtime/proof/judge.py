@@ -1,4 +1,4 @@
-"""What judges the proof: surfaces, what is asked of them, and another search.
+"""The judge of the proof: surfaces, queries of normals, and another search.
 
 The other search is interval arithmetic, Krawczyk's operator and bisection. It shares no code and no
 bound with the library: it bounds first and second derivatives over boxes by intervals, where the
@@ -289,7 +289,7 @@ def product(n: Array, x: list[Interval]) -> Interval:
 
 
 def by_intervals(name: str, normals: Array) -> tuple[Array, Array]:
-    """Return all points with these normals: the numbers of normals, sorted, and u and v."""
+    """Return all points with these normals: the rows of the normals, ascending, and u and v."""
     surface = surface_of(name)
     (u0, u1), (v0, v1) = surface.domain
     count = 48

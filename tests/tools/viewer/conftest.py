@@ -168,7 +168,7 @@ class Browser:
 
 @pytest.fixture
 def browser(tmp_path: Path) -> Iterator[Browser]:
-    """Start a browser without a network; in the end nothing was asked of it, nothing failed."""
+    """Start a browser; check at the end that it asked the network for nothing, without errors."""
     program = find_browser()
     if program is None:
         pytest.skip("there is no Chromium")
