@@ -64,6 +64,6 @@ def write_points(samples: Samples, path: Path) -> None:
                 crs=None if report.crs is None else wkt_of(report.crs),
                 layer="samples",
             )
-    finally:  # for other files that this process writes
+    finally:  # other files that this process writes keep their dates
         library.set_gdal_config_options({DATE: date})
     path.write_bytes(file.getbuffer())

@@ -13,7 +13,7 @@ PR_SET_PDEATHSIG = 1
 
 
 def end_with_parent(by: str, parent: int | None = None) -> None:
-    """Let the system send this process a signal when its parent is killed, where it can.
+    """Let the system send this process the signal `by` when its parent ends, where it can.
 
     If `parent`, the process id of the parent, is given and the parent has already ended, end at
     once.

@@ -14,7 +14,8 @@ from .patches import Patches, checked_nets
 __all__ = ["PatchClass", "classes_of", "classify_patches"]
 
 
-# The cubic is sampled inside on a lattice of this size: if both signs occur, no lines are needed.
+# The cubic is sampled on a lattice of this size inside the triangle: a patch with both signs is
+# MIXED, and its parabolic lines need not be computed.
 LATTICE = 8
 INSIDE = cubic_bernstein(
     np.array([(i, j) for i in range(1, LATTICE) for j in range(1, LATTICE - i)]) / LATTICE

@@ -2,9 +2,9 @@
 
 d is a direction, or the ray x − p from a viewpoint p. The signs of N·d on a grid locate the curves,
 which are closed or end at open sides. Zero counts as positive, so that a curve may follow sides of
-the grid, and cross a pole; along an open side it gets the sign opposite to the inside. Samples are
-sorted along these curves by their feet in the parameter plane. A curve is cut where it leaves the
-trim of the spline.
+the grid, and cross a pole; along an open side, a zero gets the sign opposite to the inside. Samples
+are sorted along these curves by their feet in the parameter plane. A curve is cut where it leaves
+the trim of the spline.
 """
 
 from __future__ import annotations

@@ -254,9 +254,9 @@ def _directions(patch: Patches) -> list[tuple[float, float, int]]:
 
 
 def _roots(patch: Patches) -> tuple[float, NDArray[np.complex128]]:
-    """Return the roots x of the binary cubic, where (s, t) is (x, 1) rotated by an angle.
+    """Return an angle, and the roots x of the binary cubic: (s, t) is (x, 1) rotated by the angle.
 
-    The angle is chosen such that no root is near infinity. There are no roots where the cubic
+    The angle is chosen such that no root is near infinity. There are no roots if the cubic
     vanishes.
     """
     coefficients = np.array([float(x[0]) for x in patch.apply(formulas.parabolic_directions)])
@@ -296,7 +296,7 @@ def _merged(angles: list[float]) -> list[tuple[float, int]]:
 def _row(patch: Patches, s: complex, t: complex) -> tuple[NDArray[Any], NDArray[Any], float]:
     """Return l and the unit normal of the line l·(u, v, 1) = 0 with a given direction.
 
-    Also return the length of the normal before it was divided by it.
+    Also return the length of the normal before normalization.
     """
     normals = np.array(patch.apply(formulas.parabolic_normal, s, t))[..., 0]
     lengths = np.linalg.norm(normals, axis=1)

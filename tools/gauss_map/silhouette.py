@@ -268,7 +268,7 @@ def _move_to_contour(
 
 
 def _of_rows(lines: Sequence[Indices], rows: Flags) -> tuple[Indices, ...]:
-    """Return polylines of the kept rows only."""
+    """Return polylines without the rows that a mask drops, as indices of the rows it keeps."""
     number, found = np.cumsum(rows) - 1, list[Indices]()
     for line in lines:
         is_closed = len(line) > 1 and line[0] == line[-1]

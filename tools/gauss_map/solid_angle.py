@@ -190,7 +190,7 @@ def _narrow(normals: Array) -> tuple[NDArray[np.intp], Array, Array]:
 
 
 def _near_mean(normals: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the mean directions (k, 3) of control normals, and whether all are near them."""
+    """Return the mean directions (k, 3) of control normals, and whether all are near their mean."""
     net = normals.reshape(-1, 9, 3)
     lengths = np.linalg.norm(net, axis=2, keepdims=True)
     directions = np.divide(net, lengths, out=np.zeros_like(net), where=lengths > 0.0)

@@ -56,7 +56,7 @@ class Source(Protocol):
 
 
 # At a pole, |x_u × x_v| is below this part of the larger of |x_u|² and |x_v|². Three rays leave the
-# pole, at these parts of a turn from the given point.
+# pole, at these fractions of a turn from the given point.
 COLLAPSED, RAYS = 1e-7, (0.0, 1 / 3, 2 / 3)
 
 
