@@ -66,8 +66,8 @@ def classify(patch, bound, accurate, shortest, normals, kinds, uv):
 def hessians_of_patches(mu, scale, patches, normals, known, hessians):
     """Write the Hessians (k, 3, 3) of the support function at unit normals (k, 3) of patches (k,).
 
-    known (k, 2) are u, v where these are more accurate than from the normal, which is then that of
-    the patch at u, v; NaN elsewhere.
+    Where `known` (k, 2) is not NaN, it holds parameters u, v that are more accurate than those that
+    follow from a normal, and the normal of the patch at u, v takes the place of the given one.
     """
     columns = mu.shape[1] - 2
     size = SCALE * scale
