@@ -118,7 +118,7 @@ class Globe:
         )  # fmt: skip
 
     def lines(self, lines: list[Floats], behind: float = 0.25, **style: Any) -> None:  # noqa: ANN401
-        """Draw polylines (…, 3); what lies behind shines through, so strong."""
+        """Draw polylines (…, 3); parts behind the globe have the opacity `behind`."""
         for line in lines:
             seen = line @ self.view.T
             pairs = np.stack([seen[:-1], seen[1:]], axis=1)
@@ -132,7 +132,7 @@ class Globe:
                 )  # fmt: skip
 
     def points(self, points: Floats, behind: float = 0.25, **style: Any) -> None:  # noqa: ANN401
-        """Draw points (N, 3); those behind shine through, so strong."""
+        """Draw points (N, 3); those behind the globe have the opacity `behind`."""
         seen = points @ self.view.T
         front = seen[:, 2] >= 0.0
         for chosen, strength in ((front, 1.0), (~front, behind)):

@@ -32,7 +32,7 @@ FIGURES: dict[int, Callable[[], tuple[Figure, str]]] = {
     6: figure_6,
     7: figure_7,
 }
-# Those of other pages, by their names.
+# The figures of other pages, by name.
 OTHERS: dict[str, Callable[[], Figure]] = {"search": search_figure}
 # The pictures that `make demo` draws, and that the README shows with fewer colours.
 DEMO, COLOURS = ("torus", "terrain"), 250

@@ -160,7 +160,7 @@ def gaussian_curvature(derivatives: Array) -> Array:
 
 
 LATTICE = np.array([x for x in product(range(PARTS + 1), repeat=3) if sum(x) == PARTS]) / PARTS
-# Those of the lattices of the four patches of a cell that differ, by their places in the cell.
+# The distinct lattice points of the four patches of a cell, as positions in the cell.
 PLACES = np.unique((LATTICE @ np.array(triangles([(0, 0)]), dtype=float)).reshape(-1, 2), axis=0)
 
 
@@ -186,9 +186,9 @@ def parameter_errors(true: TrueSurface, cells: int) -> Array:
 
 @dataclass(frozen=True)
 class SupportErrors:
-    """The largest error of the support function, and how many samples it was looked for in.
+    """The largest error of the support function, and the number of samples that were compared.
 
-    `left_out` counts the others for each reason that the page explains. `closed_form` is the
+    `left_out` counts the other samples for each reason that the page explains. `closed_form` is the
     largest difference between the exact value and a known closed form, NaN if none is known.
     """
 

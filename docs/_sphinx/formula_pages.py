@@ -1,4 +1,4 @@
-"""A page for each section of the formulas, of the same words as generated/formulas.md.
+"""A page for each section of the formulas, with the texts of generated/formulas.md.
 
 Each formula has its words, its LaTeX, and the source of the functions that are printed from it.
 """

@@ -39,7 +39,7 @@ print(table.describe().loc[["count", "mean", "min", "max"]].round(3).T)
 # %% [markdown]
 # ## Progressive order: one sampling, all sizes
 #
-# Samples are ordered by patch, so that the first rows are samples of one corner of the surface.
+# Samples come in the order of their normals, so that the first rows are from a part of the surface.
 # After `progressive()` every prefix is well distributed: the first 100 rows, and the first 500.
 
 # %%
