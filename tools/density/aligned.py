@@ -26,11 +26,12 @@ __all__ = ["AlignedGrid"]
 
 # The fundamental forms are evaluated at about this number of points along u and along v.
 PLACES = 64
-# On trimmed surfaces, this number of samples is reserved for each sample of the grid next to the
-# boundary. A grid then has to reach this part of a count, in at most TRIALS.
+# On trimmed surfaces, BORDER samples are reserved for each sample of the grid next to the boundary.
+# At most TRIALS grids are tried, until the samples of one, with those reserved, are at least the
+# part CLOSE of the count.
 BORDER, CLOSE, TRIALS = 0.5, 0.95, 4
-# The numbers of lines along u that are tried: this range around the best real number. Numbers with
-# errors up to this ratio count as equally good.
+# Numbers of lines along u are tried within the part AROUND of the best real number. Those whose
+# errors are at most AS_GOOD times the least error count as equally good.
 AROUND, AS_GOOD = 0.12, 1.005
 # Gaps may be wider than requested by this factor, since the number of steps is an integer.
 SLACK = 1.02
@@ -40,7 +41,7 @@ DIGITS = 9
 
 @dataclass(frozen=True, eq=False)
 class AlignedGrid:
-    """The fundamental forms on the parameters of a piece, from which grids follow."""
+    """The fundamental forms of a piece on a raster of its parameters, from which grids follow."""
 
     space: Space
     piece: int
@@ -50,7 +51,7 @@ class AlignedGrid:
 
     @classmethod
     def of(cls, space: Space, piece: int) -> AlignedGrid:
-        """Evaluate the forms."""
+        """Evaluate the forms of a piece, on a raster that is also cut where they jump."""
         (geometry,) = space.pieces[piece].geometries(space.threads)
         axes = axes_with(geometry, (np.empty(0), np.empty(0)))
         forms = forms_on(geometry, axes)
@@ -91,7 +92,10 @@ class AlignedGrid:
         return grid if len(grid) <= most else self.grid(self.steps_for(most, distance), most)
 
     def grid(self, steps: Steps, most: int | None) -> Grid:
-        """Return the grid of steps, with at most `most` samples on the whole domain, if given."""
+        """Return the grid with these steps.
+
+        If `most` is given, steps are scaled for at most that many samples on the whole domain.
+        """
         lengths = [x.lengths(y) for x, y in zip(self.axes, steps.along, strict=True)]
         if most is None:
             numbers = [np.ceil(x).astype(np.int64) for x in lengths]
@@ -110,10 +114,10 @@ class AlignedGrid:
         return self._at(cells, rows, columns, (len(lines[0]), len(lines[1])))
 
     def _numbers(self, steps: Steps, lengths: list[Array], most: int) -> list[Indices]:
-        """Return the numbers of lines of each part, along u and v, from their lengths in steps.
+        """Return the numbers of lines in each part of both axes, for lengths of parts in steps.
 
-        There are at most `most` crossings (more if there are more parts), and the errors are about
-        minimal.
+        There are at most `most` crossings, unless one line in each part gives more. The errors are
+        about minimal.
         """
         total, found = float(lengths[0].sum()), []
         scale = math.sqrt(most / (total * float(lengths[1].sum())))
@@ -131,9 +135,10 @@ class AlignedGrid:
         return min((x for x in found if x[0] <= AS_GOOD * least), key=lambda x: x[1])[2]
 
     def _excess(self, steps: Steps, scales: list[Array]) -> float:
-        """Return the larger of both errors, relative to the requested one, if steps are scaled.
+        """Return the angle or the distance with scaled steps, relative to the requested one.
 
-        `scales` are the factors on the parts of each parameter.
+        Of the two ratios, the larger one is returned. `scales` are the factors on the parts of each
+        axis.
         """
         along = [
             x * np.repeat(scale, np.diff(axis.breaks))
@@ -164,10 +169,10 @@ class AlignedGrid:
         return np.concatenate(places)[order[:number]]
 
     def _middles(self, lines: list[Array], axis: int) -> tuple[Array, Array, Array]:
-        """Return the middles (k, 2) between neighbours along a parameter, in cells.
+        """Return the middles (k, 2) between neighbours along the parameter `axis`, in cells.
 
-        Also return the distances in space of these neighbours and of neighbours across (2, k), and
-        the chords between the normals of these neighbours (k,).
+        Also return the distances in space (2, k) of these neighbours, and of neighbours along the
+        other parameter; and the chords (k,) between the normals of these neighbours.
         """
         steps = [np.gradient(x) if len(x) > 1 else np.full(1, np.inf) for x in lines]
         steps[axis] = np.diff(lines[axis])

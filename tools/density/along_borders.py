@@ -25,10 +25,10 @@ PLACES_AT_A_TIME = 1 << 17
 
 @dataclass(frozen=True, eq=False)
 class BorderLines:
-    """Closed polygons, the boundaries of `pieces` (L,): vertices (k, 2), the first one repeated.
+    """L closed polygons along boundaries; polygon l is on the boundary of piece pieces[l].
 
-    Polygon l has the vertices [starts[l], starts[l + 1]). rows (k, 8) and limits (k,) come from
-    cells at the vertices.
+    Its vertices are places[starts[l] : starts[l + 1]], the first one repeated at the end. `rows`
+    (k, 8) and `limits` (k,) are those of cells at all k vertices; see `Cells`.
     """
 
     pieces: Indices
@@ -39,10 +39,10 @@ class BorderLines:
 
 
 def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Array, Array]:
-    """Return the closed polygons of all trimmed pieces: the pieces (L,), and `starts`.
+    """Return the closed polygons of all trimmed pieces, with vertices at most `FINE` apart.
 
-    Vertices (k, 2) are at most `FINE` apart. Also return the vertices modulo periods, and the
-    limits (k,) of the first cells near them.
+    Return the pieces (L,), starts (L + 1,) and places (k, 2) of `BorderLines`; then the vertices
+    moved into the domains, modulo periods, and the limits (k,) of the first cells near them.
     """
     used = np.unique(first.pieces)
     numbers, lines = list[int](), [np.empty((0, 2))]
@@ -76,7 +76,7 @@ def places_along(
     step: float,
     turn: float,
 ) -> tuple[Indices, Array, Array]:
-    """Return parameters just inside boundaries, about step/√w apart, w the target density.
+    """Return parameters just inside boundaries, about step/√w apart; w is the target density.
 
     Normals of neighbours differ by about `turn` radians at most. Return the pieces (k,), the
     parameters (k, 2), and the limits (k,). Along each line, the points on its left come first.
@@ -98,9 +98,9 @@ def places_along(
 def _spaced(
     lines: BorderLines, target: TargetDensity, step: float, turn: float
 ) -> tuple[Indices, Indices, Array]:
-    """Return positions along polygons: lines (k,), the vertices before, and fractions (k,).
+    """Return k positions along polygons: polygons (k,), vertices (k,), and fractions (k,).
 
-    A fraction is the part of the way to the next vertex of the line.
+    A position is between a vertex and the next one; the fraction is the part of the way.
     """
     rates = np.sqrt(np.clip(lines.rows[:, 6], target.floor, target.ceiling))
     lengths = np.linalg.norm(np.diff(lines.rows[:, :3], axis=0), axis=1)

@@ -17,10 +17,10 @@ from .cover import STEP, Cover
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-# Normals at candidates are covered within an angle that is smaller by this part. The rest is for
-# the normals around them: along boundaries, half a step between candidates.
+# Normals at candidates are covered within an angle that is smaller than requested by this part. The
+# difference is for normals between candidates: along boundaries, half a step away.
 MARGIN = 0.02
-# For normals far from all samples, the radii of the greedy choice fall from this multiple.
+# The radii of the greedy choice of normals fall from this multiple of the last radius.
 FIRST = 2.0
 
 __all__ = ["MARGIN", "choose_apart", "chord_of", "cover_normals"]
@@ -34,10 +34,10 @@ def chord_of(angle: float) -> float:
 def cover_normals(cover: Cover, angle: float) -> float:
     """Add samples until every normal of the surface is within `angle` degrees of a sample's.
 
-    If samples are at normals dense enough for that, only points at the boundary of the Gaussian
-    image are uncovered: the nearest prescribed normal may lie outside of it. Return the largest
-    angle from any normal, in degrees; `angle` if there are singular points, next to which normals
-    are known only at the places of cells.
+    If the prescribed normals are dense enough for that, only normals at the boundary of the
+    Gaussian image are uncovered: the nearest prescribed normal may lie outside of the image. Return
+    the largest angle from any normal to the nearest normal of a sample, in degrees; `angle` if
+    there are singular points, next to which normals are known only at the places of cells.
     """
     limit = chord_of(angle)
     cover.evaluate_exactly()
@@ -77,10 +77,10 @@ def choose_apart(
     most: int | None = None,
     known: Array | None = None,
 ) -> Indices:
-    """Choose some of normals (M, 3), so that each is within the chord `near` of a chosen one.
+    """Choose from normals (M, 3), so that each is within the chord `near` of a chosen one.
 
-    At most `most` are chosen, the widest gaps first; `known` normals (N, 3), no two nearly equal,
-    count as chosen.
+    Return the indices of at most `most` normals, the widest gaps first; the radii of gaps fall from
+    `widest`. The `known` normals (N, 3), no two nearly equal, count as chosen.
     """
     rows, radius = np.arange(len(normals)), widest or FIRST * near
     if known is not None:
@@ -99,10 +99,10 @@ def choose_apart(
 def _apart(
     normals: Array, known: Array, near: float, widest: float, threads: int | None
 ) -> tuple[Indices, float]:
-    """Return the indices of normals farther than `near` from known ones, and the largest distance.
+    """Return the indices of normals farther than `near` from known ones, and the first radius.
 
-    That distance is at most `widest`. The choice with radii that fall from `widest` updates fewer
-    distances.
+    The first radius of the choice is slightly above the largest distance from known normals, and at
+    most `widest`; with a smaller one, fewer distances are updated.
     """
     distances = tree_of(known).query(normals, workers=thread_count(threads))[0]
     far = (distances > near) & normals.any(axis=1)
@@ -110,7 +110,7 @@ def _apart(
 
 
 def _in_normal_space(normals: Array) -> Array:
-    """Return candidates (M, 8) whose points are the normals, with one normal and one density."""
+    """Return candidates (M, 8) whose points are `normals`, all with the same normal and density."""
     rows = np.zeros((len(normals), 8))
     rows[:, :3], rows[:, 3], rows[:, 6] = normals, 1.0, 1.0
     return rows

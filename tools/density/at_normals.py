@@ -25,8 +25,8 @@ from .space import Space
 __all__ = ["Given", "at_count", "at_lattices", "at_normals"]
 
 
-# If a lattice gives too many samples, a coarser one replaces it, with this part of the normals that
-# would give as many as allowed.
+# If a lattice gives too many samples, a coarser one replaces it. Its number of normals is this part
+# of the number that, in proportion, gives as many samples as allowed.
 FEWER = 0.98
 
 
@@ -40,10 +40,10 @@ class PieceSamples(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """Samples at normals (S, 3), which are `density` per steradian, on some pieces of a space.
+    """Samples on some pieces of a space, at normals (S, 3), `density` of them per steradian.
 
-    If `same_normals` is False, the normals are those of each piece in turn. On `estimated` pieces
-    the points are not proved to be all.
+    If `same_normals` is False, each piece has its own normals, which are concatenated. On
+    `estimated` pieces the points are not proved to be all.
     """
 
     space: Space
@@ -125,10 +125,10 @@ def at_normals(space: Space, normals: Array, curved: Iterable[int], progress: bo
 def at_lattices(
     space: Space, density: float, pieces: Iterable[int], progress: bool, most: int | None = None
 ) -> Given:
-    """Return samples at lattices with a density of normals per steradian, one for each piece.
+    """Return samples at lattices of `density` normals per steradian, one lattice for each piece.
 
-    If there are more than `most` samples, coarser lattices are searched, repeatedly. A piece has
-    none if less than half a sample is expected.
+    While there are more than `most` samples, coarser lattices are searched. A piece gets no samples
+    if less than half of one is expected.
     """
     pieces = list(pieces)
     while True:
@@ -140,7 +140,7 @@ def at_lattices(
 
 
 def at_count(space: Space, counts: Indices, progress: bool) -> Given:
-    """Return about `counts` (P,) samples on the pieces, at normals of lattices."""
+    """Return samples at normals of lattices, about counts[k] of them on piece k."""
     parts, densities = list[PieceSamples](), [0.0]
     for piece in np.flatnonzero(counts).tolist():
 

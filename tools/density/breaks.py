@@ -20,7 +20,7 @@ ACROSS = 8
 # A value may jump if it changes by more than JUMP between neighbouring points, relative to the
 # largest value. It jumps if REMAINS of this change is left after BISECTIONS.
 JUMP, REMAINS, BISECTIONS = 0.1, 0.4, 8
-# Not 1/2: by symmetry, bisection would hit the line K = 0 exactly.
+# Intervals are divided at this part, and not at 1/2, which by symmetry may be exactly where K = 0.
 HALF = 0.47
 # On a break, K changes its sign along at least this part of the line.
 ALONG = 0.75
@@ -74,6 +74,9 @@ def _values(forms: Array, scales: Array) -> Array:
 
 
 def _changes(low: Array, high: Array) -> Array:
-    """Return the mean changes (k,) of values (3, l, k) along the other parameter."""
+    """Return the changes (k,) of values (3, l, k): means over l, the largest of the three.
+
+    K changes its sign only if it does so along most of a line; see `ALONG`.
+    """
     along_u, along_v, signs = np.abs(high - low).mean(axis=1)
     return np.maximum(np.maximum(along_u, along_v), np.where(signs < 2.0 * ALONG, 0.0, signs))

@@ -18,8 +18,8 @@ __all__ = ["Block", "Candidates"]
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
 
-# The least sizes of the parts into which candidates are split for threads, of FEW and of more
-# parts, and the largest number of parts.
+# Candidates are split into parts for threads: into FEW parts at most if these have at least SMALL
+# candidates each, into MOST at most if these have at least PART.
 SMALL, FEW, PART, MOST = 1 << 13, 8, 1 << 16, 64
 # Candidates nearer to a sample than this part of a radius are left out of the next searches.
 LEFT_OUT = 0.7
@@ -83,7 +83,7 @@ class Candidates:
         """Choose candidates until all others are within a radius of a sample or of a chosen one.
 
         Return their rows. If more than `most` are chosen, return `most` of them, from all over the
-        surface; then the distances of other candidates are too small.
+        surface; then distances are too small, since those left out count as samples.
         """
         found = dict[int, Numbers]()
         # First the even parts, then the odd ones: neighbouring parts that choose at the same time
@@ -125,7 +125,7 @@ class Block:
     """Some of the candidates, in hash grids of their own."""
 
     def __init__(self, rows: Array, radius: float, order: Numbers, candidates: Array) -> None:
-        """Sort rows into arrays of the same length."""
+        """Sort rows into `candidates`, of the same shape, and their indices into `order`."""
         count = len(rows)
         box, sizes = np.empty((2, 3)), np.zeros(LEVELS)
         finest, coarsest = measure(rows, box, sizes)

@@ -48,7 +48,8 @@ class Cells:
     `whole` (M,) is True for cells that no boundary intersects. `limits` (M,) are least radii of
     curvature, which replace smaller ones; 0 if unknown. `rows` (M, 8) and `numbers` (M, 7) are
     those of kernels/cells.py, lengths and curvatures scaled as in `Space`. They take most of the
-    memory, and are (M, 0) for cells that are not evaluated, or not `numbers`.
+    memory: both are (M, 0) for cells that are not evaluated; `numbers` is (M, 0) for cells that
+    keep only their rows.
     """
 
     pieces: Indices
@@ -82,7 +83,7 @@ class Cells:
         return replace(self, limits=self.limits.copy(), rows=rows, numbers=numbers)
 
     def without_rows(self) -> Cells:
-        """Return the same cells, not evaluated; their limits are known."""
+        """Return the same cells, not evaluated; they keep their limits."""
         nothing = np.empty((len(self), 0))
         return replace(self, rows=nothing, numbers=nothing)
 

@@ -20,8 +20,8 @@ __all__ = ["Chosen", "choose"]
 # The relative accuracy of the number of samples, and the largest number of attempts.
 NEAR_ENOUGH = 0.01
 ATTEMPTS = 20
-# The first attempts scale the density by the ratio of the counts. The others vary it up and down by
-# this step: with few samples, several appear or vanish together.
+# The first attempts, up to IN_PROPORTION, scale the density by the ratio of the counts. The others
+# vary it up and down in steps of DITHER: with few samples, several appear or vanish together.
 IN_PROPORTION, DITHER = 6, 0.008
 # The largest number of normals per requested sample (a thin Gaussian image has few samples).
 NORMALS_PER_SAMPLE = 100
@@ -36,7 +36,8 @@ PILOT = 1_000_000
 class Chosen:
     """The normals to search for: an array, or a lattice with `density` normals per steradian.
 
-    `found` holds the normals and the hits if the search is already done.
+    If the spline has been searched, `found` holds the normals and the hits, pairs of a normal and a
+    patch that has it.
     """
 
     source: NDArray[np.float64] | Lattice

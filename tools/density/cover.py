@@ -30,11 +30,11 @@ FINE, SMALLER = 0.4, 1.4
 FINEST = 0.07
 # Boundaries are covered at points whose spacing is twice this part of the covering radius.
 ON_BORDERS = 0.05
-# Samples move to centres twice. MISSING are the parts of them that are not yet chosen before the
-# first move, between both, and after the second. With 0.12 before the first, samples in a row leave
-# wider gaps than without the moves.
+# Added samples move to centres twice. MISSING are the parts of them that are not yet chosen before
+# the first move, between the moves, and after the second. With 0.12 before the first move, samples
+# in a row leave wider gaps than without the moves.
 MISSING = (0.2, 0.05, 0.0)
-# While samples are missing, the radii of gaps are at most this multiple of the covering radius.
+# The search for gaps for the missing samples begins at this multiple of the covering radius.
 WIDEST_GAP = 2.0
 # Gaps between candidates are searched down to the radius, then to this part of it.
 STEP_DOWN = 0.85
@@ -50,13 +50,14 @@ class Cover:
     normal, and `curvatures` (N,), K. The first `given` samples are those `at_normals`. The others
     lie at the places of the cells `added`; those of the `grid`, if there is one, come first.
 
-    Samples are chosen among the places of `cells`, which have numbers if they are for a radius, and
-    sides if they are for a count. `show_count` is called with the number of samples whenever it
-    grows.
+    Samples are chosen among the places of `cells`. Cells for a radius have numbers; cells for a
+    count have sides instead, see `Space.light`. `show_count` is called with the number of samples
+    whenever it grows.
 
     The first `fixed` samples, given or on the grid, are never removed.
 
-    `coverage`, in L, and `angle`, in degrees, are bounds that the cover has reached, if known.
+    `coverage`, in the unit L of the surface, and `angle`, in degrees, are bounds that the cover has
+    reached, if known.
     """
 
     coverage: float | None = None
@@ -255,7 +256,7 @@ class Cover:
             self.narrow(widest, 0.0, count)
 
     def _evaluated_at(self, rows: Indices, places: Array) -> tuple[Cells, Indices]:
-        """Return point cells at parameters (k, 2) in cells `rows`, sorted, and their order."""
+        """Return point cells at parameters (k, 2) in cells `rows`, by piece, and their order."""
         order = np.argsort(self.cells.pieces[rows], kind="stable")
         rows = rows[order]
         pieces, limits = self.cells.pieces[rows], self.cells.limits[rows]

@@ -15,7 +15,8 @@ from .space import Space
 
 __all__ = ["coverage"]
 
-# The search ends when the bound is within this factor of the largest distance found.
+# The search ends when the bound is within the factor TIGHT of the largest distance found, or after
+# MOST_CUTS rounds.
 TIGHT = 1.1
 MOST_CUTS = 40
 # Along boundaries, distances are measured at steps of this part of the mean spacing of samples.
@@ -30,9 +31,10 @@ def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
     of cells; without such a sample, from the nearest of all.
 
     Points and the distance are scaled as in `Space`. The method is branch and bound: a cell is cut
-    if it may contain a point farther away than TIGHT times the farthest place, or than `asked`
-    while no place is. If the cells are on a spline and the samples on the surface, twice the
-    distance between spline and surface is added. The bound is infinite if there are no samples.
+    if it may contain a point farther away than a limit: TIGHT d, where d is the distance of the
+    farthest place, or `asked` if d ≤ asked < TIGHT d. If the cells are on a spline and the samples
+    on the surface, twice the distance between spline and surface is added. The bound is infinite if
+    there are no samples.
     """
     if len(samples) == 0:
         return math.inf

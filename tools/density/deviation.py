@@ -27,7 +27,7 @@ MOST, BLOCK = 1 << 21, 1 << 16
 
 
 def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDeviation:
-    """Return the largest angles that are found; `points` (N, 3) are scaled as in `Space`.
+    """Return the largest angles found, for samples at `points` (N, 3), scaled as in `Space`.
 
     The angles are 180 degrees if there are no samples.
     """

@@ -31,7 +31,7 @@ class Lattice:
     def around(cls, spline: AnySpline, reach: Reach | None = None) -> Lattice:
         """Return the lattice on the smallest cap around the mean normal that contains every normal.
 
-        It is on the smallest cap of a `reach` instead if that is smaller.
+        If the smallest cap of a `reach` is smaller, the lattice is on that cap instead.
         """
         found = cls._around_all(spline)
         if reach is not None and (cap := reach._smallest).angle < 90.0:

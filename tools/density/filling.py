@@ -40,9 +40,9 @@ GREEDY = 1.85
 # Balanced: the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
 # Balanced: the floor of the target density, relative to the mean of κ²; the ceiling of κ, relative
-# to the root of the floor, for a count or a coverage; and that for an angle. The latter is lower:
-# with 20, samples on narrow faces are as close as their radius, and a wing with a round trailing
-# edge takes 6 times as many.
+# to the root of the floor, for a count or a coverage; and the ceiling for an angle. That one is
+# lower: with 20, samples on narrow faces are as close as the radius of these faces, and a wing with
+# a round trailing edge takes 6 times as many.
 FLOOR, MOST_CURVED, MOST_FOR_NORMALS = 0.8, 20.0, 10.0
 # For an angle, the mean of κ² is that of the capped κ: mean and ceiling are iterated until the
 # ratio of consecutive means exceeds this.
@@ -63,8 +63,9 @@ LATTICE = 0.1
 # If some of several pieces have no lattice, this part of a count is placed where normals are
 # farthest from those of all samples.
 FOR_NORMALS = 0.05
-# For these samples: the chord between the normals of candidates, relative to the spacing of as many
-# points on a sphere; and about the number of candidates minus the number of samples.
+# For samples placed so: the chord between the normals of candidates, relative to the spacing of as
+# many points on a sphere as there are samples; and about the number of candidates minus the number
+# of samples.
 NORMALS_APART, CANDIDATES = 0.2, 200_000
 # The smallest such chord.
 LEAST_CHORD = math.radians(0.5)

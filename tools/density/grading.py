@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 __all__ = ["Sources", "bounds_of", "growth_for"]
 
 # The spacing grows by at most GROWTH/s² for each unit of distance, where s is the angle in radians
-# that normals turn by from one sample to the next. Measured, at counts of 500 to 2,000: with .3,
-# up to a twentieth of the samples of bends that are steep and coarse are superfluous in meshes;
-# with .1, more samples leave other places than these need.
+# that normals turn by from one sample to the next. Measured with 500 to 2,000 samples: with 0.3, up
+# to a twentieth of the samples on steep bends with coarse sampling are superfluous in meshes; with
+# 0.1, other places lose more samples than these bends need.
 GROWTH = 0.15
 # The number of nearest cells whose sizes bound that of a cell.
 NEAREST = 8
@@ -29,7 +29,7 @@ TWO_TRIANGLES = math.sqrt(3.0) / 2.0
 
 @dataclass(frozen=True, eq=False)
 class Sources:
-    """Prescribed sizes at tree nodes; the last, inf, is for queries with no node within `reach`.
+    """Prescribed sizes at tree nodes; the last size, inf, is for points far from all nodes.
 
     At other points the size is that of the nearest node plus `growth` times its distance. Beyond
     `reach` of all nodes it is too large to matter.
@@ -52,7 +52,10 @@ def growth_for(count: int, integral: float) -> float:
 
 
 def bounds_of(points: Array, sizes: Array, growth: float) -> Sources | None:
-    """Return the largest sizes at points (M, 3) that grow slowly; None if those given (M,) do."""
+    """Return the largest sizes, at most `sizes` (M,) at points (M, 3), that grow slowly.
+
+    Return None if `sizes` grow slowly.
+    """
     tree = tree_of(points)
     distances, near = (
         x.reshape(len(points), -1) for x in tree.query(points, k=min(NEAREST, len(points)))

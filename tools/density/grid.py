@@ -20,7 +20,7 @@ class Grid:
     """Samples on a grid: cells at whose places they lie, and the indices of their lines.
 
     `rows` and `columns` (N,) are the indices of the lines v = const and u = const, −1 between
-    lines.
+    lines; `lines` are the numbers of lines u = const and v = const.
     """
 
     cells: Cells
@@ -47,7 +47,7 @@ class Grid:
 
     @property
     def border(self) -> int:
-        """The number of samples without a neighbour in some direction within the domain."""
+        """The number of samples on the grid next to a crossing of lines without a sample."""
         inside = np.zeros(self.lines, dtype=np.bool_)
         on = self.rows >= 0
         inside[self.columns[on], self.rows[on]] = True

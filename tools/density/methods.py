@@ -65,9 +65,10 @@ def coverage(
     threads: int | None = None,
     progress: bool = False,
 ) -> float:
-    """Return a bound of the distance from any point of the surface to the nearest sample, in L.
+    """Return a bound of the distance from any point of the surface to the nearest sample.
 
-    Samples on the other side of a thin wall also count; in `SamplingReport.coverage` they do not.
+    The distance is in the unit L of the surface. Samples on the other side of a thin wall also
+    count; in `SamplingReport.coverage` they do not.
 
     Parameters
     ----------

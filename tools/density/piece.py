@@ -23,12 +23,13 @@ __all__ = ["Piece", "boxes_between"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Piece(ABC):
-    """A smooth surface on a rectangle of parameters, or a part of it: a surface, or a face.
+    """A smooth surface on a rectangle of parameters, or the part of it inside a trim, as a face.
 
     `label` is its name in messages, `trim` the part of the domain that belongs to it, None for the
     whole domain. `indices` are fields that are constant on the piece, and the index of its first
     patch. The distance between points of the surface and those of `jets` is at most `distance`, in
-    L. Curvature at scales below `finest` (2,), lengths in u and v, is noise.
+    the unit L of the surface. Curvature at scales below `finest` (2,), lengths in u and v, is
+    noise.
     """
 
     label: str
@@ -62,7 +63,10 @@ class Piece(ABC):
 
     @abstractmethod
     def geometries(self, threads: int | None) -> list[OnSpline]:
-        """Return the geometries that are searched for normals; GaussmapError without a spline."""
+        """Return the geometries that are searched for points with given normals.
+
+        Raises GaussmapError if there is no spline.
+        """
 
     def proved_at(self, normals: Array, threads: int | None) -> list[Samples] | None:
         """Return all points with unit normals (S, 3), with a proof; None without a proof.
@@ -80,7 +84,7 @@ class Piece(ABC):
     def solid_angle(self, density: float) -> float | None:
         """Return the solid angle of the normals that a lattice of this density samples.
 
-        None if the angle is to follow from K.
+        Return None if the solid angle is to be computed from K.
         """
         return None
 

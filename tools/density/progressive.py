@@ -13,8 +13,8 @@ from .candidates import Candidates
 
 __all__ = ["progressive_order"]
 
-# Samples are chosen with mutual distances of at least a radius, in local spacings. It falls from
-# one that contains all samples to FINEST, by the factor STEP.
+# Samples are chosen with mutual distances of at least a radius, in local spacings. The radius falls
+# from one that contains all samples to FINEST, by the factor STEP.
 STEP, FINEST = 2.0**-0.5, 0.25
 # The local spacing is the mean distance to this number of nearest neighbours.
 NEIGHBOURS = 6

@@ -45,7 +45,7 @@ class Request:
 
     @property
     def cost(self) -> str:
-        """The entry of `memory.COSTS` for the samples."""
+        """The key of `memory.COSTS` for the samples."""
         return self.density if isinstance(self.density, str) else "uniform"
 
     @property

@@ -20,7 +20,10 @@ BOXES_AT_A_TIME = 1 << 13
 def sifted(
     trims: Trims, cells: Cells, pixels: Indices, owner: Indices | None = None
 ) -> tuple[Cells, Indices]:
-    """Return the cells that are not outside their trims, with `whole` set, and their owners."""
+    """Return the cells that are not outside their trims, with `whole` set, and their owners.
+
+    Owners are elements of `owner` (M,), by default indices in `cells`.
+    """
     whole = cells.whole | ~trims.trimmed[cells.pieces]
     open_, clear = np.flatnonzero(~whole), whole.copy()
     for k, rows in runs(cells.pieces[open_]):

@@ -45,7 +45,8 @@ from .trims import Trims
 
 __all__ = ["Space"]
 
-# The first cells bend by at most this along u and along v, in radians.
+# The first cells bend by at most this along u and along v, in radians, unless they would have to be
+# bisected more often than MOST_BENDS.
 FLAT = 0.3
 MOST_BENDS = 24
 # First cells without a place inside are quartered this many times.
@@ -57,12 +58,12 @@ AT_ONCE = 64
 # The least size of a cell, relative to the domain of its piece, and to the root of its area.
 DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
-# The factor by which cells are coarsened if they are too many.
+# The factor by which the chord of `cut_by_normals` is increased while cells are too many.
 COARSER = 1.2
 # The number of points on boundaries that are evaluated at a time.
 PLACES_AT_A_TIME = 1 << 17
-# The largest number of cells that are evaluated at a time, and about the number of ranges per
-# thread.
+# The largest number of cells that are evaluated at a time, and the largest number of ranges of them
+# for the threads.
 CELLS_AT_A_TIME, RANGES = 1 << 12, 32
 # `cut_by_normals` evaluates cells in blocks of about this number.
 BLOCK = 1 << 16
@@ -76,10 +77,11 @@ BESIDE = 0.3
 class Space:
     """The pieces of a surface or a part, with a target density.
 
-    Lengths are multiplied by `unit`, and points are relative to `centre`, in L. The target density
-    of `first` has no floor and no ceiling, so that spaces that differ only in these share it. On
-    the `developable` pieces, K is rounding error, and its powers count as 0. Sizes, 1/√w for the
-    target density w, are bounded by the `sources` of each piece that has some.
+    Lengths are multiplied by `unit`, and points are relative to `centre`, a point in the unit L of
+    the surface. The target density of `first` has no floor and no ceiling, so that spaces that
+    differ only in these share it. On the `developable` pieces, K is rounding error, and its powers
+    count as 0. Sizes, 1/√w for the target density w, are bounded by the `sources` of each piece
+    that has some.
     """
 
     label: str
@@ -182,8 +184,8 @@ class Space:
         corners, places = cells.boxes[chosen, :2], cells.places[chosen]
         others = places + BESIDE * (corners - places)
         chosen = chosen[self._is_flat(self.at(cells.pieces[chosen], others, keep=True))]
-        # A cell whose place is an apex has the area 0. If all cells of a piece have, they get equal
-        # weights.
+        # A cell whose place is an apex has the area 0. If all cells of a piece have it, they get
+        # equal weights.
         tiny = np.finfo(np.float64).tiny
         weights = np.maximum(cells.numbers[:, AREA], tiny)
         flat = np.bincount(cells.pieces[chosen], weights[chosen], count)
@@ -236,7 +238,7 @@ class Space:
     def graded(self, count: int) -> Self:
         """Return the same space with sizes that grow slowly, for a number of samples.
 
-        Without it, the spacing of few samples may halve from one to the next beside a narrow bend.
+        Without this, the spacing of few samples may halve from one to the next near a narrow bend.
         """
         growth, sizes = growth_for(count, self.integral), self.densities**-0.5
         found = {
@@ -315,9 +317,9 @@ class Space:
         return first[np.array(rows, dtype=np.int64)]
 
     def cut(self, radius: float) -> Cells:
-        """Return cells within radius/√w of their places, w the target density there.
+        """Return cells within radius/√w of their places, where w is the target density there.
 
-        Also return point cells along boundaries, about as far apart.
+        Also return point cells along boundaries, about radius/√w apart.
         """
         return self.known(self._cut(radius))
 
@@ -383,7 +385,8 @@ class Space:
     def quarters(self, cells: Cells) -> Cells:
         """Return cells bisected along u and along v.
 
-        Near singular points, normals turn most along the shorter side.
+        Cutting the longer side is not enough: near singular points, normals may turn most along the
+        shorter one.
         """
         return self.evaluated(into_parts(cells, np.full((len(cells), 2), 2)))
 
@@ -462,7 +465,7 @@ class Space:
         return (2**power).astype(np.int64)
 
     def known(self, cells: Cells, *, keep: bool = False) -> Cells:
-        """Return cells, sorted by their pieces, with rows and numbers.
+        """Return cells that are sorted by their pieces, with rows and numbers.
 
         Cells that are not finite are left out, or, with `keep`, marked as singular.
         """
@@ -510,7 +513,7 @@ class Space:
         return cells[finite], others[finite]
 
     def grade(self, pieces: Indices, rows: Array, *, far: bool = False) -> Array:
-        """Raise densities in rows (M, 8) of pieces (M,); return bounds (M,) of the size.
+        """Raise densities in rows (M, 8) of pieces (M,) to bound sizes; return the bounds (M,).
 
         Bounds that are too large to matter are inf, unless `far`.
         """
@@ -526,8 +529,8 @@ class Space:
     def _groups(self, cells: Cells) -> list[list[tuple[int, slice]]]:
         """Return groups of cells to evaluate at a time: pieces, with the rows of each.
 
-        A group has cells of several pieces, since each may have few, if `finest` and the target
-        density of these pieces are equal.
+        Since pieces may have few cells each, a group has cells of several pieces if `finest` and
+        the target density of these pieces are equal.
         """
         groups, last, room = list[list[tuple[int, slice]]](), None, 0
         for k, rows in by_piece(cells):

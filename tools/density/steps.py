@@ -24,15 +24,16 @@ __all__ = ["Forms", "Steps", "equal_steps", "steps_for_count"]
 
 _Arrays = tuple[Array, Array, Array, Array, float]
 
-# The shares of the limits for steps along u: the best of SHARES, refined by SEARCHES, with forms on
-# a coarser grid.
+# The share of the limits that steps along u use: the best one of SHARES, refined in SEARCHES steps
+# of golden-section search. It is found with forms on at most COARSE blocks along u and v.
 SHARES, SEARCHES, COARSE = np.linspace(0.15, 0.95, 7), 4, 24
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 # The longest and the shortest step, as parts of the domain.
 LONGEST, SHORTEST = 0.5, 1e-9
-# The angle for a count is searched up to WIDEST, until the count is met within CLOSE.
+# The angle for a count is searched up to WIDEST, until the count is met up to the part CLOSE, or
+# TRIALS times.
 WIDEST, CLOSE, TRIALS = math.pi, 0.002, 12
-# A distance that needs too many samples is increased until this factor of the count remains.
+# A distance that needs more than 1/LARGER of a count is increased until it needs about that part.
 LARGER = 1.1
 
 
@@ -45,7 +46,7 @@ class Forms:
     widths: tuple[Array, Array]
 
     def coarser(self, number: int) -> Forms:
-        """Return the largest entries on blocks of neighbours, at most `number` along u and v."""
+        """Return the largest moduli of entries on blocks, at most `number` along u and v."""
         third, first, widths = self.third, self.first, list(self.widths)
         for axis in (0, 1):
             count = len(widths[axis])
@@ -157,7 +158,7 @@ def _steps_at_share(
         if abs(ratio - 1.0) < CLOSE or high - low < CLOSE * high:
             break
         low, high = (angle, high) if ratio > 1.0 else (low, angle)
-        # The count is proportional to a power of the angle between −2 and 0.
+        # The count is about a power of the angle with an exponent between −2 and 0.
         angle *= ratio if ratio > 1.0 else math.sqrt(ratio)
         if not low < angle < high:
             angle = math.sqrt(low * high) if low > 0.0 else high / 2.0
@@ -166,7 +167,7 @@ def _steps_at_share(
 
 
 def _typical(forms: Forms) -> float:
-    """Return roughly the product of a count and the square of its angle."""
+    """Return roughly the product of the number of samples of a grid and its squared angle."""
     u, v = (np.sqrt(forms.third[k].max(axis=1 - k // 2)) for k in (0, 2))
     lengths = (u * forms.widths[0]).sum() * (v * forms.widths[1]).sum()
     return max(float(lengths) / 2.0, 1e-9)

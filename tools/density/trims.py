@@ -33,8 +33,8 @@ class Trims:
         self.pieces = pieces
         self.trimmed = np.array([x.trim is not None for x in pieces], dtype=np.bool_)
         self.domains = np.array([x.domain for x in pieces])
-        # The index of each piece in `_loops`, −1 for other pieces, and the sums of the bounds of
-        # reversed u.
+        # The index of each piece in `_loops`, −1 for pieces that are not there, and the sum of both
+        # bounds of u where u is reversed.
         self._place, self._totals = np.full(len(pieces), -1), np.full(len(pieces), np.nan)
         self._loops = list[Loops]()
         for k in np.flatnonzero(self.trimmed).tolist():

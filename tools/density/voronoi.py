@@ -18,7 +18,7 @@ AT_ONCE = 1 << 12
 
 
 class Voronoi:
-    """The nearest samples of a fine grid of points in the cells of candidates.
+    """The sample nearest to each point of a fine grid in the cells of candidates.
 
     The cells are those of the candidates. The fine points are those of kernels/voronoi.py, linear
     in the parameters; in cells that a boundary intersects, only the place of the cell counts. For a
@@ -35,7 +35,7 @@ class Voronoi:
     def centres(self, samples: Array, first: int) -> tuple[Indices, Indices, Array]:
         """Return the samples from index `first` on that move to the centres of their Voronoi cells.
 
-        Also return where these are: a cell of the candidates, and parameters (k, 2) in it.
+        Also return where the centres are: cells (k,) of the candidates, and parameters (k, 2).
         """
         parts, moments = self._parts, np.zeros((len(samples), 4))
         sums = self._each(lambda k: parts[k].moments(samples), len(parts))
@@ -96,7 +96,7 @@ class _Part:
         )  # fmt: skip
 
     def moments(self, samples: Array) -> Array:
-        """Return the moments (n, 4) of the samples near the part of all samples (N, 6)."""
+        """Return the moments (n, 4) of the Voronoi cells of `near`, given all samples (N, 6)."""
         moments = np.zeros((len(self.near), 4))
         kernels.add_moments(self.grids, self.lists, samples[self.near], self._room, moments)
         return moments
