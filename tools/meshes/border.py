@@ -24,8 +24,9 @@ Flags = NDArray[np.bool_]
 STEPS_A_CELL = 8
 # The distance from the midpoint of a segment, on both sides, at which the trim is tested.
 ASIDE = 1e-7
-# The boundary of a predicate is searched on a grid with this number of nodes per cell, of FEWEST to
-# MOST nodes, then by bisection. Midpoints of its segments are refined likewise, in several passes.
+# The boundary of a predicate is searched on a grid with NODES_A_CELL nodes per cell, but FEWEST to
+# MOST along each parameter, and then by bisection. Then, PASSES times, a point of the boundary is
+# inserted near the midpoint of each segment, while a polyline has at most MOST_POINTS points.
 NODES_A_CELL, FEWEST, MOST, BISECTIONS, PASSES = 4, 64, 1024, 40, 5
 MOST_POINTS = 50_000
 
@@ -51,7 +52,7 @@ def _uv(positions: Array, spline: Spline) -> Array:
 
 
 def _lines(part: TrimPart, spline: Spline) -> list[Array]:
-    """Return the polylines on which one condition changes, regardless of the others."""
+    """Return the polylines on which one condition of the trim changes, whatever the others are."""
     low, high = np.array(spline.domain).T
     if isinstance(part, Loops):
         closed = [np.concatenate([x, x[:1]]) for x in part.polygons]

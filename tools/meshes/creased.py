@@ -112,6 +112,6 @@ def mean_normals(
 
 
 def unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return vectors (…, 3) of unit length, 0 for 0."""
+    """Return vectors (…, 3) divided by their lengths; zero vectors remain."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return vectors / np.where(lengths > 0.0, lengths, 1.0)

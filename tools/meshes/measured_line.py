@@ -27,7 +27,7 @@ Flags = NDArray[np.bool_]
 # The largest step in the measurement of a polyline, relative to the spacing, and the largest number
 # of steps.
 FINE, MOST_STEPS = 0.125, 200_000
-# The smallest spacing, relative to the mean step, and the smallest measure of a step.
+# The smallest spacing that divides a step, relative to the mean step; the least measure of a step.
 SHORTEST, LEAST = 1e-3, 1e-12
 # A polyline has a corner where it turns by more than this within one spacing.
 CORNER = math.radians(30.0)
@@ -45,8 +45,9 @@ EQUAL = 1e-6
 class MeasuredLine:
     """A polyline of the boundary, measured by its length relative to the spacing of samples.
 
-    `t` (k,) are the measures at its vertices; `fixed` (k,) marks ends and corners; `sample` (k,)
-    are the indices of the samples at vertices, or −1.
+    `measure` (N,) are the relative lengths up to its points (N, 3). It has k vertices of the mesh:
+    `t` (k,) are the measures at these; `fixed` (k,) marks ends, corners, and samples on the line;
+    `sample` (k,) are the indices of the samples at vertices, or −1.
     """
 
     positions: Array
@@ -124,7 +125,7 @@ class MeasuredLine:
     ) -> tuple[Array, Array]:
         """Return the measures of the feet of points (k, 3) at positions (k, 2), and distances.
 
-        `nearest` (k,) are the vertices of the polyline that are nearest to the points.
+        `nearest` (k,) are the indices of the points of the polyline nearest to these points.
         """
         at, distance = self.measure[nearest], np.full(len(points), np.inf)
         for begin in (nearest - 1, nearest):

@@ -241,7 +241,7 @@ def cosines_of(
     triangles: NDArray[np.int64],
     sides: NDArray[np.int64],
 ) -> NDArray[np.float64]:
-    """Return the smallest cosine (T,) of each triangle and the normals at its corners."""
+    """Return the smallest cosine (T,) between each triangle and the normals at its corners."""
     cosines = np.empty(len(triangles))
     if len(triangles):
         smallest_cosines(scaled(points), normals, triangles, sides, cosines)

@@ -19,10 +19,10 @@ __all__ = ["mesh"]
 
 
 class Parts(NamedTuple):
-    """A triangle in equal parts: L points u, v (L, 2), corners (3,), edges (3, n + 1), triangles.
+    """A triangle in n² equal parts: the parameters u, v of their L corners are `places` (L, 2).
 
-    All but the points are indices of points, counterclockwise; edges are ordered as in
-    `runtime.spline.joints`.
+    The corners (3,) and the points on edges (3, n + 1) of the triangle, and the triangles (n², 3),
+    are indices of places, counterclockwise; edges are ordered as in `runtime.spline.joints`.
     """
 
     places: Array
@@ -49,11 +49,11 @@ class Parts(NamedTuple):
 
 
 def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
-    """Return a mesh whose triangles are those of the patches.
+    """Return a mesh in which each patch is one triangle, or several.
 
-    Its vertices are the corners of the patches, each once. Neighbouring patches share the points on
-    their joint, so that the mesh is closed where the nets are, and they share the normals there if
-    the joint is smooth.
+    Its vertices are the corners of the triangles, each once. Neighbouring patches share the points
+    on their joint, so that the mesh is closed where the nets are, and they share the normals there
+    if the joint is smooth.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
     CreasedMesh
         The vertices, triangles, and normals: `normals` at vertices, `corner_normals` at corners of
         triangles, which differ at creases. `face_index` are the patches of triangles. Triangles
-        that are an edge or a point, next to an edge that is one point, are left out.
+        with equal corners, at an edge of a patch that is one point, are left out.
 
     Raises
     ------
@@ -109,14 +109,17 @@ Links = tuple[Indices, Indices]
 
 
 def _links(spline: NetSpline, inside: Parts) -> tuple[Links, Links]:
-    """Return pairs of points of patches, by index L k + l: of equal normals, of equal positions."""
+    """Return the pairs of points with equal normals, and the pairs of points with equal positions.
+
+    Point l of patch k has the index L k + l.
+    """
     topology, size = spline.topology, len(inside.places)
     first = size * np.arange(spline.patches)[:, None]
     edges = (first[:, None] + inside.edges).reshape(3 * spline.patches, -1)
     point = edges[topology.is_point]
 
     def across(pairs: Indices) -> Indices:
-        """Link edges (J, 2) in opposite directions, and all points of edges that are one point."""
+        """Pair the points of edges (J, 2) in opposite directions; and those of collapsed edges."""
         along = np.stack([edges[pairs[:, 0]], edges[pairs[:, 1], ::-1]]).reshape(2, -1)
         return np.concatenate([along, np.stack([point[:, 1:], point[:, :-1]]).reshape(2, -1)], 1)
 

@@ -43,8 +43,8 @@ LARGEST_DEVIATION = 30.0
 # at most the share PART of all triangles has an angle below ENOUGH.
 SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
-# A bound is not tried if more than this share of the samples would be left out: where distances of
-# samples double from one to the next, no triangles are better, and collapses would go on.
+# A bound is given up if more than this share of the samples would be left out: where the spacing of
+# samples doubles from one to the next, no triangles are better, and collapses would go on.
 MOST_LOST = 0.1
 # The arrays that flips and collapses change.
 CHANGED = ("triangles", "sides", "neighbours")
@@ -216,7 +216,7 @@ def _has_good_shape(mesh: Triangulated) -> bool:
 def _without_small_angles(
     mesh: Triangulated, prefer: Prefer, smallest: float, least: float
 ) -> Triangulated:
-    """Collapse and flip edges at triangles below the tangent `smallest`, while that helps."""
+    """Collapse and flip edges at angles whose tangent is below `smallest`, while that helps."""
     for _ in range(ROUNDS):
         if mesh.tangents().min(initial=np.inf) >= smallest:
             break

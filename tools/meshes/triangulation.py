@@ -32,17 +32,17 @@ Triangulation = tuple[Indices, Indices]
 
 # The latitudes of an open end: the lowest, that of an end opposite to a pole, and the highest.
 LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
-# Random displacements of points, relative to their mean distance, of which the second is for a
-# second attempt. Without them, four or more points of a lattice on one circle would be triangulated
-# differently in their copies. Without copies the first attempt has no displacement.
+# Random displacements of points, relative to their mean distance; the second is for a second
+# attempt. Without them, four or more points of a lattice that lie on one circle might be
+# triangulated differently in their copies. If no points are copied, the first attempt has none.
 DISPLACEMENTS = (1e-6, 1e-3)
 # Free points keep this distance from open sides.
 INSIDE = 5e-10
 # The height, relative to the side, by which sides of a rectangle are curved outwards, so that their
 # points become extreme.
 BULGE = 0.05
-# A domain that is periodic in both parameters is continued first by this number of mean distances
-# of points, then by these fractions of a period.
+# A domain that is periodic in both parameters is continued beyond its sides: in the first attempts
+# by these numbers of mean distances of points, then by these fractions of a period.
 STEPS, MARGINS = (10.0, 30.0), (0.25, 1.0)
 # The domain is cut into strips of about this number of points, for threads.
 STRIP = 25_000

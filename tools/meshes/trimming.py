@@ -28,11 +28,12 @@ Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Triangulate = Callable[[Vertices], tuple[Indices, Indices, Indices]]
 
-# A sample closer than this, relative to the spacing, lies on the boundary: chords are as close to
-# curves.
+# A sample closer to the boundary than this, relative to the spacing, lies on it: the chords of the
+# boundary are about as close to its curves.
 ON_LINE = 5e-3
-# Outside there is about one point per vertex, between these numbers. They keep the distance AWAY
-# from the boundary, in gaps between its vertices; added vertices on open sides keep ASIDE.
+# Outside, there are about as many points as vertices, but FEWEST to MOST. They keep the distance
+# AWAY from the boundary, relative to the gaps between its vertices; added vertices on open sides
+# keep ASIDE.
 FEWEST, MOST, AWAY, ASIDE = 400, 4000, 0.7, 0.3
 # The largest number of times that points are added to the boundary.
 ROUNDS = 8
@@ -41,9 +42,9 @@ ROUNDS = 8
 def trimmed_triangles(
     vertices: Vertices, points: Array, spline: Spline, lengths: Array, triangulate: Triangulate
 ) -> tuple[Vertices, Indices, Indices, Indices, bool]:
-    """Return vertices and triangles inside the trim, sides, neighbours, and whether complete.
+    """Return vertices and triangles inside the trim, sides, neighbours, and if they are complete.
 
-    Complete means that the triangles end only at the boundary of the surface. `vertices` cover the
+    They are complete if the triangles end only at the boundary of the surface. `vertices` cover the
     whole domain, `points` are those of the samples, `lengths` (2,) those of the surface along u and
     v; `triangulate` is like `_triangles` of `meshing.py`.
     """

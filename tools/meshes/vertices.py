@@ -33,7 +33,7 @@ STEPS_A_CELL = 16
 # A sample closer to an open side than this, relative to the spacing, lies on it.
 ON_LINE = 1e-6
 # Of samples closer to each other than this, relative to their mean distance in the domain, only the
-# first one is a vertex: triangulations displace points by a tenth of it.
+# first one is a vertex: triangulations displace points by a tenth of this distance.
 NEARLY_EQUAL = 1e-5
 NEEDED = ("points", "normals", "uv")
 
@@ -104,7 +104,7 @@ class Vertices:
         return self.chosen(kept)
 
     def is_node(self, samples: Samples) -> NDArray[np.bool_]:
-        """Return a mask of the vertices (k,) that are samples on a graded grid, whole or not."""
+        """Return a mask of the vertices (k,) that are samples on a graded grid."""
         if samples.row is None:
             return np.zeros(len(self.sample), dtype=bool)
         return (self.sample >= 0) & (samples.row[self.sample] >= 0)
@@ -122,7 +122,7 @@ def check_fields(samples: Samples) -> None:
 
 
 def before_offset(samples: Samples) -> Array:
-    """Return the points (N, 3) of samples in float64; for an offset, those before it."""
+    """Return the points (N, 3) of samples in float64; for an offset, those of the original."""
     points = samples.points.astype(np.float64)
     if samples.offset_of is None:
         return points

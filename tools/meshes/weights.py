@@ -41,7 +41,7 @@ def _areas(mesh: Mesh) -> Array:
     points, scale = centred(mesh.vertices)
     areas = corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides)
     limits = np.finfo(np.float64)
-    # Areas below the rounding of the mean one need not be accurate.
+    # Areas smaller than the rounding error of the mean area need not be accurate.
     least = float(limits.eps * areas.sum()) / len(areas)
     with np.errstate(over="ignore", under="ignore"):
         smallest, total = least / scale / scale, float(areas.sum()) / scale / scale
