@@ -61,7 +61,7 @@ def sample(
 ) -> Samples:
     """Return points of a surface with their normals, denser where it is more curved.
 
-    One of `count`, `normals`, `angle` and `coverage` determines their number.
+    One of `count`, `normals`, `angle` and `coverage` determines the number of points.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def sample(
     curvature is below the error of the spline, |K|^α is replaced by a constant.
 
     **Angles** next to singular points of the spline, such as cusps, are bounded down to cells of
-    2⁻¹⁴ of its size.
+    2⁻¹⁴ of the size of the spline.
 
     **On the surface.** All points with prescribed normals are found, with a proof, if the
     derivatives of the surface can be bounded. This holds for the catalogue, SymPy expressions,
@@ -172,24 +172,24 @@ def sample(
 
     **Parts and pieces.** All faces of a part, and all smooth pieces of a surface, have one target
     density and one count; angle and coverage refer to the whole. A piece has samples at normals if
-    these are a tenth of all samples or more; if one of several has none, 5 % of a count are placed
-    where normals are farthest from those of all samples. Every face has a sample if there are at
-    least twice as many samples as faces. A sample represents only points whose normals are within
-    60° of its own, that is, points on its side. Pieces share `cells` in proportion to their
+    these are a tenth of all samples or more; if one of several pieces has none, 5 % of a count are
+    placed where normals are farthest from those of all samples. Every face has a sample if there
+    are at least twice as many samples as faces. A sample represents only points whose normals are
+    within 60° of its own, that is, points on its side. Pieces share `cells` in proportion to their
     parameters, and `Samples.spline` is None. For parts, `density` is "balanced", "uniform", a
     number, or "gauss" with `normals`; `cells` and `on` are not allowed.
 
     **Edges.** Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
     `other_normals`. They are on both faces exactly, or, if the faces of the file do not meet, on
-    the first one and as close to the other as in the file. Each edge has samples at both ends and
-    at least one in between, however small the count. Between neighbours on an edge the normals of
-    each face differ by about as much as between neighbours elsewhere, or less. Gaps are no wider
+    the first face and as close to the other as the file has it. Each edge has samples at both ends
+    and at least one in between, however small the count. Between neighbours on an edge the normals
+    of each face differ by about as much as between neighbours elsewhere, or less. Gaps are no wider
     than in flat regions. A corner has one sample, with the normals of the edge that is sharpest
     there. Boundaries of open shells have only one face, and are not edges. `Samples.weights` are 0
     on edges.
 
-    The samples of a spline at a normal have Σ sign K = χ/2, for every normal of every closed
-    surface, those at poles included; χ is the Euler characteristic.
+    For every normal of every closed surface, the samples of its spline at that normal, those at
+    poles included, have Σ sign K = χ/2; χ is the Euler characteristic.
 
     Examples
     --------
@@ -253,7 +253,7 @@ def sample_and_normals(
 
 
 class Arguments(NamedTuple):
-    """The checked arguments of `sample`, except `cells`, `on` and `fields`."""
+    """The arguments of `sample`; all but `cells`, `on` and `fields` are checked."""
 
     request: Request
     cells: Sequence[int] | None
@@ -316,7 +316,7 @@ def _at_normals(
 def _pieces(
     surface: Surface | AnySpline, given: Arguments
 ) -> tuple[list[OnPatches], tuple[str, ...]]:
-    """Return the pieces of a surface to sample by a density, and the fields."""
+    """Return the pieces of a surface that is sampled with a density, and the checked fields."""
     request, on_surface = given.request, place_of_samples(surface, given.on) == "surface"
     fields = checked_fields(given.fields, on_surface, grid=request.density == "aligned")
     if request.count is not None:
