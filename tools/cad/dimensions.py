@@ -41,7 +41,7 @@ def dimensions_of(
 
 
 def _cone(origin: Array, z: Array, sizes: Sequence[float], v: float) -> Dimensions:
-    """Return the dimensions of a cone with the middle at v; none if its half-angle is zero."""
+    """Return the dimensions of a cone, v in the middle of its domain; none if its angle is zero."""
     radius, angle = sizes
     if angle == 0.0:
         return {}

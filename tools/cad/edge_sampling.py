@@ -130,7 +130,10 @@ def _costs(space: PartSpace, sides: Sides) -> Array:
 
 
 def _divided(places: Array, costs: Array, most: int) -> Array:
-    """Return positions from the first to the last with equal costs between them, at most 1."""
+    """Return positions from the first to the last one, with equal costs of at most 1 in between.
+
+    There are at least FEWEST steps, and at most `most`, with larger costs if needed.
+    """
     if not len(costs):
         return places
     if not costs.any():

@@ -44,7 +44,7 @@ COLLAPSED, BEYOND = 1e10, 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Edges:
-    """Edges (E,) between two faces of a part each: polylines of parameters.
+    """E edges of a part, each between two faces, as polylines of parameters.
 
     The points of edge i are `points` (k, 4) from `starts`[i] to `starts`[i + 1]: u, v on the
     surfaces of the two `pieces` (E, 2) of a space.
@@ -71,7 +71,7 @@ class Edges:
 
 
 def edges_of(space: PartSpace, *, seams: bool = False) -> Edges:
-    """Return the edges between two pieces of a space; with `seams`, also those of one piece."""
+    """Return the edges between two pieces of a space; with `seams`, also seams of one piece."""
     part = space.pieces[0].face.part
     known = np.full(len(part), -1)
     known[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))
@@ -194,7 +194,7 @@ class Places(NamedTuple):
 
 
 def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
-    """Return the fields of pieces (M,) at u, v (M, 2) of their surfaces."""
+    """Return the fields of `Places` for pieces (M,), at u, v (M, 2) of their surfaces."""
     places, scales = _inside(space, owner, uv), np.array([space.unit, 1.0, 1.0])
     vectors, normals = np.empty((len(owner), 3, 3)), np.empty((len(owner), 3))
     curvatures = np.empty((len(owner), 2))
@@ -251,7 +251,7 @@ def _size(space: PartSpace) -> float:
 def _intersections(space: PartSpace, starts: Sides) -> tuple[Array, Flags]:
     """Return parameters (M, 4) where two faces intersect near `starts`, and a mask of successes.
 
-    Both points move in the plane across the edge.
+    The points of both faces move in the plane across the edge.
     """
     along = np.cross(starts.normals[:, 0], starts.normals[:, 1])
     least = math.sin(math.radians(SHARP) / 2.0)  # not smaller at cusps, where normals are opposite

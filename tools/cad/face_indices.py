@@ -36,8 +36,8 @@ CLOSE = 1e-3
 # A side is measured at this number of places.
 PLACES = 5
 OPEN_BOX = KINDS.index("open")
-# Normals of faces that meet smoothly are between those of both at the gap that the digits of a file
-# leave. So the surfaces of files are searched beyond open sides by this part of the domain.
+# Where faces of a file meet smoothly, rounded numbers leave a small gap between their normals. So
+# their surfaces are searched beyond open sides, by this part of the domain.
 GAP = 1e-9
 # The indices of Taylor coefficients in bounds.
 U1, V1, U2, U1V1, V2 = range(1, 6)
@@ -70,7 +70,7 @@ class SmoothPieces:
     def of(cls, surface: Surface, gap: float) -> SmoothPieces | None:
         """Return the indices of a surface; None if one of its pieces has none.
 
-        Open sides that are no point are at a `gap` from those of the search.
+        The search extends beyond open sides by the part `gap` of the domain, except at points.
         """
         found = []
         for piece in surface.pieces():
@@ -107,9 +107,9 @@ class Offset:
         ])  # fmt: skip
 
     def _turned(self, found: FacePlaces, normals: Array, sign: float) -> FacePlaces:
-        """Return the points of the basis at which the normal of the offset has the given sign.
+        """Return the points of the basis at which the normal of the offset is `sign` times its own.
 
-        Components of the basis become undecided if the sign may change inside their boxes.
+        Points and components become undecided if the sign may change inside their boxes.
         """
         sides, open_ = self._sides(found.uv, found.radius, normals[found.numbers]), found.undecided
         is_known = np.abs(sides.middle) > sides.radius
@@ -133,9 +133,10 @@ class Offset:
         )
 
     def _sides(self, uv: Array, radius: Array, normals: Array) -> Ball:
-        """Return enclosures (k,) of numbers whose sign is that of the product of both normals.
+        """Return enclosures (k,) of numbers with the sign of the dot product of both normals.
 
-        The normal of the basis is one of normals (k, 3) exactly, somewhere within the radii (k, 2).
+        Somewhere within the radii (k, 2), the normal of the basis is exactly that of normals
+        (k, 3).
         """
         bounds = bounds_over_boxes(self.tape, uv, radius)
         factors = zip((U2, U1V1, V2, U1, V1), (2.0, 1.0, 2.0, 1.0, 1.0), strict=True)
@@ -148,7 +149,7 @@ class Offset:
 
 
 def _wider(surface: Surface, gap: float) -> Surface:
-    """Return a surface over a domain whose open sides are farther away, except for points."""
+    """Return a surface over a domain that is larger at open sides, unless they are points."""
     sides = list(np.ndindex(2, 2)) if gap > 0.0 else []
     sizes = [np.ptp(_on_side(surface, *x), axis=0).max() for x in sides]
     domain = [list(x) for x in surface.domain]
@@ -167,9 +168,9 @@ def _on_side(surface: Surface, axis: int, end: int) -> Array:
 
 
 def _inside(found: ProvedPlaces, piece: Surface) -> FacePlaces:
-    """Return what was found, moved into the open sides of a piece; radii are those around it.
+    """Return points and boxes moved into the domain of a piece, at its open sides.
 
-    Boxes beyond them are left out.
+    The radius of a point grows by the distance that it moved. Boxes outside are left out.
     """
     is_open = np.array(piece.boundary) == "open"
     low, high = np.where(is_open, piece.domain, [-np.inf, np.inf]).T

@@ -55,9 +55,9 @@ PARTS_OF_SURFACE = 16
 # Curvatures at a pole are taken at this distance from it, relative to the domain.
 BESIDE = 1e-6
 CURVATURES = ("gaussian_curvature", "mean_curvature")
-# Without a proof, and for normals of lattices, points are searched on a spline: the number of its
-# cells for each part of a span, and the least and largest number of cells. Near the boundary, the
-# error of the spline loses points.
+# Without a proof, and for normals of lattices, points are searched on a spline. It has CELLS_A_PART
+# cells for each part of a span, but FEWEST to MOST along each parameter: near the boundary, points
+# are lost because of the error of the spline.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
 # Measurements on a raster of a face use about this number of positions, squared.
 RASTER = 64
@@ -164,7 +164,7 @@ class FacePiece(Piece):
 
     @property
     def tips(self) -> Sequence[Tip | Pinch]:
-        """The tips at sides that are one point, with the whole of their neighbourhood."""
+        """The tips at open sides of the domain that are one point."""
         if not any(self.surface.assumed_open):
             return ()
 
@@ -176,7 +176,10 @@ class FacePiece(Piece):
         return kept(self.surface, Tipped, found)
 
     def component_degrees(self, normals: Array) -> Indices:
-        """Return the sums of the degrees of components with a sample, but for regular points."""
+        """Return for each normal the sum of the degrees of its components that have a sample.
+
+        Regular points do not count.
+        """
         index, degrees = kept(self.surface, face_index, self._index), np.zeros(len(normals))
         for tip in self.tips:
             degrees += tip.degrees(normals)
@@ -191,7 +194,7 @@ class FacePiece(Piece):
         places = np.column_stack([found.uv, found.radius, found.sign, 0.0 * found.sign])[inside]
         components, open_ = components_in(self.trim, found.undecided, normals, self.jets)
         numbers, places = with_components(found.numbers[inside], places, components)
-        for tip in self.tips:  # comes after the other points with a normal
+        for tip in self.tips:  # it comes after the other points with a normal
             has = tip.degrees(normals) != 0
             (rows,) = np.nonzero(has if self.reach is None else has & self.reach._contains(normals))
             row = [*tip.uv, 0.0, 0.0, 1.0, 0.0, Component.TIP]
@@ -230,7 +233,7 @@ class FacePiece(Piece):
 
     def _geometries(self) -> list[OnSpline]:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", GaussmapWarning)  # of the fit, only a starting value
+            warnings.simplefilter("ignore", GaussmapWarning)  # the spline gives only first guesses
             pieces = self.surface.pieces()
             return on_grids([geometry_of(x, self._cells(x.domain), "surface") for x in pieces])
 

@@ -276,7 +276,7 @@ def _moved_numbers(basis: Geometry, distance: float, domain: Domain) -> Array | 
         numbers[12] += moved * math.cos(angle)
     elif abs(numbers[12]) > abs(numbers[13]):
         numbers[13] += moved
-    else:  # the offset has passed the axis, and its normal points to it
+    else:  # the offset has passed the axis, and its normal points towards the axis
         return None
     return numbers
 

@@ -45,7 +45,7 @@ def part_of_surfaces(
     held, known = _checked(surfaces), None if unit is None else checked_unit(unit)
     most = None if tolerance is None else positive_number(tolerance, "tolerance")
     faces = [_face(x) for x in held]
-    # Areas are not known yet, and a face without an area is no piece: all faces have the area 1.
+    # Areas are not known yet, and a face without an area is no piece: all faces get the area 1.
     bare = part_of(
         PartRecord(text(name, "name"), known or "", METRES.get(known or "", 1.0), False, faces)
     )

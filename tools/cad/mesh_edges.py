@@ -28,10 +28,11 @@ SAME = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class SampledEdges:
-    """Vertices on edges: points (M, 3), in L; for each edge, vertex indices, and shares in [0, 1].
+    """Vertices on edges: their `points` (M, 3), in the unit L of the part.
 
-    `uv` has the parameters of each side of an edge, on the surface of its piece, in the direction
-    of the edge; `edges` has the edge of each side.
+    For each edge, `numbers` are the indices of its vertices, and `shares` their positions in
+    [0, 1]. For each side of an edge, `uv` are the parameters of these vertices on the surface of
+    its piece, in the direction of the edge, and `edges` is the index of the edge.
     """
 
     points: Array
@@ -46,7 +47,7 @@ class MeshEdges:
     """All edges around the pieces of a space, and their division into steps.
 
     `sides` (S,) are indices of sides of edges of the part, `owner` (S,) their edges and `pieces`
-    (S,) their pieces. `more` are shares of edges with additional vertices.
+    (S,) their pieces. `more` are the shares of additional vertices, by edge.
     """
 
     spacing: Spacing
@@ -129,7 +130,7 @@ class MeshEdges:
         return steps
 
     def _total(self, steps: Indices, step: float) -> float:
-        """Return the number of vertices on edges with `steps` (E,), and inside for a `step`."""
+        """Return the number of vertices: on edges with `steps` (E,), and inside for `step`."""
         around = np.bincount(self.pieces, steps[self.owner], len(self.space.pieces))
         return self._count(steps) + self.spacing.inside(step, around)
 
@@ -152,7 +153,7 @@ class MeshEdges:
 
     @cached_property
     def _vertices(self) -> tuple[Array, Indices]:
-        """The vertices (V, 3) in use, and their indices (E, 2) at the ends of edges."""
+        """The vertices (V, 3) in use, and the indices (E, 2) of those at the ends of edges."""
         points, ends = list(self.arrays["vertices"]), self.arrays["edge_vertices"].copy()
         for row in np.flatnonzero(self.used & (ends < 0).any(axis=1)).tolist():
             side = int(np.flatnonzero(self.owner == row)[0])
@@ -214,7 +215,7 @@ class MeshEdges:
     def sampled(self, count: int) -> SampledEdges:
         """Return the vertices on edges in a mesh of `count` vertices, at least `least`.
 
-        Edges are coarser than the interior of faces if equally fine ones would have more vertices.
+        Edges are coarser than the interior of faces if equally fine edges would take too many.
         """
         points, ends = self._vertices
         steps, first = self._steps_for(count), len(points)

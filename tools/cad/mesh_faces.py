@@ -59,7 +59,7 @@ class FaceBorder:
 
 
 def triangles_of(border: FaceBorder, places: Array) -> tuple[Indices, Indices]:
-    """Return triangles (k, 3) of positions (n, 2) in a plane; those of the boundary come first.
+    """Return triangles (k, 3) of positions (n, 2) in a plane; the boundary has the first positions.
 
     Triangles run counterclockwise. Also return the constrained segments (m, 2). Of equal positions,
     only the first is a vertex. Raises Crossing if the boundary crosses itself.

@@ -26,7 +26,7 @@ UNEVEN = 0.5
 def graded(edges: MeshEdges, count: int) -> PartSpace:
     """Return the space of edges, with sizes that grow slowly from their steps in a mesh.
 
-    Steps hardly smaller than the largest size of the face do not change it.
+    Steps hardly smaller than the largest size on a face do not change the sizes there.
     """
     space, sampled = edges.space, edges.sampled(count)
     step, points = step_of(space, count), space.scaled_points(sampled.points)

@@ -23,7 +23,7 @@ EVEN = math.sqrt(0.75)
 def smoothed(
     space: PartSpace, pieces: Indices, known: Places, triangles: Indices, points: Array, free: Flags
 ) -> tuple[Places, Array]:
-    """Return parameters and fields (C,), with `free` rows moved, and their points (C, 3).
+    """Return the fields of vertices (C,), some of the `free` ones moved, and the points (C, 3).
 
     The smallest angle around a moved vertex grows. No triangle there turns away from the normals by
     more than `LARGEST_DEVIATION` degrees, unless it already did.
@@ -110,7 +110,10 @@ def _least(values: Array, owner: Indices, count: int) -> Array:
 
 
 def _first(chosen: Indices, better: Flags, now: Array, around: Indices, count: int) -> Indices:
-    """Return the chosen vertices (k,) that move together: of two neighbours, the worse one."""
+    """Return indices in `chosen` (k,) of vertices that become better, and move together.
+
+    Of two neighbours, only the one with the smaller angle moves.
+    """
     rank = np.full(count, len(chosen))
     rank[chosen[better]] = np.argsort(np.argsort(now[better]))
     nearest = rank[around].min(axis=1)

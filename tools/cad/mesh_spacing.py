@@ -46,7 +46,10 @@ APART = 100.0
 
 @dataclass(frozen=True, eq=False)
 class Spacing:
-    """Spacing of `count` vertices by the target density of a space; planes scaled by lengths."""
+    """Spacing of `count` vertices by the target density of a space.
+
+    The plane of a face is that of its parameters, scaled by lengths.
+    """
 
     space: PartSpace
     count: int
@@ -71,7 +74,10 @@ class Spacing:
         return 0.0
 
     def costs(self, pieces: Indices, uv: Array) -> Array:
-        """Return the lengths (S, n − 1) between positions (S, n, 2) on sides of edges, in steps."""
+        """Return the lengths (S, n − 1) between positions (S, n, 2) on sides of edges.
+
+        They are relative to the sizing function 1/√w, with the target density w.
+        """
         owner = np.repeat(pieces, uv.shape[1])
         rows = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows
         rows = rows.reshape(*uv.shape[:2], 8)
@@ -140,9 +146,9 @@ def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
     """Return the steps (P,) in planes that minimize the mean angle for `count` vertices.
 
     Angles are proportional to steps s. A face with perimeter P and area F in the plane has P/s
-    vertices on its boundary and F/s² inside. At the minimum, its area times the derivative of its
-    mean angle is a common factor times the derivative of this number. No step exceeds `LONGEST`
-    times the mean.
+    vertices on its boundary and F/s² inside. At the minimum, the area of a face times the
+    derivative of its mean angle by s is the derivative of its number of vertices, up to a factor
+    that all faces share. No step exceeds `LONGEST` times the mean.
     """
     areas = np.array([x.piece.size**2 for x in planes])
     around = np.array([x.perimeter if x.turns else 0.0 for x in planes])
@@ -300,7 +306,10 @@ def _places(piece: FacePiece, axis: int) -> Array:
 
 
 def _angles(normals: Array, inside: Flags, axis: int) -> Array:
-    """Return the largest angles (k − 1,) of neighbours (k, l, 3) inside, along an axis."""
+    """Return the largest angles (k − 1,) between normals (k, l, 3) of neighbours along an axis.
+
+    Neighbours count if one of them is inside.
+    """
     n = np.moveaxis(normals, axis, 0)
     here = np.moveaxis(inside if inside.any() else np.ones_like(inside), axis, 0)
     known = np.asarray(n.any(axis=2))

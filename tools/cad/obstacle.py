@@ -12,7 +12,7 @@ from .results import space_of
 
 __all__ = ["obstacle_of"]
 
-# The number of vertices, or twice the number that edges need if that is larger.
+# The number of vertices of the mesh; twice the number that edges need, if that is larger.
 VERTICES = 20_000
 
 

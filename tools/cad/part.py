@@ -435,7 +435,7 @@ class Face:
 
     @property
     def loops(self) -> tuple[Array, ...]:
-        """The closed polygons (k, 2) in u and v that trim it; the first point is not repeated."""
+        """The closed polygons (k, 2) in u, v that trim the face; first points are not repeated."""
         arrays = self.part.arrays
         first, last = arrays["face_loops"][self.index : self.index + 2].tolist()
         starts = arrays["loop_point_starts"]

@@ -106,7 +106,7 @@ def _table(faces: Sequence[FaceRecord]) -> Arrays:
 def _basis(geometries: list[Geometry]) -> list[int]:
     """Append the surfaces of which others are offsets; return the index of each basis, or −1."""
     places: list[int] = []
-    for geometry in geometries:  # grows in the loop, which also visits the appended ones
+    for geometry in geometries:  # the list grows, and the loop also visits what is appended
         if geometry.basis is None:
             places.append(-1)
         else:
@@ -131,7 +131,7 @@ def _nets(nets: Sequence[Net]) -> Arrays:
 
 
 def _loops(faces: Sequence[FaceRecord]) -> Arrays:
-    """Return the loops of all faces, and the start of each face's."""
+    """Return the loops of all faces, and the index of the first loop of each face."""
     counts = np.cumsum([0, *(len(x.loops) for x in faces)])
     loops = [loop for x in faces for loop in x.loops]
     return {"face_loops": counts.astype(np.int64), **_rows("loop_point", loops, (2,))}

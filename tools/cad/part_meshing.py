@@ -49,8 +49,8 @@ __all__ = ["mesh_of_part", "mesh_of_samples"]
 
 # Where a face has no normal, the normal is taken at this fraction of the way into the triangle.
 INSIDE = 1e-6
-# The number of times that edges are divided until triangles are valid; and the number of times that
-# samples outside of the polygons around faces are replaced.
+# Edges are divided until triangles are valid, or ROUNDS times; samples outside of the polygons
+# around faces are replaced at most REFILLS times.
 ROUNDS, REFILLS = 15, 8
 # If a mesh has faults, larger counts are tried: each MORE times the one before, up to MANY times
 # the least count of the edges. The error names the first count whose mesh has none.

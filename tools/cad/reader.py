@@ -28,7 +28,7 @@ from .worker import ERROR, PART
 
 __all__ = ["read_cad"]
 
-# Open CASCADE itself takes about a quarter of this memory, in GiB.
+# The least memory limit, in GiB; Open CASCADE itself takes about a quarter of it.
 LEAST_MEMORY = 1.0
 MOST_SECONDS = 1e6
 # The largest number of failed faces that a warning names.

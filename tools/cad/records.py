@@ -101,9 +101,9 @@ class EdgeRecord:
 
     `faces` are those of its m sides: usually two, one on a boundary, the same one twice at a seam.
     `parameters` (k, 2 m) are u and v on each of them, at equal steps of a parameter of the edge
-    from 0 to 1, NaN where unknown. `slopes` (k, 2 m) are their derivatives by it, by default finite
-    differences. `vertices` are the indices of its first and last vertex; −1 if unknown. An edge
-    that is a point, as at a pole, is `degenerate`.
+    from 0 to 1, NaN where unknown. `slopes` (k, 2 m) are the derivatives of u and v by that
+    parameter, by default finite differences. `vertices` are the indices of the first and the last
+    vertex of the edge; −1 if unknown. An edge that is a point, as at a pole, is `degenerate`.
     """
 
     faces: tuple[int, ...]
@@ -117,8 +117,8 @@ class EdgeRecord:
 class PartRecord:
     """A part; `metres` is the length of its unit, `oriented` whether all normals point outward.
 
-    `vertices` (V, 3) are the points at the ends of edges. `source_indices` are the indices that the
-    faces had in the part from which they were selected.
+    `vertices` (V, 3) are the points at the ends of edges. `source_indices` are the indices that
+    selected faces had in the part that was read or made.
     """
 
     name: str

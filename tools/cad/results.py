@@ -30,7 +30,7 @@ CELLS_A_SAMPLE = 16
 
 @dataclass(frozen=True, eq=False)
 class PartSpace(Space):
-    """The faces of a part that can be sampled; for the others, the reason by face index."""
+    """The faces of a part that can be sampled; `failed` has the reasons of the others, by index."""
 
     pieces: tuple[FacePiece, ...]
     failed: Mapping[int, str] = field(default_factory=dict)

@@ -41,7 +41,7 @@ CURVE, OPEN_BOX = KINDS.index("curve"), KINDS.index("open")
 
 
 class Angles(NamedTuple):
-    """Parameters u, v (k,) for the normals with indices (k,), and radii (k,) of u and of v."""
+    """Parameters u, v (k,) for the normals with indices (k,), and bounds (k,) of their errors."""
 
     numbers: Indices
     u: Array
@@ -73,7 +73,7 @@ class Angles(NamedTuple):
         return cls(numbers, u, v, of_u, of_v)
 
     def places(self, sign: float) -> FacePlaces:
-        """Return the rows as points whose Gaussian curvature has a sign."""
+        """Return the rows as points whose Gaussian curvature has the given sign."""
         uv, radius = np.stack([self.u, self.v], axis=1), np.stack([self.of_u, self.of_v], axis=1)
         return FacePlaces(self.numbers, uv, radius, np.full(len(uv), sign), NOTHING.undecided)
 
@@ -128,7 +128,7 @@ class RoundFace:
         return found.reversed_in(sum(self.domain[0])) if self.is_reversed else found
 
     def _on_plane(self, normals: Array) -> FacePlaces:
-        """Return the whole domain for the normal of a plane."""
+        """Return the whole domain, as an undecided box, for normals equal to that of a plane."""
         normal = np.cross(self.frame[:, 0], self.frame[:, 1])
         normal *= math.copysign(1.0, normal @ self.frame[:, 2]) / math.sqrt(normal @ normal)
         (near,) = np.nonzero(normals @ normal > 1.0 - NEAR)
@@ -169,7 +169,7 @@ class RoundFace:
         if self.kind == "sphere":
             return self._at_angles(own, 1.0).places(1.0)
         sides = [math.copysign(1.0, major * minor)] if abs(major) > abs(minor) else [1.0, -1.0]
-        for side, sign in itertools.product(sides, (1.0, -1.0)):  # of ρ r and of cos v
+        for side, sign in itertools.product(sides, (1.0, -1.0)):  # signs of ρ r and cos v
             part = self._at_angles(side * own, sign)
             sizes = side * python_function(torus_normal)(major, minor, np.cos(part.v))
             noise = 4.0 * self.error * (abs(major) + abs(minor)) * abs(minor)
@@ -185,7 +185,7 @@ class RoundFace:
         return joined(found)
 
     def _at_angles(self, own: Array, sign: float) -> Angles:
-        """Return the parameters of normals in the frame of the face where cos v has a sign.
+        """Return the parameters of normals (k, 3) in the frame of the face, where cos v has a sign.
 
         Near the axis u is unknown, and its error bound is a whole turn.
         """

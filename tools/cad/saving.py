@@ -6,7 +6,7 @@ about (uint8)
     UTF-8 text, JSON: format, version, name, unit ("mm", "in", ...), metres (the length of the
     unit), oriented, solid_names (a list), face_names and reasons (by the index of the face, as
     text; a face with a reason has failed), warnings (a list of sentences), source_indices (the
-    indices of the faces in the part that they were selected from, or an empty list).
+    indices of selected faces in the part that was read or made, or an empty list).
 reversed (F,) bool, area (F,), solid_index (F,) int64, color (F, 3)
     Whether normals point along −(x_u × x_v); the area inside the trim, in L²; the solid, −1 for
     none; red, green and blue from 0 to 1, NaN for none.
@@ -147,7 +147,10 @@ def write_record(record: PartRecord, path: PathLike) -> None:
 
 
 def write_arrays(arrays: Mapping[str, NDArray[Any]], path: PathLike) -> None:
-    """Write the arrays of a part; UnknownNameError unless the suffix is .npz, FileError."""
+    """Write the arrays of a part to a file.
+
+    Raises UnknownNameError unless the suffix is .npz, and FileError if it cannot be written.
+    """
     known_suffix(path, SUFFIXES)
     with atomic_path(path) as temporary, open(temporary, "wb") as file:
         held: dict[str, Any] = {name: arrays[name] for name in dtypes()}

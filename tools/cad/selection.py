@@ -57,14 +57,14 @@ def select(
     index : array_like of int, optional
         Indices in `faces`, each of them once, in any order.
     normal : ((3,) array_like, float), optional
-        A direction (not 0), and an angle in degrees: all normals of the face, checked on a grid in
-        it and along its boundary, are within this angle of the direction.
+        A direction (not 0), and an angle in degrees: all normals of the face, checked on a grid
+        inside and along its boundary, are within this angle of the direction.
 
     Returns
     -------
     Part
         The faces, in their order, with their solids and the edges between them. `Face.source_index`
-        is the index of each face in this part.
+        is the index of each face in the part that was read or made.
 
     Raises
     ------

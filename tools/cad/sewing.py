@@ -25,19 +25,19 @@ __all__ = ["Border", "Sewn", "sewn"]
 
 # A boundary has a corner where it turns by more than this, in degrees.
 CORNER = 30.0
-# The number of steps between tabulated points of a side, and of iterations of Newton's method for
-# its nearest point, which starts at the nearest tabulated one.
+# The points of a side are tabulated at the ends of STEPS steps. Newton's method for the nearest
+# point of a side starts at the nearest tabulated ones, and takes at most ROUNDS iterations.
 STEPS, ROUNDS = 64, 8
 # Edges nearly coincide if their distance is below this, relative to their length.
 NEARLY = 0.01
-# The parameters of an edge are tabulated at the first number of steps, doubled up to the second
-# until cubics between them have this error, relative to the length.
+# The parameters of an edge are tabulated at STEPS_OF_EDGE steps. The number is doubled, at most to
+# MOST_STEPS, until cubics in between have at most the error EXACT, relative to the length.
 STEPS_OF_EDGE, MOST_STEPS, EXACT = 32, 512, 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Border:
-    """A closed polygon (k, 2) in the domain of the surface of a face, which is on its left.
+    """A closed polygon (k, 2) in the domain of the surface of a face, with the face on its left.
 
     The first point is not repeated. The corners are all points, for a rectangle, or the points
     where the polygon turns on the surface.
@@ -83,7 +83,7 @@ class Side:
 
     @cached_property
     def t(self) -> Array:
-        """The values (k,) of t at the points: shares of the length, relative to the domain."""
+        """The values (k,) of t at the points: shares of the length in the scaled domain."""
         low, high = np.array(self.surface.domain).T
         lengths = np.hypot(*(np.diff(self.uv, axis=0) / (high - low)).T)
         found = np.concatenate([[0.0], np.cumsum(lengths) / lengths.sum()])
@@ -167,13 +167,16 @@ class Span:
         return None if back.max() > tolerance else bool(t[0] > t[-1])
 
     def along(self, leader: Span, steps: int, backwards: bool) -> Array:
-        """Return the values (steps + 1,) of t nearest to equal steps of the same line."""
+        """Return the values (steps + 1,) of t nearest to the ends of equal steps of `leader`.
+
+        Both spans are on the same line.
+        """
         if self is leader:
             return self.t(steps)
         t = self.side.nearest(leader.inner(steps), self.low, self.high)[0]
         ends = [self.high, self.low] if backwards else [self.low, self.high]
         t = np.concatenate([ends[:1], t, ends[1:]])
-        # Where both are nearly the same point, they may be out of order.
+        # Where neighbouring points nearly coincide, values of t may be out of order.
         return np.minimum.accumulate(t) if backwards else np.maximum.accumulate(t)
 
 
@@ -267,7 +270,7 @@ def _cut(
 
 
 def _lines(spans: Sequence[Span], tolerance: float) -> list[dict[Span, bool]]:
-    """Return groups of spans on one line; the values say which run backwards to the first."""
+    """Return groups of spans on one line; a value is True if the span runs against the first."""
     lines, between = list[dict[Span, bool]](), defaultdict[Any, list[dict[Span, bool]]](list)
     for span in spans:
         # Spans that are points only share vertices.

@@ -28,10 +28,10 @@ PROBES, INSIDE = 100, 0.9
 
 @dataclass(frozen=True)
 class Shell:
-    """Connected faces, each with −1 if it is flipped, else 1; and whether they are closed.
+    """Connected faces, and whether they are closed.
 
-    `solid` is the index of the solid that the shell encloses, or of which it bounds a cavity; −1
-    for none.
+    `signs` are −1 for faces that are flipped, else 1, by face index. `solid` is the index of the
+    solid that the shell encloses, or of which it bounds a cavity; −1 for none.
     """
 
     signs: dict[int, int]
@@ -50,8 +50,8 @@ def shells_of(
     """Return the connected sets of faces, each with consistent normals.
 
     Normals of closed sets point out of solids, and so into cavities; open sets are oriented as
-    their first face. `heights` are the integrals of (x − c)·n over the faces. Raises InputError for
-    a set that cannot be oriented.
+    their first face. `heights` are the integrals of (x − c)·n over the faces, with the same c.
+    Raises InputError for a set that cannot be oriented.
     """
     shells = [_outward(x, heights) for x in _connected(pieces, found, borders)]
     closed = [k for k, x in enumerate(shells) if x.closed]
@@ -97,7 +97,7 @@ class _Points:
         return tree_of(self.points)
 
     def hold(self, other: _Points) -> bool:
-        """Return whether another shell is inside this one: behind its nearest points."""
+        """Return whether another shell is inside: behind the nearest points of this shell."""
         probes = other.points[:: 1 + len(other.points) // PROBES]
         if not len(probes) or not len(self.points):
             return False
@@ -137,7 +137,7 @@ def _signs(
 ) -> dict[int, int]:
     """Return the faces connected to `start`, and the signs of their normals."""
     signs, waiting = {start: 1}, [start]
-    for face in waiting:  # grows in the loop
+    for face in waiting:  # the list grows in the loop
         for other, sign in links.get(face, ()):
             if other not in signs:
                 signs[other] = sign * signs[face]

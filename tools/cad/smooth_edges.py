@@ -26,10 +26,12 @@ __all__ = ["each_once"]
 SAME = 1e-8
 # Points are sorted by coordinates along this direction; on symmetric parts, few are equal.
 DIRECTION = np.array([0.52, 0.47, 0.71])
-# The point of an edge where a face has a normal is searched among PLACES points, then ROUNDS times
-# among as many in an interval that is smaller by ZOOM. The face has the normal up to NEAR.
+# The point of an edge where a face has a normal is searched ROUNDS times among PLACES points, each
+# time in an interval that is smaller by ZOOM. A face has the normal if its own differs by NEAR at
+# most.
 PLACES, ZOOM, ROUNDS, NEAR = 33, 4.0, 12, 1e-6
-# The point is on a component if it is in its box, up to this part of the domain.
+# The point is on a component if the box of the component contains it, up to this part of the
+# domain.
 SAME_PLACE = 1e-6
 
 
@@ -109,9 +111,9 @@ def _first_of_curves(space: PartSpace, given: Given, keep: Flags) -> Flags:
 
 
 def _places_with(edges: Edges, owner: Indices, normals: Array) -> tuple[Array, Array]:
-    """Return where both faces of edges (k,) have normals closest to (k, 3), and how close.
+    """Return where on edges (k,) the normals of both faces are closest to `normals` (k, 3).
 
-    These are parameters (k, 2, 2), and lengths (k, 2) of differences of normals.
+    Return parameters (k, 2, 2) of both faces, and lengths (k, 2) of differences of normals.
     """
     half = np.tile((np.diff(edges.starts) - 1.0)[owner, None, None] / 2.0, (1, 2, 1))
     middle, last, steps = half, 2.0 * half, np.linspace(-1.0, 1.0, PLACES)

@@ -66,7 +66,7 @@ class PartFiles:
         return ENTITY.sub(rewritten, COMMENT.sub(b"", content))
 
     def _copied(self, name: str, parent: Path, above: tuple[str, ...]) -> str:
-        """Return the name of the copy of a part file, which is absent if that cannot be read."""
+        """Return the name of the copy of a part file; if this cannot be read, there is no copy."""
         folders = parent.parent, Path(os.path.realpath(parent)).parent
         path = next((x / name for x in folders if (x / name).exists()), folders[0] / name)
         real = os.path.realpath(path)

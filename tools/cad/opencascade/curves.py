@@ -35,7 +35,7 @@ class UnusableError(Exception):
 
 
 def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
-    """Return a curve as NURBS: a periodic one as a whole, others at least over a domain."""
+    """Return a curve as NURBS: a periodic curve as a whole, others at least over a domain."""
     period = float(curve.Period()) if curve.IsPeriodic() else 0.0
     trimmed = curve
     while direct_class(curve) == "Geom_TrimmedCurve":
@@ -62,7 +62,7 @@ def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
 
 
 def start_of_period(domain: Sequence[float], first: float, period: float) -> float:
-    """Return the start of a period that contains a domain: `first` if possible, or the domain's."""
+    """Return the start of a period that contains a domain: `first`, or the start of the domain."""
     slack = SAME * period
     inside = first - slack <= domain[0] and domain[1] <= first + period + slack
     return first if inside else float(domain[0])
@@ -140,7 +140,7 @@ def _control_points(curve: Any, ends: Array) -> Array:  # noqa: ANN401
 
 
 def _misfit(curve: Any, ends: Array, points: Array) -> float:  # noqa: ANN401
-    """Return the error midway between the interpolated points, relative to the curve's size."""
+    """Return the largest error at three points of each span, relative to the size of the curve."""
     places = np.linspace(0.1, 0.7, 3)
     parameters = ends[:-1, None] + np.diff(ends)[:, None] * places
     values = _values(curve, parameters.ravel()).reshape(-1, len(places), 3)
@@ -149,7 +149,7 @@ def _misfit(curve: Any, ends: Array, points: Array) -> float:  # noqa: ANN401
 
 
 def _bernstein(places: Array) -> Array:
-    """Return the Bernstein polynomials of `DEGREE`, in a row for each of the values in [0, 1]."""
+    """Return the Bernstein polynomials of `DEGREE`: a row for each of the places in [0, 1]."""
     k = np.arange(DEGREE + 1)
     binomials = np.array([comb(DEGREE, int(x)) for x in k], dtype=np.float64)
     return binomials * places[:, None] ** k * (1.0 - places[:, None]) ** (DEGREE - k)

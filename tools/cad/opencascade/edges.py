@@ -31,8 +31,8 @@ __all__ = ["Topology", "topology_of"]
 Array = NDArray[np.float64]
 Wires = list[Wire]
 
-# The number of points on a p-curve that is not straight: one per angle on circles, a number per
-# piece of other curves, the least and the largest number.
+# A p-curve that is not straight has one point per ANGLE on circles, POINTS_A_PIECE points per piece
+# on other curves, and LEAST to MOST points in all.
 ANGLE, POINTS_A_PIECE, LEAST, MOST = 0.15, 4, 9, 1025
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
 EDGE = TopAbs_ShapeEnum.TopAbs_EDGE

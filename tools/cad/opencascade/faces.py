@@ -36,7 +36,7 @@ PRECISION = 1e-10
 class FaceReader:
     """Converts faces to records; trim and area of copies of a face are computed once.
 
-    `gaps` are the distances between consecutive edges of faces that are larger than `CLOSE`, in mm.
+    `gaps` are the gaps between consecutive edges of faces, in mm, if they are wider than `CLOSE`.
     """
 
     def __init__(self) -> None:

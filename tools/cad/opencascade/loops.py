@@ -25,10 +25,11 @@ Array = NDArray[np.float64]
 # The edges of each wire of a face with their p-curves, in order.
 EdgeCurves = list[list[tuple[Any, PCurve]]]
 
-# The largest distance of polygons from the curves, relative to the (u, v) box of the face and to
-# its mean width in it, but at least the last of these.
+# Polygons deviate from the curves by at most the part OF_BOX of the (u, v) box of the face, and the
+# part OF_WIDTH of the mean width of the face; but the part LEAST of the box is always allowed.
 OF_BOX, OF_WIDTH, LEAST = 1e-4, 1e-3, 1e-7
-# The largest gap between consecutive curves, relative to the box, if edges do not allow it.
+# Wider gaps between consecutive curves, relative to the box, are errors unless the tolerances of
+# the edges allow them.
 GAP = 1e-2
 # Points are equal up to this distance, relative to the box.
 SAME = 1e-12
@@ -80,7 +81,7 @@ def _polygons(wires: list[list[PCurve]], size: Array, tolerance: float) -> list[
 def _gap_of(surface: Any, wires: EdgeCurves, size: Array) -> float:  # noqa: ANN401
     """Return the largest distance between consecutive curves of wires on a surface.
 
-    Raises UnusableError if it is more than their edges allow, and large relative to the box.
+    Raises UnusableError if one is more than their edges allow, and large relative to the box.
     """
     gap = 0.0
     for wire in wires:

@@ -16,7 +16,7 @@ Evaluator = Callable[[Array], Array]
 MOST_ROUNDS, MOST_PARTS = 14, 32
 # A piece that deviates from its chord by less than this fraction of the tolerance is straight.
 STRAIGHT = 1e-3
-# The distance of tangents from the ends, relative to the length: beyond an end may be a corner.
+# Tangents at the ends are taken this far inside, relative to the length: an end may be a corner.
 INSIDE = 1e-9
 # The curve must turn by less than 60° from the ends of a piece to its chord.
 LEAST_COSINE = 0.5
@@ -82,7 +82,10 @@ def _divided(
 def _judged(
     left: Array, right: Array, side: float
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], Array]:
-    """Return the number of parts of each piece, a mask of pieces with a corner, and its tip."""
+    """Return the number of parts of each piece, a mask of pieces with a corner, and their tips.
+
+    Such a piece is replaced by the tangents at its ends, which meet at its tip.
+    """
     along, start, end = right[:, :2] - left[:, :2], left[:, 2:], right[:, 2:]
     chord = np.hypot(along[:, 0], along[:, 1])
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -24,8 +24,8 @@ from .shapes import Key, parts_of
 
 __all__ = ["CLOSE", "Gathered", "PlacedFace", "gathered"]
 
-# Loose faces are sewn where their boundaries are closer than this, in mm; if holes remain, than a
-# distance relative to the size of all faces.
+# Loose faces are sewn where their boundaries are closer than CLOSE, in mm; if holes remain, closer
+# than CLOSE_OF_SIZE, relative to the size of all faces.
 CLOSE, CLOSE_OF_SIZE = 1e-3, 1e-4
 # The largest number of loose faces that are sewn: more of them would take minutes.
 MOST_LOOSE = 20_000
