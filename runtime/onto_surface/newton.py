@@ -135,7 +135,7 @@ def _refine_away(
 def _on_rows(
     target: Target, numbers: Indices, solve: Callable[[Target], object], threads: int | None
 ) -> None:
-    """Call `solve` with copies of some rows; write the results to the arrays of all samples."""
+    """Call `solve` with copies of the given rows; write the results to those of all samples."""
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]

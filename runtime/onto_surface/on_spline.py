@@ -243,7 +243,7 @@ class OnPatches:
         arrays: Fields,
         **known: Any,  # noqa: ANN401
     ) -> SamplingReport:
-        """Return the report of samples with some fields; see `sampling_report`."""
+        """Return the report of samples with the fields `arrays`; see `sampling_report`."""
         count, cells = count_of(arrays) if arrays else 0, self.cell_measure
         density = normals / (4 * math.pi) if density is None else density
         return sampling_report(

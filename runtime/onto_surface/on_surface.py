@@ -246,9 +246,9 @@ class OnSurface(OnSpline):
     def at_parameters(
         self, uv: Array, normals: Array, K: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> Fields:
-        """Return fields of samples at parameters (k, 2); at singular points, those of the spline.
+        """Return fields of samples on the surface at parameters (k, 2).
 
-        At singular points the given normals and signs of K are used.
+        At singular points, they are those of the spline, with the given normals and signs of K.
         """
         assert self.surface is not None
         points, directions, gaussian, mean = evaluate_on_surface(

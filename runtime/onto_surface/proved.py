@@ -187,7 +187,7 @@ class ProvedSurface:
     def _arrays(
         self, normals: NDArray[np.float64], found: ProvedPlaces, fields: Sequence[str]
     ) -> Fields:
-        """Return the requested fields."""
+        """Return the requested fields of the samples at the places that were found."""
         numbers, places = found.numbers, found.places
         count = len(numbers)
         rooms = SampleFields(
@@ -262,7 +262,7 @@ def with_components(
 
 
 def proof_of(normals: NDArray[np.float64], open_: Undecided, face: int | None = None) -> Proof:
-    """Return the proof for unit normals (S, 3), given the undecided boxes; on a face of a part."""
+    """Return the proof for unit normals (S, 3) and their undecided boxes, on a face of a part."""
     if len(open_.numbers) == 0:
         return Proof(len(normals), ())
     undecided = tuple(

@@ -26,7 +26,7 @@ class Ball:
 
     @classmethod
     def of(cls, value: Ball | Array | float) -> Ball:
-        """Return exact numbers as balls."""
+        """Return numbers as balls of radius 0, and balls unchanged."""
         if isinstance(value, Ball):
             return value
         return cls(np.asarray(value, np.float64), np.zeros_like(value, np.float64))
@@ -60,7 +60,7 @@ class Ball:
     def __mul__(self, other: Ball | Array | float) -> Ball:
         y = Ball.of(other)
         middle = self.middle * y.middle
-        with np.errstate(invalid="ignore"):  # 0 times an unknown number is unknown
+        with np.errstate(invalid="ignore"):  # 0 times infinity: the radius becomes infinite
             radius = np.abs(self.middle) * y.radius + self.radius * y.largest
         radius = np.where(np.isnan(radius), np.inf, radius)
         return Ball(middle, (radius + UNIT * np.abs(middle)) * WIDER + TINY)

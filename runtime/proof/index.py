@@ -276,7 +276,7 @@ class ProvedIndex:
     def _search(
         self, normals: NDArray[np.float64], threads: int | None
     ) -> tuple[list[Places], NDArray[np.int64]]:
-        """Return places that need no bisection, and hard pairs (k, 2) of normals and cells."""
+        """Return places found without bisection, and the hard pairs (k, 2) of normal and cell."""
         order = ordered(normals, self.lists, threads)
 
         def work(first: int, last: int) -> list[tuple[Places, NDArray[np.int64]]]:
@@ -495,7 +495,7 @@ def _joined(parts: list[CellBounds]) -> CellBounds:
 
 
 def _pieces_of(index: Index) -> Pieces:
-    """Return the cells as pieces of a search; discs and cells without a narrow cone are wide."""
+    """Return the cells as pieces of a search; discs and wide cones keep opposite normals."""
     cells = index.cells
     cones = np.zeros((len(cells.cone), CONE))
     cones[:, : CHORD + 1], cones[:, WIDTH] = cells.cone, 1.0

@@ -46,8 +46,8 @@ TURNED = tuple(
 )
 # The least cosine between a normal and the normal of the patch at its point, or next to it.
 SAME_NORMAL = 0.999
-# Wedges decide normals this close to that of a pole. This is far more than rounding of forms makes
-# ambiguous (1e-14), and far less than Gaussian images of patches.
+# Wedges decide normals this close to that of a pole. This is far more than the angle at which
+# rounding of forms matters (1e-14), and far less than the size of Gaussian images of patches.
 NEAR_POLE = 1e-9
 
 
@@ -224,9 +224,9 @@ def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.i
 def _polar_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
     """Return the signs (k,) of V at edges with an end at a pole.
 
-    One of the tangents is a multiple of the other there, and V is a product of two linear forms:
-    the plane through the normals at both ends, which contains the normals along the edge, and the
-    tangent.
+    At the pole the tangents along and across the edge are parallel, and V is a product of two
+    linear forms. One vanishes in the plane through the normals at both ends, which contains all
+    normals along the edge; the other one is the product with the tangent.
     """
     topology = spline.topology
     shared, fan = topology.corners
