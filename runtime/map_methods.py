@@ -20,3 +20,5 @@ class Methods:
     margin = Later(CURVES)
     plot = Later("gaussmap.tools.pictures.gauss_map_plot")
     support = Later("gaussmap.tools.support_points")
+
+    _conditions_of = Later("gaussmap.tools.edge_distance", "conditions_of")

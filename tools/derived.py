@@ -337,7 +337,7 @@ def weights(
 
     with busy("computing weights", progress):
         if isinstance(self.surface, Whole):
-            from .cad.results import weights_of
+            from .cad.reached import weights_of
 
             return weights_of(cast("Part", self.surface), self)
         return area_weights(self, angle)

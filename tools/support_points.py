@@ -34,7 +34,7 @@ from ..runtime.surface.surface import Surface
 from .meshes.border import border_lines
 from .meshes.places import on_side, uv_at, wrapped
 
-__all__ = ["Segments", "SupportPoints", "bounds_of", "support"]
+__all__ = ["NetEdges", "Segments", "SupportPoints", "bounds_of", "lines_of", "support"]
 
 # Sides of the domain are cut into this number of segments for each cell.
 STEPS_A_CELL = 2
@@ -217,9 +217,10 @@ class HasJets(Protocol):
 class Segments:
     """M segments `starts` + t `steps` (M, 2) of the parameters of a surface, 0 ≤ t ≤ 1.
 
-    The tangent of each segment in space is assumed to turn by less than half a turn. `face` is the
-    index of the face of a part, and `border` is False for lines inside a surface. The boundary is
-    within `errors` (M,) of the segments in space.
+    With `bends` (M, 2, 2) they are cubics; `bends` are their derivatives at both ends, less the
+    steps. The tangent of each segment in space is assumed to turn by less than half a turn. `face`
+    is the index of the face of a part, and `border` is False for lines inside a surface. The
+    boundary is within `errors` (M,) of the segments in space.
     """
 
     surface: HasJets
@@ -228,18 +229,26 @@ class Segments:
     face: int = -1
     border: bool = True
     errors: Array | float = 0.0
+    bends: Array | None = None
 
     def at(self, rows: Indices, t: Array) -> tuple[Array, Array, Array, Array]:
         """Return u, v (k, 2) at t (k,) of segments (k,), and x, dx/dt, d²x/dt² (k, 3)."""
-        steps = self.steps[rows]
-        uv = self.starts[rows] + t[:, None] * steps
+        t, steps = t[:, None], self.steps[rows]
+        uv, bend = self.starts[rows] + t * steps, np.zeros_like(steps)
+        if self.bends is not None:
+            first, last = self.bends[rows, 0], self.bends[rows, 1]
+            tilt, total = (1.0 - t) * first - t * last, first + last
+            uv += t * (1.0 - t) * tilt
+            steps = steps + (1.0 - 2.0 * t) * tilt - t * (1.0 - t) * total
+            bend = -2.0 * (tilt + (1.0 - 2.0 * t) * total)
         if isinstance(self.surface, OnSpline):
             spline = self.surface.spline
             u, v = uv.T
             uv = np.stack(brought_inside(u, v, spline.domain, spline.boundary), axis=1)
         x, xu, xv, xuu, xuv, xvv = np.moveaxis(self.surface.jets(*uv.T.copy()), 1, 0)
         du, dv = steps[:, :1], steps[:, 1:]
-        return uv, x, du * xu + dv * xv, du * (du * xuu + 2.0 * dv * xuv) + dv * dv * xvv
+        turning = du * (du * xuu + 2.0 * dv * xuv) + dv * dv * xvv
+        return uv, x, du * xu + dv * xv, turning + bend[:, :1] * xu + bend[:, 1:] * xv
 
 
 @dataclass(frozen=True, eq=False)
@@ -371,12 +380,12 @@ def _curves_of(gauss_map: GaussMap) -> list[Curves]:
         part = gauss_map.surface
         return [kept(part, support, lambda: Curves.of(part._boundaries()))]
     return [
-        kept(x.spline, ("support points", x.on), lambda x=x: Curves.of(list(_lines(x))))
+        kept(x.spline, ("support points", x.on), lambda x=x: Curves.of(list(lines_of(x))))
         for x in gauss_map._fitted
     ]
 
 
-def _lines(geometry: OnPatches) -> Iterator[Segments | NetEdges]:
+def lines_of(geometry: OnPatches) -> Iterator[Segments | NetEdges]:
     """Yield the boundary of a geometry, and the edges of patches without a normal of their own."""
     if not isinstance(geometry, OnSpline):
         rows = [[x.start, x.middle, x.end] for x in EDGES]

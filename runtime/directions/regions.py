@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from copy import copy
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +16,7 @@ from ..base.memory import check_memory
 from ..base.tolerances import TRIPLE_PRODUCT_ERROR
 from .unit import as_normals, unit_vector
 
-__all__ = ["Cap", "Reach", "angles_between", "cap", "checked_reach", "polygon"]
+__all__ = ["Cap", "Condition", "Reach", "angles_between", "cap", "checked_reach", "polygon"]
 
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -37,8 +38,22 @@ class Cap(NamedTuple):
         return normals.any(axis=1) & (angles_between(normals, self.axis) <= self.angle)
 
 
+class Condition(Protocol):
+    """A condition on points of a surface, other than one on normals alone."""
+
+    def holds(self, points: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return whether it holds at points (k, 3) with unit normals (k, 3)."""
+        ...
+
+    def may_change(
+        self, points: NDArray[np.float64], radii: NDArray[np.float64]
+    ) -> NDArray[np.bool_]:
+        """Return whether it may begin or end within radii (k,) of points (k, 3)."""
+        ...
+
+
 class Reach:
-    """The normals that samples may have: near an axis, and in ranges of slope and aspect.
+    """Where samples may lie: by the angles of normals to axes, and by the distance from edges.
 
     Parameters
     ----------
@@ -51,11 +66,15 @@ class Reach:
     aspect : (float, float), optional
         For terrain: the direction that a slope faces, in degrees clockwise from north, and the
         largest difference from it to either side, at most 90. Level ground is included.
+    from_edges : float, optional
+        The least distance, in L, from all edges and boundaries of faces of a part, or from the
+        boundary of a surface: that of its trim, and open sides of its domain. A smooth seam of one
+        face is no edge. Creases between the pieces of a surface are edges.
 
     Raises
     ------
     InputError
-        For an unusable axis, and for angles out of range.
+        For an unusable axis, angles out of range, and a distance that is not positive.
 
     Examples
     --------
@@ -64,6 +83,10 @@ class Reach:
     >>> samples = gm.sample("wavy_graph", 200, reach=south)
     >>> bool((samples.normals[:, 1] < 0).all()), samples.slope.max().round(1)
     (True, np.float64(20.0))
+    >>> from gaussmap.tools.cad.examples import box
+    >>> probed = gm.sample(box(3, 2, 1), 50, reach=gm.Reach((0, 0, 1), 30, from_edges=0.5))
+    >>> len(probed), bool((abs(probed.points - [1.5, 1, 1]).max(axis=0) <= [1, 0.5, 0]).all())
+    (50, True)
 
     """
 
@@ -74,6 +97,7 @@ class Reach:
         *,
         slope: Sequence[float] | None = None,
         aspect: Sequence[float] | None = None,
+        from_edges: float | None = None,
     ) -> None:
         degrees = positive_number(angle, "the angle of reach", " degrees", most=180.0)
         caps = [Cap(unit_vector(axis, "the axis of reach"), degrees)]
@@ -87,19 +111,36 @@ class Reach:
             caps += [Cap(side, 90.0) for side in sides]
         # The whole sphere needs no test beside other caps.
         self._caps = tuple(x for x in caps if x.angle < 180.0 or len(caps) == 1)
+        self._from_edges = None if from_edges is None else positive_number(from_edges, "from_edges")
+        # Conditions that depend on the whole surface; see `_on`.
+        self._conditions: tuple[Condition, ...] = ()
 
     @classmethod
     def _of(cls, numbers: Sequence[float]) -> Reach:
         """Return the reach with the `numbers` of another one."""
-        found = cls()
         rows = np.array(numbers, dtype=np.float64).reshape(-1, 4)
-        found._caps = tuple(cap for x in rows for cap in cls(x[:3], float(x[3]))._caps)
+        at_edges = ~rows[:, :3].any(axis=1)
+        found = cls(from_edges=float(rows[at_edges, 3].max()) if at_edges.any() else None)
+        caps = rows[~at_edges]
+        found._caps = tuple(cap for x in caps for cap in cls(x[:3], float(x[3]))._caps)
         return found
 
     @property
     def _numbers(self) -> tuple[float, ...]:
-        """The unit vector of the axis and the angle of each cap, one after the other."""
-        return tuple(x for cap in self._caps for x in (*cap.axis.tolist(), cap.angle))
+        """Four numbers for each condition.
+
+        These are the unit vector of the axis and the angle of each cap, then 0, 0, 0 and the
+        distance from edges.
+        """
+        numbers = [x for cap in self._caps for x in (*cap.axis.tolist(), cap.angle)]
+        away = () if self._from_edges is None else (0.0, 0.0, 0.0, self._from_edges)
+        return *numbers, *away
+
+    def _on(self, conditions: Sequence[Condition]) -> Reach:
+        """Return the reach with conditions on the points of a surface or a part."""
+        found = copy(self)
+        found._conditions = tuple(conditions)
+        return found
 
     @property
     def _smallest(self) -> Cap:
@@ -110,9 +151,19 @@ class Reach:
         """Return which unit normals (N, 3) are in reach; rows of NaN or 0 are not."""
         return np.logical_and.reduce([cap.contains(normals) for cap in self._caps])
 
+    def _holds(
+        self, points: NDArray[np.float64], normals: NDArray[np.float64]
+    ) -> NDArray[np.bool_]:
+        """Return which points (N, 3), with unit normals (N, 3), are in reach."""
+        found = self._contains(normals)
+        for x in self._conditions:
+            found[found] = x.holds(points[found], normals[found])
+        return found
+
     def __repr__(self) -> str:
         caps = (f"{cap.angle:g}° of {cap.axis.round(3).tolist()}" for cap in self._caps)
-        return f"Reach(within {', '.join(caps)})"
+        away = f", {self._from_edges:g} from edges" if self._from_edges else ""
+        return f"Reach(within {', '.join(caps)}{away})"
 
 
 def _pair(values: Sequence[float], name: str, most: float) -> tuple[float, float]:

@@ -79,7 +79,7 @@ def with_creases(
     """
     at = creases.besides(found, normals)
     if reach is not None:
-        at = OnCreases._make(x[reach._contains(normals[at.numbers])] for x in at)
+        at = OnCreases._make(x[reach._holds(at.points, normals[at.numbers])] for x in at)
     more = {
         "points": at.points, "uv": at.uv, "uv_radius": at.radius, "patch_index": -1,
         "component": Component.CREASE,
@@ -104,7 +104,9 @@ def _at_tips(geometry: Geometry, normals: Array) -> list[tuple[Tip | Pinch, Indi
     """Return the tips that have some of the normals (S, 3), with the indices of these."""
     tips = [(x, x.degrees(normals) != 0) for x in tips_on(geometry)]
     if geometry.reach is not None:
-        tips = [(x, has & geometry.reach._contains(normals)) for x, has in tips]
+        tips = [
+            (x, has & geometry.reach._holds(x.point + 0.0 * normals, normals)) for x, has in tips
+        ]
     return [(x, np.flatnonzero(has)) for x, has in tips if has.any()]
 
 

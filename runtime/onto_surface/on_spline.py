@@ -261,17 +261,17 @@ class OnPatches:
 class OnSpline(OnPatches):
     """A spline on a grid of cells, which is sampled; `OnSurface` samples its `surface` instead.
 
-    With a `reach`, the trim excludes all points of the `whole` whose normals are outside it.
+    With a `reach`, the trim excludes all points of the `whole` that are outside it.
     """
 
     spline: Spline
     whole: OnSpline | None = None
 
     def within(self, reach: Reach | None) -> Self:
-        """Return the part whose normals are in a reach; all of it for None."""
+        """Return the part in a reach; all of it for None."""
         if reach is None:
             return self
-        spline = reached(self.spline, self.normals, reach)
+        spline = reached(self.spline, self.normals, self.jets, reach)
         surface = self.surface and replace(self.surface, trim=spline.trim)
         return replace(self, spline=spline, surface=surface, reach=reach, whole=self)
 

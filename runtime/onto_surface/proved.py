@@ -35,6 +35,7 @@ from .newton import near_poles
 from .on_spline import Fields, count_of, in_turn
 from .on_surface import OnSurface, geometry_of
 from .pole_charts import pole_charts
+from .reach import with_conditions
 
 __all__ = ["CODE", "Proof", "ProvedSurface", "index_of", "proof_of", "with_components"]
 
@@ -139,9 +140,10 @@ class ProvedSurface:
         """
         del progress, density  # searches take little time; the report has no entries on a fit
         surface, found = self.surface, self.index.query(normals, self.threads)
+        trim, georeference = surface.trim, surface.georeference
         if self.reach is not None:
+            trim = with_conditions(surface, surface.jets, self.reach).trim
             surface, found = self.fitted.surface, found.only(self.reach._contains(normals))
-        trim, georeference = self.surface.trim, self.surface.georeference
         left = found.undecided
         if len(left.numbers) > 0:
             components, left = components_in(trim, left, normals, self._jets)

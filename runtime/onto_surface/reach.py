@@ -1,4 +1,4 @@
-"""The reach, a part of a surface that is given by its normals, as a trim."""
+"""The reach, a part of a surface that is given by its normals and points, as a trim."""
 
 from __future__ import annotations
 
@@ -11,16 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..base.aliases import Array, Flags
-from ..directions.regions import Cap, Reach
+from ..directions.regions import Cap, Condition, Reach
 from ..domain.domain import Domain
 from ..domain.trim import trimmed
 from ..spline.spline import Spline
 from ..surface.derivatives import normals_of_jets
 from ..surface.surface import Surface
 
-__all__ = ["in_reach", "reached"]
+__all__ = ["in_reach", "reached", "with_conditions"]
 
 Whole = TypeVar("Whole", Spline, Surface)
+Evaluated = Callable[[Array, Array], Array]
+
+# The boundary of a condition may pass a cell if it may be this many times as far from its centre as
+# the corners are.
+AROUND = 1.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +48,7 @@ class InReach:
         The cosine of the angle is evaluated at the corners and the centre of each cell. Its range
         in the cell is assumed to exceed that of these values by at most their spread on each side.
         """
-        nodes, middles = (self._cosines(domain, cells, shift) for shift in (0.0, 0.5))
+        nodes, middles = (self._cosines(_places(domain, cells, shift)) for shift in (0.0, 0.5))
         nodes = [nodes[i : i + cells[0], j : j + cells[1]] for i in (0, 1) for j in (0, 1)]
         known = np.stack([*nodes, middles[: cells[0], : cells[1]]])
         low, high = known.min(axis=0), known.max(axis=0)
@@ -55,30 +60,73 @@ class InReach:
         """Return 1 for boxes (k, 4) whose normals (k, 3) are in the cap, −1 for others."""
         return np.where(self.cap.contains(normals), 1, -1).astype(np.int8)
 
-    def _cosines(self, domain: Domain, cells: tuple[int, int], shift: float) -> Array:
-        """Return cosines (m + 1, n + 1), or (m, n) with a shift; NaN at points without a normal."""
-        u, v = (
-            low + (high - low) * ((np.arange(count + (shift == 0.0)) + shift) / count)
-            for (low, high), count in zip(domain, cells, strict=True)
-        )
-        places = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
+    def _cosines(self, places: Array) -> Array:
+        """Return cosines (…) at parameters (…, 2); NaN at points without a normal."""
         normals = self.normals(places.reshape(-1, 2))
         normals[~normals.any(axis=1)] = np.nan
-        return (normals @ self.cap.axis).reshape(len(u), len(v))
+        return (normals @ self.cap.axis).reshape(places.shape[:-1])
 
 
-def reached(whole: Whole, normals: Callable[[Array], Array], reach: Reach) -> Whole:
-    """Return the part of a spline or a surface whose `normals` are in a reach."""
-    conditions = [InReach(normals, cap) for cap in reach._caps]
+@dataclass(frozen=True, eq=False)
+class OnPoints:
+    """A condition on points as one of a trim; `jets` returns 2-jets (k, 6, 3) at parameters."""
+
+    jets: Evaluated
+    condition: Condition
+
+    def contains(self, uv: Array, threads: int | None = None) -> Flags:
+        """Return whether the condition holds at the points of parameters (k, 2)."""
+        jets = self.jets(*uv.T.copy())
+        return self.condition.holds(jets[:, 0], normals_of_jets(jets))
+
+    def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
+        """Return the cells (m, n) in which the condition may begin or end."""
+        nodes, middles = (self._points(_places(domain, cells, shift)) for shift in (0.0, 0.5))
+        corners = [nodes[i : i + cells[0], j : j + cells[1]] for i in (0, 1) for j in (0, 1)]
+        radii = np.max([np.linalg.norm(x - middles, axis=-1) for x in corners], axis=0)
+        found = self.condition.may_change(middles.reshape(-1, 3), AROUND * radii.ravel())
+        return found.reshape(cells)
+
+    def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
+        """Return 0 for all boxes (k, 4): nothing is proved."""
+        return np.zeros(len(boxes), np.int8)
+
+    def _points(self, places: Array) -> Array:
+        return self.jets(*places.reshape(-1, 2).T.copy())[:, 0].reshape(*places.shape[:-1], 3)
+
+
+def _places(domain: Domain, cells: tuple[int, int], shift: float) -> Array:
+    """Return the corners (m + 1, n + 1, 2) of cells, or points (m, n, 2) with a shift in them."""
+    u, v = (
+        low + (high - low) * ((np.arange(count + (shift == 0.0)) + shift) / count)
+        for (low, high), count in zip(domain, cells, strict=True)
+    )
+    return np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
+
+
+def reached(
+    whole: Whole, normals: Callable[[Array], Array], jets: Evaluated, reach: Reach
+) -> Whole:
+    """Return the part of a spline or a surface that is in a reach."""
+    caps = (InReach(normals, cap) for cap in reach._caps)
+    whole = replace(whole, trim=trimmed(whole.trim, whole.domain, whole.boundary, *caps))
+    return with_conditions(whole, jets, reach)
+
+
+def with_conditions(whole: Whole, jets: Evaluated, reach: Reach) -> Whole:
+    """Return the part of a spline or a surface whose points are in a reach, with any normals."""
+    conditions = [OnPoints(jets, x) for x in reach._conditions]
+    if not conditions:
+        return whole
     return replace(whole, trim=trimmed(whole.trim, whole.domain, whole.boundary, *conditions))
 
 
 def in_reach(surface: Surface | None, reach: Reach | None) -> Surface | None:
-    """Return a surface of several pieces, trimmed to the points with normals in a reach."""
+    """Return a surface of several pieces, trimmed to the points in a reach."""
     if surface is None or reach is None:
         return surface
 
     def normals(uv: Array) -> Array:
         return normals_of_jets(surface.jets(*uv.T.copy()))
 
-    return reached(surface, normals, reach)
+    return reached(surface, normals, surface.jets, reach)

@@ -14,6 +14,7 @@ from ..refusals import refused
 
 AXIS, ANGLE = (1.0, 2.0, 0.5), 35.0
 ROUNDING = 1e-9
+AWAY = gm.Reach(from_edges=0.1)
 
 
 def angles(normals: np.ndarray, axis: object = AXIS) -> np.ndarray:
@@ -64,6 +65,35 @@ def test_prescribed_normals_have_the_same_points_as_without_a_reach() -> None:
     inside = angles(whole.normals) <= ANGLE
     assert np.array_equal(some.points, whole.points[inside])
     assert np.array_equal(some.normal_index, whole.normal_index[inside])
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {"count": 200},
+        {"normals": gm.icosphere(8)},
+        {"coverage": 0.1},
+        {"count": 50, "on": "spline"},
+    ],
+)
+@pytest.mark.quick_for("how0")
+def test_samples_keep_a_distance_from_the_boundary(how: dict[str, Any]) -> None:
+    """Of a trim that crosses an open side."""
+    waves = gm.surfaces.wavy_graph().trimmed([[(-2, -0.5), (0.9, -0.5), (0.9, 0.7), (-2, 0.7)]])
+    t = np.linspace(0.0, 1.0, 50_000)
+    (low, _), _ = waves.domain
+    corners = np.array([(low, -0.5), (0.9, -0.5), (0.9, 0.7), (low, 0.7), (low, -0.5)])
+    line = (corners[:-1, None] + t[:, None] * np.diff(corners, axis=0)[:, None]).reshape(-1, 2)
+    samples = gm.sample(waves, **how, reach=AWAY)
+    apart = KDTree(waves.evaluate(*line.T)).query(samples.points)[0]
+    assert apart.min() >= 0.1 - (1e-3 if "on" in how else ROUNDING)
+    assert len(samples) == how.get("count", len(samples)) > 0
+    assert (samples.report.coverage or 0.0) <= how.get("coverage", 0.0)
+
+
+def test_closed_surfaces_have_no_edges() -> None:
+    whole, away = (gm.sample("torus", 100, reach=x) for x in (((0, 0, 1), 180.0), AWAY))
+    assert np.array_equal(whole.points, away.points)
 
 
 def test_many_surfaces_in_reach() -> None:
@@ -160,6 +190,7 @@ def test_slopes_and_aspects_are_sectors_of_normals() -> None:
         ({"aspect": (180, 120)}, "aspect must be a direction and an angle, at most 90"),
         ({"slope": 20}, "slope"),
         ({"angle": 0}, "the angle of reach"),
+        ({"from_edges": 0.0}, "from_edges must be a positive number"),
     ],
 )
 def test_unusable_slopes_and_aspects(given: dict[str, Any], message: str) -> None:

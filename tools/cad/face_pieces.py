@@ -73,7 +73,7 @@ ANGLES = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacePiece(Piece):
-    """A face with its surface, whose normals point outward, restricted to normals in a `reach`."""
+    """A face with its surface, whose normals point outward, restricted to a `reach`."""
 
     face: Face
     surface: Surface
@@ -96,17 +96,17 @@ class FacePiece(Piece):
 
     @property
     def area(self) -> float:
-        """The area of the part whose normals are in the reach, in L²."""
+        """The area of the part in the reach, in L²."""
         return self.face.area * self._share
 
     @cached_property
     def _share(self) -> float:
-        """The fraction of the area whose normals are in the reach, measured on a raster."""
+        """The fraction of the area in the reach, measured on a raster."""
         if self.reach is None:
             return 1.0
         jets = self.on_raster()
         areas = np.linalg.norm(np.cross(jets[:, 1], jets[:, 2]), axis=1)
-        inside = self.reach._contains(normals_of_jets(jets))
+        inside = self.reach._holds(jets[:, 0], normals_of_jets(jets))
         return float(areas[inside].sum() / areas.sum()) if inside.any() else 0.0
 
     def on_raster(self) -> Array:
@@ -196,7 +196,9 @@ class FacePiece(Piece):
         numbers, places = with_components(found.numbers[inside], places, components)
         for tip in self.tips:  # it comes after the other points with a normal
             has = tip.degrees(normals) != 0
-            (rows,) = np.nonzero(has if self.reach is None else has & self.reach._contains(normals))
+            if self.reach is not None:
+                has &= self.reach._holds(tip.point + 0.0 * normals, normals)
+            (rows,) = np.nonzero(has)
             row = [*tip.uv, 0.0, 0.0, 1.0, 0.0, Component.TIP]
             numbers = np.concatenate([numbers, rows])
             places = np.concatenate([places, np.tile(row, (len(rows), 1))])
@@ -276,7 +278,7 @@ def pieces_of(
 ) -> tuple[list[FacePiece], dict[int, str]]:
     """Return the faces that can be sampled, and for each other face the reason, by its index.
 
-    Faces without normals in a `reach` are in neither.
+    Faces without points in a `reach` are in neither.
     """
     pieces, reasons = [], {}
     for face in faces:

@@ -12,7 +12,7 @@ __all__ = ["Methods"]
 MEASURES, PLOT = "gaussmap.tools.cad.measures", "gaussmap.tools.pictures.plot"
 SELECTION = "gaussmap.tools.cad.selection"
 FROM_SURFACES = "gaussmap.tools.cad.from_surfaces"
-RESULTS, SAMPLING = "gaussmap.tools.cad.results", "gaussmap.tools.cad.part_sampling"
+REACHED, SAMPLING = "gaussmap.tools.cad.reached", "gaussmap.tools.cad.part_sampling"
 
 
 class Methods:
@@ -31,4 +31,4 @@ class Methods:
 
     _sampled = Later(SAMPLING, "sample_part")
     _samples_at = Later(SAMPLING, "samples_at")
-    _space = Later(RESULTS, "space_of")
+    _space = Later(REACHED, "reached")

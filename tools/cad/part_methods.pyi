@@ -10,5 +10,5 @@ class Methods:
     from .measures import volume_of as _volume_of
     from .part_sampling import sample_part as _sampled
     from .part_sampling import samples_at as _samples_at
-    from .results import space_of as _space
+    from .reached import reached as _space
     from .selection import select as select

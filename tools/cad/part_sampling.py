@@ -21,7 +21,8 @@ from ..density.filling import fields_of, fill, target_of
 from ..density.request import Request
 from .edge_sampling import with_edges
 from .part import Part
-from .results import PartSpace, space_of
+from .reached import reached
+from .results import PartSpace
 from .smooth_edges import each_once
 
 __all__ = ["sample_part", "samples_at"]
@@ -41,10 +42,10 @@ def sample_part(
     edges: bool = False,
 ) -> tuple[Samples, Array]:
     """Return samples of a part, and the requested normals. Raises the exceptions of `sample`."""
-    _check(request)
+    _check(request, edges)
     if request.count is not None:
         check_memory("part", request.count)
-    space = space_of(part, threads, target_of(request), request.reach)
+    space = reached(part, threads, target_of(request), request.reach)
     cover = fill(space, request, progress, partial(each_once, space))
     on_faces = [x for x in fields if x not in EDGE_NAMES]
     found = fields_of(cover, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)
@@ -74,8 +75,8 @@ def samples_at(
     return sample_part(part, request, fields, dtype, threads, progress)[0]
 
 
-def _check(request: Request) -> None:
-    """Raise InputError for densities that are not available for parts."""
+def _check(request: Request, edges: bool) -> None:
+    """Raise InputError for a request that is not available for parts."""
     if isinstance(request.density, str) and request.density not in DENSITIES:
         raise InputError(
             f'density "{request.density}" is for surfaces; of a part use "balanced" or "uniform".'
@@ -85,6 +86,8 @@ def _check(request: Request) -> None:
             'density "gauss" of a part goes with normals; with a count use "balanced", or a power '
             "of |K|, such as 1.0."
         )
+    if edges and request.reach is not None and request.reach._from_edges is not None:
+        raise InputError("samples on edges are not away from edges: leave out edges=True.")
 
 
 def _report(

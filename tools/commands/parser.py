@@ -438,6 +438,12 @@ def _distribution() -> list[Option]:
             group="how dense",
         ),
         Option(
+            "--from-edges LENGTH",
+            "Only points at least LENGTH away from edges and boundaries of faces.",
+            number,
+            group="how dense",
+        ),
+        Option(
             "--slope LEAST MOST",
             "Only where the normal is between LEAST and MOST degrees from +z.",
             number,

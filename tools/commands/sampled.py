@@ -51,12 +51,13 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
     normals = _named_normals(options)
     asked = normals, options.count, options.angle, options.coverage
     count = default_count if all(x is None for x in asked) else options.count
-    reach, slope, aspect = options.reach, options.slope, options.aspect
-    if any(x is not None for x in (reach, slope, aspect)):
+    given = vars(options)
+    reach, how = options.reach, {x: given[x] for x in ("slope", "aspect", "from_edges")}
+    if reach is not None or any(x is not None for x in how.values()):
         cap = () if reach is None else (reach[:3], reach[3])
-        reach = Reach(*cap, slope=slope, aspect=aspect)
-    how = options.density, vars(options).get("threads"), reach
-    return checked_request(normals, count, options.angle, options.coverage, *how)
+        reach = Reach(*cap, **how)
+    amounts = normals, count, options.angle, options.coverage
+    return checked_request(*amounts, options.density, given.get("threads"), reach)
 
 
 def _named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:

@@ -87,7 +87,8 @@ def sample(
         |K|^α; see Notes. Splines of nets (`Spline.from_nets`) have "gauss" only.
     reach : (axis, angle) or Reach, optional
         Only points whose normal is within an angle, in degrees, of a direction (3,) are sampled,
-        such as that of a probe, a camera or a printer; a `Reach` also knows slopes and aspects.
+        such as that of a probe, a camera or a printer; a `Reach` also knows slopes and aspects, and
+        keeps a distance from edges.
         Count, angle and coverage refer to these points. Not with ``density="aligned"``.
     cells : (int, int), optional
         The numbers of cells along u and v of the spline that approximates the surface, see `fit`.
@@ -275,6 +276,10 @@ def _sampled(
         return _of_part(surface, given)
     if given.edges:
         raise InputError("edges are sampled of CAD parts; other surfaces have no sharp edges.")
+    reach = given.request.reach
+    if reach is not None:
+        reach = reach._on(kept_map(surface, given.cells, given.on)._conditions_of(reach))
+        given = given._replace(request=replace(given.request, reach=reach))
     if density == "gauss" and normals is not None:
         return _at_normals(surface, normals, given), normals
     if isinstance(surface, NetSpline) and density != "gauss":

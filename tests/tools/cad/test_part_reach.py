@@ -8,9 +8,10 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.cad.examples import box
+from scipy.spatial import KDTree
 
 from ...refusals import refused
-from .made import KINDS
+from .made import KINDS, cylinder
 
 ROUNDING = 1e-9
 
@@ -69,6 +70,40 @@ def test_memory_for_samples_of_a_part_is_refused() -> None:
     refused("out=.* holds samples of one spline", known.points, normal, out=known.points(normal))
 
 
-def test_a_part_without_normals_in_reach_is_refused() -> None:
-    reach, error = ((1, 1, 1), 10.0), gm.errors.SurfaceError
-    refused("no normal of part", gm.sample, box(), 100, reach=reach, error=error)
+@pytest.mark.parametrize("reach", [((1, 1, 1), 10.0), gm.Reach(from_edges=1.0)])
+def test_a_part_without_points_in_reach_is_refused(reach: Any) -> None:
+    error = gm.errors.SurfaceError
+    refused("no point in reach", gm.sample, box(), 100, reach=reach, error=error)
+
+
+def test_samples_of_a_box_keep_a_distance_from_its_edges() -> None:
+    size, distance = np.array([3.0, 2.0, 1.0]), 0.3
+    samples = gm.sample(box(*size), 200, reach=gm.Reach(from_edges=distance))
+    from_sides = np.sort(np.minimum(samples.points, size - samples.points), axis=1)
+    assert len(samples) == 200
+    assert from_sides[:, 1].min() >= distance - ROUNDING
+    left = size - 2.0 * distance
+    area = 2.0 * (left[0] * left[1] + left[1] * left[2] + left[2] * left[0])
+    assert samples.weights().sum() == pytest.approx(area, rel=0.1)
+    near = gm.sample(box(*size), coverage=0.2, reach=gm.Reach((0, 0, 1), 1.0, from_edges=distance))
+    x, y = (
+        a.ravel() for a in np.meshgrid(*(distance + np.linspace(0, 1, 50)[:, None] * left[:2]).T)
+    )
+    top = np.stack([x, y, np.ones_like(x)], axis=1)
+    assert KDTree(near.points).query(top)[0].max() <= (near.report.coverage or 0.0) <= 0.2
+
+
+def test_seams_are_no_edges_and_circles_are_exact() -> None:
+    """On the plane at their ends, the circles are known by cubics only."""
+    samples = gm.sample(cylinder(), 500, reach=gm.Reach(from_edges=0.05))
+    x, y, z = samples.points.T
+    apart = np.hypot(np.hypot(x, y) - 1.0, np.minimum(np.abs(z), np.abs(z - 2.0)))
+    wall = samples.points[samples.face_index == 0]
+    assert len(samples) == 500
+    assert 0.05 - ROUNDING <= apart.min() < 0.1
+    assert KDTree(wall).query([1.0, 0.0, 1.0])[0] < samples.coverage()
+
+
+def test_samples_on_edges_are_not_away_from_them() -> None:
+    reach = gm.Reach(from_edges=0.1)
+    refused("leave out edges", gm.sample, box(), 100, edges=True, reach=reach)

@@ -114,7 +114,8 @@ OTHERS: list[tuple[str, str, Made]] = [
      formula(TUBE, ((-1, 1), (0, "2*pi")), (False, True))),
     (f"--formula {SADDLE}", "--domain -1 1 -1 1/2", formula(SADDLE, ((-1, 1), (-1, "1/2")))),
     ("box.npz", "--edges", lambda: gm.sample(gm.read_part("box.npz"), 60, edges=True)),
-    ("box.npz", "--faces 0,3", lambda: gm.sample(gm.read_part("box.npz").select(index=[0, 3]), 60)),
+    ("box.npz", "--faces 0,3 --from-edges .2", lambda: gm.sample(
+        gm.read_part("box.npz").select(index=[0, 3]), 60, reach=gm.Reach(from_edges=0.2))),
     ("box.npz --kind plane", "--name s*e",
      lambda: gm.sample(gm.read_part("box.npz").select(kind="plane", name="s*e"), 60)),
     ("part.step", "", part()),

@@ -1,0 +1,125 @@
+"""The space of a part in reach of a probe: away from edges; and the weights of samples."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...runtime.base.aliases import Array
+from ...runtime.base.errors import MissingFieldError
+from ...runtime.base.kept import kept
+from ...runtime.base.trees import tree_of
+from ...runtime.directions.regions import Reach
+from ...runtime.samples.samples import Samples
+from ..density.cells import AREA, by_piece
+from ..density.kernels.sizing import TargetDensity
+from ..edge_distance import AwayFrom
+from ..support_points import Segments
+from .edges import sides_at
+from .face_pieces import FacePiece
+from .faces import own_parameters
+from .part import Part
+from .results import PartSpace, space_of
+
+__all__ = ["borders_of", "reached", "weights_of"]
+
+# The number of cells per sample; cells give their areas to the samples.
+CELLS_A_SAMPLE = 16
+# The error of cubics is at most about this part of that of cubics with half as many points, with a
+# factor 2 for safety.
+OF_COARSER = 1.0 / 8.0
+
+
+def reached(
+    part: Part, threads: int | None, target: TargetDensity | None = None, reach: Reach | None = None
+) -> PartSpace:
+    """Return the space of a part, or of its points in a `reach`; SurfaceError if it is empty."""
+    if reach is not None and reach._from_edges is not None:
+        distance = reach._from_edges
+        borders = kept(part, borders_of, lambda: borders_of(part))
+        away = kept(part, (AwayFrom, distance), lambda: AwayFrom.of(borders, distance))
+        reach = reach._on([] if away is None else [away])
+    return space_of(part, threads, target, reach)
+
+
+def borders_of(part: Part) -> list[Segments]:
+    """Return all edges and boundaries of faces, but for smooth seams of a face.
+
+    Of the two sides of an edge, that with the smaller error is taken. Faces of files without wires
+    have their polygons.
+    """
+    space, best = space_of(part, None), dict[int, tuple[float, Segments]]()
+    for edge, side in _sides(space):
+        error = float(np.max(side.errors))
+        if edge not in best or error < best[edge][0]:
+            best[edge] = error, side
+    polygons = [x for x in part._boundaries() if not part.faces[x.face].wires]
+    return [*(x for _, x in best.values()), *polygons]
+
+
+def _sides(space: PartSpace) -> Iterator[tuple[int, Segments]]:
+    """Yield the sides of edges that are known, and no smooth seams; the edge, and its curve."""
+    part = space.pieces[0].face.part
+    arrays, number = part.arrays, {x.face.index: k for k, x in enumerate(space.pieces)}
+    places = np.split(arrays["side_points"], arrays["side_point_starts"][1:-1])
+    for edge, (first, last) in enumerate(itertools.pairwise(arrays["edge_side_starts"].tolist())):
+        faces = arrays["side_faces"][first:last].tolist()
+        sides = [
+            _cubics(space.pieces[number[face]], places[side])
+            for side, face in zip(range(first, last), faces, strict=True)
+            if face in number and len(places[side]) > 1 and np.isfinite(places[side]).all()
+        ]
+        if len(sides) == 2 and faces[0] == faces[1]:
+            uv = np.concatenate([x.starts for x in sides], axis=1)
+            both = sides_at(space, np.full((len(uv), 2), number[faces[0]]), uv)
+            sides = sides if both.sharp.any() else []
+        if not arrays["edge_degenerate"][edge]:
+            yield from ((edge, x) for x in sides)
+
+
+def _cubics(piece: FacePiece, points: Array) -> Segments:
+    """Return the curve of a side of an edge: cubics between points (k, 4), u, v and derivatives."""
+    uv, slopes = points[:, :2], points[:, 2:] / (len(points) - 1)
+    if piece.face.reversed:
+        uv, slopes = own_parameters(piece.surface, uv, is_reversed=True), slopes * [-1.0, 1.0]
+    steps, errors = np.diff(uv, axis=0), np.zeros(len(uv) - 1)
+    if len(uv) > 2:
+        off = uv[1:-1] - (uv[:-2] + uv[2:]) / 2.0 - (slopes[:-2] - slopes[2:]) / 4.0
+        tangents = piece.jets(*uv[1:-1].T.copy())[:, 1:3]
+        error = OF_COARSER * np.linalg.norm(np.einsum("ki,kix->kx", off, tangents), axis=1)
+        errors[1:] = error
+        errors[:-1] = np.maximum(errors[:-1], error)
+    bends = np.stack([slopes[:-1] - steps, slopes[1:] - steps], axis=1)
+    return Segments(piece, uv[:-1], steps, piece.face.index, True, errors, bends)
+
+
+def weights_of(part: Part, samples: Samples) -> Array:
+    """Return the weights of samples (N,): the area on their own face that is nearest to each.
+
+    They add up to the area of each face, or of its part in the reach of the samples. Faces without
+    samples do not count. Samples on edges, or not regular, have weight 0.
+    """
+    found, faces = np.zeros(len(samples)), samples.face_index
+    if faces is None:
+        raise MissingFieldError(
+            "weights of a part need the field 'face_index', and these samples hold "
+            f"{', '.join(samples.fields)} only."
+        )
+    on_edge = samples.other_face_index
+    inner = samples._regular if on_edge is None else samples._regular & (on_edge < 0)
+    space = reached(part, None, reach=samples.report._in_reach)
+    points = space.scaled_points(samples.points)
+    cells = space.uniform.cut(math.sqrt(space.area / (CELLS_A_SAMPLE * max(len(samples), 1))))
+    for k, rows in by_piece(cells):
+        piece = space.pieces[k]
+        here = np.flatnonzero((faces == piece.face.index) & inner)
+        if len(here):
+            nearest = tree_of(points[here]).query(cells.rows[rows, :3])[1]
+            shares = np.bincount(nearest, cells.numbers[rows, AREA], len(here))
+            total = shares.sum()
+            equal = np.full(len(here), 1.0 / len(here))
+            found[here] = piece.area * (shares / total if total > 0.0 else equal)
+    return found
