@@ -526,6 +526,8 @@ def plot(
 ) -> Figure:
     """Draw the samples on their surface, and the unit sphere with their normals.
 
+    Sums of `convolve` are drawn on their mesh; without one, all of them are visible.
+
     Parameters
     ----------
     surface : Surface, Spline or Part, optional

@@ -22,6 +22,7 @@ from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ..cad.face_pieces import FacePiece, pieces_of
 from ..cad.part import Part
+from ..support.convolution import Convolution
 
 __all__ = [
     "VIEW",
@@ -141,6 +142,8 @@ def scene_of_samples(
 ) -> Scene:
     """Return the scene of the surface of samples; InputError if that is unknown."""
     base = samples.offset_of
+    if surface is None and isinstance(samples, Convolution):
+        return _rescaled(_of_sums(samples), seen_from)
     for known in (surface, samples.spline, samples.surface):
         if known is not None:
             return scene_of(known, seen_from)
@@ -165,9 +168,27 @@ def scene_of(surface: object, seen_from: Array | None = None, distance: float = 
     else:
         kind = type(surface).__name__
         raise InputError(f"surface must be a Surface, a Spline or a Part, not {kind}.")
+    return _rescaled(drawn, seen_from, lines, faces)
+
+
+def _rescaled(
+    drawn: Array,
+    seen_from: Array | None,
+    lines: tuple[Array, ...] = (),
+    faces: NDArray[np.int64] | None = None,
+) -> Scene:
+    """Return the scene of quadrangles and lines, with heights rescaled."""
     factor = height_factor(np.ptp(drawn.reshape(-1, 3), axis=0))
-    seen_from = view() if seen_from is None else seen_from
-    return Scene(drawn, lines, factor, seen_from, faces)
+    return Scene(drawn, lines, factor, view() if seen_from is None else seen_from, faces)
+
+
+def _of_sums(sums: Convolution) -> Array:
+    """Return the quadrangles of the mesh of sums; of those without one, the points, four times."""
+    try:
+        mesh = sums.mesh(prefer="normals")
+    except InputError:
+        return np.repeat(sums.points[:, None], 4, axis=1)
+    return mesh.vertices[mesh.triangles[:, [0, 1, 2, 2]]]
 
 
 def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...]]:

@@ -53,9 +53,8 @@ def draw_surface(
                 rasterized=True, zorder=1,
             )
         )  # fmt: skip
-    axes.add_collection3d(
-        Line3DCollection(scene.visible_lines, colors="white", linewidths=0.4, zorder=2)
-    )
+    if len(lines := scene.visible_lines):
+        axes.add_collection3d(Line3DCollection(lines, colors="white", linewidths=0.4, zorder=2))
     area = min(max(12_000 / max(len(samples), 1), 0.5), 16.0)
     areas = np.where(samples.kind[visible] == "filling", 0.5 * area, area)
     axes.scatter(

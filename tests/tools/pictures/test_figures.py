@@ -99,6 +99,16 @@ def test_an_offset_is_drawn_where_it_is(samples: gm.Samples) -> None:
     assert high - low == pytest.approx(2 * 1.55, rel=0.02)
 
 
+@pytest.mark.parametrize(("radius", "folds"), [(0.5, False), (-2.0, True)])
+def test_sums_are_drawn_on_their_mesh(radius: float, folds: bool) -> None:
+    given = gm.SupportFunction.from_sympy
+    body = given("sqrt(n_x**2 + 4*n_y**2 + 9*n_z**2)")
+    sums = gm.convolve(body, given("1").offset(radius - 1), gm.icosphere(4))
+    seen = drawn(sums.plot(color="nz", view=(90, 0)))
+    assert len(seen) == len(sums) if folds else 60 < len(seen) < 120
+    assert folds or seen.min() > -0.5
+
+
 def test_by_default_samples_are_made() -> None:
     figure = gm.plot("sphere")
     assert any(x.startswith("2,000 samples") for x in texts(figure))
