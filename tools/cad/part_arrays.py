@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .records import KINDS, FaceRecord, Geometry, Net, PartRecord
 
-__all__ = ["FORMAT", "VERSION", "differences", "geometry_of", "packed"]
+__all__ = ["FORMAT", "VERSION", "geometry_of", "packed"]
 
 FORMAT = "gaussmap part"
 # To be raised when the arrays change such that older versions of gaussmap would misread them.
@@ -142,7 +142,7 @@ def _edges(part: PartRecord) -> Arrays:
     edges, sides = part.edges, []
     for edge in edges:
         places = np.asarray(edge.parameters, dtype=np.float64)
-        slopes = differences(places) if edge.slopes is None else edge.slopes
+        slopes = _differences(places) if edge.slopes is None else edge.slopes
         sides += [
             np.concatenate([places[:, k : k + 2], slopes[:, k : k + 2]], axis=1)
             for k in range(0, 2 * len(edge.faces), 2)
@@ -157,7 +157,7 @@ def _edges(part: PartRecord) -> Arrays:
     }
 
 
-def differences(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def _differences(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the derivatives (k, …) of points at equal steps from 0 to 1, by finite differences."""
     return np.gradient(points, axis=0) * (len(points) - 1) if len(points) > 1 else 0.0 * points
 

@@ -96,8 +96,8 @@ def mesh_of_part(
     check_memory("mesh", count)
     if not any(x.wires for x in part.faces):
         raise InputError(
-            f"part {part.name!r} does not say how its edges go around its faces, as those in files "
-            "of older versions of gaussmap; read the CAD file again."
+            f"part {part.name!r} does not say how its edges go around its faces; read the CAD "
+            "file again."
         )
     _check_apart(part)
     whole = space_of(part, None, target_of(request_of(count, density)))

@@ -39,8 +39,6 @@ wire_sides (k,) int64, wire_reversed (k,) bool, wire_side_starts (W + 1,) int64,
     each of its loops, in order, and whether they are traversed from the end of the edge to its
     beginning. The face lies to their left where x_u × x_v points up.
 
-Version 1 had only the edges between two faces, without vertices and wires: `earlier` converts it.
-
 A placement is the origin o and three orthonormal axes X, Y, Z, 12 numbers; Y may be −Z × X. With
 c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,
 
@@ -72,11 +70,10 @@ from numpy.typing import NDArray
 from ..files.archives import archive_of
 from ..files.paths import PathLike, atomic_path, checked_path, known_suffix
 from ..files.reading import UnusableError, opened
-from .earlier import is_of_first, names_of_first, of_second
 from .part_arrays import FORMAT, VERSION, packed
 from .records import KINDS, PartRecord
 
-__all__ = ["about_of", "checked_arrays", "dtypes", "read_arrays", "write_arrays", "write_record"]
+__all__ = ["about_of", "checked_arrays", "read_arrays", "write_arrays", "write_record"]
 
 SUFFIXES = (".npz",)
 # A part of 100,000 faces takes about 1 GB.
@@ -153,7 +150,7 @@ def write_arrays(arrays: Mapping[str, NDArray[Any]], path: PathLike) -> None:
     """
     known_suffix(path, SUFFIXES)
     with atomic_path(path) as temporary, open(temporary, "wb") as file:
-        held: dict[str, Any] = {name: arrays[name] for name in dtypes()}
+        held: dict[str, Any] = {name: arrays[name] for name in SHAPES}
         np.savez(file, **held)
 
 
@@ -172,17 +169,10 @@ def _read(file: BufferedReader) -> tuple[dict[str, NDArray[Any]], dict[str, Any]
     with archive_of(file) as archive:
         if archive.unpacked > MOST_BYTES:
             raise UnusableError("claims to hold more than 4 GB, and is not read.")
-        names = names_of_first(dtypes()) if is_of_first(archive.names) else dtypes()
-        missing = [name for name in names if name not in archive.names]
+        missing = [name for name in SHAPES if name not in archive.names]
         if missing:
             raise UnusableError(f"is no part that gaussmap saved: it lacks {missing[0]!r}.")
-        arrays = {name: archive.read(name) for name in names}
-    return checked_arrays(of_second(arrays) if is_of_first(tuple(arrays)) else arrays)
-
-
-def dtypes() -> tuple[str, ...]:
-    """Return the names of all arrays of a part, in the order of the file."""
-    return tuple(SHAPES)
+        return checked_arrays({name: archive.read(name) for name in SHAPES})
 
 
 def about_of(arrays: Arrays) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...runtime.base.checks import checked_count, known_name, positive_number
-from ...runtime.base.errors import InputError, UnknownNameError
+from ...runtime.base.errors import InputError
 from ...runtime.base.threads import thread_count
 from ...runtime.directions.regions import Reach, checked_reach
 from ...runtime.directions.sets import frequency_within, icosphere
@@ -102,8 +102,6 @@ def _density(density: str | float | None, default: str) -> str | float:
     if density is None:
         return default
     if isinstance(density, str):
-        if density == "isotropic":  # of version 0.1
-            raise UnknownNameError('density "isotropic" has another name: write "balanced".')
         return known_name(density, DENSITIES, "density")
     return positive_number(density, "density, as the power of |K|,", most=LARGEST_POWER)
 

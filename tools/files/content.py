@@ -12,10 +12,6 @@ from .reading import UnusableError
 
 __all__ = ["known_fields", "lacks", "report_from_json", "report_to_json"]
 
-# Values of `density` that version 0.1 wrote besides "aligned", and their present values: None, or
-# "aligned" for a grid on some of the pieces of a surface.
-OF_0_1 = {"isotropic": None, "mixed": "aligned"}
-
 
 def report_to_json(report: SamplingReport) -> str:
     """Return a report as a line of ASCII."""
@@ -24,10 +20,7 @@ def report_to_json(report: SamplingReport) -> str:
 
 def report_from_json(text: str) -> SamplingReport:
     """Return the report from the text of `report_to_json`."""
-    found = json.loads(text)
-    if found.get("density") in OF_0_1:
-        found["density"] = OF_0_1[found["density"]]
-    return SamplingReport(**found)
+    return SamplingReport(**json.loads(text))
 
 
 def known_fields(names: Iterable[str]) -> tuple[str, ...]:

@@ -12,14 +12,12 @@ from dataclasses import replace
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.cad.earlier import OF_SECOND
-from gaussmap.tools.cad.examples import box, box_edges, box_faces
+from gaussmap.tools.cad.examples import box_faces
 from gaussmap.tools.cad.part import Part
 from gaussmap.tools.cad.records import EdgeRecord, FaceRecord, Geometry, Net
 from gaussmap.tools.cad.saving import write_arrays
 
 from ...refusals import refused
-from ...shapes import same as identical
 from .made import FAILED, UNIT, cylinder_faces, net, part, rectangle
 
 CURVE = net([[1.0, 0, 0], [1, 0, 2]], knots=[0.0, 0.0, 1.0, 1.0])
@@ -79,27 +77,6 @@ def test_wires_of_faces(everything):
     assert everything.faces[0].wires == (((0, True), (3, False)), ((2, True),))
     assert everything.faces[1].wires == ()
     np.testing.assert_allclose(everything.arrays["side_points"][:3, 2:], 8.0)  # by differences
-
-
-@pytest.fixture
-def first_version():
-    """Return the arrays of a box as version 1 has them."""
-    edges, about = box_edges(), {**box().about, "version": 1}
-    arrays = {name: x for name, x in box().arrays.items() if name not in OF_SECOND}
-    arrays["about"] = np.frombuffer(json.dumps(about).encode(), dtype=np.uint8)
-    arrays["edge_faces"] = np.array([x.faces for x in edges])
-    arrays["edge_points"] = np.concatenate([x.parameters for x in edges])
-    arrays["edge_point_starts"] = 2 * np.arange(len(edges) + 1)
-    return arrays
-
-
-def test_the_first_version_is_read(first_version, tmp_path):
-    np.savez(tmp_path / "first.npz", **first_version)
-    first = gm.read_part(tmp_path / "first.npz")
-    assert first.about["version"] == 2
-    assert all(x.wires == () for x in first.faces)
-    identical(*(gm.sample(x, 60, edges=True) for x in (first, box())))
-    assert same(first, again(first, tmp_path))
 
 
 def test_geometries_are_unpacked(everything):
@@ -199,24 +176,15 @@ DAMAGE = [
     ("reversed", lambda x: x.astype(object)),
     ("about", lambda x: x[1:]),
     ("about", lambda x: np.frombuffer(b'{"format": "no"}', dtype=np.uint8)),
-    # those of the first version only
-    ("edge_point_starts", lambda x: x[::-1].copy()),
-    ("edge_points", lambda x: x[:, :3]),
-    ("edge_faces", lambda x: x + 10**6),
 ]
 
 
 @pytest.mark.parametrize(("name", "change"), DAMAGE)
-def test_damaged_arrays(everything, first_version, tmp_path, name, change):
-    is_first = name in first_version and name not in everything.arrays
-    arrays = first_version if is_first else everything.arrays
-    damaged = {**arrays, name: change(arrays[name])}
-    if is_first:
-        np.savez(tmp_path / "part.npz", **damaged)
-    else:
-        write_arrays(damaged, tmp_path / "part.npz")
-    wrong = "(is damaged)" if is_first else "(is damaged|is no part|comes from)"
-    is_refused(rf"part\.npz' {wrong}", tmp_path / "part.npz")
+def test_damaged_arrays(everything, tmp_path, name, change):
+    write_arrays(
+        {**everything.arrays, name: change(everything.arrays[name])}, tmp_path / "part.npz"
+    )
+    is_refused(r"part\.npz' (is damaged|is no part|comes from)", tmp_path / "part.npz")
 
 
 def test_truncated_foreign_and_missing_files(everything, tmp_path):

@@ -342,7 +342,6 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", "--angle", "x", *TO], "--angle: it must be a number, not 'x'"),
         (["sample", "torus", "--coverage", "-1", *TO], "coverage must be a positive number, not"),
         (["sample", "torus", "--density", "flat", *TO], "there is no density"),
-        (["sample", "torus", "--density", "isotropic", *TO], 'write "balanced"'),
         (["sample", "torus", "--density", "-2", *TO], "a positive number of at most 8, not"),
         (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "does not go with coverage; use"),
         (["sample", "torus", "--progressive", "--fields", "uv", *TO], "needs points and normals"),

@@ -193,16 +193,6 @@ def test_equal_samples_make_equal_files(tmp_path, suffix, monkeypatch):
         assert_same(make(), read_samples(names[2]))
 
 
-@pytest.mark.parametrize(
-    ("old", "new"), [("isotropic", None), ("mixed", "aligned"), ("aligned", "aligned")]
-)
-def test_the_density_of_version_0_1(tmp_path, old, new):
-    report = json.dumps(asdict(make().report)).replace('"density": null', f'"density": "{old}"')
-    assert old in report
-    write_npz(tmp_path / "file.npz", report=report)
-    assert read_samples(tmp_path / "file.npz").report.density == new
-
-
 # --- what other programs find in the files --------------------------------------------------------
 
 
