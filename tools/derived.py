@@ -504,14 +504,16 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
 
     check_rays()
     points, normals = (x.astype(np.float64) for x in (self.points, self.normals))
+    if not len(points):
+        return np.zeros(0, np.bool_)
     if by is None:
         given = self.surface if self.report.on == "surface" else self.spline
         by = sample(cast("Surface", given), OF_VIEW).mesh()
     if not isinstance(by, Mesh):
         raise InputError(f"by must be a Mesh, not {type(by).__name__}.")
-    assert self.view is not None
+    assert self.eye is not None
     size = np.ptp(by.vertices, axis=0).sum()
-    to_eye = -self.view.rays(points) * (2.0 * size if self.view.far else 1.0)
+    to_eye = -self.eye.rays(points) * (2.0 * size if self.eye.far else 1.0)
     return are_seen(points, normals, to_eye, by)
 
 

@@ -86,6 +86,10 @@ def about_value(value: object) -> str:
         return f"make one by gm.Surface.from_grid({grid})"
     if hasattr(value, "vertices") and (hasattr(value, "faces") or hasattr(value, "triangles")):
         return NO_MESHES
+    if hasattr(value, "faces"):
+        return "a face of a part has one: part.faces[0].surface"
+    if hasattr(value, "surface"):
+        return "give its surface: value.surface"
     if callable(value):
         return "make one by gm.Surface.from_callable(f, ((u0, u1), (v0, v1)))"
     return "make one by gm.Surface.from_callable, from_sympy, from_nurbs or from_grid"

@@ -63,13 +63,13 @@ class Silhouette(Samples):
     ----------
     polylines : tuple of (k,) int64 arrays
         The rows along each curve; a closed one repeats its first row at its end.
-    view : View or None
+    eye : View or None
         The direction or the viewpoint.
 
     """
 
     polylines: tuple[NDArray[np.int64], ...] = field(default=(), kw_only=True)
-    view: View | None = field(default=None, kw_only=True)
+    eye: View | None = field(default=None, kw_only=True)
 
     visible = Later("gaussmap.tools.derived")
 
@@ -82,7 +82,7 @@ class Silhouette(Samples):
 
     def __reduce__(self) -> tuple[Any, ...]:
         make, nothing = Samples.__reduce__(self)
-        return partial(make, polylines=self.polylines, view=self.view), nothing
+        return partial(make, polylines=self.polylines, eye=self.eye), nothing
 
 
 def silhouette(
@@ -197,7 +197,7 @@ def silhouette(
         spline=spline,
         surface=geometry.surface,
         polylines=lines,
-        view=view,
+        eye=view,
     )
 
 

@@ -51,6 +51,8 @@ MESH = SimpleNamespace(vertices=np.zeros((3, 3)), faces=np.zeros((1, 3), int))
         (np.zeros((9, 9, 3)), r"not ndarray; make one by gm\.Surface\.from_grid\(points\)\."),
         (np.zeros((9, 9)), r"from_grid\(elevations, spacing=\(dx, dy\)\)"),
         (math.sin, r"gm\.Surface\.from_callable\(f, \(\(u0, u1\), \(v0, v1\)\)\)"),
+        (SimpleNamespace(surface=None), r"give its surface: value\.surface"),
+        (SimpleNamespace(faces=()), r"a face of a part has one: part\.faces\[0\]\.surface"),
         (None, "not NoneType; make one by gm.Surface.from_callable, from_sympy"),
         (of(lambda u, v: (u, v)), r"3 coordinates, not 2, joined by numpy\.stack"),
         (of(lambda u, v: [u, v, u, v]), r"3 coordinates, not 4, joined by numpy\.stack"),

@@ -405,8 +405,16 @@ def test_visible_parts_of_a_torus(sight: dict[str, Any]) -> None:
     assert 0.1 < free[outline.hyperbolic].mean() < 0.9
     assert (seen != free).mean() < 0.04
     again = pickle.loads(pickle.dumps(outline))
-    assert again.view is not None
-    assert again.view.far == ("direction" in sight)
+    assert again.eye is not None
+    assert again.eye.far == ("direction" in sight)
+    assert callable(again.view)  # no field hides the method of samples
+
+
+def test_nothing_is_visible_of_no_points() -> None:
+    pytest.importorskip("rtree")
+    with pytest.warns(gm.GaussmapWarning, match="0 samples"):
+        outline = gm.silhouette("plane", viewpoint=(1, 1, 5), cells=(8, 8))
+    assert outline.visible().shape == (0,)
 
 
 def test_refusals_of_views() -> None:
