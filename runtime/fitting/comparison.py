@@ -14,6 +14,7 @@ import numpy as np
 
 from ..base.aliases import Array, Flags, Indices
 from ..domain.domain import Boundary, Domain, cells_between
+from ..domain.trim import Trim
 from ..spline.misfit import Misfit
 from ..spline.spline import Spline
 from ..surface.surface import Surface
@@ -90,8 +91,13 @@ class Comparison:
     steepest: Array
 
 
-def compare_with_data(spline: Spline, data: Array, boundary: Boundary) -> Comparison:
-    """Return the misfit of a spline to a grid of points (m, n, 3); points with NaN do not count."""
+def compare_with_data(
+    spline: Spline, data: Array, boundary: Boundary, trim: Trim | None
+) -> Comparison:
+    """Return the misfit of a spline to a grid of points (m, n, 3).
+
+    Points with NaN do not count, nor those outside of a trim.
+    """
     cells = cells_between(data.shape, boundary)
     parts = [np.arange(k) / count for k, count in zip(data.shape, cells, strict=False)]
     rows = max(POINTS_AT_A_TIME // len(parts[1]), 1)
@@ -103,6 +109,9 @@ def compare_with_data(spline: Spline, data: Array, boundary: Boundary) -> Compar
         points = evaluated(spline, u, v)[0]
         squares = squared_lengths(points - data[first : first + rows].reshape(-1, 3), spline.scale)
         known = ~np.isnan(squares)
+        if trim is not None:
+            low, high = np.array(spline.domain).T
+            known &= trim.contains(low + np.stack([u, v], axis=1) * (high - low))
         squares[~known] = 0.0
         worst = int(squares.argmax())
         if squares[worst] > largest:

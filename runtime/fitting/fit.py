@@ -211,7 +211,8 @@ def _fit_data(
     """Return the spline of a grid of points, by default with a cell for any four neighbours."""
     if asked is None:
         spline = _fitted(surface, cells) if cells is not None else _finest(surface, grid)
-        misfit = compare_with_data(spline, grid, surface.boundary).misfit
+        spline = replace(spline, trim=_trim_of(surface, spline, finest=cells is None))
+        misfit = compare_with_data(spline, grid, surface.boundary, spline.trim).misfit
     else:
         spline, misfit = _fit_data_to(surface, grid, asked)
     return replace(spline, misfit=misfit)
@@ -242,7 +243,7 @@ def _fit_data_to(
         return _finest(surface, grid) if cells == most else _fitted(surface, cells)
 
     def compare(spline: Spline) -> Comparison:
-        return compare_with_data(spline, grid, surface.boundary)
+        return compare_with_data(spline, grid, surface.boundary, surface.trim)
 
     spline, misfit, reached = refined(
         fitted,

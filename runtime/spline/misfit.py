@@ -18,10 +18,11 @@ class Misfit:
     ----------
     distance : float
         The largest distance, in L, at thousands of points that the fit did not use, including
-        hundreds on each of several lines; for data, at all points.
+        hundreds on each of several lines; for data, at all points
+        that are not trimmed off nor depend on missing ones.
     rms : float
         The root mean square of the distance, in L, over points that are evenly distributed in the
-        domain; for data, over all points.
+        domain; for data, over those.
     angle : float or None
         The largest angle, in degrees, between the normals of spline and surface at parameters other
         than poles and singular points; None for data, which have no normals.

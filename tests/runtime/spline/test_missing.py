@@ -46,6 +46,11 @@ def check_against(surface: gm.Surface, whole: gm.Surface) -> None:
     assert len(samples) == 200
     assert left[samples.patch_index].all()
     assert np.abs(samples.points - other.evaluate(*samples.uv.T)).max() < 1e-14
+    for cells in None, (12, 12):  # what is left out does not count
+        off, of_whole = gm.fit(surface, cells).misfit, gm.fit(whole, cells).misfit
+        assert off is not None
+        assert of_whole is not None
+        assert off.distance <= of_whole.distance
 
 
 def test_the_rest_is_that_of_whole_data():
