@@ -128,7 +128,8 @@ def _frame(
         axis.set_label_text(name)
         axis.labelpad = distance
         flat = extent[k] < FLAT * extent.max()
-        middle = FixedLocator([limits[:, k].mean()])
+        step = 10.0 ** np.floor(np.log10(np.ptp(limits[:, k]) / 4.0))
+        middle = FixedLocator([step * np.round(limits[:, k].mean() / step)])
         # Labels along short axes would overlap, as would long ones; none has an offset.
         long = np.abs(limits[:, k]).max() >= LONG or extent[k] < SHORT * extent.max()
         axis.set_major_locator(middle if flat else MaxNLocator(2 if long else 4, prune="both"))
