@@ -24,7 +24,7 @@ from .faces import face_surface, simplest
 from .records import Geometry
 from .round_faces import ROUND, RoundFace
 
-__all__ = ["face_index"]
+__all__ = ["GAP", "face_index"]
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ CLOSE = 1e-3
 PLACES = 5
 OPEN_BOX = KINDS.index("open")
 # Where faces of a file meet smoothly, rounded numbers leave a small gap between their normals. So
-# their surfaces are searched beyond open sides, by this part of the domain.
+# their surfaces are searched beyond open sides and trims, by this part of the domain.
 GAP = 1e-9
 # The indices of Taylor coefficients in bounds.
 U1, V1, U2, U1V1, V2 = range(1, 6)

@@ -19,6 +19,7 @@ from ...runtime.base.memory import check_memory
 from ...runtime.base.scales import scale_to_one
 from ...runtime.directions.regions import Reach
 from ...runtime.domain.domain import Domain
+from ...runtime.domain.trim import Trim
 from ...runtime.onto_surface.cut_components import components_in
 from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import geometry_of
@@ -33,7 +34,7 @@ from ...runtime.surface.collapsed import with_found_sides
 from ...runtime.surface.derivatives import normals_of_jets
 from ...runtime.surface.surface import Surface
 from ..density.piece import Piece, boxes_between
-from .face_indices import face_index
+from .face_indices import GAP, face_index
 from .face_places import FaceIndex, FacePlaces
 from .faces import own_parameters
 from .part import Face
@@ -42,6 +43,7 @@ from .records import Geometry
 __all__ = ["FacePiece", "pieces_of"]
 
 Array, Indices = NDArray[np.float64], NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 # Angles are divided into parts of at most this, in radians.
 ANGLE = 0.25
@@ -55,6 +57,10 @@ PARTS_OF_SURFACE = 16
 # Curvatures at a pole are taken at this distance from it, relative to the domain.
 BESIDE = 1e-6
 CURVATURES = ("gaussian_curvature", "mean_curvature")
+# Parameters are in the gap between two faces if a step in one of these directions leads into the
+# trim; steps are at most FAR times the domain.
+FAR = 1e-5
+CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 # Without a proof, and for normals of lattices, points are searched on a spline. It has CELLS_A_PART
 # cells for each part of a span, but FEWEST to MOST along each parameter: near the boundary, points
 # are lost because of the error of the spline.
@@ -190,7 +196,7 @@ class FacePiece(Piece):
 
     def _samples(self, normals: Array, found: FacePlaces) -> Samples:
         """Return the points with normals (S, 3) that are inside the trim."""
-        inside = self.contains(found.uv)
+        inside = self._owns(found.uv)
         places = np.column_stack([found.uv, found.radius, found.sign, 0.0 * found.sign])[inside]
         components, open_ = components_in(self.trim, found.undecided, normals, self.jets)
         numbers, places = with_components(found.numbers[inside], places, components)
@@ -228,6 +234,30 @@ class FacePiece(Piece):
             "component": codes,
         }
         return Samples(**arrays, report=report)
+
+    def _owns(self, uv: Array) -> Flags:
+        """Return which parameters (k, 2) are inside the trim; on faces of files, up to the gap.
+
+        These are moved by up to `GAP` times the domain, and until the normal has changed by `GAP`.
+        """
+        trim, inside = self.surface.trim, self.contains(uv)
+        if trim is None or self.face.geometry.surface is not None or inside.all():
+            return inside
+        (out,) = np.nonzero(~inside)
+        out = out[_any_inside(trim, uv[out, None] + FAR * self.sizes * CORNERS)]
+        jets = self.jets(*uv[out].T.copy())
+        normals, lengths = normals_of_jets(jets), np.linalg.norm(jets[:, 1:3], axis=2)
+        a, b, c = np.einsum("kjx,kx->jk", jets[:, 3:], normals)[:, :, None]
+        p, q = GAP * np.moveaxis(CORNERS * lengths[:, None], 2, 0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            steps = np.stack([c * p - b * q, a * q - b * p]) / (a * c - b * b)
+        most = FAR * self.sizes
+        steps = np.clip(np.nan_to_num(np.moveaxis(steps, 0, 2)), -most, most)
+        near = _any_inside(trim, uv[out, None] + GAP * self.sizes * CORNERS + steps)
+        if self.reach is not None:
+            near &= self.reach._contains(normals)
+        inside[out] = near
+        return inside
 
     def _index(self) -> FaceIndex | None:
         face = self.face
@@ -271,6 +301,12 @@ class FacePiece(Piece):
         return {
             x: y.astype(dtype_of(x, dtype), copy=False) for x, y in found.items() if x in fields
         }
+
+
+def _any_inside(trim: Trim, places: Array) -> Flags:
+    """Return whether any of k parameter pairs (n, k, 2) is inside a trim, (n,)."""
+    inside = trim.contains(places.reshape(-1, 2), 1)
+    return np.any(inside.reshape(places.shape[:2]), axis=1)
 
 
 def pieces_of(

@@ -16,14 +16,16 @@ from ...runtime.samples.fields import Component
 from ...runtime.spline.joints import linked
 from ..density.at_normals import Given
 from .edges import Edges, at_places, edges_of
+from .face_indices import GAP
 from .part import Part
 from .results import PartSpace
 
 __all__ = ["each_once"]
 
-# Points with the same normal on connected faces are one point if closer than this, relative to the
-# size of the part. Near a smooth edge no two points have the same normal and the same sign of K.
-SAME = 1e-8
+# Points with the same normal on connected faces are one point if closer than SAME, relative to the
+# size of the part, or than the distance over which normals change by twice the gap between faces,
+# at most FAR. Near a smooth edge no two points have the same normal and the same sign of K.
+SAME, FAR = 1e-8, 1e-5
 # Points are sorted by coordinates along this direction; on symmetric parts, few are equal.
 DIRECTION = np.array([0.52, 0.47, 0.71])
 # The point of an edge where a face has a normal is searched ROUNDS times among PLACES points, each
@@ -46,22 +48,26 @@ def each_once(space: PartSpace, given: Given) -> Given:
         return given
     points = given.array("points", np.float64)
     faces = np.array([x.face.index for x in space.pieces])[given.pieces]
-    is_negative = np.signbit(given.array("gaussian_curvature", np.float64))
+    K, H = (given.array(x, np.float64) for x in ("gaussian_curvature", "mean_curvature"))
     normals = given.array("normal_index", np.int64)
-    keys = np.stack([normals, kept(part, each_once, lambda: _connected(part))[faces], is_negative])
-    along, slack = points @ DIRECTION, SAME * space.size / space.unit
+    keys = np.stack(
+        [normals, kept(part, each_once, lambda: _connected(part))[faces], np.signbit(K)]
+    )
+    along, size = points @ DIRECTION, space.size / space.unit
+    with np.errstate(divide="ignore", invalid="ignore"):  # at K = 0
+        radius = (np.abs(H) + np.sqrt(np.maximum(H * H - K, 0.0))) / np.abs(K)  # the larger one
+    slack = np.fmin(np.maximum(2.0 * GAP * radius, SAME * size), FAR * size)
     order = np.lexsort((along, *keys))
     points, faces, keys, along = points[order], faces[order], keys[:, order], along[order]
-    lost = np.zeros(len(order), dtype=np.bool_)
+    lost, slack = np.zeros(len(order), dtype=np.bool_), slack[order]
     for step in range(1, len(order)):
         near = (keys[:, step:] == keys[:, :-step]).all(axis=0)
-        near &= along[step:] - along[:-step] <= slack
+        near &= along[step:] - along[:-step] <= slack.max()
         if not near.any():
             break
-        first, second = faces[:-step], faces[step:]
-        near &= (np.linalg.norm(points[step:] - points[:-step], axis=1) <= slack) & (
-            first != second
-        )
+        first, second, apart = faces[:-step], faces[step:], points[step:] - points[:-step]
+        near &= np.linalg.norm(apart, axis=1) <= np.maximum(slack[step:], slack[:-step])
+        near &= first != second
         lost[step:] |= near & (first < second)
         lost[:-step] |= near & (first > second)
     keep = np.ones(len(order), dtype=np.bool_)
