@@ -144,6 +144,9 @@ def mesh(
 
     Samples on a graded grid (`row` and `column`) stay vertices, however long its cells are.
 
+    An `offset` has a mesh unless it folds. Folds between samples are not seen; those at samples are
+    seen by curvatures, or, if these are missing, by edges that turn around.
+
     For a CAD part the result is a `PartMesh` of new vertices, as many as there are samples: first
     the vertices and edges of the part are sampled, once for both adjacent faces, then the interior
     of faces, with the density of the samples. Adjacent faces share vertices, so that the mesh of a
@@ -229,10 +232,8 @@ def mesh(
             return mesh_of_samples(self, angle, prefer)
     from .meshes.meshing import mesh_of
 
-    if spline is None and self.offset_of is not None:
-        spline = self.offset_of.spline
     with busy("meshing", progress):
-        return mesh_of(self, spline_or(self, spline), angle, prefer)
+        return mesh_of(self, spline_or(self, spline, self.offset_of), angle, prefer)
 
 
 def levels(
@@ -288,7 +289,8 @@ def levels(
     numbers = [whole_number(x, "a count of levels") for x in asked]
     if numbers and max(numbers) > len(self):
         raise InputError(f"a level has at most as many samples as there are: {len(self):,}.")
-    ordered, spline = self.progressive(progress=progress), spline_or(self, spline)
+    spline = spline_or(self, spline, self.offset_of)
+    ordered = self.progressive(progress=progress)
     return tuple(ordered[:x].mesh(spline, prefer=prefer, progress=progress) for x in numbers)
 
 

@@ -11,6 +11,7 @@ from ..spline.nets import AnySpline, on_grid
 from ..spline.spline import Spline, short_label
 from ..surface.surface import Surface
 from .arrays import SampleArrays
+from .offset_of import OffsetOf
 from .samples_methods import Methods
 from .summary import kinds_of_points, summary_of
 from .whole import Whole
@@ -177,15 +178,17 @@ class Samples(SampleArrays, Methods):
         return f"{type(self).__name__}({points} on {label}{kinds_of_points(self)})"
 
 
-def spline_or(samples: Samples, spline: AnySpline | None) -> Spline:
+def spline_or(samples: Samples, spline: AnySpline | None, moved: OffsetOf | None = None) -> Spline:
     """Return the given spline, or else that of the samples, or else that of their surface.
 
-    Raises InputError if there is none.
+    Of samples that were moved, it is the one from which they were. Raises InputError if there is
+    none.
     """
-    spline, surface = samples.spline if spline is None else spline, samples.surface
+    held = moved or samples
+    spline, surface = held.spline if spline is None else spline, held.surface
     if spline is None and isinstance(surface, Surface) and len(surface.pieces()) == 1:
         spline = fit(surface)
-    if spline is None and isinstance(samples.surface, Whole):
+    if spline is None and isinstance(surface, Whole):
         raise InputError(
             "this is for samples of one surface, and these are of a CAD part; sample "
             "part.faces[0].surface, for example."

@@ -16,6 +16,7 @@ from ...runtime.onto_surface.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
 from ...runtime.spline.tips import collapsed_sides
 from ...runtime.surface.surface import Surface
+from ..support.offset import folded
 from .links import neighbours
 from .mesh import Mesh
 from .places import boundary_of, uv_at
@@ -41,7 +42,33 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
     check_fields(samples)
     check_memory("mesh", len(samples))
     mesh = triangulated(samples, spline, must_be_whole=angle is None)
+    _check_folds(samples, mesh)
     return finished(mesh, len(samples), preferred, largest)
+
+
+def _check_folds(samples: Samples, mesh: Triangulated) -> None:
+    """Raise InputError if samples of an offset, or edges of its mesh, were turned around.
+
+    Principal curvatures κ before it are κ' = κ / (1 + d κ) after it, and 1 − d κ' = 1 / (1 + d κ).
+    """
+    base = samples.offset_of
+    if base is None:
+        return
+    turned = np.zeros(len(mesh.points), dtype=np.bool_)
+    before = mesh.points - base.distance * mesh.normals
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        same = mesh.sides[:, first] == mesh.sides[:, second]
+        i, j = mesh.triangles[same, first], mesh.triangles[same, second]
+        ways = before[i] - before[j], mesh.points[i] - mesh.points[j]
+        turned[i[np.einsum("ex,ex->e", *ways) <= 0.0]] = True
+    if {"gaussian_curvature", "mean_curvature"} <= {*samples.fields}:
+        own = mesh.sample >= 0
+        turned[own] |= folded(samples, -base.distance)[mesh.sample[own]]
+    if turned.any():
+        raise InputError(
+            f"{samples.report.surface!r} folds at {int(turned.sum()):,} of {len(turned):,} "
+            "vertices, and has no mesh; choose a smaller distance."
+        )
 
 
 def finished(mesh: Triangulated, samples: int, prefer: Prefer, largest: float) -> Mesh:

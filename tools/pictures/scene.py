@@ -147,8 +147,8 @@ def scene_of_samples(
     for known in (surface, samples.spline, samples.surface):
         if known is not None:
             return scene_of(known, seen_from)
-    if base is not None and base.spline is not None:
-        return scene_of(base.spline, seen_from, base.distance)
+    if base is not None and (known := base.spline or base.surface) is not None:
+        return scene_of(known, seen_from, base.distance)
     raise InputError(
         "these samples do not hold their surface (those from a file do not); give it, as in "
         "samples.plot(surface)."

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...generated import support as formulas
+from ...runtime.base.aliases import Array, Flags
 from ...runtime.base.checks import finite_number
 from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.base.formula_calls import python_function
@@ -19,9 +19,7 @@ from ...runtime.samples.offset_of import OffsetOf
 from ...runtime.samples.report import count_infinite, have_large_squares
 from ...runtime.samples.samples import Samples
 
-__all__ = ["offset", "size_of_terms"]
-
-Array = NDArray[np.float64]
+__all__ = ["folded", "offset", "size_of_terms"]
 
 # The fields from which those of an offset are computed.
 NEEDED = {
@@ -68,17 +66,30 @@ def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
     H = samples.mean_curvature.astype(np.float64)
     _check_squares(samples, H)
     _, K_offset, H_offset = python_function(formulas.offset_curvature)(K, H, d)
-    s, m = python_function(formulas.offset_growth)(K, H, d)
-    terms = size_of_terms(K, H, d)
-    rounding = CURVATURE_ERROR * float(np.finfo(samples.dtype).eps)
-    vanishing = (terms < np.inf) & (np.abs(s) <= rounding * terms)
-    folded = vanishing | (s < 0.0) | (m < 0.0)
-    if folded.any():
-        _warn(samples, d, folded)
+    vanishing, turned = _growth(samples, d)
+    if turned.any():
+        _warn(samples, d, turned)
     return {
         "gaussian_curvature": np.where(vanishing, K * np.inf, K_offset),
         "mean_curvature": np.where(vanishing, np.nan, H_offset),
     }
+
+
+def folded(samples: Samples, distance: float) -> Flags:
+    """Return at which samples an offset folds; at singular ones, if a curvature is infinite."""
+    with np.errstate(all="ignore"):
+        return _growth(samples, distance)[1] | np.isinf(samples.gaussian_curvature)
+
+
+def _growth(samples: Samples, d: float) -> tuple[Flags, Flags]:
+    """Return where a radius becomes 0 by an offset, and where it does, or changes its sign."""
+    K = samples.gaussian_curvature.astype(np.float64)
+    H = samples.mean_curvature.astype(np.float64)
+    s, m = python_function(formulas.offset_growth)(K, H, d)
+    terms = size_of_terms(K, H, d)
+    rounding = CURVATURE_ERROR * float(np.finfo(samples.dtype).eps)
+    vanishing = (terms < np.inf) & (np.abs(s) <= rounding * terms)
+    return vanishing, vanishing | (s < 0.0) | (m < 0.0)
 
 
 def size_of_terms(K: Array, H: Array, d: float) -> Array:
@@ -107,13 +118,13 @@ def _check_fields(samples: Samples) -> None:
             raise missing_fields(samples.fields, missing, f"the offset of {name}")
 
 
-def _warn(samples: Samples, d: float, folded: NDArray[np.bool_]) -> None:
+def _warn(samples: Samples, d: float, turned: Flags) -> None:
     """Warn of samples at which the offset is folded, with the smallest radius of curvature."""
-    towards = -np.sign(d) * samples[folded].principal_curvatures
+    towards = -np.sign(d) * samples[turned].principal_curvatures
     largest = np.where(np.isnan(towards), np.inf, towards).max()  # NaN: a curvature is infinite
     warnings.warn(
         f"surface {samples.report.surface!r}: the distance {d:g} reaches a radius of curvature at "
-        f"{int(folded.sum()):,} of {len(samples):,} samples, where the offset folds; the smallest "
+        f"{int(turned.sum()):,} of {len(samples):,} samples, where the offset folds; the smallest "
         f"radius on that side is {1.0 / largest:g}.",
         GaussmapWarning,
         stacklevel=5,

@@ -652,6 +652,27 @@ class TestOffsets:
         np.testing.assert_allclose(lengths(samples.mesh().vertices), 1.5, rtol=1e-4)
         assert samples.weights().sum() == pytest.approx(4 * np.pi * 2.25, rel=1e-4)
 
+    @pytest.mark.parametrize(
+        ("distance", "fields", "count"),
+        [
+            (-0.35, None, "300"),
+            (-0.36, None, "300"),
+            (0.7, None, r"\d+"),
+            (-0.4, ("points", "normals", "uv"), r"\d+"),
+        ],
+    )
+    @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
+    def test_a_folded_offset_has_no_mesh(self, distance, fields, count):
+        """Beyond the radius of the tube, .35, or of the hole, .65; by curvatures, or by edges."""
+        samples = gm.sample("torus", 300, fields=fields)
+        refused(f"offset by .* folds at {count} of 300 vertices", samples.offset(distance).mesh)
+        assert len(samples.offset(0.8 * distance).mesh().boundary_edges) == 0
+
+    def test_an_offset_of_proved_samples(self):
+        """They hold no spline, and are those of a surface."""
+        samples = gm.sample("sphere", normals=gm.icosphere(4)).offset(-0.5)
+        np.testing.assert_allclose(lengths(samples.mesh().vertices), 0.5, rtol=1e-12)
+
     def test_rows_copies_and_parts(self):
         samples = gm.sample(gm.surfaces.torus(), count=300).offset(0.1)
         triangles = samples.mesh().triangles
