@@ -27,7 +27,7 @@ class Length(sp.Expr):
     is_positive = True
 
 
-GREEK = {"mu": r"\mu", "kappa": r"\kappa"}
+GREEK = {"mu": r"\mu", "kappa": r"\kappa", "rho": r"\rho", "beta": r"\beta"}
 
 # Expressions in mathematical notation for the single names that programs use.
 AS_WRITTEN = {

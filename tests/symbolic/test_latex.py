@@ -65,7 +65,7 @@ def test_text_says_the_same(formula):
     [
         ("A", False, "A"), ("n", True, r"\mathbf{n}"), ("p_u", True, r"\mathbf{p}_{u}"),
         ("p_u_x", False, "p_{u,x}"), ("b200", True, r"\mathbf{b}_{200}"),
-        ("D111", False, "D_{111}"), ("mu", False, r"\mu"),
+        ("D111", False, "D_{111}"), ("mu", False, r"\mu"), ("rho", False, r"\rho"),
         ("mu_sw", True, r"\boldsymbol{\mu}_{\mathrm{sw}}"), ("H_xy", False, "H_{xy}"),
         ("K_offset", False, r"K_{\mathrm{offset}}"), ("dU", True, r"\nabla U"),
         ("dh", True, r"\nabla h"), ("dh_S", True, r"\nabla_S h"), ("dA", False, r"\mathit{dA}"),
