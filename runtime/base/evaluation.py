@@ -52,7 +52,11 @@ def check_finite(
     if bad.any():
         where = np.unravel_index(int(np.argmax(bad)), bad.shape)
         place = ", ".join(f"{name} = {float(array[where])}" for name, array in parameters.items())
-        raise SurfaceError(f"{label} is not finite at {place}: {values[where]}.")
+        hint = "; surface.trimmed(within=f) leaves out where a function f(u, v) is False"
+        untrimmed = needed is None and len(parameters) == 2
+        raise SurfaceError(
+            f"{label} is not finite at {place}: {values[where]}{hint if untrimmed else ''}."
+        )
 
 
 def returned(
@@ -96,6 +100,8 @@ def _shapes_that_differ(values: object, shape: tuple[int, ...]) -> list[tuple[in
 def _hint(values: ArrayLike, found: tuple[int, ...], expected: tuple[int, ...]) -> str:
     """Return a hint on how to join coordinates that were returned one by one."""
     number = expected[-1] if len(expected) else 0
+    if number == 3 and found == expected[:-1]:
+        return ": of heights z, numpy.stack((u, v, z), axis=-1)"
     if found[1:] != expected[:-1] or not found:
         return ""
     if isinstance(values, tuple | list) and found[0] != number:

@@ -41,10 +41,17 @@ def close_seams(surface: SurfaceValues, vertices: NDArray[np.float64]) -> None:
         if closes(ends):
             first = rows[0] if ends[0] == "periodic" else rows[0, ::-1].copy()
             if apart(rows[-1], first, vertices):
+                how, other = "the same", "the same, mirrored"
+                if ends[0] == "mirrored":
+                    how, other = other, how
+                if apart(rows[-1], first[::-1], vertices):
+                    why = _by_rounding(surface, axis, rows, float(np.abs(rows[-1] - first).max()))
+                else:
+                    word = "mirrored" if ends[0] == "periodic" else "periodic"
+                    why = f'; they are {other}: "{word}" in periodic=(...) says so'
                 raise SurfaceError(
                     f"surface {surface.name!r} does not close along {along}: its two ends must be "
-                    f"the same{'' if ends[0] == 'periodic' else ', mirrored'}"
-                    f"{_by_rounding(surface, axis, rows[-1], first)}."
+                    f"{how}{why}."
                 )
             rows[-1] = first
         for end in broken_poles(vertices, surface.boundary, axis):
@@ -54,16 +61,14 @@ def close_seams(surface: SurfaceValues, vertices: NDArray[np.float64]) -> None:
             )
 
 
-def _by_rounding(
-    surface: SurfaceValues, axis: int, last: NDArray[np.float64], first: NDArray[np.float64]
-) -> str:
+def _by_rounding(surface: SurfaceValues, axis: int, rows: NDArray[np.float64], far: float) -> str:
     """Return a clause: the distance of the points at both ends, and whether rounding explains it.
 
     The rounding is that of the parameter: 2π, for example, is not a float64 number.
     """
     low, high = surface.domain[axis]
+    first, last = rows[0], rows[-1]
     other = np.linspace(*surface.domain[1 - axis], len(last))
-    far = float(np.abs(last - first).max())
     moved = 0.0
     step = ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
     for end, row in ((low + step, first), (high - step, last), (high + step, last)):

@@ -216,8 +216,9 @@ def test_parameters_that_are_none(u, v, complaint):
     [
         (saddle, SQUARE, (True, False), "does not close along u"),
         (tube, ((0, 6.28), (0, 2 * np.pi)), (True, True), "does not close along u"),
-        (tube, TURN, ("mirrored", False), "does not close along u: .* mirrored"),
-        (tube, TURN, (False, "mirrored"), "does not close along v: .* mirrored"),
+        (tube, TURN, ("mirrored", False), "along u: .* the same, mirrored; they .*: .periodic. in"),
+        (lambda u, v: tube(u, v / 2), TURN, (False, "mirrored"), "ed; they differ by 4[.]"),
+        (lambda u, v: tube(u, (1 - u / np.pi) * (v - np.pi)), TURN, (True, True), "mirrored. in"),
         (tube, TURN, (True, "pole"), "has no pole at v = 0.0"),
         (bowl, ((0, 2 * np.pi), (0, 1)), (True, "pole"), "has no pole at v = 0.0"),
         (bowl, ((0, 2 * np.pi), (0, 0.9)), (True, ("open", "pole")), "has no pole at v = 0.9"),
