@@ -144,8 +144,8 @@ def mesh(
 
     Samples on a graded grid (`row` and `column`) stay vertices, however long its cells are.
 
-    An `offset` has a mesh unless it folds. Folds between samples are not seen; those at samples are
-    seen by curvatures, or, if these are missing, by edges that turn around.
+    An `offset` has a mesh unless it folds or is trimmed. Folds between samples are not seen; those
+    at samples are seen by curvatures, or, if these are missing, by edges that turn around.
 
     For a CAD part the result is a `PartMesh` of new vertices, as many as there are samples: first
     the vertices and edges of the part are sampled, once for both adjacent faces, then the interior
@@ -345,7 +345,7 @@ def weights(
         return area_weights(self, angle)
 
 
-def offset(self: Samples, distance: float) -> Samples:
+def offset(self: Samples, distance: float, *, trimmed: bool = False) -> Samples:
     """Return the samples moved along their normals: the offset surface x + d n.
 
     Points, support and curvatures become those of the offset, if the samples have them; normals,
@@ -356,18 +356,26 @@ def offset(self: Samples, distance: float) -> Samples:
     ----------
     distance : float
         The distance d, in L. For d < 0 the offset lies inwards, if normals point outwards.
+    trimmed : bool, default False
+        Leave out samples whose points become nearer to the surface than the distance: parts that
+        fold, and parts that come near to other parts of the surface. At what stays, a ball of this
+        radius touches the surface and does not cut it. After several offsets, the distance is that
+        of all. It is measured from at least 20,000 samples of the surface, whose gaps are at most
+        about a fifth of it: what is left out is nearer than the distance, and what stays may be
+        nearer by 1 %, where sheets meet.
 
     Returns
     -------
     Samples
-        One for each sample. Where a radius of curvature becomes 0, the offset is singular: K is
-        infinite with its old sign, or NaN if it was 0, and H is NaN.
+        One for each sample, without those that are trimmed. Where a radius of curvature becomes 0,
+        the offset is singular: K is infinite with its old sign, or NaN if it was 0, and H is NaN.
 
     Raises
     ------
     InputError
         Unless the distance is a finite number, and if squares of curvatures are out of the range of
-        their type (for surfaces smaller than 1e-154 or larger than 1e154).
+        their type (for surfaces smaller than 1e-154 or larger than 1e154). If `trimmed`, also for
+        samples that do not hold their surface, and if the distance is less than 1/180 of its size.
     MissingFieldError
         If points lack their normals, or one curvature lacks the other.
 
@@ -383,10 +391,16 @@ def offset(self: Samples, distance: float) -> Samples:
     >>> gm.sample("sphere", normals=[[1, 0, 0]]).offset(0.5).points.round(3) + 0.0
     array([[1.5, 0. , 0. ]])
 
+    A ball of radius 0.7 does not fit into the hole of a torus, whose radius is 0.65:
+
+    >>> samples = gm.sample("torus", normals=[[1, 0, 0]])
+    >>> samples.offset(0.7, trimmed=True).points.round(2) + 0.0
+    array([[2.05, 0.  , 0.  ]])
+
     """
     from .support.offset import offset as moved_along_normals
 
-    return moved_along_normals(self, distance)
+    return moved_along_normals(self, distance, trimmed)
 
 
 def unobstructed(

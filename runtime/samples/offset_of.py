@@ -38,3 +38,4 @@ class OffsetOf:
     distance: float
     spline: AnySpline | None = None
     surface: Surface | Whole | None = None
+    trimmed: bool = False

@@ -47,13 +47,17 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
 
 
 def _check_folds(samples: Samples, mesh: Triangulated) -> None:
-    """Raise InputError if samples of an offset, or edges of its mesh, were turned around.
+    """Raise InputError if an offset is trimmed, or its samples or edges were turned around.
 
     Principal curvatures κ before it are κ' = κ / (1 + d κ) after it, and 1 − d κ' = 1 / (1 + d κ).
     """
     base = samples.offset_of
     if base is None:
         return
+    if base.trimmed:
+        raise InputError(
+            f"{samples.report.surface!r} has no mesh: its sheets end where they meet each other."
+        )
     turned = np.zeros(len(mesh.points), dtype=np.bool_)
     before = mesh.points - base.distance * mesh.normals
     for first, second in ((0, 1), (1, 2), (2, 0)):

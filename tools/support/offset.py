@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import replace
 from typing import Any
@@ -10,14 +11,19 @@ import numpy as np
 
 from ...generated import support as formulas
 from ...runtime.base.aliases import Array, Flags
-from ...runtime.base.checks import finite_number
+from ...runtime.base.checks import finite_number, yes_or_no
 from ...runtime.base.errors import GaussmapWarning, InputError
 from ...runtime.base.formula_calls import python_function
 from ...runtime.base.tolerances import CURVATURE_ERROR
+from ...runtime.base.trees import tree_of
 from ...runtime.samples.fields import missing_fields
 from ...runtime.samples.offset_of import OffsetOf
 from ...runtime.samples.report import count_infinite, have_large_squares
 from ...runtime.samples.samples import Samples
+from ...runtime.samples.whole import Whole
+from ...runtime.spline.nets import AnySpline
+from ...runtime.surface.surface import Surface
+from ..sampling.sample import sample
 
 __all__ = ["folded", "offset", "size_of_terms"]
 
@@ -29,10 +35,21 @@ NEEDED = {
 }
 
 
-def offset(samples: Samples, distance: float) -> Samples:
+# The least number of samples of a surface from which distances are measured; their number relative
+# to the square of its size over the distance, so that gaps are about .2 times the distance; and the
+# least distance relative to the size.
+LEAST, PER_SQUARE, SHORTEST = 20_000, 15.0, 1.0 / 180.0
+ROUNDING = 64.0  # of distances, in units of the last place of coordinates
+
+
+def offset(samples: Samples, distance: float, trimmed: bool) -> Samples:
     """Return the samples moved by a distance along their normals; see `Samples.offset`."""
     d = finite_number(distance, "distance")
     _check_fields(samples)
+    base = samples.offset_of or OffsetOf(0.0, samples.spline, samples.surface)
+    if yes_or_no(trimmed, "trimmed"):
+        nearer = _nearer(samples, d, base)
+        samples, trimmed = samples[~nearer], bool(nearer.any())
     arrays: dict[str, Any] = {x: getattr(samples, x) for x in samples.fields}
     moved: dict[str, Array] = {}
     with np.errstate(all="ignore"):  # infinite curvatures are valid
@@ -45,15 +62,57 @@ def offset(samples: Samples, distance: float) -> Samples:
         arrays |= {name: array.astype(samples.dtype) for name, array in moved.items()}
     report = replace(
         samples.report,
-        surface=f"{samples.report.surface} offset by {d:g}",
+        surface=f"{samples.report.surface} offset by {d:g}{', trimmed' if trimmed else ''}",
         developable_share=None,  # areas change, except those of planar regions
         infinite_curvatures=count_infinite(arrays),
         fit_distance=None,  # the spline has no offset
         fit_rms=None,
         fit_angle=None,
     )
-    base = samples.offset_of or OffsetOf(0.0, samples.spline, samples.surface)
-    return Samples(**arrays, report=report, offset_of=replace(base, distance=base.distance + d))
+    origin = replace(base, distance=base.distance + d, trimmed=base.trimmed or trimmed)
+    return Samples(**arrays, report=report, offset_of=origin)
+
+
+def _nearer(samples: Samples, d: float, base: OffsetOf) -> Flags:
+    """Return which samples, if moved by d, are nearer to their surface than they were moved.
+
+    Distances are measured from samples of the surface, so that none is too small.
+    """
+    surface = base.spline if base.surface is None else base.surface
+    if surface is None:
+        raise InputError(
+            "the offset cannot be trimmed: these samples do not hold their surface (those from a "
+            "file, and sums, do not)."
+        )
+    if lacking := [x for x in ("points", "normals") if x not in samples.fields]:
+        raise missing_fields(samples.fields, lacking, "a trimmed offset")
+    points = samples.points.astype(np.float64) + d * samples.normals.astype(np.float64)
+    far = abs(base.distance + d)
+    if far == 0.0:
+        return np.zeros(len(points), dtype=np.bool_)
+    known = _points_of(surface, far)
+    largest = max(float(np.abs(known).max()), far)
+    least = 1.0 - ROUNDING * float(np.finfo(samples.dtype).eps) * (largest / far)
+    return (
+        tree_of(known / far).query(points / far, distance_upper_bound=max(least, 0.0))[0] < np.inf
+    )
+
+
+def _points_of(surface: Surface | AnySpline | Whole, distance: float) -> Array:
+    """Return points of a surface whose gaps are small relative to a distance."""
+    count, edges = LEAST, isinstance(surface, Whole)
+    while True:
+        found = sample(surface, count, density="uniform", edges=edges, fields=("points",))
+        size = math.hypot(*np.ptp(found.points, axis=0))
+        if distance < SHORTEST * size:
+            raise InputError(
+                f"the offset cannot be trimmed: the distance, {distance:g}, is less than 1/180 of "
+                f"the size of the surface, {size:g}."
+            )
+        needed = math.ceil(PER_SQUARE * (size / distance) ** 2)
+        if needed <= count:
+            return found.points
+        count = needed
 
 
 def _curvatures(samples: Samples, d: float) -> dict[str, Array]:

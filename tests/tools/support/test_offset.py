@@ -198,6 +198,56 @@ def test_a_far_offset_is_nearly_a_sphere() -> None:
         assert np.isfinite(samples.offset(1e300).gaussian_curvature).all()
 
 
+# --- trimmed offsets ------------------------------------------------------------------------------
+
+
+def from_torus(points: np.ndarray) -> np.ndarray:
+    x, y, z = points.T
+    return np.abs(np.hypot(np.hypot(x, y) - 1.0, z) - 0.35)
+
+
+@pytest.mark.compiled
+@pytest.mark.parametrize(("d", "scale"), [(0.7, 1e-9), (-0.36, 1e9), (0.5, 1.0)])
+@pytest.mark.quick_for("0.7")
+def test_a_trimmed_offset_is_as_far_as_its_distance(d: float, scale: float) -> None:
+    """The hole of a torus has the radius 0.65, the tube 0.35, and curvatures are not needed."""
+    torus = gm.surfaces.torus(major=scale, minor=0.35 * scale)
+    samples = gm.sample(torus, 500, fields=("points", "normals"))
+    moved = samples.offset(d * scale / 2).offset(d * scale / 2, trimmed=True)
+    distances = from_torus((samples.points + d * scale * samples.normals) / scale)
+    assert len(moved) == np.count_nonzero(distances >= abs(d) - 1e-4)
+    assert (len(moved) < 500) == (d != 0.5)
+    assert from_torus(moved.points / scale).min(initial=1.0) >= abs(d) - 1e-4
+    assert moved.offset_of is not None
+    assert moved.offset_of.trimmed == (d != 0.5)
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
+def test_trimmed_by_brute_force() -> None:
+    """By the distances of 10⁵ points; no warning, as all that folds is left out."""
+    graph = gm.surfaces.wavy_graph()
+    ends = [np.linspace(*side, 320) for side in graph.domain]
+    fine = graph.evaluate(*(x.ravel() for x in np.meshgrid(*ends)))
+    samples = gm.sample(graph, 300)
+    places = samples.points + samples.normals
+    distances = np.array([np.linalg.norm(fine - x, axis=1).min() for x in places])
+    moved = samples.offset(1.0, trimmed=True)
+    kept = np.isin(samples.uv[:, 0], moved.uv[:, 0])
+    assert 50 < len(moved) == np.count_nonzero(kept) < 150
+    assert (distances[kept] >= 1.0 - 1e-3).all()
+    assert (distances[~kept] < 1.0 + 1e-4).all()  # fine points are up to 3e-3 apart
+    refused("by 1, trimmed' has no mesh", moved.mesh)
+
+
+@pytest.mark.compiled
+def test_what_cannot_be_trimmed() -> None:
+    refused("do not hold their surface", exact_torus().offset, 0.1, trimmed=True)
+    samples = gm.sample("torus", 100, cells=(16, 16))
+    refused("0.01, is less than 1/180 of", samples.offset, 0.01, trimmed=True)
+    assert len(samples.offset(0.0, trimmed=True)) == 100
+
+
 # --- fields, and what is refused ------------------------------------------------------------------
 
 
