@@ -73,8 +73,4 @@ class PartMesh(CreasedMesh):
         line += ", closed" if self.closed else f", {single:,} edges on borders"
         line += f", {many:,} of more than two triangles" if many else ""
         line += f", {plural(len(self.failed), 'face')} missing" if self.failed else ""
-        small, mean, worst = (
-            np.quantile(self.smallest_angles, 0.05), self.angles.mean(), self.angles.max(),
-        )  # fmt: skip
-        line += f"; 95 % have angles of at least {small:.1f}°"
-        return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
+        return line + self._quality()

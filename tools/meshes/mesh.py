@@ -226,13 +226,15 @@ class Mesh(Methods):
             return line
         border = len(self.boundary_edges)
         line += f", {border:,} edges on the border" if border else ", closed"
-        small, mean, worst = (
-            np.quantile(self.smallest_angles, 0.05),
-            self.angles.mean(),
-            self.angles.max(),
+        return line + self._quality()
+
+    def _quality(self) -> str:
+        """Return the end of a summary: the angles of triangles, and those between normals."""
+        return (
+            f"; 95 % have angles of at least {np.quantile(self.smallest_angles, 0.05):.1f}°; they "
+            f"deviate from the normals by {self.angles.mean():.2f}° (mean), "
+            f"{self.angles.max():.2f}° (worst)"
         )
-        line += f"; 95 % have angles of at least {small:.1f}°"
-        return f"{line}; they deviate from the normals by {mean:.2f}° (mean), {worst:.2f}° (worst)"
 
 
 def cosines_of(
