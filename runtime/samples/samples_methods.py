@@ -20,6 +20,7 @@ class Methods:
     __slots__ = ()
 
     coverage = Later(DENSITY)
+    in_order = Later(DENSITY)
     normal_deviation = Later(DENSITY)
     progressive = Later(DENSITY)
 

@@ -2,6 +2,7 @@
 
 class Methods:
     from ...tools.density.methods import coverage as coverage
+    from ...tools.density.methods import in_order as in_order
     from ...tools.density.methods import normal_deviation as normal_deviation
     from ...tools.density.methods import progressive as progressive
     from ...tools.derived import levels as levels

@@ -194,6 +194,7 @@ def _sample() -> Command:
         Option("--edges", edges, group="the surface"),
         *_contents(group, default),
         Option("--progressive", prefixes, group=group),
+        Option("--path", "Write the samples in the order of a short path of a probe.", group=group),
         epilog=SAMPLE_EXAMPLES,
         brief=SAMPLE_BRIEF,
     )

@@ -57,8 +57,10 @@ def _sampled(options: SimpleNamespace) -> Samples:
     check_fields("a.xyz" if options.format == "npy" else options.output, written)
     if options.progressive and not {"points", "normals"} <= {*written}:
         raise InputError("--progressive needs points and normals among the --fields.")
+    if options.path and (options.progressive or "points" not in written):
+        raise InputError("--path needs points among the --fields, and excludes --progressive.")
     dtype = np.float32 if options.float32 else np.float64
     samples, _ = sampled(options, 10_000, fields=fields, dtype=dtype, edges=options.edges)
     if options.progressive:
         samples = samples.progressive(progress=not options.quiet)
-    return samples
+    return samples.in_order("path") if options.path else samples

@@ -345,6 +345,7 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["sample", "torus", "--density", "-2", *TO], "a positive number of at most 8, not"),
         (["sample", "torus", *GAUSS, "--coverage", "1", *TO], "does not go with coverage; use"),
         (["sample", "torus", "--progressive", "--fields", "uv", *TO], "needs points and normals"),
+        (["sample", "torus", "--path", "--progressive", *TO], "excludes --progressive"),
         (["sample", "torus", "--cells", "8", "0", *TO], "--cells: it must be a whole number"),
         (["sample", "torus", "--cells", "2", "8", *TO], "at least 3 x 3 cells"),
         (["sample", "torus", "--fields", "row", "--on", "spline", *TO], "on a grid only"),

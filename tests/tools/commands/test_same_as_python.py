@@ -79,6 +79,7 @@ ASKED: list[tuple[str, Made]] = [
     ("--fields points,uv --count 60", torus(count=60, fields=("points", "uv"))),
     ("--float32 --count 60", torus(count=60, dtype=np.float32)),
     ("--progressive --count 60", lambda: torus(count=60)().progressive()),
+    ("--path --count 60", lambda: torus(count=60)().in_order("path")),
     ("--set major=2 --set minor=.2 --count 60",
      lambda: gm.sample(gm.surfaces.torus(major=2, minor=0.2), 60, **SMALL)),
 ]  # fmt: skip

@@ -3,6 +3,7 @@ from __future__ import annotations
 import gaussmap as gm
 import numpy as np
 import pytest
+from gaussmap.tools.density.path_order import path_order
 from gaussmap.tools.density.progressive import progressive_order
 from scipy.spatial import KDTree
 
@@ -87,3 +88,19 @@ def test_samples_at_one_place() -> None:
 def test_normals_are_needed(waves: gm.Spline) -> None:
     samples = gm.sample(waves, count=50, fields=("points",))
     refused("'normals'", samples.progressive, error=gm.errors.MissingFieldError)
+
+
+def test_paths_visit_each_sample_and_are_short() -> None:
+    """On a grid, the shortest path has links of length 1."""
+    grid = np.indices((12, 20, 1)).reshape(3, -1).T.astype(np.float64)
+    grid = np.random.default_rng(0).permutation(grid)
+    order = path_order(grid)
+    assert sorted(order) == list(range(240))
+    assert np.linalg.norm(np.diff(grid[order], axis=0), axis=1).sum() <= 1.25 * 239.0
+    for few in (grid[:0], grid[:1], grid[:2], np.zeros((50, 3))):
+        assert sorted(path_order(few)) == list(range(len(few)))
+
+
+def test_samples_in_an_order_that_is_not_known() -> None:
+    samples = gm.sample("torus", 20, cells=(8, 8))
+    refused("no order of samples", samples.in_order, "tour", error=gm.errors.UnknownNameError)
