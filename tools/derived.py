@@ -541,6 +541,7 @@ def plot(
     view: Sequence[float] = (28.0, -55.0),
     axes: Axes | Sequence[Axes] | None = None,
     normals: ArrayLike | None = None,
+    face_numbers: bool = False,
 ) -> Figure:
     """Draw the samples on their surface, and the unit sphere with their normals.
 
@@ -550,9 +551,9 @@ def plot(
     ----------
     surface : Surface, Spline or Part, optional
         The surface of the samples, if they do not hold it.
-    color, view, axes, normals : optional
+    color, view, axes, normals, face_numbers : optional
         As in `plot`: the column or array shown in colour, elevation and azimuth in degrees, axes to
-        draw into, the prescribed normals.
+        draw into, the prescribed normals, whether faces have their numbers.
 
     Returns
     -------
@@ -573,7 +574,10 @@ def plot(
     """
     from .pictures.plot import plot_samples
 
-    return plot_samples(self, surface, color=color, view=view, axes=axes, normals=normals)
+    return plot_samples(
+        self, surface, color=color, view=view, axes=axes, normals=normals,
+        face_numbers=face_numbers,
+    )  # fmt: skip
 
 
 def view(

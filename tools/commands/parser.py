@@ -232,6 +232,7 @@ def _plot() -> Command:
         "normals on the unit sphere. Needs Matplotlib: pip install 'gaussmap[plot]'.",
         *_sampling(default_count=2_000),
         _output(".png, .pdf or .svg"),
+        Option("--face-numbers", "Write the number in the file on each face of a CAD part."),
         epilog=PLOT_EXAMPLES,
         brief=SURFACE + PLOT_EXAMPLES.partition("\n")[2],
     )

@@ -17,5 +17,6 @@ def run(options: SimpleNamespace) -> None:
     check_target(options.output)
     samples, normals = sampled(options, COUNT)
     with busy("drawing", not options.quiet):
-        write_figure(plot_samples(samples, normals=normals), options.output)
+        figure = plot_samples(samples, normals=normals, face_numbers=options.face_numbers)
+        write_figure(figure, options.output)
     summarize(samples, options)

@@ -97,10 +97,8 @@ def _discrete(samples: Samples, values: NDArray[np.float64], name: str) -> Colou
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
     found, codes = np.unique(values, return_inverse=True)
-    numbers, part = found.astype(np.int64), whole_of(samples)
-    if part is not None and name == "face_index":
-        own = next(x.values for x in part._face_columns() if x.name == "source_index")
-        numbers = np.array(own)[numbers]
+    numbers = found.astype(np.int64)
+    numbers = numbers_in_file(samples, numbers) if name == "face_index" else numbers
     few = len(found) <= MOST_DISTINCT
     source = colormaps["tab20" if few else "turbo"]
     places = np.arange(len(found)) if few else np.linspace(0.0, 1.0, len(found))
@@ -110,6 +108,15 @@ def _discrete(samples: Samples, values: NDArray[np.float64], name: str) -> Colou
     return Colours(
         codes.astype(np.float64), norm, ListedColormap(source(places)), label, "", False, shown
     )
+
+
+def numbers_in_file(samples: Samples, faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the numbers in the file of faces (k,) of samples; the faces if that is unknown."""
+    part = whole_of(samples)
+    if part is None:
+        return faces
+    own = next(x.values for x in part._face_columns() if x.name == "source_index")
+    return np.array(own)[faces]
 
 
 def _limit(values: NDArray[np.float64]) -> tuple[float, bool]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...runtime.base.checks import finite_array, listed, real_values
+from ...runtime.base.checks import finite_array, listed, real_values, yes_or_no
 from ...runtime.base.errors import InputError, printable
 from ...runtime.base.extras import check_extra
 from ...runtime.directions.unit import as_normals
@@ -32,7 +32,7 @@ from .scene import view as rows_of_view
 from .sphere_half import RADIUS, draw_sphere, view_of
 from .support_globes import ROOM as BRANCH_ROOM
 from .support_globes import Branch, branches_of, draw_branch
-from .surface_half import View, draw_surface
+from .surface_half import View, draw_face_numbers, draw_surface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -72,6 +72,7 @@ def plot(
     view: Sequence[float] = VIEW,
     axes: Axes | Sequence[Axes] | None = None,
     normals: ArrayLike | None = None,
+    face_numbers: bool = False,
 ) -> Figure:
     """Draw a surface or CAD part with samples, and the unit sphere with their normals.
 
@@ -98,6 +99,8 @@ def plot(
         title, legend or scale of colours. Hidden parts are left out for this view only.
     normals : (S, 3) array_like, optional
         The prescribed normals of the samples: those without a sample are drawn in grey.
+    face_numbers : bool, default False
+        Write the number in the file on each face of a CAD part that has a visible sample.
 
     Returns
     -------
@@ -139,7 +142,10 @@ def plot(
         samples, normals = sample_and_normals(
             surface, request, cells=None, threads=None, progress=False
         )
-    return plot_samples(samples, surface, color=color, view=view, axes=axes, normals=normals)
+    return plot_samples(
+        samples, surface, color=color, view=view, axes=axes, normals=normals,
+        face_numbers=face_numbers,
+    )  # fmt: skip
 
 
 def plot_part(
@@ -150,6 +156,7 @@ def plot_part(
     view: Sequence[float] = VIEW,
     axes: Axes | Sequence[Axes] | None = None,
     normals: ArrayLike | None = None,
+    face_numbers: bool = False,
 ) -> Figure:
     """Draw the part with samples, and the unit sphere with their normals: `Part.plot`.
 
@@ -157,9 +164,9 @@ def plot_part(
     ----------
     samples : Samples, optional
         Samples of the part; by default those at `normals`, or 2,000.
-    color, view, axes, normals : optional
+    color, view, axes, normals, face_numbers : optional
         As in `plot`: the column or array shown in colour, elevation and azimuth in degrees, axes to
-        draw into, the prescribed normals.
+        draw into, the prescribed normals, whether faces have their numbers.
 
     Returns
     -------
@@ -174,10 +181,13 @@ def plot_part(
     Examples
     --------
     >>> from gaussmap.tools.cad.examples import box
-    >>> box().plot(color="face_index", view=(60, 0)).savefig("box.png")
+    >>> box().plot(face_numbers=True, view=(60, 0)).savefig("box.png")
 
     """
-    return plot(self, samples, color=color, view=view, axes=axes, normals=normals)
+    return plot(
+        self, samples, color=color, view=view, axes=axes, normals=normals,
+        face_numbers=face_numbers,
+    )  # fmt: skip
 
 
 def plot_samples(
@@ -188,6 +198,7 @@ def plot_samples(
     view: Sequence[float] = VIEW,
     axes: Axes | Sequence[Axes] | None = None,
     normals: ArrayLike | None = None,
+    face_numbers: bool = False,
 ) -> Figure:
     """Return the figure of `plot`, for `Samples.plot`."""
     check_extra("matplotlib", "plot", "a picture")
@@ -195,8 +206,10 @@ def plot_samples(
     panels = _checked_axes(axes)
     directions = _checked_normals(samples, () if normals is None else normals)
     checked_values(samples, color)
+    if yes_or_no(face_numbers, "face_numbers") and samples.face_index is None:
+        raise InputError("only the faces of a CAD part have numbers, and samples of these.")
     scene = scene_of_samples(samples, surface, rows_of_view(elevation, azimuth))
-    return _drawn(samples, scene, directions, color, (elevation, azimuth), panels)
+    return _drawn(samples, scene, directions, color, (elevation, azimuth), panels, face_numbers)
 
 
 def _checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64]:
@@ -241,6 +254,7 @@ def _drawn(
     color: str | ArrayLike,
     view: View,
     axes: Sequence[Any],
+    face_numbers: bool,
 ) -> Figure:
     """Draw samples on a scene, and the prescribed normals, into a new figure or into axes."""
     visible = scene.visible(samples.points.astype(np.float64))
@@ -248,6 +262,8 @@ def _drawn(
         colours = colours_of(samples, color)
         if axes:
             draw_surface(axes[0], samples, scene, colours, view, visible)
+            if face_numbers:
+                draw_face_numbers(axes[0], samples, visible)
             for sphere in axes[1:]:
                 draw_sphere(sphere, samples, normals, scene.view)
             return axes[0].figure
@@ -261,6 +277,8 @@ def _drawn(
             sphere, surface, room = WIDE_SPHERE, WIDE_SURFACE, WIDE_ROOM
         right: Any = figure.add_axes(_box(surface, MIDDLE, 5.0, 5.0), projection="3d")
         draw_surface(right, samples, scene, colours, view, visible, mark, room)
+        if face_numbers:
+            draw_face_numbers(right, samples, visible)
         left = figure.add_axes(_box(sphere, MIDDLE, 2.6 * RADIUS, 2.6 * RADIUS))
         handles = draw_sphere(left, samples, normals, scene.view, mark)
         if branches:

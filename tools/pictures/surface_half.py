@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from ...runtime.samples.samples import Samples
 from ..files.lengths import unit_of
-from .colours import Colours
+from .colours import Colours, numbers_in_file
 from .marked import Marked
 from .palette import INK, MARK
 from .scene import Scene
 
-__all__ = ["Room", "View", "draw_surface"]
+__all__ = ["Room", "View", "draw_face_numbers", "draw_surface"]
 
 # Numbers from LONG on have long labels. Axes that are SHORT relative to the longest one have fewer
 # labels, FLAT ones have one.
@@ -64,6 +64,22 @@ def draw_surface(
     )  # fmt: skip
     if marked is not None:
         _mark(axes, samples.points[marked.visible], marked.normal, scene, math.sqrt(area))
+
+
+def draw_face_numbers(axes: Any, samples: Samples, visible: NDArray[np.bool_]) -> None:  # noqa: ANN401
+    """Write the number in the file on each face of a part, at a visible sample near its middle."""
+    from matplotlib.patheffects import withStroke
+
+    assert samples.face_index is not None
+    faces, halo = samples.face_index[visible], [withStroke(linewidth=1.5, foreground="white")]
+    found = np.unique(faces)
+    for face, number in zip(found, numbers_in_file(samples, found), strict=True):
+        points = samples.points[visible][faces == face]
+        middle = np.linalg.norm(points - points.mean(axis=0), axis=1).argmin()
+        axes.text(
+            *points[middle], str(number), fontsize=6.5, ha="center", va="center", color=INK,
+            path_effects=halo, zorder=5,
+        )  # fmt: skip
 
 
 def _mark(

@@ -8,6 +8,8 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
+from ...refusals import refused
+
 pytest.importorskip("matplotlib")
 pytestmark = pytest.mark.compiled
 
@@ -35,6 +37,15 @@ def test_faces_have_colours_and_the_numbers_of_the_file(parts: ModuleType) -> No
     assert [[t.get_text() for t in x.get_xticklabels()] for x in bars] == [["1", "4", "8"]]
     (drawn,) = [x for x in figure.axes[0].collections if x.get_array() is not None]
     assert len({*map(tuple, drawn.to_rgba(np.asarray(drawn.get_array())))}) == 3
+
+
+def test_numbers_of_the_file_are_written_on_visible_faces(parts: ModuleType) -> None:
+    part = parts.box().select(index=[1, 3, 5])
+    figure = gm.plot(part, gm.sample(part, 60), view=(30, 30), face_numbers=True)
+    assert {t.get_text() for t in figure.axes[0].texts} == {"1", "3", "5"}
+    below = gm.plot(parts.box(), gm.sample(parts.box(), 60), view=(-30, 210), face_numbers=True)
+    assert {t.get_text() for t in below.axes[0].texts} == {"0", "2", "4"}
+    refused("only the faces of a CAD part", gm.sample("torus", 20).plot, face_numbers=True)
 
 
 def test_of_many_faces_some_have_their_number() -> None:
