@@ -83,6 +83,7 @@ def write(
         - `.las`, `.laz`: points, with all other columns as extra dimensions, and the CRS of a
           `terrain`, whose `origin` is added again; coordinates are rounded to 1e-8 of the
           extent. Need `points`, and the extra "gis" (laspy).
+        - `.gpkg`, `.geojson`: the same for programs of GIS, with `slope` and `aspect` (pyogrio).
     fields : sequence of str, optional
         The fields to write, such as ``("points", "normals")``; by default all fields of the
         samples.

@@ -51,8 +51,8 @@ SURFACE is the name of a surface of the catalogue (see `gaussmap surfaces`), a .
 .npz file, as FILE.npz:NAME if it holds several arrays. The array is a grid of points (m, n, 3), or
 of elevations (m, n) with rows along y and columns along x, which need --spacing.
 
-A GeoTIFF, .tif or .tiff, holds elevations with their coordinates, read with pip install
-'gaussmap[gis]'. Points are in world coordinates.
+A GeoTIFF, .tif or .tiff, or an ASCII grid, .asc, holds elevations with their coordinates, read
+with pip install 'gaussmap[gis]'. Points are in world coordinates.
 
 In place of SURFACE, --formula gives x, y and z in terms of u and v.
 

@@ -63,8 +63,8 @@ def _refuse_file(source: str) -> None:
         raise InputError(f"'{source}' is a mesh; {NO_MESHES}.")
     if Path(source).is_file():
         raise InputError(
-            f"'{source}' is neither a .npy, .npz nor .tif file, nor a CAD part; write points (m, "
-            "n, 3) or elevations (m, n) to a .npy file."
+            f"'{source}' is neither a .npy, .npz, .tif nor .asc file, nor a CAD part; write points "
+            "(m, n, 3) or elevations (m, n) to a .npy file."
         )
     if Path(source).suffix:
         raise FileError(f"'{source}' does not exist; look at its name and folder.")

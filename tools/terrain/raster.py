@@ -1,4 +1,4 @@
-"""Elevations in GeoTIFF files, read by rasterio."""
+"""Elevations in GeoTIFF files and ASCII grids, read by rasterio."""
 
 from __future__ import annotations
 
@@ -35,16 +35,18 @@ class Raster(NamedTuple):
 
 
 def read_raster(path: Path, band: int, nodata: float | None) -> Raster:
-    """Return a band of a GeoTIFF, with scale and offset applied.
+    """Return a band of a raster, with scale and offset applied.
 
     `nodata` replaces the file's own value, and is compared before scale and offset. Raises
     FileError, InputError for a missing band, and MissingExtraError.
     """
     rasterio = from_extra("rasterio", "gis", "reading GeoTIFF files")
+    ascii_grid = path.suffix.lower() == ".asc"
+    kind, driver = ("ASCII grid", "AAIGrid") if ascii_grid else ("GeoTIFF", "GTiff")
     quiet = warnings.catch_warnings()
-    with opened(path, "GeoTIFF", "elevations"), quiet:
+    with opened(path, kind, "elevations"), quiet:
         warnings.simplefilter("ignore", rasterio.errors.NotGeoreferencedWarning)
-        with rasterio.open(path, driver="GTiff") as dataset:
+        with rasterio.open(path, driver=driver) as dataset:
             bands = dataset.count
             if band <= bands:
                 return _raster(dataset, band, nodata)

@@ -58,9 +58,9 @@ def terrain(
     Parameters
     ----------
     source : str, os.PathLike, rasterio.DatasetReader or (m, n) array_like
-        Name of a GeoTIFF, or an open dataset of rasterio in any format, whose transform, CRS,
-        nodata, mask, scale and offset are respected; or elevations, with rows along y and columns
-        along x. Heights are in the unit of x and y.
+        Name of a GeoTIFF or an ASCII grid (.asc), or an open dataset of rasterio in any format,
+        whose transform, CRS, nodata, mask, scale and offset are respected; or elevations, with rows
+        along y and columns along x. Heights are in the unit of x and y.
     x, y : (n,) and (m,), or (m, n) array_like, optional
         The coordinates of an array: one for each column and one for each row, or for each height.
         They need not be equally spaced.
@@ -96,7 +96,7 @@ def terrain(
     Raises
     ------
     FileError
-        If the file cannot be read, is damaged, no GeoTIFF, or too large for the memory.
+        If the file cannot be read, is damaged, of another format, or too large for the memory.
     InputError
         For invalid arguments; for a file or an array without coordinates, coordinates that fold,
         degrees not declared as such, heights in another unit than x and y, and as

@@ -385,7 +385,7 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         # surfaces in files
         (["sample", "missing.npy", *HEIGHTS], "'missing.npy' cannot be read: No such file"),
         (["sample", "folder.npy", *HEIGHTS], "'folder.npy' cannot be read: Is a directory"),
-        (["sample", "heights.txt", *HEIGHTS], "neither a .npy, .npz nor .tif file"),
+        (["sample", "heights.txt", *HEIGHTS], "neither a .npy, .npz, .tif nor .asc file"),
         (["sample", "part.stl", *TO], "'part.stl' is a mesh; meshes are not taken.*CAD file"),
         (["sample", "zero.npy", *HEIGHTS], r"shape \(4, 3\): points \(N, 3\) in no order are not"),
         (["sample", "nothing.npy", *HEIGHTS], "'nothing.npy' is damaged"),

@@ -249,6 +249,23 @@ def test_what_has_no_place_is_refused(tmp_path: Path) -> None:
         gm.terrain(HEIGHTS[0], spacing=(1, 1))
 
 
+def test_an_ascii_grid(tmp_path: Path) -> None:
+    """It is the same as a GeoTIFF of single precision, with the reference system given."""
+    heights, path = HEIGHTS.astype("f4"), tmp_path / "dem.asc"
+    heights[0, 3] = np.nan
+    whole = gm.terrain(write(tmp_path / "dem.tif", heights, **PLACED)).grid
+    corner = {"xllcorner": 500_000, "yllcorner": 4_100_000 - 30 * SHAPE[0], "cellsize": 30}
+    header = {"ncols": SHAPE[1], "nrows": SHAPE[0], **corner, "NODATA_value": -9999}
+    lines = "\n".join(f"{name} {x}" for name, x in header.items())
+    np.savetxt(path, np.nan_to_num(heights, nan=-9999), "%.9g", header=lines, comments="")
+    surface = gm.terrain(path, source_crs="EPSG:32617")
+    np.testing.assert_array_equal(surface.grid, whole)
+    assert surface.georeference is not None
+    assert surface.georeference.crs == "EPSG:32617"
+    path.write_text("ncols")
+    refused("damaged or is no ASCII grid", gm.terrain, path, error=gm.errors.FileError)
+
+
 def test_damaged_files(tmp_path: Path) -> None:
     whole = write(tmp_path / "dem.tif", HEIGHTS.astype("f4"), **PLACED).read_bytes()
     for k, content in enumerate((b"", b"II*\0junk", whole[:600], b"<VRTDataset/>")):
