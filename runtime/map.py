@@ -223,8 +223,9 @@ class GaussMap(Methods):
     def degree(self, normals: ArrayLike, *, threads: int | None = None) -> NDArray[np.int64]:
         """Return Σ sign K over the points with each of the normals.
 
-        On a closed surface it is χ/2 for every normal, χ being the Euler characteristic. If the
-        surface ends in tips, their degrees are added: 1 for normals in the normal cone of a convex
+        On a closed surface it is χ/2 for every normal, χ being the Euler characteristic; on one
+        with one side, as a Klein bottle, the degrees of n and −n add up to χ. If the surface ends
+        in tips, their degrees are added: 1 for normals in the normal cone of a convex
         tip, and in general the signed number of times that the normals at the tip cover a normal.
         Isolated points with K = 0, curves and points of creases count with their index, and
         undecided boxes with their degree. Curves that end in an edge or in a crease count 0.

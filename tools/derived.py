@@ -481,7 +481,8 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
     Parameters
     ----------
     by : Mesh, optional
-        A mesh of the surface, against which rays are tested; by default that of 10,000 samples.
+        A mesh of the surface, against which rays are tested; by default that of 10,000 samples,
+        which takes most of the time: for many views make one.
         Next to cusps of the outline, where rays pass the surface within about the distance of the
         mesh from it, the result may be wrong.
 

@@ -39,7 +39,8 @@ def as_normals(
     array = real_values(normals, "normals")
     if array.ndim != 2 or array.shape[1] != dimension or array.shape[0] == 0:
         raise InputError(
-            f"normals must have the shape (S, {dimension}) with S >= 1, not {array.shape}."
+            f"normals must have the shape (S, {dimension}) with S >= 1, not {array.shape}"
+            f"{'; write [normal] for one' if array.shape == (dimension,) else ''}."
         )
     if dimension == 3 and _are_unit(array, threads):
         return array

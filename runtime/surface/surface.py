@@ -118,7 +118,8 @@ class Surface(SurfaceValues):
         periodic : bool or pair, default False
             The boundary conditions of both parameters, or a pair of those of u and of v: True
             (periodic), False (open, and poles are found, see `assumed_open`); in a pair also one of
-            "open", "periodic", "mirrored", "pole" for both ends, or a pair of these (lower bound,
+            "open", "periodic", "mirrored" (periodic with the other parameter reversed, as on a
+            Möbius band or a Klein bottle), "pole" for both ends, or a pair of these (lower bound,
             upper bound).
         derivatives : callable, optional
             ``derivatives(u, v)`` returns (..., 6, 3): x, x_u, x_v, x_uu, x_uv, x_vv. At their first

@@ -225,7 +225,7 @@ def test_the_array_of_the_user_is_left_alone():
     [
         ([], r"must have the shape \(S, 3\) with S >= 1, not \(0,\)\.$"),
         (np.zeros((0, 3)), r"must have the shape \(S, 3\) with S >= 1, not \(0, 3\)\.$"),
-        ([0, 0, 1], r"must have the shape \(S, 3\) with S >= 1, not \(3,\)\.$"),
+        ([0, 0, 1], r"shape \(S, 3\) with S >= 1, not \(3,\); write \[normal\] for one\.$"),
         (np.ones((5, 4)), r"not \(5, 4\)\.$"),
         (np.ones((2, 3, 1)), r"not \(2, 3, 1\)\.$"),
         (5.0, r"not \(\)\.$"),
