@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 __all__ = ["plot"]
 
 COUNT = 2_000  # of samples, coloured by K
-SIZE, DOTS_PER_INCH = (8.0, 4.4), 200
+SIZE, ROOM, DOTS_PER_INCH = (8.0, 4.4), (3.6, 2.9), 200  # of the figure, and of the surface
 POINT = 0.02  # an image smaller than this is drawn as a point
 
 
@@ -82,7 +82,7 @@ def plot(self: GaussMap, *, view: Sequence[float] = VIEW) -> Figure:
         right: Any = figure.add_axes((0.42, 0.0, 0.56, 0.92), projection="3d")
         visible = scene.visible(samples.points)
         colours = colours_of(samples, CURVATURE)
-        draw_surface(right, samples, scene, colours, (elevation, azimuth), visible)
+        draw_surface(right, samples, scene, colours, (elevation, azimuth), visible, room=ROOM)
         left = figure.add_axes((0.02, 0.08, 0.40, 0.80), aspect="equal")
         left.set(xlim=(-1.35, 1.35), ylim=(-1.35, 1.35))
         left.set_axis_off()

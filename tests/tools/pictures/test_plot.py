@@ -222,10 +222,12 @@ def test_command_line(tmp_path, capsys, main):
 
 
 def test_the_picture_of_a_gauss_map_has_its_folds_and_cusps(parts: ModuleType) -> None:
-    texts = ("u", "v", "u**4/2 + u**2*v/2 + v**2/4")  # a fold with a cusp at (0, 0)
+    texts = ("u", "v", "u**4/2 + u**2*v - v**2")  # a fold with a cusp at (0, 0)
     bay = gm.GaussMap(gm.Surface.from_sympy(texts, ("u", "v"), ((-1, 1), (-1, 1))))
     (fold,) = bay.folds()
-    surface, sphere = bay.plot(view=(90, -90)).axes
+    surface, sphere = bay.plot(view=(45, -60)).axes
+    surface.figure.canvas.draw()
+    assert surface.xaxis.label.get_window_extent().y0 > 0.0  # inside of the figure
     of_surface: Any = surface.lines
     drawn = [np.stack(x.get_data_3d()[:2], axis=1) for x in of_surface]
     assert sum(len(x) == len(fold.points) for x in drawn) == 1
