@@ -233,6 +233,8 @@ def mesh(
             return mesh_of_samples(self, angle, prefer)
     from .meshes.meshing import mesh_of
 
+    if self.offset_of is not None and isinstance(self.offset_of.surface, Whole):
+        raise InputError("an offset of a CAD part has no mesh.")
     with busy("meshing", progress):
         return mesh_of(self, spline_or(self, spline, self.offset_of), angle, prefer)
 
@@ -361,9 +363,10 @@ def offset(self: Samples, distance: float, *, trimmed: bool = False) -> Samples:
         Leave out samples whose points become nearer to the surface than the distance: parts that
         fold, and parts that come near to other parts of the surface. At what stays, a ball of this
         radius touches the surface and does not cut it. After several offsets, the distance is that
-        of all. It is measured from at least 20,000 samples of the surface, whose gaps are at most
-        about a fifth of it: what is left out is nearer than the distance, and what stays may be
-        nearer by 1 %, where sheets meet.
+        of all. It is measured from at least 20,000 samples of the surface (of a part that is a
+        selection, from those of its faces), whose gaps are at most about a fifth of it: what is
+        left out is nearer than the distance, and what stays may be nearer by 1 %, where sheets
+        meet.
 
     Returns
     -------

@@ -95,6 +95,7 @@ MESH_EXAMPLES = """\
 \b
 examples:
   gaussmap mesh torus --count 5000 -o torus.obj
+  gaussmap mesh torus --offset 0.1 -o shell.stl
   gaussmap mesh heights.npy --spacing 30 30 --count 50000 -o terrain.ply
   gaussmap mesh torus --normals cap.npy --deviation 20 -o cap.stl
   gaussmap mesh part.step --count 8000 -o part.stl
@@ -383,8 +384,15 @@ def _quiet() -> Option:
 def _sampling(default_count: int) -> list[click.Parameter]:
     """Return the arguments that `sample`, `mesh`, `plot` and `view` share."""
     threads = "How many threads to use (default: one for each core)."
+    distance = "Move the samples by DISTANCE along their normals; inwards, if it is negative."
+    trimmed = "With --offset: without samples that become nearer to the surface than DISTANCE."
+    moved = [
+        Option("--offset DISTANCE", distance, number, group="an offset"),
+        Option("--trimmed", trimmed, group="an offset"),
+    ]
     run = [Option("--threads T", threads, whole(MOST), group="the run"), _quiet()]
-    return [surface_argument(), *_amount(default_count), *_distribution(), *surface_options(), *run]
+    how = *_amount(default_count), *_distribution(), *surface_options()
+    return [surface_argument(), *how, *moved, *run]
 
 
 def _amount(default_count: int) -> list[Option]:

@@ -36,6 +36,8 @@ def sampled(
     NOTICE.quiet = options.quiet
     progress = not options.quiet
     _spare_inputs(options)
+    if options.trimmed and options.offset is None:
+        raise InputError("--trimmed goes with --offset DISTANCE only.")
     request = request_of(options, default_count)
     named = Named.of(options)
     surface_, cells = surface_of(named), None
@@ -43,7 +45,10 @@ def sampled(
         surface_, cells = with_tolerance(surface_, named)
     how |= {"cells": cells, "on": options.on, "threads": options.threads, "progress": progress}
     with busy("sampling", progress):
-        return sample_and_normals(surface_, request, **how)
+        samples, normals = sample_and_normals(surface_, request, **how)
+        if options.offset is not None:
+            samples = samples.offset(options.offset, trimmed=options.trimmed)
+    return samples, normals
 
 
 def request_of(options: SimpleNamespace, default_count: int) -> Request:

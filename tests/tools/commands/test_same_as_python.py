@@ -74,6 +74,8 @@ ASKED: list[tuple[str, Made]] = [
         "--slope 20 60 --aspect 180 45 --count 60",
         torus(count=60, reach=gm.Reach(slope=(20, 60), aspect=(180, 45))),
     ),
+    ("--offset -.2 --count 60", lambda: torus(count=60)().offset(-0.2)),
+    ("--offset .7 --trimmed --count 60", lambda: torus(count=60)().offset(0.7, trimmed=True)),
     ("--on spline --count 60", torus(count=60, on="spline")),
     ("--threads 1 --count 60", torus(count=60, threads=1)),
     ("--fields points,uv --count 60", torus(count=60, fields=("points", "uv"))),

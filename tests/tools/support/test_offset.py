@@ -241,6 +241,21 @@ def test_trimmed_by_brute_force() -> None:
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
+def test_a_trimmed_offset_of_a_part(parts: Any) -> None:
+    """Into a box: what stays is as far from all walls as from its own."""
+    part = parts.box()
+    samples = gm.sample(part, 200)
+    inside = samples.points - 0.3 * samples.normals
+    walls = np.abs(inside[:, None] - part.bounds).min(axis=(1, 2))
+    moved = samples.offset(-0.3, trimmed=True)
+    assert 50 < len(moved) < 150
+    assert np.isin(moved.points[:, 0], inside[walls >= 0.3 * 0.99, 0]).all()
+    assert len(moved) >= np.count_nonzero(walls >= 0.3 - 1e-9)
+    refused("an offset of a CAD part has no mesh", samples.offset(0.1).mesh)
+
+
+@pytest.mark.compiled
 def test_what_cannot_be_trimmed() -> None:
     refused("do not hold their surface", exact_torus().offset, 0.1, trimmed=True)
     samples = gm.sample("torus", 100, cells=(16, 16))
