@@ -27,10 +27,14 @@ Origin = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Georeference:
-    """A coordinate reference system (EPSG:number or WKT), and the origin that was subtracted."""
+    """A coordinate reference system (EPSG:number or WKT), the subtracted origin, and the unit.
+
+    The unit is that of lengths, such as "m", if it is known.
+    """
 
     crs: str | None = None
     origin: Origin = (0.0, 0.0, 0.0)
+    unit: str | None = None
 
 
 def checked_origin(origin: Sequence[float] | None) -> Origin:

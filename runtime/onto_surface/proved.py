@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from math import isnan
 from types import MappingProxyType
 from typing import Any, ClassVar, NamedTuple
@@ -155,8 +155,7 @@ class ProvedSurface:
         report = SamplingReport(
             self.surface.name, len(normals), count_of(held), None, None, None,
             infinite_curvatures=count_infinite(held), on=self.on, unrefined=0, apexes=self.apexes,
-            crs=None if georeference is None else georeference.crs,
-            origin=None if georeference is None else georeference.origin,
+            **({} if georeference is None else asdict(georeference)),
             **proof_of(normals, left)._asdict(),
         )  # fmt: skip
         return Samples(**held, report=report, spline=None, surface=surface, offset_of=None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from operator import attrgetter
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -218,7 +218,8 @@ class SamplingReport:
         distance from edges, if there is one. `Samples.coverage`,
         `normal_deviation` and `weights` refer to the points in reach.
     unit : str or None
-        For a CAD part: the unit of lengths, such as "mm", if it is known.
+        For a CAD part, and a `terrain` with a `crs`: the unit of lengths, such as "mm", if it is
+        known.
     crs : str or None
         For a `terrain`: the coordinate reference system of the points, as "EPSG:number" or WKT.
     origin : (float, float, float) or None
@@ -337,8 +338,7 @@ def sampling_report(
         fit_rms=None if misfit is None else misfit.rms,
         fit_angle=None if misfit is None else misfit.angle,
         apexes=spline.apexes,
-        crs=None if place is None else place.crs,
-        origin=None if place is None else place.origin,
+        **({} if place is None else asdict(place)),
         **known,
     )
 

@@ -38,8 +38,7 @@ def summary_of(samples: SampleArrays) -> str:
     if report.angle is not None:
         line += f"; every normal is within {report.angle:.3g}° of that of a sample"
     if report.coverage is not None:
-        distance = f"{report.coverage:.3g} {report.unit or ''}".strip()
-        line += f"; every point is within {distance} of a sample"
+        line += f"; every point is within {_length(report.coverage, report)} of a sample"
     if report.developable_share is not None and not _filling(samples):
         share = f"{100.0 * report.developable_share:.2f}"
         if share != "0.00":
@@ -79,15 +78,16 @@ def misfit_clause(report: SamplingReport) -> str:
     """Return a clause on the misfit of the spline to the surface or the data, if known."""
     if report.fit_distance is None or report.fit_rms is None:
         return ""
+    distance, rms = (_length(x, report) for x in (report.fit_distance, report.fit_rms))
     if report.fit_angle is None:
-        return (
-            f"; they lie on a spline within {report.fit_distance:.3g} of the data (root mean "
-            f"square {report.fit_rms:.3g})"
-        )
-    return (
-        f"; they lie on a spline within {report.fit_distance:.3g} of the surface, its normals "
-        f"within {report.fit_angle:.3g}°"
-    )
+        return f"; they lie on a spline within {distance} of the data (root mean square {rms})"
+    angle = f"its normals within {report.fit_angle:.3g}°"
+    return f"; they lie on a spline within {distance} of the surface, {angle}"
+
+
+def _length(value: float, report: SamplingReport) -> str:
+    """Return a length with its unit, if that is known."""
+    return f"{value:.3g} {report.unit or ''}".strip()
 
 
 def _filling(samples: SampleArrays) -> int:

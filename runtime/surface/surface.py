@@ -70,8 +70,8 @@ class Surface(SurfaceValues):
         smooth; such a side becomes a pole, and the other parameter periodic. A surface of points is
         tested at once: `boundary` has the poles, and `grid` no points that repeat the first ones.
     georeference : Georeference or None
-        For a `terrain`: the coordinate reference system `crs`, as "EPSG:number" or WKT, and the
-        `origin` (x, y, z) that was subtracted from coordinates.
+        For a `terrain`: the coordinate reference system `crs`, as "EPSG:number" or WKT, the
+        `origin` (x, y, z) that was subtracted from coordinates, and the `unit` of lengths.
 
     Examples
     --------

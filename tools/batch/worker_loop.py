@@ -142,7 +142,6 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     from ...runtime.onto_surface.on_surface import place_of_samples
     from ...runtime.samples.fields import checked_fields
     from ..cad.part import Part
-    from ..files.lengths import unit_of
     from ..sampling.sample import sample
     from ..sources.surface_of import with_tolerance
 
@@ -169,7 +168,7 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     report = samples.report
     about = {
         "samples": len(samples),
-        "unit_of_length": unit_of(samples) or "",
+        "unit_of_length": samples.report.unit or "",
         "misfit": report.fit_distance,
         "coverage": report.coverage,
         "angle": report.angle,

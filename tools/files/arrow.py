@@ -12,7 +12,7 @@ from ...runtime.base.extras import from_extra
 from ...runtime.samples.fields import COLUMNS, columns_of
 from ...runtime.samples.samples import Samples
 from .content import report_to_json
-from .lengths import unit_of, units_of
+from .lengths import units_of
 from .of_faces import columns_of_faces
 from .of_terrain import columns_of_terrain
 
@@ -38,7 +38,7 @@ def write_arrow(samples: Samples, path: Path) -> None:
 
 def _table(samples: Samples, path: Path) -> Any:  # noqa: ANN401
     arrow = from_extra("pyarrow", "tables", f"a {path.suffix} file")
-    units, unit = units_of(samples), unit_of(samples)
+    units, unit = units_of(samples), samples.report.unit
     fields = [
         arrow.field(column, arrow.from_numpy_dtype(array.dtype), nullable=False).with_metadata(
             {"field": name} | ({"unit": units[name]} if name in units else {})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ...runtime.base.errors import InputError, shown
-from ...runtime.base.extras import if_installed
 from ...runtime.samples.fields import COLUMNS, UNITS
 from ...runtime.samples.samples import Samples
 from ...runtime.samples.whole import Whole
@@ -13,7 +12,6 @@ __all__ = [
     "checked_unit",
     "names_with_units",
     "unit_named",
-    "unit_of",
     "units_of",
     "whole_of",
 ]
@@ -73,32 +71,15 @@ def whole_of(samples: Samples) -> Whole | None:
     return surface if isinstance(surface, Whole) else None
 
 
-def unit_of(samples: Samples) -> str | None:
-    """Return the unit of length of samples, from their report or their reference system.
-
-    Returns None if it is unknown. Reference systems are read by rasterio, if it is installed.
-    """
-    if samples.report.unit is not None:
-        return samples.report.unit
-    crs = samples.report.crs
-    rasterio = None if crs is None else if_installed("rasterio.crs")
-    if rasterio is None:
-        return None
-    try:
-        return unit_named(rasterio.CRS.from_user_input(crs).linear_units)
-    except ValueError:
-        return None
-
-
 def units_of(samples: Samples) -> dict[str, str]:
     """Return the units of fields; L is replaced by the unit of length if known."""
-    unit = unit_of(samples)
+    unit = samples.report.unit
     return {name: x if unit is None else x.replace("L", unit) for name, x in UNITS.items()}
 
 
 def names_with_units(samples: Samples) -> list[str]:
     """Return the names of columns; lengths and curvatures have their unit if known."""
-    units, known = units_of(samples), unit_of(samples) is not None
+    units, known = units_of(samples), samples.report.unit is not None
     return [
         f"{column} [{units[name]}]" if known and "L" in UNITS.get(name, "") else column
         for name in samples.arrays()

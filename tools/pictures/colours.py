@@ -13,7 +13,7 @@ from ...runtime.base.checks import known_name, real_values
 from ...runtime.base.errors import InputError
 from ...runtime.samples.fields import columns_of
 from ...runtime.samples.samples import Samples
-from ..files.lengths import unit_of, whole_of
+from ..files.lengths import whole_of
 from .palette import SCALE
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ def colours_of(samples: Samples, color: str | ArrayLike) -> Colours:
 
 def _unit(name: str, samples: Samples) -> str:
     """Return the unit of a column, that of the part if it has one."""
-    return UNITS.get(name, "").replace("length", unit_of(samples) or "length")
+    return UNITS.get(name, "").replace("length", samples.report.unit or "length")
 
 
 def _discrete(samples: Samples, values: NDArray[np.float64], name: str) -> Colours:

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.samples.samples import Samples
-from ..files.lengths import unit_of
 from .colours import Colours, numbers_in_file
 from .marked import Marked
 from .palette import INK, MARK
@@ -43,7 +42,7 @@ def draw_surface(
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
     axes.computed_zorder = False
-    _frame(axes, scene, view, room, unit_of(samples))
+    _frame(axes, scene, view, room, samples.report.unit)
     for layer in scene.in_layers():
         greys = (0.60 + 0.33 * layer.brightness)[:, None] * [0.98, 0.99, 1.0]
         # Quadrangles are rasterized, also in .pdf and .svg files: seams would show between them.

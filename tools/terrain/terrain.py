@@ -209,7 +209,9 @@ def _surface(
     if domain is not None:
         (x0, x1), (y0, y1) = domain
         domain = (x0 - origin[0], x1 - origin[0]), (y0 - origin[1], y1 - origin[1])
-    place = Georeference(None if system is None else crs_text(system), origin)
+    place = Georeference(None, origin)
+    if system is not None:
+        place = Georeference(crs_text(system), origin, unit_named(system.linear_units))
     return Surface._of_grid(points, OPEN, (False, False), domain, name, label(name, name), place)
 
 

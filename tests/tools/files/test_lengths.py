@@ -54,9 +54,14 @@ def test_tables_of_parts_name_the_unit(tmp_path):
 
 
 @pytest.mark.parametrize(("crs", "name"), [("EPSG:32617", "x [m]"), ("EPSG:2263", "x [us-ft]")])
-def test_tables_of_terrain_name_the_unit_of_the_reference_system(crs, name, tmp_path):
+def test_terrain_has_the_unit_of_its_reference_system(crs, name, tmp_path):
     pytest.importorskip("rasterio")
-    assert header(gm.sample(terrain(crs), 20), tmp_path)[0] == name
+    samples, unit = gm.sample(terrain(crs), 20), name[3:-1]
+    assert header(samples, tmp_path)[0] == name
+    report = samples.report
+    assert report.unit == unit
+    misfit = f"within {report.fit_distance:.3g} {unit} of the data (root mean square "
+    assert f"{misfit}{report.fit_rms:.3g} {unit})" in samples.summary()
 
 
 def test_no_unit_is_named_that_is_not_known(tmp_path):
