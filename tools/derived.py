@@ -365,7 +365,7 @@ def offset(self: Samples, distance: float, *, trimmed: bool = False) -> Samples:
         radius touches the surface and does not cut it. After several offsets, the distance is that
         of all. It is measured from at least 20,000 samples of the surface (of a part that is a
         selection, from those of its faces), whose gaps are at most about a fifth of it: what is
-        left out is nearer than the distance, and what stays may be nearer by 1 %, where sheets
+        left out is nearer than the distance, and what stays may be nearer by 2 %, where sheets
         meet.
 
     Returns

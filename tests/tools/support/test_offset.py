@@ -242,6 +242,14 @@ def test_trimmed_by_brute_force() -> None:
 
 @pytest.mark.compiled
 @pytest.mark.slow
+def test_a_thin_body_is_trimmed_away() -> None:
+    """It is .0496 thick; 20,000 samples are too far apart to find that everywhere."""
+    samples = gm.sample(gm.surfaces.ellipsoid(1, 1, 0.0248), 400, density="uniform")
+    assert len(samples.offset(-0.025, trimmed=True)) == 0
+
+
+@pytest.mark.compiled
+@pytest.mark.slow
 def test_a_trimmed_offset_of_a_part(parts: Any) -> None:
     """Into a box: what stays is as far from all walls as from its own."""
     part = parts.box()
