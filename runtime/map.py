@@ -273,7 +273,7 @@ class GaussMap(Methods):
                 sums[which] += piece.component_degrees(directions[which])
         if self._creases is not None:
             at = self._creases.besides(found, directions)
-            sums += np.bincount(at.numbers, at.degrees, asked).astype(np.int64)
+            sums += np.bincount(at.numbers, np.nan_to_num(at.degrees), asked).astype(np.int64)
         for place in found.report.undecided or ():
             sums[place.normal] += place.degree or 0
         return sums

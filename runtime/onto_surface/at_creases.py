@@ -9,7 +9,9 @@ the parameter across.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +33,11 @@ DEEPEST, MANY, STEPS = 20, 4096, 12
 # Normals of both sides are known up to SMOOTH. The distance of two components is at least APART,
 # relative to the crease; at this distance from a component, signs of n·x_w on both sides are taken.
 SMOOTH, APART = 1e-9, 1e-6
+# Over the radius of a corner, SMOOTH times the domain, normals turn by at most TURNED.
+TURNED = 16.0 * SMOOTH
+# Whether the height increases along each of four creases, and the index of their corner then.
+RISES = np.indices((2, 2, 2, 2)).reshape(4, -1).T == 1
+DEGREES = 1.0 - (np.roll(RISES, 1, axis=1) != RISES).sum(axis=1) / 2.0
 PRODUCTS_AT_A_TIME = 1 << 21
 # The positions of the second derivatives in jets and Taylor polynomials.
 SECOND = (3, 5)
@@ -50,6 +57,61 @@ class OnCreases(NamedTuple):
     degrees: Array
     radius: Array
     unsure: Flags
+
+
+class Corner(NamedTuple):
+    """A point where two creases cross: those of u and of v with the indices `lines` (2,).
+
+    Along them it extends by `radius` (2,) of u and v. `tangents` (4, 3) are those of its four
+    creases at this distance, away from it and counter-clockwise; `point` (3,) is that of `uv` (2,).
+    """
+
+    lines: Indices
+    uv: Array
+    radius: Array
+    point: Array
+    tangents: Array
+
+    @classmethod
+    def of(cls, tape: Tape, numbers: Sequence[int], lines: Array, spans: Array) -> Corner:
+        """Return the corner of two creases, rows of `lines` and `spans` as in `Creases`."""
+        (_, left, right, _), (_, below, above, _) = lines
+        radius = SMOOTH * np.ptp(spans[::-1], axis=1)
+        u = np.array([right, right + radius[0], right, left - radius[0], right])
+        v = np.array([above, above, above + radius[1], above, below - radius[1]])
+        jets = jets_of(tape, u, v)
+        tangents = jets[1:, 1:3][np.arange(4), [0, 1, 0, 1]] * [[1.0], [1.0], [-1.0], [-1.0]]
+        return cls(np.array(numbers), np.array([right, above]), radius, jets[0, 0], tangents)
+
+    def is_near(self, rows: Indices, along: Array, periods: Array) -> Flags:
+        """Return whether the parameters along creases (k,) with given indices are in the corner."""
+        near = np.zeros(len(rows), np.bool_)
+        for axis, line in enumerate(self.lines.tolist()):
+            away = along - self.uv[1 - axis]
+            if periods[line] > 0.0:
+                away -= periods[line] * np.rint(away / periods[line])
+            near |= (rows == line) & (np.abs(away) <= self.radius[1 - axis])
+        return near
+
+    def at(self, normals: Array) -> OnCreases:
+        """Return the corner for each of the unit normals (S, 3) in its normal cone.
+
+        The slope of the height n·x changes its sign twice around a point without an index. Degrees
+        are NaN, and points `unsure`, if they depend on slopes that are 0 up to `TURNED`.
+        """
+        facing = normals @ _unit(np.cross(self.tangents, np.roll(self.tangents, -1, 0))).sum(axis=0)
+        slopes = normals @ _unit(self.tangents).T
+        zero = np.abs(slopes) <= TURNED
+        degrees = np.full((len(normals), len(RISES)), np.nan)
+        for k, (rises, degree) in enumerate(zip(RISES, DEGREES, strict=True)):
+            degrees[(zero | (rises == (slopes > 0.0))).all(axis=1), k] = degree
+        low, high = np.fmin.reduce(degrees, axis=1), np.fmax.reduce(degrees, axis=1)
+        (numbers,) = np.nonzero((facing > 0.0) & ((low != 0.0) | (high != 0.0)))
+        low, unsure = low[numbers], (low != high)[numbers]
+        uv, points, radius = (
+            np.tile(x, (len(numbers), 1)) for x in (self.uv, self.point, self.radius)
+        )
+        return OnCreases(numbers, uv, points, np.where(unsure, np.nan, low), radius, unsure)
 
 
 class _Sides(NamedTuple):
@@ -81,6 +143,7 @@ class Creases:
     rows: Indices
     ends: Array
     sides: _Sides
+    corners: Sequence[Corner]
 
     @classmethod
     def of(cls, surface: Surface) -> Creases | None:
@@ -100,9 +163,12 @@ class Creases:
         if tape is None or not lines:
             return None
         table, row, end = np.array(lines), np.concatenate(rows), np.concatenate(ends)
-        return cls(
-            tape, surface.trim, table, np.array(spans), row, end, _sides(tape, table[row], end)
-        )
+        bounds, trim = np.array(spans), surface.trim
+        crossing = product(*(np.flatnonzero(table[:, 0] == axis).tolist() for axis in (0, 1)))
+        corners = [Corner.of(tape, x, table[list(x)], bounds[list(x)]) for x in crossing]
+        if trim is not None:
+            corners = [x for x in corners if trim.contains(x.uv[None])[0]]
+        return cls(tape, trim, table, bounds, row, end, _sides(tape, table[row], end), corners)
 
     def at(self, normals: Array) -> OnCreases:
         """Return the points with unit normals (S, 3)."""
@@ -125,8 +191,15 @@ class Creases:
         degrees = convex * self._turning(rows, ends, given)
         radius = np.outer(np.ptp(ends, axis=1) / 2.0, [1.0, 1.0])
         radius[index, axis] = 0.0
+        for corner in self.corners:
+            keep &= ~corner.is_near(rows, middle, self.lines[:, 3])
         found = OnCreases(numbers, uv, jets[1][:, 0], degrees, radius, unsure)
-        return OnCreases._make(x[keep] for x in found)
+        found = OnCreases._make(x[keep] for x in found)
+        if not self.corners:
+            return found
+        parts = [found, *(x.at(normals) for x in self.corners)]
+        found = OnCreases._make(np.concatenate(x) for x in zip(*parts, strict=True))
+        return OnCreases._make(x[np.argsort(found.numbers, kind="stable")] for x in found)
 
     def besides(self, found: Samples, normals: Array) -> OnCreases:
         """Return the points `at` normals, without those that are among the samples `found`.
@@ -137,12 +210,13 @@ class Creases:
         at, kinds = self.at(normals), found.component
         assert kinds is not None
         keep = np.ones(len(at.numbers), np.bool_)
-        size = np.ptp(np.concatenate([found.points, at.points]), axis=0) if len(keep) > 0 else 0.0
+        size = np.ptp(self._jets(self.rows, self.ends[:, 0], 2)[:, 0], axis=0).max()
         special = found.normal_index[(kinds != Component.REGULAR) & (kinds != Component.CREASE)]
         for k in np.flatnonzero(at.unsure | np.isin(at.numbers, special)).tolist():
             own = (found.normal_index == at.numbers[k]) & (kinds != Component.CREASE)
             near = (np.abs(found.points[own] - at.points[k]) <= APART * size).all(axis=1)
             near &= at.unsure[k] | (kinds[own] != Component.REGULAR)
+            near &= ~np.isnan(at.degrees[k])
             keep[k] = not (near | (at.unsure[k] & (kinds[own] == Component.CURVE))).any()
         return OnCreases._make(x[keep] for x in at)
 
@@ -200,7 +274,8 @@ class Creases:
         order = np.lexsort((ends[:, 0], rows, numbers))
         numbers, rows, ends = numbers[order], rows[order], ends[order]
         slack = APART * np.ptp(self.spans[rows], axis=1)
-        same = (numbers[1:] == numbers[:-1]) & (rows[1:] == rows[:-1])
+        arcs = self._arcs(rows, ends.mean(axis=1))[0]
+        same = (numbers[1:] == numbers[:-1]) & (rows[1:] == rows[:-1]) & (arcs[1:] == arcs[:-1])
         starts = np.append(True, ~(same & (ends[1:, 0] <= ends[:-1, 1] + slack[1:])))[: len(rows)]
         firsts = np.flatnonzero(starts)
         lasts = np.append(firsts, len(rows))[1:] - 1
@@ -221,15 +296,30 @@ class Creases:
     def _turning(self, rows: Indices, ends: Array, normals: Array) -> Array:
         """Return 1 where the height along a crease has a maximum, −1 for a minimum, else 0."""
         step = APART * np.ptp(self.spans[rows], axis=1)
-        signs = []
+        signs, between = [], self._arcs(rows, ends.mean(axis=1))[1].T
         for at in (ends[:, 0] - step, ends[:, 1] + step):
-            low, high = self.spans[rows].T
+            at, (low, high) = np.clip(at, *between), self.spans[rows].T
             turns = np.floor((at - low) / (high - low)) * self.lines[rows, 3]
             at = np.clip(at - turns, low, high)
             jets = self._jets(rows, at, 2)
             along = jets[np.arange(len(rows)), 2 - self.lines[rows, 0].astype(int)]
             signs.append(np.sign(np.einsum("kx,kx->k", along, normals)))
         return 0.5 * (signs[0] - signs[1])
+
+    def _arcs(self, rows: Indices, along: Array) -> tuple[Indices, Array]:
+        """Return the arcs between corners that have the parameters along creases, and their ends.
+
+        These are numbers (k,) for each crease, and bounds (k, 2) of the parameters.
+        """
+        arcs, ends = np.zeros(len(rows), np.int64), np.tile([-np.inf, np.inf], (len(rows), 1))
+        for line in np.unique(np.array([x.lines for x in self.corners], np.int64)).tolist():
+            axis, own = int(self.lines[line, 0]), rows == line
+            of_line = self.lines[[x.lines[1 - axis] for x in self.corners if line in x.lines]]
+            low, high = np.sort(of_line[:, 1]), np.sort(of_line[:, 2])
+            arcs[own] = np.searchsorted(high, along[own])
+            ends[own, 0] = np.append(-np.inf, high)[arcs[own]]
+            ends[own, 1] = np.append(low, np.inf)[np.searchsorted(low, along[own])]
+        return arcs, ends
 
     def _uv(self, rows: Indices, along: Array, side: int) -> Array:
         """Return parameters (k, 2) just before (side 1) or after (2) creases."""

@@ -12,6 +12,7 @@ from numpy.typing import DTypeLike
 from ..base.aliases import Array, Indices
 from ..directions.regions import Reach
 from ..samples.fields import COLUMNS, Component, dtype_of
+from ..samples.report import UndecidedNormal, joined_proof
 from ..samples.samples import Samples
 from .at_creases import Creases, OnCreases
 from .on_spline import Fields, OnPatches, OnSpline, in_turn
@@ -75,26 +76,44 @@ def with_creases(
     """Return samples with fields, and the points of creases that have one of the unit normals.
 
     For each normal, they come after the other points. The samples `found` have components, points
-    and the indices of normals.
+    and the indices of normals. Corners with an unknown index are undecided.
     """
     at = creases.besides(found, normals)
     if reach is not None:
         at = OnCreases._make(x[reach._holds(at.points, normals[at.numbers])] for x in at)
+    open_ = np.isnan(at.degrees)
+    left = _corners(OnCreases._make(x[open_] for x in at))
+    at = OnCreases._make(x[~open_] for x in at)
     more = {
         "points": at.points, "uv": at.uv, "uv_radius": at.radius, "patch_index": -1,
         "component": Component.CREASE,
     }  # fmt: skip
     rows = _special(more, at.numbers, normals, list(found.arrays()), dtype)
-    return _joined(found, [rows], fields)
+    return _joined(found, [rows], fields, left)
 
 
-def _joined(found: Samples, more: Sequence[Fields], fields: Sequence[str]) -> Samples:
+def _corners(at: OnCreases) -> list[UndecidedNormal]:
+    """Return corners as undecided boxes."""
+    low, high = (at.uv - at.radius).tolist(), (at.uv + at.radius).tolist()
+    return [
+        UndecidedNormal(number, (u0, u1, v0, v1), "open", False)
+        for number, (u0, v0), (u1, v1) in zip(at.numbers.tolist(), low, high, strict=True)
+    ]
+
+
+def _joined(
+    found: Samples, more: Sequence[Fields], fields: Sequence[str],
+    left: Sequence[UndecidedNormal] = (),
+) -> Samples:  # fmt: skip
     """Return the given fields of the samples `found` and of `more`, in the order of normals."""
     parts = [found.arrays(), *more]
     index = np.concatenate([x["normal_index"] for x in parts])
     order = np.argsort(index, kind="stable")
     arrays = {x: np.concatenate([part[x] for part in parts])[order] for x in fields}
     report = replace(found.report, samples=len(order))
+    if left:
+        report = replace(report, undecided=(*(report.undecided or ()), *left))
+        report = replace(report, **joined_proof(report.normals or 0, [report]))
     return Samples(
         **arrays, report=report, spline=found.spline, surface=found.surface, offset_of=None
     )

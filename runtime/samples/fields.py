@@ -62,7 +62,8 @@ class Component(IntEnum):
     TIP
         A tip of the surface, such as that of a cone, whose normal cone contains the normal.
     CREASE
-        A point of a crease, where the normal is between those of both sides.
+        A point of a crease, where the normal is between those of both sides, or a corner where two
+        creases cross, whose normal cone contains the normal.
 
     Examples
     --------

@@ -180,14 +180,16 @@ def wrong_at(net: Net, normals: Array, found: gm.Samples) -> set[int]:
     return wrong
 
 
+CIRCLE = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+
+
 def revolved(
-    profile: Any, weights: Any, knots: Array, matrix: Array, digits: int = 17
+    profile: Any, weights: Any, knots: Array, matrix: Array, digits: int = 17, circle: Any = CIRCLE
 ) -> Net:  # fmt: skip
     """Return a profile (k, 2) of radii and heights, turned about z, and mapped by a matrix.
 
-    Control points and weights are rounded to some digits.
+    Control points and weights are rounded to some digits. Another `circle` (9, 2) has corners.
     """
-    circle = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
     around = [1.0, np.sqrt(0.5)] * 4 + [1.0]
     points = np.array([[(r * x, r * y, z) for x, y in circle] for r, z in profile]) @ matrix.T
     rounded = np.vectorize(lambda x: float(f"%.{digits - 1}e" % x))

@@ -194,6 +194,41 @@ def test_creases_at_many_normals(name: str) -> None:
     check_creases(name, directions(8, 10_000))
 
 
+def test_corners_where_creases_cross() -> None:
+    """Judged by the signs of the height around them, and by the sum of indices."""
+    circle = [(1, 0), (1, 0.8), (0, 0.9), (-0.7, 1), (-1, 0), (-1.2, -0.9), (0, -1), (0.8, -0.8),
+              (1, 0)]  # fmt: skip
+    arcs = [1, 0.8, 1, 0.9, 1, 0.7, 1, 0.8, 1]
+    net = revolved(CORNER * 0.7 + [3, 0], arcs, bezier(2, 9), SHEAR, circle=circle)
+    angles = np.arange(720.5) * np.pi / 360.0
+    around = 1e-4 * np.stack([np.cos(angles), np.sin(angles)])
+    sides = 1e-9 * np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]).T
+    corners, random = np.array([(0.0, 0.0), (0, 1), (0, 2), (0, 3)]), directions(1, 300)
+    shares = np.random.default_rng(3).dirichlet(np.ones(4), 40)
+    cones = [
+        unit(np.cross(*net.surface.jets(*(x[:, None] + sides) % 4.0)[:, 1:3].swapaxes(0, 1)))
+        for x in corners
+    ]
+    normals = np.concatenate([random, *(unit(shares @ x) for x in cones)])
+    known = gm.GaussMap(net.surface)
+    found = known.points(normals)
+    listed = [x.normal for x in found.report.undecided or ()]
+    assert len(listed) < 10
+    assert not np.delete(known.degree(normals), listed).any()
+    assert found.component is not None
+    for corner, normal in zip(corners, cones, strict=True):
+        point = net.surface.evaluate(*corner)
+        ring = net.surface.evaluate(*(corner[:, None] + around) % 4.0) - point
+        rises = ring @ normals.T > 0.0
+        index = 1.0 - (np.roll(rises, 1, axis=0) != rises).sum(axis=0) / 2.0
+        expected = (index != 0.0) & (normals @ normal.sum(axis=0) > 0.0)
+        at = np.linalg.norm(found.points - point, axis=1) < 1e-6
+        at &= found.component == gm.Component.CREASE
+        has = np.bincount(found.normal_index[at], minlength=len(normals))
+        assert not np.delete(has != expected, listed).any()
+        assert expected.any()
+
+
 # Where nets are cut: an axis, and how many control points the first part has.
 CUTS = {"ellipsoid, sheared": (0, 3), "torus, sheared": (1, 5), "capsule": (0, 3)}
 
