@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..runtime.base.checks import known_name, listed, positive_number, whole_number
 from ..runtime.base.errors import InputError, shown
@@ -20,8 +20,6 @@ from ..runtime.samples.whole import Whole
 
 if TYPE_CHECKING:
     import trimesh
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
     from ..runtime.spline.nets import AnySpline
     from ..runtime.surface.surface import Surface
@@ -34,9 +32,7 @@ __all__ = [
     "levels",
     "mesh",
     "offset",
-    "plot",
     "unobstructed",
-    "view",
     "visible",
     "weights",
     "write",
@@ -536,108 +532,3 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
     size = np.ptp(by.vertices, axis=0).sum()
     to_eye = -self.eye.rays(points) * (2.0 * size if self.eye.far else 1.0)
     return are_seen(points, normals, to_eye, by)
-
-
-def plot(
-    self: Samples,
-    surface: Surface | AnySpline | None = None,
-    *,
-    color: str | ArrayLike = "gaussian_curvature",
-    view: Sequence[float] = (28.0, -55.0),
-    axes: Axes | Sequence[Axes] | None = None,
-    normals: ArrayLike | None = None,
-    face_numbers: bool = False,
-) -> Figure:
-    """Draw the samples on their surface, and the unit sphere with their normals.
-
-    Sums of `convolve` are drawn on their mesh; without one, all of them are visible.
-
-    Parameters
-    ----------
-    surface : Surface, Spline or Part, optional
-        The surface of the samples, if they do not hold it.
-    color, view, axes, normals, face_numbers : optional
-        As in `plot`: the column or array shown in colour, elevation and azimuth in degrees, axes to
-        draw into, the prescribed normals, whether faces have their numbers.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure, see `plot`.
-
-    Raises
-    ------
-    MissingExtraError, MissingFieldError, UnknownNameError, InputError, SurfaceError
-        As `plot`; InputError if the surface is unknown.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> samples = gm.sample("torus", 200, cells=(16, 16))
-    >>> samples.plot(color="support", view=(60, 0)).savefig("torus.png")
-
-    """
-    from .pictures.plot import plot_samples
-
-    return plot_samples(
-        self, surface, color=color, view=view, axes=axes, normals=normals,
-        face_numbers=face_numbers,
-    )  # fmt: skip
-
-
-def view(
-    self: Samples, path: str | os.PathLike[str], surface: Surface | AnySpline | Part | None = None
-) -> None:
-    """Write one page for browsers: the surface and the unit sphere, which light up together.
-
-    Click a normal on the sphere, and its preimages light up on the surface; click a point of the
-    surface, and the Gaussian image of the region around it lights up on the sphere. On a CAD part,
-    a click on a face selects all of its samples; faces have the colours of the file. With the
-    brush, or the shift key, drag to paint. The page is self-contained, of 5 MB and more, and works
-    without a network.
-
-    Parameters
-    ----------
-    path : str or os.PathLike
-        Name of the file, with the suffix `.html` or `.htm`. It is written as a whole or not at all.
-    surface : Surface, Spline or Part, optional
-        The surface of the samples, if they do not hold it.
-
-    Raises
-    ------
-    MissingExtraError
-        Without Plotly: ``pip install "gaussmap[view]"``.
-    UnknownNameError
-        If the suffix is another one.
-    FileError
-        If the file cannot be written.
-    MissingFieldError
-        If the samples lack points, normals, Gaussian curvature or normal indices.
-    InputError
-        Without samples, for more than 50,000, and if the surface is unknown.
-    SurfaceError
-        If the surface cannot be drawn.
-
-    Notes
-    -----
-    A click next to the dot of a sample selects the normal of that sample; another click selects the
-    direction at the pointer, or, if all samples are at prescribed normals, the nearest of these.
-    The points that light up are
-
-    - the samples with exactly this normal, up to the rounding of float32, if it is a prescribed
-      one, or if several samples have it, as on planes. Made with ``normals=icosphere(…)``,
-      samples are all points with that normal.
-    - else one sample for each connected group of samples, of one sign of K, whose normals are
-      within an angle of it: the nearest one in normal. That counts preimages correctly where
-      samples are dense relative to the angle, which a slider changes, and not next to
-      parabolic lines, where two preimages are about to meet.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> gm.sample("torus", 200, cells=(16, 16)).view("torus.html")
-
-    """
-    from .viewer.view import view as write_page
-
-    write_page(self, path, surface)

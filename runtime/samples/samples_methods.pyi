@@ -8,12 +8,12 @@ class Methods:
     from ...tools.derived import levels as levels
     from ...tools.derived import mesh as mesh
     from ...tools.derived import offset as offset
-    from ...tools.derived import plot as plot
     from ...tools.derived import unobstructed as unobstructed
-    from ...tools.derived import view as view
     from ...tools.derived import weights as weights
     from ...tools.derived import write as write
     from ...tools.files.of_samples import to_dataframe as to_dataframe
     from ...tools.files.of_samples import to_open3d as to_open3d
     from ...tools.files.of_samples import to_pyvista as to_pyvista
     from ...tools.files.of_samples import to_trimesh as to_trimesh
+    from ...tools.pictures.plot import plot_samples as plot
+    from ...tools.viewer.view import view as view

@@ -191,7 +191,7 @@ def plot_part(
 
 
 def plot_samples(
-    samples: Samples,
+    self: Samples,
     surface: Surface | AnySpline | Part | None = None,
     *,
     color: str | ArrayLike = CURVATURE,
@@ -200,16 +200,44 @@ def plot_samples(
     normals: ArrayLike | None = None,
     face_numbers: bool = False,
 ) -> Figure:
-    """Return the figure of `plot`, for `Samples.plot`."""
+    """Draw the samples on their surface, and the unit sphere with their normals.
+
+    Sums of `convolve` are drawn on their mesh; without one, all of them are visible.
+
+    Parameters
+    ----------
+    surface : Surface, Spline or Part, optional
+        The surface of the samples, if they do not hold it.
+    color, view, axes, normals, face_numbers : optional
+        As in `plot`: the column or array shown in colour, elevation and azimuth in degrees, axes to
+        draw into, the prescribed normals, whether faces have their numbers.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure, see `plot`.
+
+    Raises
+    ------
+    MissingExtraError, MissingFieldError, UnknownNameError, InputError, SurfaceError
+        As `plot`; InputError if the surface is unknown.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> samples = gm.sample("torus", 200, cells=(16, 16))
+    >>> samples.plot(color="support", view=(60, 0)).savefig("torus.png")
+
+    """
     check_extra("matplotlib", "plot", "a picture")
     elevation, azimuth = finite_array(view, (2,), "view").tolist()
     panels = _checked_axes(axes)
-    directions = _checked_normals(samples, () if normals is None else normals)
-    checked_values(samples, color)
-    if yes_or_no(face_numbers, "face_numbers") and samples.face_index is None:
+    directions = _checked_normals(self, () if normals is None else normals)
+    checked_values(self, color)
+    if yes_or_no(face_numbers, "face_numbers") and self.face_index is None:
         raise InputError("only the faces of a CAD part have numbers, and samples of these.")
-    scene = scene_of_samples(samples, surface, rows_of_view(elevation, azimuth))
-    return _drawn(samples, scene, directions, color, (elevation, azimuth), panels, face_numbers)
+    scene = scene_of_samples(self, surface, rows_of_view(elevation, azimuth))
+    return _drawn(self, scene, directions, color, (elevation, azimuth), panels, face_numbers)
 
 
 def _checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64]:

@@ -62,13 +62,60 @@ RADIUS = 10.0  # of the initial region around a point, in per cent of the diamet
 
 
 def view(
-    samples: Samples,
-    path: str | os.PathLike[str],
-    surface: Surface | AnySpline | Part | None = None,
+    self: Samples, path: str | os.PathLike[str], surface: Surface | AnySpline | Part | None = None
 ) -> None:
-    """Write the page of samples; see `Samples.view`."""
+    """Write one page for browsers: the surface and the unit sphere, which light up together.
+
+    Click a normal on the sphere, and its preimages light up on the surface; click a point of the
+    surface, and the Gaussian image of the region around it lights up on the sphere. On a CAD part,
+    a click on a face selects all of its samples; faces have the colours of the file. With the
+    brush, or the shift key, drag to paint. The page is self-contained, of 5 MB and more, and works
+    without a network.
+
+    Parameters
+    ----------
+    path : str or os.PathLike
+        Name of the file, with the suffix `.html` or `.htm`. It is written as a whole or not at all.
+    surface : Surface, Spline or Part, optional
+        The surface of the samples, if they do not hold it.
+
+    Raises
+    ------
+    MissingExtraError
+        Without Plotly: ``pip install "gaussmap[view]"``.
+    UnknownNameError
+        If the suffix is another one.
+    FileError
+        If the file cannot be written.
+    MissingFieldError
+        If the samples lack points, normals, Gaussian curvature or normal indices.
+    InputError
+        Without samples, for more than 50,000, and if the surface is unknown.
+    SurfaceError
+        If the surface cannot be drawn.
+
+    Notes
+    -----
+    A click next to the dot of a sample selects the normal of that sample; another click selects the
+    direction at the pointer, or, if all samples are at prescribed normals, the nearest of these.
+    The points that light up are
+
+    - the samples with exactly this normal, up to the rounding of float32, if it is a prescribed
+      one, or if several samples have it, as on planes. Made with ``normals=icosphere(…)``,
+      samples are all points with that normal.
+    - else one sample for each connected group of samples, of one sign of K, whose normals are
+      within an angle of it: the nearest one in normal. That counts preimages correctly where
+      samples are dense relative to the angle, which a slider changes, and not next to
+      parabolic lines, where two preimages are about to meet.
+
+    Examples
+    --------
+    >>> import gaussmap as gm
+    >>> gm.sample("torus", 200, cells=(16, 16)).view("torus.html")
+
+    """
     check_target(path)
-    content = page(samples, surface)
+    content = page(self, surface)
     with paths.atomic_path(path) as temporary:
         temporary.write_text(content, encoding="utf-8")
 
