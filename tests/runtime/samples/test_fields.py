@@ -12,7 +12,6 @@ from gaussmap.runtime.samples import fields as names
 from gaussmap.runtime.samples.fields import ARRAY_NAMES, FLOAT_NAMES
 from gaussmap.runtime.samples.samples import Samples
 
-from ...products import covering
 from ...refusals import refused
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
@@ -153,15 +152,21 @@ def test_proved_samples_can_be_replaced():
     assert moved.fields == samples.fields
 
 
-def test_copies_pickles_and_parts():
-    samples = narrow(("uv", "normal_index"), dtype=np.float32)
-    whole = slice(None)
+@pytest.mark.parametrize("fields", [ARRAY_NAMES, ("points", "uv", "normal_index"), ("points",)])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_files_copies_pickles_and_parts(fields, dtype, tmp_path):
+    samples, whole = narrow(fields, dtype=dtype), slice(None)
+    paths = [tmp_path / "a.npz", tmp_path / "a.ply"]
+    for path in paths:
+        samples.write(path)
     for other in (copy.copy(samples), copy.deepcopy(samples), pickle.loads(pickle.dumps(samples)),
-                  samples[whole], Samples.concatenate([samples[:5], samples[5:]])):  # fmt: skip
-        assert other.fields == ("uv", "normal_index")
-        assert other.dtype == np.float32
-        assert other.uv.tobytes() == samples.uv.tobytes()
-        assert other.normal_index.tobytes() == samples.normal_index.tobytes()
+                  samples[whole], Samples.concatenate([samples[:5], samples[5:]]),
+                  *map(gm.read_samples, paths)):  # fmt: skip
+        assert other.fields == samples.fields
+        assert other.report == samples.report
+        for name in fields:
+            assert getattr(other, name).dtype == getattr(samples, name).dtype
+            assert getattr(other, name).tobytes() == getattr(samples, name).tobytes()
 
 
 def test_concatenation():
@@ -182,22 +187,6 @@ def test_concatenation():
 
 
 # --- files ----------------------------------------------------------------------------------------
-
-
-@covering(
-    suffix=[".npz", ".ply"],
-    dtype=[np.float32, np.float64],
-    fields=[("points",), ("points", "uv", "patch_index"), ARRAY_NAMES],
-)
-def test_files_keep_fields_and_types(tmp_path, suffix, dtype, fields):
-    samples = narrow(fields, dtype=dtype)
-    samples.write(tmp_path / f"a{suffix}")
-    again = gm.read_samples(tmp_path / f"a{suffix}")
-    assert again.fields == samples.fields
-    assert again.report == samples.report
-    for name in fields:
-        assert getattr(again, name).dtype == getattr(samples, name).dtype
-        assert getattr(again, name).tobytes() == getattr(samples, name).tobytes()
 
 
 @pytest.mark.parametrize(
