@@ -420,8 +420,8 @@ def unobstructed(
     by : Part, Mesh or trimesh.Trimesh, optional
         The obstacle: by default the part or surface of the samples. A part becomes a mesh of 20,000
         vertices, as ``gm.sample(part, 20_000).mesh()``, or of more if it has very many edges; the
-        mesh is made once, and stored with the part. For samples of a `Part.select` give the whole
-        part, for a clamp or a table its mesh.
+        mesh is made once, and stored with the part. Of faces of a `Part.select` it is the whole
+        part, unless they were read from a file; for a clamp or a table give its mesh.
 
     Returns
     -------

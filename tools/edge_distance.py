@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..runtime.base.aliases import Array, Flags, Indices
+from ..runtime.base.errors import InputError
 from ..runtime.base.trees import tree_of
 from ..runtime.directions.regions import Condition, Reach
 from ..runtime.map import GaussMap
@@ -141,6 +142,10 @@ def _lengths(part: Segments) -> Array:
 
 def conditions_of(self: GaussMap, reach: Reach) -> list[Condition]:
     """Return the conditions of a reach on the points of a surface."""
+    if reach._along is not None:
+        raise InputError(
+            "what obstructs a ray is known of CAD parts: make one, as in gm.Part([surface])."
+        )
     if reach._from_edges is None:
         return []
     lines = [y for x in on_grids(self._fitted) for y in lines_of(x)]

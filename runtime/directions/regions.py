@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..base.checks import finite_array, finite_number, positive_number
+from ..base.checks import finite_array, finite_number, positive_number, yes_or_no
 from ..base.errors import InputError, shown
 from ..base.memory import check_memory
 from ..base.tolerances import TRIPLE_PRODUCT_ERROR
@@ -20,6 +20,8 @@ __all__ = ["Cap", "Condition", "Reach", "angles_between", "cap", "checked_reach"
 
 
 UP = np.array([0.0, 0.0, 1.0])
+# The number of a row of a reach that means unobstructed rays; angles and distances are positive.
+FREE = -1.0
 
 
 class Cap(NamedTuple):
@@ -70,6 +72,10 @@ class Reach:
         The least distance, in L, from all edges and boundaries of faces of a part, or from the
         boundary of a surface: that of its trim, and open sides of its domain. A smooth seam of one
         face is no edge. Creases between the pieces of a surface are edges.
+    unobstructed : bool, default False
+        For a CAD part: only points that a ray from outside along the axis reaches, before it meets
+        the part elsewhere, tested against a mesh of the part, as in `Samples.unobstructed`. Faces
+        that were selected from a part are tested against the whole of it.
 
     Raises
     ------
@@ -98,6 +104,7 @@ class Reach:
         slope: Sequence[float] | None = None,
         aspect: Sequence[float] | None = None,
         from_edges: float | None = None,
+        unobstructed: bool = False,
     ) -> None:
         degrees = positive_number(angle, "the angle of reach", " degrees", most=180.0)
         caps = [Cap(unit_vector(axis, "the axis of reach"), degrees)]
@@ -112,6 +119,7 @@ class Reach:
         # The whole sphere needs no test beside other caps.
         self._caps = tuple(x for x in caps if x.angle < 180.0 or len(caps) == 1)
         self._from_edges = None if from_edges is None else positive_number(from_edges, "from_edges")
+        self._along = caps[0].axis if yes_or_no(unobstructed, "unobstructed") else None
         # Conditions that depend on the whole surface; see `_on`.
         self._conditions: tuple[Condition, ...] = ()
 
@@ -119,9 +127,10 @@ class Reach:
     def _of(cls, numbers: Sequence[float]) -> Reach:
         """Return the reach with the `numbers` of another one."""
         rows = np.array(numbers, dtype=np.float64).reshape(-1, 4)
-        at_edges = ~rows[:, :3].any(axis=1)
+        at_edges, along = ~rows[:, :3].any(axis=1), rows[:, 3] == FREE
         found = cls(from_edges=float(rows[at_edges, 3].max()) if at_edges.any() else None)
-        caps = rows[~at_edges]
+        found._along = unit_vector(rows[along][0, :3], "the axis of reach") if along.any() else None
+        caps = rows[~at_edges & ~along]
         found._caps = tuple(cap for x in caps for cap in cls(x[:3], float(x[3]))._caps)
         return found
 
@@ -130,11 +139,12 @@ class Reach:
         """Four numbers for each condition.
 
         These are the unit vector of the axis and the angle of each cap, then 0, 0, 0 and the
-        distance from edges.
+        distance from edges, then the axis of unobstructed rays and `FREE`.
         """
         numbers = [x for cap in self._caps for x in (*cap.axis.tolist(), cap.angle)]
         away = () if self._from_edges is None else (0.0, 0.0, 0.0, self._from_edges)
-        return *numbers, *away
+        free = () if self._along is None else (*self._along.tolist(), FREE)
+        return *numbers, *away, *free
 
     def _on(self, conditions: Sequence[Condition]) -> Reach:
         """Return the reach with conditions on the points of a surface or a part."""
@@ -163,7 +173,8 @@ class Reach:
     def __repr__(self) -> str:
         caps = (f"{cap.angle:g}° of {cap.axis.round(3).tolist()}" for cap in self._caps)
         away = f", {self._from_edges:g} from edges" if self._from_edges else ""
-        return f"Reach(within {', '.join(caps)}{away})"
+        free = "" if self._along is None else ", unobstructed"
+        return f"Reach(within {', '.join(caps)}{away}{free})"
 
 
 def _pair(values: Sequence[float], name: str, most: float) -> tuple[float, float]:

@@ -214,8 +214,8 @@ class SamplingReport:
         For a CAD part with ``edges=True``: the number of samples on sharp edges.
     reach : tuple of float or None
         For a CAD part with ``reach=(axis, angle)``: the unit vector of the axis, and the angle in
-        degrees; for a `Reach`, four such numbers for each of its conditions, and 0, 0, 0 and the
-        distance from edges, if there is one. `Samples.coverage`,
+        degrees; for a `Reach`, four such numbers for each of its conditions, 0, 0, 0 and the
+        distance from edges, and the axis and −1 for unobstructed rays. `Samples.coverage`,
         `normal_deviation` and `weights` refer to the points in reach.
     unit : str or None
         For a CAD part, and a `terrain` with a `crs`: the unit of lengths, such as "mm", if it is

@@ -66,7 +66,8 @@ def _on_edges(space: PartSpace, count: int) -> dict[str, NDArray[Any]]:
     kept = _one_a_corner(sides, solids, ends[rows], SAME_CORNER * size)
     reach = space.pieces[0].reach
     if reach is not None:
-        both = [reach._contains(sides.normals[kept, side]) for side in (0, 1)]
+        points = sides.points[kept, 0]
+        both = [reach._holds(points, sides.normals[kept, side]) for side in (0, 1)]
         kept = kept[both[0] & both[1]]
     return _arrays(space, sides[kept])
 

@@ -9,6 +9,7 @@ from .part import Part
 from .part_mesh import PartMesh
 from .part_meshing import mesh_of_part
 from .results import space_of
+from .selection import whole_part
 
 __all__ = ["obstacle_of"]
 
@@ -17,8 +18,12 @@ VERTICES = 20_000
 
 
 def obstacle_of(part: Part) -> PartMesh:
-    """Return the mesh of a part, cached with the part; raises InputError and warns as meshes do."""
-    return kept(part, obstacle_of, lambda: _made(part))
+    """Return the mesh of a part, cached with the part; raises InputError and warns as meshes do.
+
+    Faces that were selected in this session have the mesh of the part that they are from.
+    """
+    whole = whole_part(part)
+    return kept(whole, obstacle_of, lambda: _made(whole))
 
 
 def _made(part: Part) -> PartMesh:

@@ -1,4 +1,4 @@
-"""The space of a part in reach of a probe: away from edges; and the weights of samples."""
+"""The space of a part in reach of a probe: off edges, unobstructed; the weights of samples."""
 
 from __future__ import annotations
 
@@ -9,18 +9,20 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...runtime.base.aliases import Array
-from ...runtime.base.errors import MissingFieldError
+from ...runtime.base.errors import InputError, MissingFieldError
 from ...runtime.base.kept import kept
 from ...runtime.base.trees import tree_of
-from ...runtime.directions.regions import Reach
+from ...runtime.directions.regions import Condition, Reach
 from ...runtime.samples.samples import Samples
 from ..density.cells import AREA, by_piece
 from ..density.kernels.sizing import TargetDensity
 from ..edge_distance import AwayFrom
+from ..meshes.front import FreeAlong
 from ..support_points import Segments
 from .edges import sides_at
 from .face_pieces import FacePiece
 from .faces import own_parameters
+from .obstacle import obstacle_of
 from .part import Part
 from .results import PartSpace, space_of
 
@@ -37,12 +39,28 @@ def reached(
     part: Part, threads: int | None, target: TargetDensity | None = None, reach: Reach | None = None
 ) -> PartSpace:
     """Return the space of a part, or of its points in a `reach`; SurfaceError if it is empty."""
-    if reach is not None and reach._from_edges is not None:
-        distance = reach._from_edges
+    if reach is not None:
+        reach = reach._on(_conditions(part, reach))
+    return space_of(part, threads, target, reach)
+
+
+def _conditions(part: Part, reach: Reach) -> list[Condition]:
+    """Return the conditions of a reach on the points of a part."""
+    found, distance, axis = list[Condition](), reach._from_edges, reach._along
+    if distance is not None:
         borders = kept(part, borders_of, lambda: borders_of(part))
         away = kept(part, (AwayFrom, distance), lambda: AwayFrom.of(borders, distance))
-        reach = reach._on([] if away is None else [away])
-    return space_of(part, threads, target, reach)
+        found += [] if away is None else [away]
+    if axis is not None:
+        mesh = obstacle_of(part)
+        if len(mesh.boundary_edges):
+            raise InputError(
+                "what obstructs a ray needs a closed part, and this one is open; faces of a closed "
+                "part are chosen with part.select, or --faces."
+            )
+        key = FreeAlong, *axis.tolist()
+        found.append(kept(part, key, lambda: FreeAlong.of(mesh, axis)))
+    return found
 
 
 def borders_of(part: Part) -> list[Segments]:

@@ -22,12 +22,13 @@ from ...runtime.base.checks import (
     text,
 )
 from ...runtime.base.errors import InputError, shown
+from ...runtime.base.kept import kept
 from ...runtime.directions.unit import normalized, unit_vector
 from .face_pieces import FacePiece, pieces_of
 from .part import Face, Part, part_of
 from .records import KINDS, EdgeRecord, FaceRecord, PartRecord
 
-__all__ = ["select"]
+__all__ = ["select", "whole_part"]
 
 Axis = tuple[ArrayLike, SupportsFloat]
 
@@ -182,7 +183,7 @@ def _part(part: Part, chosen: list[int]) -> Part:
     solids = sorted({x.solid_index for x in faces} - {-1})
     new = {old: k for k, old in enumerate(solids)}
     edges, places = _edges(part, chosen)
-    return part_of(
+    found = part_of(
         PartRecord(
             part.name,
             part.unit,
@@ -196,6 +197,13 @@ def _part(part: Part, chosen: list[int]) -> Part:
             [x.source_index for x in faces],
         )
     )
+    kept(found, whole_part, lambda: whole_part(part))
+    return found
+
+
+def whole_part(part: Part) -> Part:
+    """Return the part that faces were selected from; the part itself if that is not known."""
+    return kept(part, whole_part, lambda: part)
 
 
 def _record(face: Face, solid: int, places: dict[int, tuple[int, int]]) -> FaceRecord:

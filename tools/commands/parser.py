@@ -454,6 +454,12 @@ def _distribution() -> list[Option]:
             group="how dense",
         ),
         Option(
+            "--unobstructed",
+            "Only points of a CAD part that a ray against the direction of --reach (default: "
+            "+z) meets first.",
+            group="how dense",
+        ),
+        Option(
             "--slope LEAST MOST",
             "Only where the normal is between LEAST and MOST degrees from +z.",
             number,

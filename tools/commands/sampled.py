@@ -58,9 +58,9 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
     count = default_count if all(x is None for x in asked) else options.count
     given = vars(options)
     reach, how = options.reach, {x: given[x] for x in ("slope", "aspect", "from_edges")}
-    if reach is not None or any(x is not None for x in how.values()):
+    if reach is not None or options.unobstructed or any(x is not None for x in how.values()):
         cap = () if reach is None else (reach[:3], reach[3])
-        reach = Reach(*cap, **how)
+        reach = Reach(*cap, **how, unobstructed=options.unobstructed)
     amounts = normals, count, options.angle, options.coverage
     return checked_request(*amounts, options.density, given.get("threads"), reach)
 

@@ -22,15 +22,14 @@ from ...runtime.spline.spline import Spline
 from ...runtime.surface.surface import Surface
 from ..cad.face_pieces import FacePiece, pieces_of
 from ..cad.part import Part
+from ..meshes.front import Front, cross_of, in_front
 from ..support.convolution import Convolution
 
 __all__ = [
     "VIEW",
     "Scene",
     "divided",
-    "front",
     "height_factor",
-    "in_front",
     "quadrangles",
     "scene_of",
     "scene_of_samples",
@@ -44,9 +43,8 @@ MESH, MOST_MESH = 112, 224  # quadrangles along u and v: the number of cells, wi
 ISOLINES = 16  # parameter lines along u and v
 # A surface hides a sample if it is nearer to the viewer by this fraction of its diameter.
 HIDING = 0.01
-# For a part: the diameter over the longest side of divided triangles; the number of pixels along
-# each side for visibility; and the number of triangles at a time.
-PIECES, PIXELS, AT_ONCE = 40, 400, 4096
+# For a part: the diameter over the longest side of divided triangles.
+PIECES = 40
 # A ratio of height to width below LOW or above HIGH is changed to about LOW_WANTED or HIGH_WANTED.
 LOW, LOW_WANTED = 0.1, 0.25
 HIGH, HIGH_WANTED = 10.0, 2.0
@@ -116,7 +114,7 @@ class Scene:
     def visible(self, points: Array) -> NDArray[np.bool_]:
         """Return which points (P, 3) of the surface are visible, as booleans (P,)."""
         seen = self.seen(points)
-        nearest = front(self.triangles, seen[:, :2])
+        nearest = Front.of(self.triangles).at(seen[:, :2])
         return np.asarray(seen[:, 2] >= nearest - HIDING * self._diameter)
 
     def in_layers(self) -> list[Scene]:
@@ -272,7 +270,7 @@ def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
     triangles = Delaunay(scaled, qhull_options="QJ Pp").simplices
     # Qhull joggles points, which leaves triangles without an area along straight boundaries.
     a, b, c = np.moveaxis(scaled[triangles], 1, 0)
-    twice = _cross(b - a, c - a)
+    twice = cross_of(b - a, c - a)
     triangles = np.where(twice[:, None] < 0.0, triangles[:, ::-1], triangles)
     triangles = triangles[np.abs(twice) > SLIVER]
     if trim is not None:
@@ -311,79 +309,6 @@ def quadrangles(mesh: Array) -> Array:
     """Return the quadrangles (Q, 4, 3) of a mesh (m + 1, n + 1, 3), corners in cyclic order."""
     corners = mesh[:-1, :-1], mesh[1:, :-1], mesh[1:, 1:], mesh[:-1, 1:]
     return np.stack([x.reshape(-1, 3) for x in corners], axis=1)
-
-
-def front(triangles: Array, places: Array) -> Array:
-    """Return the depth of the front triangle of (T, 3, 3) at points (P, 2); −∞ without one."""
-    flat = triangles[..., :2]
-    grid = max(1, round(math.sqrt(len(triangles)) / 2))
-    lowest, highest = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
-    step = np.where(highest > lowest, highest - lowest, 1.0) / grid
-
-    def square(points: Array) -> NDArray[np.int64]:
-        return np.clip(np.floor((points - lowest) / step), 0, grid - 1).astype(np.int64)
-
-    # Every triangle is listed in all squares that its bounding box meets.
-    first, last = square(flat.min(axis=1)), square(flat.max(axis=1))
-    sizes = last - first + 1
-    owner, k = _runs(sizes.prod(axis=1))
-    i, j = np.divmod(k, sizes[owner, 1])
-    listed = (first[owner, 0] + i) * grid + first[owner, 1] + j
-    order = np.argsort(listed, kind="stable")
-    starts = np.searchsorted(listed[order], np.arange(grid * grid + 1))
-
-    own = square(places) @ [grid, 1]
-    place, k = _runs(starts[own + 1] - starts[own])
-    near = triangles[owner[order[starts[own][place] + k]]]
-    inside, depths = _depths(near, places[place])
-    front = np.full(len(places), -np.inf)
-    np.maximum.at(front, place[inside], depths)
-    return front
-
-
-def in_front(triangles: Array) -> NDArray[np.bool_]:
-    """Return which triangles (T, 3, 3) are the front ones at the centre of some pixel."""
-    flat = triangles[..., :2]
-    lowest = flat.min(axis=(0, 1))
-    step = (float(np.ptp(flat, axis=(0, 1)).max()) or 1.0) / PIXELS
-    flat = (flat - lowest) / step - 0.5  # centres of pixels are whole numbers
-    first, last = np.ceil(flat.min(axis=1)), np.floor(flat.max(axis=1))
-    sizes = np.maximum(last - first + 1, 0).astype(np.int64)
-    depths, owners = np.full((PIXELS + 1) ** 2, -np.inf), np.full((PIXELS + 1) ** 2, -1)
-    for start in range(0, len(triangles), AT_ONCE):
-        rows = np.arange(start, min(start + AT_ONCE, len(triangles)))
-        row, k = _runs(sizes[rows].prod(axis=1))
-        row = rows[row]
-        pixels = first[row] + np.stack(np.divmod(k, np.maximum(sizes[row, 1], 1)), axis=1)
-        scaled = np.concatenate([flat[row], triangles[row][..., 2:]], axis=2)
-        inside, found = _depths(scaled, pixels)
-        row, pixel = row[inside], pixels[inside].astype(np.int64) @ [PIXELS + 1, 1]
-        order = np.argsort(found)
-        order = order[found[order] > depths[pixel[order]]]
-        depths[pixel[order]], owners[pixel[order]] = found[order], row[order]  # the last one stays
-    found = np.zeros(len(triangles), dtype=np.bool_)
-    found[owners[owners >= 0]] = True
-    return found
-
-
-def _depths(triangles: Array, places: Array) -> tuple[NDArray[np.bool_], Array]:
-    """Return which triangles (k, 3, 3) contain their point (k, 2), and their depths there."""
-    a, b, c = np.moveaxis(triangles[..., :2] - places[:, None], 1, 0)
-    weights = np.stack([_cross(b, c), _cross(c, a), _cross(a, b)], axis=1)
-    total = weights.sum(axis=1, keepdims=True)
-    weights /= np.where(total == 0.0, np.nan, total)
-    inside = np.all(weights >= -1e-9, axis=1)
-    return inside, np.einsum("ij,ij->i", weights, triangles[..., 2])[inside]
-
-
-def _runs(counts: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return each k repeated counts[k] times, and the numbers 0 … counts[k] − 1 for each k."""
-    which = np.repeat(np.arange(len(counts)), counts)
-    return which, np.arange(len(which)) - (np.cumsum(counts) - counts)[which]
-
-
-def _cross(left: Array, right: Array) -> Array:
-    return left[:, 0] * right[:, 1] - left[:, 1] * right[:, 0]
 
 
 def height_factor(extent: Array) -> float:

@@ -1,6 +1,7 @@
 """The mesh of a part that rays are tested against."""
 
 import gaussmap as gm
+import numpy as np
 import pytest
 from gaussmap.tools.cad import obstacle
 from gaussmap.tools.cad.examples import box
@@ -11,6 +12,8 @@ from .made import noted
 for extra in ("trimesh", "rtree", "pythoncdt"):
     pytest.importorskip(extra)
 pytestmark = pytest.mark.compiled
+ALONG = gm.Reach((1, 0, 0.2), 70, unobstructed=True)
+AXIS = np.array([1, 0, 0.2]) / np.hypot(1, 0.2)
 
 
 def test_the_mesh_of_a_part_is_made_once_with_vertices_enough(monkeypatch):
@@ -21,4 +24,40 @@ def test_the_mesh_of_a_part_is_made_once_with_vertices_enough(monkeypatch):
     assert samples[:5].unobstructed(2.0, by=part).all()
     assert [len(x.vertices) for x in made] == [16]
     some = gm.sample(part.select(index=[0]), 20)
-    refused(r"give the whole part, .* by=part\)", some.unobstructed, 1.0)
+    assert some.unobstructed(1.0).all()  # by the whole part
+    assert len(made) == 1
+
+
+def test_of_saved_faces_the_whole_part_is_not_known():
+    box().select(index=[0]).save("some.npz")
+    some = gm.read_part("some.npz")
+    refused(r"give the whole part, .* by=part\)", gm.sample(some, 20).unobstructed, 1.0)
+    refused("needs a closed part", gm.sample, some, 20, reach=ALONG)
+    refused("is known of CAD parts", gm.sample, "torus", 20, reach=ALONG)
+
+
+def test_faces_that_rays_from_above_meet_are_those_of_the_whole_part():
+    above, error = gm.Reach(unobstructed=True), gm.errors.SurfaceError
+    samples = gm.sample(box(), 60, reach=above)
+    assert {*samples.face_index} == {0, 1, 2, 3, 5}
+    assert gm.Reach._of(above._numbers)._numbers == above._numbers == samples.report.reach
+    bottom = box().select(index=[4])
+    refused("no point in reach: .* unobstructed", gm.sample, bottom, 20, reach=above, error=error)
+
+
+@pytest.mark.slow
+def test_points_that_a_ray_reaches(monkeypatch):
+    """Through the hole of a torus, rays meet the near side before the far one."""
+    monkeypatch.setattr(obstacle, "VERTICES", 3_000)
+    part, steps = gm.Part(["torus"]), np.linspace(0.05, 3.0, 300)[:, None]
+
+    def deepest(samples):
+        x, y, z = np.moveaxis(samples.points[:, None] + steps * AXIS, 2, 0)
+        return 0.35 - np.hypot(np.hypot(x, y) - 1.0, z).min(axis=1)
+
+    samples = gm.sample(part, 150, reach=ALONG)
+    cap = gm.sample(part, 150, reach=((1, 0, 0.2), 70))
+    assert len(samples) == 150
+    assert (samples.normals @ AXIS).min() >= np.cos(np.radians(70.0)) - 1e-9
+    assert deepest(samples).max() < 0.02 < 0.2 < deepest(cap).max()
+    assert samples.weights().sum() < 0.95 * cap.weights().sum()

@@ -3,12 +3,9 @@ from __future__ import annotations
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.pictures import scene
 from gaussmap.tools.pictures.scene import (
     divided,
-    front,
     height_factor,
-    in_front,
     scene_of,
     view,
 )
@@ -43,25 +40,6 @@ def test_waves_hide_what_faces_the_viewer() -> None:
     assert np.count_nonzero(visible) > 1000
 
 
-def test_front_is_the_nearest_triangle() -> None:
-    rng = np.random.default_rng(0)
-    triangles, places = rng.random((200, 3, 3)), rng.random((300, 2))
-    expected = np.full(len(places), -np.inf)
-    for a, b, c in triangles:
-        matrix = np.stack([b[:2] - a[:2], c[:2] - a[:2]], axis=1)
-        s, t = np.linalg.solve(matrix, (places - a[:2]).T)
-        inside = (s >= 0) & (t >= 0) & (s + t <= 1)
-        depth = a[2] + s * (b[2] - a[2]) + t * (c[2] - a[2])
-        expected = np.where(inside, np.maximum(expected, depth), expected)
-    np.testing.assert_allclose(front(triangles, places), expected, rtol=1e-6)
-
-
-def test_front_without_area_or_places() -> None:
-    flat = np.zeros((2, 3, 3))
-    assert front(flat, np.zeros((1, 2)))[0] == -np.inf
-    assert front(flat, np.zeros((0, 2))).shape == (0,)
-
-
 @pytest.mark.parametrize(
     ("extent", "factor"),
     [
@@ -87,31 +65,6 @@ def test_triangles_are_divided_and_keep_their_area():
     assert len(divided(triangles, 10.0)) == 20
 
 
-def test_the_front_triangles_of_pixels_are_found(monkeypatch):
-    monkeypatch.setattr(scene, "AT_ONCE", 7)  # some of the triangles, in turn
-    monkeypatch.setattr(scene, "PIXELS", 50)
-    triangles = np.random.default_rng(4).random((300, 3, 3))
-    small = (triangles - triangles.mean(axis=1, keepdims=True)) * 0.4 + triangles.mean(
-        axis=1, keepdims=True
-    )
-    low, size = small[..., :2].min(axis=(0, 1)), np.ptp(small[..., :2], axis=(0, 1)).max()
-    middles = (np.arange(scene.PIXELS + 1) + 0.5) * size / scene.PIXELS
-    pixels = low + np.stack(np.meshgrid(middles, middles), axis=2).reshape(-1, 2)
-    depths = front(small, pixels)
-    a, b, c = np.moveaxis(small, 1, 0)
-    seen = np.zeros(300, dtype=bool)
-    for k in range(300):
-        weights = np.linalg.solve(
-            np.stack([(b - a)[k, :2], (c - a)[k, :2]], axis=1), (pixels - a[k, :2]).T
-        )
-        inside = (weights > 0).all(axis=0) & (weights.sum(axis=0) < 1)
-        depth = a[k, 2] + (b - a)[k, 2] * weights[0] + (c - a)[k, 2] * weights[1]
-        seen[k] = (inside & (depth >= depths - 1e-9)).any()
-    found = in_front(small)
-    np.testing.assert_array_equal(found, seen)
-    assert 0 < found.sum() < 300
-
-
 def test_the_back_of_a_thin_plate_is_painted_first(parts):
     behind, before = scene_of(parts.box(1.0, 1.0, 1e-3)).in_layers()
     top, bottom = (
@@ -122,17 +75,6 @@ def test_the_back_of_a_thin_plate_is_painted_first(parts):
     a, b, c = np.moveaxis(top[1], 1, 0)
     assert np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2 > 0.99
     assert len(top[0]) < 10  # at corners: no middle of a pixel is in them
-
-
-def test_what_holds_a_pixel_of_400_is_seen():
-    """A right triangle holds a square with half of its sides, and that the middle of a pixel."""
-    corners = np.random.default_rng(5).random((50, 1, 2)) * 0.99
-    small = np.pad(
-        corners + 2.05 / 400.0 * np.array([(0, 0), (1, 0), (0, 1)]), ((0, 0), (0, 0), (0, 1))
-    )
-    small[..., 2] = np.arange(1, 51)[:, None]  # those in front hide no other as a whole
-    behind = np.array([[(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(1, 0, 0), (1, 1, 0), (0, 1, 0)]])
-    assert in_front(np.concatenate([small, behind])).all()
 
 
 def test_painted_pieces_are_a_fortieth_of_the_diameter(parts):

@@ -1,0 +1,172 @@
+"""Triangles in front of others, seen against the direction z: as rays along z find them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.trees import tree_of
+from ...runtime.directions.unit import unit_vector
+from .mesh import Mesh
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
+__all__ = ["FreeAlong", "Front", "cross_of", "in_front"]
+
+# The number of pixels along each side for `in_front`, and the number of triangles at a time.
+PIXELS, AT_ONCE = 400, 4096
+# The number of pairs of a point and a triangle at a time, about.
+POINTS = 1 << 15
+# Edges are divided into this number of steps for a length of the size of the mesh.
+STEPS = 256
+# Triangles that are this far below a point, relative to the size, hide it: they are in contact.
+BELOW = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Front:
+    """Triangles (T, 3, 3) in the squares of a grid over x and y.
+
+    Square k has the triangles `owners`[starts[k]:starts[k + 1]].
+    """
+
+    triangles: Array
+    low: Array
+    step: Array
+    grid: int
+    owners: Indices
+    starts: Indices
+
+    @classmethod
+    def of(cls, triangles: Array) -> Front:
+        """Return triangles in the squares that their bounding boxes meet."""
+        flat, grid = triangles[..., :2], max(1, round(math.sqrt(len(triangles)) / 2))
+        low, high = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
+        step = np.where(high > low, high - low, 1.0) / grid
+        first, last = (
+            np.clip(np.floor((x - low) / step), 0, grid - 1).astype(np.int64)
+            for x in (flat.min(axis=1), flat.max(axis=1))
+        )
+        sizes = last - first + 1
+        owner, k = _runs(sizes.prod(axis=1))
+        i, j = np.divmod(k, sizes[owner, 1])
+        listed = (first[owner, 0] + i) * grid + first[owner, 1] + j
+        order = np.argsort(listed, kind="stable")
+        starts = np.searchsorted(listed[order], np.arange(grid * grid + 1))
+        return cls(triangles, low, step, grid, owner[order], starts)
+
+    def at(self, places: Array) -> Array:
+        """Return the depth of the front triangle at points (P, 2); −∞ without one."""
+        found = np.full(len(places), -np.inf)
+        for first in range(0, len(places), POINTS):
+            found[first : first + POINTS] = self._at(places[first : first + POINTS])
+        return found
+
+    def _at(self, places: Array) -> Array:
+        squares = np.clip(np.floor((places - self.low) / self.step), 0, self.grid - 1)
+        own = squares.astype(np.int64) @ [self.grid, 1]
+        place, k = _runs(self.starts[own + 1] - self.starts[own])
+        near = self.triangles[self.owners[self.starts[own][place] + k]]
+        inside, depths = _depths(near, places[place])
+        found = np.full(len(places), -np.inf)
+        np.maximum.at(found, place[inside], depths)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class FreeAlong:
+    """The condition that a ray from infinity against an axis reaches a point of a closed mesh.
+
+    A ray from the point along the axis may not enter the mesh, that is, meet a triangle from
+    outside; `below` are these triangles, in coordinates with the axis as the third of the `rows`
+    (3, 3). Triangles up to `slack` below the point count, as of a solid in contact. Shadows end
+    below the edges of `below`; the tree has points on these edges, `step` apart.
+    """
+
+    rows: Array
+    below: Front
+    slack: float
+    edges: KDTree
+    step: float
+
+    @classmethod
+    def of(cls, mesh: Mesh, axis: Array) -> FreeAlong:
+        """Return the condition for a mesh with outward triangles."""
+        across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+        across = unit_vector(across, "the axis")
+        rows = np.stack([across, np.cross(axis, across), axis])
+        turned = mesh.vertices @ rows.T
+        a, b, c = np.moveaxis(turned[mesh.triangles, :2], 1, 0)
+        chosen = mesh.triangles[cross_of(b - a, c - a) < 0.0]
+        size = float(np.ptp(turned, axis=0).max())
+        sides = np.sort(chosen[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        sides, times = np.unique(sides, axis=0, return_counts=True)
+        ends, step = turned[sides[times == 1], :2], size / STEPS
+        parts = np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / step).astype(np.int64) + 1
+        owner, k = _runs(parts)
+        share = (k / np.maximum(parts[owner] - 1, 1))[:, None]
+        points = ends[owner, 0] + share * (ends[owner, 1] - ends[owner, 0])
+        return cls(rows, Front.of(turned[chosen]), BELOW * size, tree_of(points), step)
+
+    def holds(self, points: Array, normals: Array) -> Flags:
+        """Return which points (k, 3) with normals (k, 3) are reached; none that face away are."""
+        seen = points @ self.rows.T
+        free = self.below.at(seen[:, :2]) < seen[:, 2] - self.slack
+        return free & (normals @ self.rows[2] >= -BELOW)
+
+    def may_change(self, points: Array, radii: Array) -> Flags:
+        """Return which balls around points (k, 3) may be partly in a shadow."""
+        seen, most = points @ self.rows[:2].T, float(radii.max(initial=0.0)) + self.step
+        near = self.edges.query(seen, distance_upper_bound=most)[0]
+        return near <= radii + self.step
+
+
+def in_front(triangles: Array) -> Flags:
+    """Return which triangles (T, 3, 3) are the front ones at the centre of some pixel."""
+    flat = triangles[..., :2]
+    lowest = flat.min(axis=(0, 1))
+    step = (float(np.ptp(flat, axis=(0, 1)).max()) or 1.0) / PIXELS
+    flat = (flat - lowest) / step - 0.5  # centres of pixels are whole numbers
+    first, last = np.ceil(flat.min(axis=1)), np.floor(flat.max(axis=1))
+    sizes = np.maximum(last - first + 1, 0).astype(np.int64)
+    depths, owners = np.full((PIXELS + 1) ** 2, -np.inf), np.full((PIXELS + 1) ** 2, -1)
+    for start in range(0, len(triangles), AT_ONCE):
+        rows = np.arange(start, min(start + AT_ONCE, len(triangles)))
+        row, k = _runs(sizes[rows].prod(axis=1))
+        row = rows[row]
+        pixels = first[row] + np.stack(np.divmod(k, np.maximum(sizes[row, 1], 1)), axis=1)
+        scaled = np.concatenate([flat[row], triangles[row][..., 2:]], axis=2)
+        inside, found = _depths(scaled, pixels)
+        row, pixel = row[inside], pixels[inside].astype(np.int64) @ [PIXELS + 1, 1]
+        order = np.argsort(found)
+        order = order[found[order] > depths[pixel[order]]]
+        depths[pixel[order]], owners[pixel[order]] = found[order], row[order]  # the last one stays
+    found = np.zeros(len(triangles), dtype=np.bool_)
+    found[owners[owners >= 0]] = True
+    return found
+
+
+def _depths(triangles: Array, places: Array) -> tuple[Flags, Array]:
+    """Return which triangles (k, 3, 3) contain their point (k, 2), and their depths there."""
+    a, b, c = np.moveaxis(triangles[..., :2] - places[:, None], 1, 0)
+    weights = np.stack([cross_of(b, c), cross_of(c, a), cross_of(a, b)], axis=1)
+    total = weights.sum(axis=1, keepdims=True)
+    weights /= np.where(total == 0.0, np.nan, total)
+    inside = np.all(weights >= -1e-9, axis=1)
+    return inside, np.einsum("ij,ij->i", weights, triangles[..., 2])[inside]
+
+
+def _runs(counts: Indices) -> tuple[Indices, Indices]:
+    """Return each k repeated counts[k] times, and the numbers 0 … counts[k] − 1 for each k."""
+    which = np.repeat(np.arange(len(counts)), counts)
+    return which, np.arange(len(which)) - (np.cumsum(counts) - counts)[which]
+
+
+def cross_of(left: Array, right: Array) -> Array:
+    """Return left_x right_y − left_y right_x (k,) of vectors (k, 2)."""
+    return left[:, 0] * right[:, 1] - left[:, 1] * right[:, 0]
