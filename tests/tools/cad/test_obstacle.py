@@ -39,7 +39,7 @@ def test_of_saved_faces_the_whole_part_is_not_known():
 def test_faces_that_rays_from_above_meet_are_those_of_the_whole_part():
     above, error = gm.Reach(unobstructed=True), gm.errors.SurfaceError
     samples = gm.sample(box(), 60, reach=above)
-    assert {*samples.face_index} == {0, 1, 2, 3, 5}
+    assert set(np.asarray(samples.face_index).tolist()) == {0, 1, 2, 3, 5}
     assert gm.Reach._of(above._numbers)._numbers == above._numbers == samples.report.reach
     bottom = box().select(index=[4])
     refused("no point in reach: .* unobstructed", gm.sample, bottom, 20, reach=above, error=error)
