@@ -203,8 +203,8 @@ def _sample() -> Command:
 
 def _mesh() -> Command:
     deviation = (
-        "Leave out triangles whose normal deviates by more from a normal at their corners; for "
-        "samples that leave out some of the surface."
+        "Leave out triangles whose normal is farther from those at their corners, as across gaps "
+        "between samples."
     )
     prefer = (
         "shape (default): triangles with large angles; samples very close to others are left out. "
