@@ -24,6 +24,7 @@ from ..samples.fields import FLAG_NAMES, Component, bytes_of, dtype_of, regular,
 from ..samples.report import SamplingReport, UndecidedNormal, count_infinite
 from ..samples.samples import Samples
 from ..search.search import developable_patches
+from ..spline.kernels.jets import evaluate_jets
 from ..spline.spline import Spline
 from ..surface.closing import closed_points
 from ..surface.collapsed import with_found_sides
@@ -40,6 +41,8 @@ from .reach import with_conditions
 __all__ = ["CODE", "Proof", "ProvedSurface", "index_of", "proof_of", "with_components"]
 
 PLACES_AT_A_TIME = 1 << 14
+# Curvatures at a side that is one point are taken at this distance from it, relative to the domain.
+BESIDE = 1e-5
 # The column of solutions that holds the code of the component, if not all are regular points.
 CODE = 6
 CURVE = KINDS.index("curve")
@@ -220,6 +223,7 @@ class ProvedSurface:
         arrays = {name: x for name, x in rooms._asdict().items() if name in fields}
         arrays |= {name: np.ones(count, dtype=np.bool_) for name in FLAG_NAMES}
         arrays |= {"normal_index": numbers} | regular(count, fields)
+        self._beside_poles(places, scales, K, H)
         if places.shape[1] > CODE:
             special = np.flatnonzero(places[:, CODE] != Component.REGULAR)
             if len(K) > 0:
@@ -227,6 +231,26 @@ class ProvedSurface:
             if "component" in arrays:
                 arrays["component"][:] = places[:, CODE]
         return arrays
+
+    def _beside_poles(
+        self, places: NDArray[np.float64], scales: NDArray[np.float64], K: NDArray[np.float64],
+        H: NDArray[np.float64],
+    ) -> None:  # fmt: skip
+        """Write curvatures beside sides that are one point, for which error bounds are that wide.
+
+        There x_u × x_v is 0, and so is what was written.
+        """
+        known = K if len(K) > 0 else H
+        wide = places[: len(known), 2:4] >= 0.5 * np.ptp(self.surface.domain, axis=1)
+        (lost,) = np.nonzero(wide.any(axis=1) & (known == 0.0))
+        if len(lost) > 0:
+            uv = places[lost, :2]
+            uv += BESIDE * (np.mean(self.surface.domain, axis=1) - uv)
+            normals, found = np.empty((len(lost), 3)), np.empty((2, len(lost)))
+            evaluate_jets(self._jets(*uv.T.copy()), scales, normals, *found)
+            for x, values in zip((K, H), found, strict=True):
+                if len(x) > 0:
+                    x[lost] = values
 
     def _jets(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
         return jets_of(self.index.tape, u, v)

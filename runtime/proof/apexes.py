@@ -11,11 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.aliases import Array, Flags
+from ..base.aliases import Array, Flags, Indices
 from ..domain.domain import Domain
 from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
 from .components import Undecided
+from .kernels.answers import OPEN_BOX
+from .kernels.cell_bounds import SMOOTH
 
 __all__ = ["Apex", "apexes_of"]
 
@@ -28,6 +30,12 @@ BOXES_AT_A_TIME = 1 << 14  # 8 MB of bounds
 # Lines inside of the domain that are one point are searched between LINES equidistant lines. Their
 # distance from the side is this part of a step, so that none of them is likely to be one point.
 LINES, SHIFT = 32, 0.381966
+# Boxes are beside a line up to this distance, relative to the domain.
+BESIDE = 1e-6
+# A box beside a side with one normal holds that point only if it is SMALL, relative to the domain,
+# and the normals at its other side, or at the distance LEAST, differ from it by up to WIDE. The
+# normal at the side is known up to ONE.
+SMALL, LEAST, WIDE, ONE = 1e-2, 1e-5, 0.5, 4.0 * SMOOTH
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,15 +44,61 @@ class Apex:
 
     The line is a side of the domain, or `inside`; `end` may have a rounding `error`. The tape of
     the surface gives bounds over boxes beside the line. The `period` of parameter `axis` is 0 if
-    there is none.
+    there is none. The `normal` of a side is None if several places of it have different ones.
     """
 
     tape: Tape
+    domain: Domain
     axis: int
     end: float
     inside: bool = False
     error: float = 0.0
     period: float = 0.0
+    normal: Array | None = None
+
+    def at_pole(self, open_: Undecided, normals: Array) -> tuple[Undecided, Array, Indices]:
+        """Return undecided boxes without those whose only point is a side with one normal.
+
+        These sides have rows (k, 6) of places, see `ProvedPlaces`, and numbers (k,) of normals. So
+        it is where a surface does not go all the way around a pole. Boxes with other normals are
+        left out. At the far ends of the boxes normals are different, and K has one sign.
+        """
+        sides = open_.boxes.reshape(-1, 2, 2)
+        away = np.abs(sides[:, self.axis] - self.end)
+        if self.normal is None:
+            return open_, np.empty((0, 6)), np.empty(0, np.int64)
+        size = np.ptp(self.domain[self.axis])
+        near = (away.min(axis=1) <= BESIDE * size) & (away.max(axis=1) <= SMALL * size)
+        apart = np.linalg.norm(normals[open_.numbers] - self.normal, axis=1)
+        rows, found, keep = list[Array](), dict[int, float](), np.ones(len(near), np.bool_)
+        kinds = open_.kinds.copy()
+        for k in np.flatnonzero(near).tolist():
+            reach = max(away[k].max(), LEAST * size)
+            beside, signs = self._beside(reach)
+            turned = np.linalg.norm(beside - self.normal, axis=1)
+            if turned.max() > WIDE or turned.min() <= 4.0 * ONE or (signs != signs[0]).any():
+                continue
+            kinds[k] = OPEN_BOX  # gradients are small everywhere: they are no sign of a curve
+            keep[k], number = ONE < apart[k] <= 2.0 * turned.max(), int(open_.numbers[k])
+            if apart[k] <= ONE:
+                found[number] = max(reach, abs(found.get(number, 0.0))) * signs[0]
+        low, high = self.domain[1 - self.axis]
+        for reach in found.values():
+            row = np.array([[self.end, (low + high) / 2.0], [abs(reach), (high - low) / 2.0]])
+            row = row if self.axis == 0 else row[:, ::-1]
+            rows.append(np.array([*row.ravel(), np.sign(reach), 1.0]))
+        left = Undecided._make(x[keep] for x in open_._replace(kinds=kinds))
+        return left, np.array(rows).reshape(-1, 6), np.array(list(found), np.int64)
+
+    def _beside(self, reach: float) -> tuple[Array, Array]:
+        """Return normals (k, 3), and the signs (k,) of K, at a distance from the side."""
+        inward = 1.0 if self.end == self.domain[self.axis][0] else -1.0
+        at = np.array([self.end + inward * reach])
+        jets = _jets_on(self.tape, self.domain, self.axis, at)[0]
+        normals = np.cross(jets[:, 1], jets[:, 2])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        a, b, c = np.einsum("kjx,kx->jk", jets[:, 3:], normals)
+        return normals, np.sign(a * c - b * b)
 
     def decided(self, open_: Undecided, normals: Array) -> Undecided:
         """Return undecided boxes without those at the line that have no point with their normal.
@@ -57,7 +111,8 @@ class Apex:
             turns = self.period * np.rint((self.end - (low + high) / 2.0) / self.period)
             low, high = low + turns, high + turns
         first, last = self.end - self.error, self.end + self.error
-        keep = (low > last) | (high < first)
+        reach = BESIDE * np.ptp(self.domain[self.axis])
+        keep = (low > last + reach) | (high < first - reach)
         sides[:, 2 * self.axis], sides[:, 2 * self.axis + 1] = (
             np.minimum(low, first), np.maximum(high, last),
         )  # fmt: skip
@@ -93,11 +148,24 @@ def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
     slack = ROUNDINGS * np.spacing(np.fmax.reduce(np.abs(points), axis=None))
     with np.errstate(invalid="ignore"):  # infinity minus infinity
         is_point = np.ptp(points, axis=1).max(axis=1) <= slack
-    found = [Apex(tape, *x) for x in lines[:sides]]
+    errors = [ROUNDINGS * float(np.spacing(np.abs(x).max())) for x in domain]
+    found = [
+        Apex(tape, domain, *x, error=errors[x[0]], normal=_normal(tape, domain, *x))
+        for x in lines[:sides]
+    ]
     for axis, x in lines[sides:]:
-        error = ROUNDINGS * float(np.spacing(np.abs(domain[axis]).max()))
-        found.append(Apex(tape, axis, x, True, error, float(periods[axis])))
+        found.append(Apex(tape, domain, axis, x, True, errors[axis], float(periods[axis])))
     return tuple(x for x, yes in zip(found, is_point.tolist(), strict=True) if yes)
+
+
+def _normal(tape: Tape, domain: Domain, axis: int, end: float) -> Array | None:
+    """Return the normal at a side that is one point; None if its places have different ones."""
+    jets = _jets_on(tape, domain, axis, np.array([end]))[0]
+    with np.errstate(all="ignore"):
+        normals = np.cross(jets[:, 1 + axis], jets[:, MIXED]) * (1.0 if axis == 0 else -1.0)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    is_one = np.linalg.norm(normals - normals[0], axis=1).max() <= SMOOTH
+    return normals[0] * (1.0 if end == domain[axis][0] else -1.0) if is_one else None
 
 
 def _reversals(tape: Tape, domain: Domain, axis: int, period: float) -> list[float]:

@@ -233,10 +233,11 @@ class ProvedIndex:
             parts.append(slow)
             answers.extend(unknown)
         answers += [cap.answers(normals) for cap in self.caps]
-        places = _sorted(parts, len(normals))
         open_ = boxes_of(answers)
         for apex in self.apexes if len(open_.numbers) > 0 else ():
-            open_ = apex.decided(open_, normals)
+            open_, rows, numbers = apex.at_pole(apex.decided(open_, normals), normals)
+            parts.append(Places(rows, numbers))
+        places = _sorted(parts, len(normals))
         if len(open_.numbers) > 0:
             open_ = components_of(open_, self.domain)
             open_ = with_kinds(open_, self._around(open_, normals), places, self.domain)

@@ -230,7 +230,10 @@ def test_corners_where_creases_cross() -> None:
 
 
 # Where nets are cut: an axis, and how many control points the first part has.
-CUTS = {"ellipsoid, sheared": (0, 3), "torus, sheared": (1, 5), "capsule": (0, 3)}
+CUTS = {
+    "ellipsoid, sheared": (0, 3), "torus, sheared": (1, 5), "capsule": (0, 3),
+    "ellipsoid, 10 digits": (1, 5),
+}  # fmt: skip
 
 
 @pytest.mark.slow
@@ -249,3 +252,28 @@ def test_components_of_a_surface_in_two_parts(name: str) -> None:
         np.add.at(counts[-1], (found.normal_index, found.component), 1)
         counts[-1][list(listed)] = 0
     np.testing.assert_array_equal(*counts)
+
+
+def test_poles_of_halves_are_one_point() -> None:
+    """Where a surface does not go all the way around a pole, it has the normal there once.
+
+    The normals of the halves point inward, those of the part outward.
+    """
+    net = NETS["ellipsoid, sheared"][0]()
+    halves = [net.part(1, *x).surface for x in ((0, 5), (4, 9))]
+    poles = np.array([(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)])
+    normals = unit(np.concatenate([poles @ np.linalg.inv(SHEAR), np.eye(3), gm.fibonacci(20)]))
+    part = gm.Part(halves, tolerance=1e-6)
+    for surface, some, side in ((halves[0], normals[:2], -1.0), (part, normals, 1.0)):
+        known = gm.GaussMap(surface)
+        found = known.points(some)
+        assert (found.report.proved, found.report.undecided) == (len(some), ())
+        found = found[np.argsort(found.normal_index)]
+        np.testing.assert_array_equal(found.normal_index, np.arange(len(some)))
+        np.testing.assert_array_equal(found.component, gm.Component.REGULAR)
+        np.testing.assert_array_equal(known.degree(some), 1)
+        np.testing.assert_allclose(found.points[:2], side * poles @ SHEAR.T, atol=1e-12)
+        whole = gm.GaussMap(net.surface).points(some[:2])
+        np.testing.assert_allclose(
+            found.gaussian_curvature[:2], whole.gaussian_curvature, rtol=1e-3
+        )
