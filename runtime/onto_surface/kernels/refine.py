@@ -69,7 +69,7 @@ class Rows(NamedTuple):
 
 
 class Target(NamedTuple):
-    """For each row: the normal, the required sign of K, or 0, and the resulting sample.
+    """For each row: the normal, the required sign of K (0 for any sign), and the resulting sample.
 
     `state` (n,) is NOT_FOUND or FOUND; only samples that are FOUND are overwritten.
     """

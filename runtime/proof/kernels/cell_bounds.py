@@ -60,8 +60,8 @@ LEFT_S, LEFT_T = 6, 9
 NOISE = 12
 # Normals of both sides of a joint differ by at most this angle, in radians.
 SMOOTH = 1e-9
-# The chord of a cone: above the first, its half angle is too wide to tell n from −n; no bound at
-# all.
+# Chords of cones: above WIDE, the half angle is too wide to tell n from −n; OPEN means that normals
+# have no bound.
 WIDE, OPEN = 1.3, 2.1
 # In a regular cell, contractions for the directions of the ordinates of its normals are below this.
 REGULAR = 0.8
@@ -75,7 +75,8 @@ class CellBounds(NamedTuple):
     place (k, 4): u₀, v₀, h_u, h_v.
     hot (k, 17): the vectors a, b, c, d, e of the patch that osculates at the centre, and bounds of
     the remainders of x_s and x_t beyond it.
-    thirds (k, 24): x_sss, x_sst, x_stt, x_ttt, then how far they may be from these.
+    thirds (k, 24): midpoints of x_sss, x_sst, x_stt, x_ttt over the cell, then bounds of the
+    differences from these.
     noise (k, 12): the rounding of x_s and x_t, and of second derivatives; the largest |s|, |t| for
     which all bounds hold, 0 if there are none, 1 if they end at a joint; tolerances. At a joint the
     normals of both sides differ a little: there, |n·x_s| and |n·x_t| of a point with the normal n
@@ -148,7 +149,7 @@ def linear_forms_of(patch, n):
 
 @inline
 def thirds_of(thirds, j, n):
-    """Return the third derivatives of n·x at the centre, and bounds of their changes."""
+    """Return midpoints and radii of the third derivatives of n·x over a cell."""
     x, y, z = abs(n.x), abs(n.y), abs(n.z)
     return (
         thirds[j, 0] * n.x + thirds[j, 1] * n.y + thirds[j, 2] * n.z,

@@ -46,7 +46,7 @@ from .pairs import distance, forms_at, is_beyond, most_of, newton
 
 __all__ = ["DECIDED", "LARGEST", "PARTS", "PATH", "degree_on", "index_around"]
 
-# What is known of a box: nothing; one point with the normal; none.
+# What is known of a box: nothing, or whether it contains one point with the normal or none.
 UNDECIDED, DECIDED = range(2)
 # Boxes grow on each side by this part of their width, since the normal may not be on the border. If
 # a joint is nearer to a side than this part of the width, the side moves to the joint. Boxes grow
@@ -297,10 +297,10 @@ def winding(tile, along, across, n, path):
 
 @loop
 def grow(hull, axis, large, factor, domain, points, box):
-    """Write the ends of a box around a hull along an axis; return what its sides there are.
+    """Write both ends, along an axis, of a box around a hull; return how the box lies there.
 
     SEAM if the hull is all of a period, BEFORE or AFTER if the box ends in a side of the domain
-    that is one point, INSIDE if in none; -1 if it leaves the domain.
+    that is one point, INSIDE if it ends in no side; -1 if it leaves the domain.
     """
     low, high = hull[2 * axis], hull[2 * axis + 1]
     start, end = domain[2 * axis], domain[2 * axis + 1]
@@ -375,8 +375,8 @@ def is_free(side, in_u, in_v):
 def write_ring(tape, work, tile, ends, along, across, in_u, in_v):
     """Write bounds over cells along the border of a box, counter-clockwise, inside of it.
 
-    The box is cut at joints into parts with these ends, and lies as `in_u` and `in_v` say. The
-    sides are written to `levels`; return the number of cells.
+    The box is cut at joints into parts with these ends; `in_u` and `in_v` are results of `grow`.
+    The side of each cell is written to `work.levels`. Return the number of cells.
     """
     count = sides = 0
     for side in range(4):

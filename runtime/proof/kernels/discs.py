@@ -38,7 +38,8 @@ class Disc(NamedTuple):
     """The disc around a pole.
 
     hot (1, 15): the vectors a, b, c, d, e of the patch that osculates at the pole, by s and t.
-    changes (m, 3, 3): bounds of x_ss, x_st, x_tt minus a, b, c, within `whole`, half of it, …
+    changes (m, 3, 3): bounds of x_ss, x_st, x_tt minus a, b, c, within the distance to which bounds
+    hold, within half of it, …
     frame (14): two numbers e0, e1: computed derivatives of h by s and t have errors up to e0 + e1 /
     r, in units of the size; radius of the disc; first u, and its length; the other parameter at the
     pole, whether it grows with r (1 or −1), and the index, 0 or 1, of u; the unit of s and t; how
@@ -85,7 +86,7 @@ def change_in(disc, ring, n, y11, y12, y22):
 
 @loop
 def place_towards(disc, s, t):
-    """Return u and r of a point near s, t; of another point if s, t are small."""
+    """Return u and r of a point near s, t, from the tangents at the pole."""
     table = disc.directions
     count = table.shape[0] - 1
     angle = disc.frame[SENSE] * math.atan2(t, s)
@@ -203,10 +204,10 @@ def place_in(tape, work, disc, n):
 
 @jit
 def decide_discs(tape, work, disc, normals, numbers, first, last, domain, answers):
-    """Find the solutions in a disc for normals (S, 3) with some indices; see `decide_normals`.
+    """Find the solutions in a disc for the normals (S, 3) with the indices `numbers`.
 
     The tape is that of the surface by u and r, with the coordinates of the plane and h, or of its
-    quotient by r. Returns the next position in `numbers`.
+    quotient by r. Returns the next position in `numbers`; see `decide_normals`.
     """
     answers.counts[0] = answers.counts[1] = 0
     frame = disc.frame

@@ -29,8 +29,8 @@ from .pairs import (
 
 __all__ = ["PLACE", "Index", "Joints", "Outcome", "Tiles", "evaluate_pairs"]
 
-# The columns of places: u, v, the error bound of each, D, and whether they reach the boundary of
-# the domain.
+# The columns of places: u, v, the error bound of each, D, and whether the error bounds reach the
+# boundary of the domain.
 PLACE = 6
 
 
@@ -79,7 +79,7 @@ class Outcome(NamedTuple):
 
     @classmethod
     def new(cls, places: int, hard: int) -> Outcome:
-        """Return room for some of both."""
+        """Return room for numbers of places and of hard pairs."""
         return cls(
             np.empty((places, PLACE)), np.empty(places, np.int64), np.empty((hard, 2), np.int64),
             np.zeros(2, np.int64),
@@ -88,9 +88,9 @@ class Outcome(NamedTuple):
 
 @loop
 def flush(tape, work, cells, tiles, first, count, found):
-    """Evaluate the pairs of a tile, for the first time from position `first` on.
+    """Evaluate the pairs of a tile; those from position `first` on are new.
 
-    Returns how many stay in the tile, or −1 if there was no room for the results.
+    Returns how many pairs stay in the tile, or −1 if there was no room for the results.
     """
     if (
         found.counts[0] + count > found.numbers.shape[0]

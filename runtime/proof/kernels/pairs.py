@@ -137,7 +137,7 @@ def rests(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round
 
 @inline
 def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap):
-    """Return whether a cell has no solution for a normal or its opposite."""
+    """Return whether a cell has a solution neither for a normal nor for its opposite."""
     rest_s, rest_t = rests(
         a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap
     )

@@ -38,12 +38,16 @@ NORMAL, COEFFICIENTS, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
 )
 NORMAL_INDEX, PATCH_INDEX, THREE_ROWS = np.int64(0), np.int64(STEP), np.int64(3 * STEP)
 # Rows and columns of the coefficients that `triangle` takes, counted from the coefficient before.
-# Contiguous: machine code refers to other arrays by their address, and cannot be kept.
+# Contiguous: machine code refers to other arrays by their address, and then cannot be cached.
 AROUND = np.ascontiguousarray(NEIGHBOURS[:, [0, 1, 2, 3, 5, 7]] + 1, np.uint64)
 
 
 class Place(NamedTuple):
-    """The position of a patch: centre and indices of its cell, its corners u = 1, v = 1 there."""
+    """The position of a patch: the coefficient of its cell, the cell, and two corners.
+
+    The centre of the cell is at (cell_u, cell_v), in cells. From it, (u_s, u_t) leads to the corner
+    u = 1 of the patch, and (v_s, v_t) to the corner v = 1.
+    """
 
     centre: Vector
     cell_u: float

@@ -170,9 +170,10 @@ def meets(cone, cap):
 
 @jit
 def list_pieces(cones, caps, frame, faces, level, stretch, least, keys):
-    """Write keys bin << 32 | piece for each bin of each piece while there is room; return how many.
+    """Write keys bin << 32 | piece for each bin of each piece; return the number of all keys.
 
-    `stretch` is the norm of the frame, `least` the least height of a direction on its face.
+    Keys are not written when there is no more room. `stretch` is the norm of the frame, `least` the
+    least cosine between a direction and the axis of its face.
     """
     count = 0
     grid = np.int64(1) << level

@@ -48,7 +48,8 @@ BOUND, VECTORS = 15, 16
 REST_S, REST_T = 15, 16
 # The chord of a cone, and the width of a slab, that contain all directions.
 EVERYTHING = 2.0
-# Cones with a chord above this are not used: weights add up to less than the cosine of their angle.
+# Cones with a chord above this, a half angle of 60°, are not used: a combination of their vectors
+# with weights of sum 1 may be as short as the cosine of the half angle.
 WIDEST = 1.0
 # Chords and widths are enlarged by this, relatively and absolutely: rounding of sums of a few
 # numbers of size 1.
@@ -202,9 +203,10 @@ def write_net_pieces(vectors, control, angles, bounds, net, pieces):
 
 @loop
 def write_cone(net, cone):
-    """Write the cone and the slab of unit control normals and their errors (6, 4), angles.
+    """Write the cone and the slab of unit control normals, net[:, :3], with the errors net[:, 3].
 
-    The error of a control normal that vanishes is infinite; it adds no direction to the cone.
+    Errors are angles. That of a control normal that vanishes is infinite; it adds no direction to
+    the cone.
     """
     x = y = z = far = worst = 0.0
     regular = True
