@@ -22,7 +22,7 @@ __all__ = ["FINER", "cut_into_parts", "evaluate_cells", "evaluate_places"]
 # The number of fine points along each side of a cell, and the coordinate of the last one.
 FINER = 4
 OUTERMOST = (FINER - 0.5) / FINER - 0.5
-# The surface may be farther from the centre than its osculating patch by this factor.
+# The surface may be farther from the place than its osculating patch by this factor.
 BEYOND = 1.03
 
 
@@ -133,7 +133,7 @@ def evaluate_cells(jets, boxes, places, limits, size, centre, finest, target, ro
 
 @jit
 def evaluate_places(jets, boxes, places, limits, size, centre, finest, target, rows, sides):
-    """Write the rows of `evaluate_cells`, and nothing else but the sides of cells.
+    """Write the rows of `evaluate_cells`, and the sides of cells instead of their numbers.
 
     sides (M, 8) float32: the sides along u and v at the place, which are vectors, the area, and the
     largest distance of a fine point from the place, see kernels/voronoi.py. The limits are known.

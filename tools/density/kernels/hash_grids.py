@@ -38,7 +38,7 @@ class HashGrids(NamedTuple):
 
     candidates: (M, 8) float64, point, unit normal, density w, and w times the squared distance to
         the nearest sample so far, or −1 for a candidate without a normal.
-    starts: (buckets + 1,) int32, the first candidate of each bucket; a power of two of them.
+    starts: (buckets + 1,) int32, the first candidate of each bucket; `buckets` is a power of two.
     sizes: (grids,) the largest 1/√w of each grid.
     box: (2, 3) the bounding box of the points.
     radius: cells are CELL * radius * sizes wide.
@@ -71,7 +71,7 @@ def bucket_of(level, i, j, k, buckets):
 def measure(rows, box, sizes):
     """Write the bounding box of rows (M, 8), and the largest 1/√w of each grid to sizes (LEVELS,).
 
-    Returns the numbers of the finest and of the coarsest grid.
+    Returns the indices of the finest and of the coarsest grid.
     """
     finest = LEVELS
     coarsest = 0

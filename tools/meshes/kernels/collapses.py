@@ -13,7 +13,7 @@ from .flips import are_joined, corner_of, smallest_cosine, smallest_tangent
 
 __all__ = ["collapse_edges"]
 
-# Where triangles are far from the normals, the smallest cosine may fall by this: b moves.
+# Where triangles are far from the normals, the smallest cosine may fall by this, since b moves.
 COSINE_LOSS = 0.1
 
 
@@ -72,7 +72,7 @@ def cosine_with(points, normals, triangles, sides, t, b, a, turn):
 def tangent_after(points, normals, triangles, sides, neighbours, least, first, b, a, fan):
     """Return the smallest tangent around b after b is moved to a, or −1 if that is not allowed.
 
-    `first` is a triangle with both corners. It is allowed if the smallest tangent rises, the
+    `first` is a triangle with both corners. The move is allowed if the smallest tangent rises, the
     smallest cosine falls to no less than `least`, or only a little, b is not on a boundary, and the
     mesh remains a surface.
     """
