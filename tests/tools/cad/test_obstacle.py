@@ -28,9 +28,9 @@ def test_the_mesh_of_a_part_is_made_once_with_vertices_enough(monkeypatch):
     assert len(made) == 1
 
 
-def test_of_saved_faces_the_whole_part_is_not_known():
-    box().select(index=[0]).save("some.npz")
-    some = gm.read_part("some.npz")
+def test_of_saved_faces_the_whole_part_is_not_known(tmp_path):
+    box().select(index=[0]).save(tmp_path / "some.npz")
+    some = gm.read_part(tmp_path / "some.npz")
     refused(r"give the whole part, .* by=part\)", gm.sample(some, 20).unobstructed, 1.0)
     refused("needs a closed part", gm.sample, some, 20, reach=ALONG)
     refused("is known of CAD parts", gm.sample, "torus", 20, reach=ALONG)
