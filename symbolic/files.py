@@ -39,35 +39,54 @@ __all__ = ["GENERATED", "derive", "differences", "existing", "write"]
 
 GENERATED = Path(__file__).parent.parent / "generated"
 PROJECT = GENERATED.parent / "pyproject.toml"
+# The titles of files of formulas, by the modules of the same names that hold the formulas.
+TITLES = {
+    curve: "Planar curves: the formulas of symbolic/curve.py as functions of vectors.",
+    elementary: "Elementary functions: the formulas and tables of symbolic/elementary.py.",
+    faces: "Faces of CAD parts: the formulas of symbolic/faces.py as functions of vectors.",
+    gaussian_image: "Gaussian images of patches: boundaries, solid angles, parabolic lines.",
+    jet: "Surfaces at a point: the formulas of symbolic/jet.py as functions of vectors.",
+    mesh: "Triangles through samples: the formulas of symbolic/mesh.py.",
+    offset: "Fields of normals and rational offsets: the formulas of symbolic/offset.py.",
+    patch: "One quadratic patch: the formulas of symbolic/patch.py as functions of vectors.",
+    proved: "Points with a given normal, proved: the formulas of symbolic/proved.py.",
+    rational: "Rational surfaces: the formulas of symbolic/rational.py.",
+    spline: "The C1 quadratic spline: the grid, and the formulas of symbolic/spline.py.",
+    taylor: "Taylor polynomials in two variables: the formulas of symbolic/taylor.py.",
+}
 
 
 def derive() -> dict[str, str]:
     """Return the contents of all generated files by their names."""
+    before = {
+        elementary: [elementary.constants()],
+        patch: [f"NODE = {source_of(patch.quadrature_node())}"],
+        spline: [tables.grid()],
+    }
     sources = {
+        f"{x.__name__.rpartition('.')[2]}.py": mathematics(
+            title, *before.get(x, ()), functions(x.FORMULAS)
+        )
+        for x, title in TITLES.items()
+    } | {
         "__init__.py": '"""Kernels and formulas written by `make generate`: never edit these."""\n',
-        "curve.py": curve_source(),
-        "differences.py": differences_source(),
-        "elementary.py": elementary_source(),
-        "faces.py": faces_source(),
-        "gaussian_image.py": gaussian_image_source(),
-        "icosahedron.py": icosahedron_source(),
-        "jet.py": jet_source(),
-        "mesh.py": mesh_source(),
-        "offset.py": offset_source(),
-        "patch.py": patch_source(),
-        "proved.py": proved_source(),
-        "rational.py": rational_source(),
-        "spline.py": spline_source(),
+        "differences.py": mathematics(
+            "Weights of numerical derivatives: differences of nine points, also beside an edge.",
+            tables.differences(),
+        ),
+        "icosahedron.py": mathematics(
+            "The regular icosahedron: tables of its corners, edges and faces.",
+            tables.icosahedron_tables(),
+        ),
         "support.py": support_source(),
         "support_function.py": support_function_source(),
         "surface_jets.py": surface_jets_source(),
         "surface_tapes.py": surface_tapes_source(),
         "surfaces.py": surfaces_source(),
         "surfaces_signatures.pyi": signatures_source(),
-        "taylor.py": taylor_source(),
         "vectors.py": vectors_source(),
     }
-    modules = {name: formatted(text, name) for name, text in sources.items()}
+    modules = {name: formatted(text, name) for name, text in sorted(sources.items())}
     pages = {"formulas.md": latex.markdown(modules), "formulas.tex": latex.document(modules)}
     return modules | pages
 
@@ -150,82 +169,6 @@ def _docstring(title: str) -> str:
     return render("docstring.py", {"title": f'"""{title}', "origin": origin}).rstrip()
 
 
-def curve_source() -> str:
-    """Return generated/curve.py: the formulas of planar curves."""
-    title = "Planar curves: the formulas of symbolic/curve.py as functions of vectors."
-    return mathematics(title, functions(curve.FORMULAS))
-
-
-def differences_source() -> str:
-    """Return generated/differences.py: the weights of numerical derivatives."""
-    title = "Weights of numerical derivatives: differences of nine points, also beside an edge."
-    return mathematics(title, tables.differences())
-
-
-def elementary_source() -> str:
-    """Return generated/elementary.py: the functions of tapes, and the codes of operations."""
-    title = "Elementary functions: the formulas and tables of symbolic/elementary.py."
-    return mathematics(title, elementary.constants(), functions(elementary.FORMULAS))
-
-
-def faces_source() -> str:
-    """Return generated/faces.py: surfaces of revolution and offsets, from derivatives."""
-    title = "Faces of CAD parts: the formulas of symbolic/faces.py as functions of vectors."
-    return mathematics(title, functions(faces.FORMULAS))
-
-
-def gaussian_image_source() -> str:
-    """Return generated/gaussian_image.py: boundary cones and arcs, parabolic lines."""
-    title = "Gaussian images of patches: boundaries, solid angles, parabolic lines."
-    return mathematics(title, functions(gaussian_image.FORMULAS))
-
-
-def icosahedron_source() -> str:
-    """Return generated/icosahedron.py: the tables of the icosahedron."""
-    title = "The regular icosahedron: tables of its corners, edges and faces."
-    return mathematics(title, tables.icosahedron_tables())
-
-
-def jet_source() -> str:
-    """Return generated/jet.py: the formulas of a surface at a point, from its derivatives there."""
-    title = "Surfaces at a point: the formulas of symbolic/jet.py as functions of vectors."
-    return mathematics(title, functions(jet.FORMULAS))
-
-
-def mesh_source() -> str:
-    """Return generated/mesh.py: the formulas of triangles through samples."""
-    title = "Triangles through samples: the formulas of symbolic/mesh.py."
-    return mathematics(title, functions(mesh.FORMULAS))
-
-
-def offset_source() -> str:
-    """Return generated/offset.py: a patch with fields of normals, and its rational offset."""
-    title = "Fields of normals and rational offsets: the formulas of symbolic/offset.py."
-    return mathematics(title, functions(offset.FORMULAS))
-
-
-def patch_source() -> str:
-    """Return generated/patch.py: every formula of a patch as a function."""
-    title = "One quadratic patch: the formulas of symbolic/patch.py as functions of vectors."
-    node = f"NODE = {source_of(patch.quadrature_node())}"
-    return mathematics(title, node, functions(patch.FORMULAS))
-
-
-def rational_source() -> str:
-    """Return generated/rational.py: the derivatives of rational surfaces."""
-    title = "Rational surfaces: the formulas of symbolic/rational.py."
-    return mathematics(title, functions(rational.FORMULAS))
-
-
-def spline_source() -> str:
-    """Return generated/spline.py: the patches on the grid, and the formulas of fitting."""
-    return mathematics(
-        "The C1 quadratic spline: the grid, and the formulas of symbolic/spline.py.",
-        tables.grid(),
-        functions(spline.FORMULAS),
-    )
-
-
 def support_source() -> str:
     """Return generated/support.py: formulas of support functions, offsets and curvatures."""
     title = "Support functions: the formulas of symbolic/support.py as functions of vectors."
@@ -262,18 +205,6 @@ def surface_jets_source() -> str:
         *(jet_function(surface_jet(x)) for x in catalogue),
         f"JETS = {{{', '.join(f'{x.name!r}: {x.name}' for x in catalogue)}}}",
     )
-
-
-def proved_source() -> str:
-    """Return generated/proved.py: bounds over cells of the parameters of a surface."""
-    title = "Points with a given normal, proved: the formulas of symbolic/proved.py."
-    return mathematics(title, functions(proved.FORMULAS))
-
-
-def taylor_source() -> str:
-    """Return generated/taylor.py: products and compositions of Taylor polynomials."""
-    title = "Taylor polynomials in two variables: the formulas of symbolic/taylor.py."
-    return mathematics(title, functions(taylor.FORMULAS))
 
 
 def surface_tapes_source() -> str:
