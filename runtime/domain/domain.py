@@ -58,15 +58,17 @@ def checked_interval(domain: Sequence[float]) -> Interval:
 
 def _checked(domain: Sequence[Sequence[float]], names: str, form: str) -> list[Interval]:
     try:
-        ends = [(as_float(low), as_float(high)) for low, high in domain]
-        named = list(zip(names, ends, strict=True))
+        named = [
+            (name, (as_float(low), as_float(high)))
+            for name, (low, high) in zip(names, domain, strict=True)
+        ]
     except Exception:  # `float` may raise anything
         given = domain if len(names) > 1 else domain[0]
         raise InputError(f"domain must be {form}, not {shown(given)}.") from None
     for name, (low, high) in named:
         if not 0.0 < high - low < np.inf:
             raise InputError(f"the domain of {name} is empty or infinite: ({low}, {high}).")
-    return ends
+    return [ends for _, ends in named]
 
 
 def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
