@@ -177,6 +177,7 @@ SELF = {
 }  # fmt: skip
 # Usable arguments by the name of the parameter, where callables mean the same by it.
 COMMON: dict[str, Any] = {
+    "order": "path",
     "surface": Of("spline"), "first": Of("spline"), "second": Of("support"), "spline": Of("spline"),
     "surfaces": Listed("spline"), "parts": Listed("samples"), "curve": Of("circle"),
     "normals": NORMALS, "directions": NORMALS, "count": 10, "counts": [40, 60],

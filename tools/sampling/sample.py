@@ -278,6 +278,7 @@ def _sampled(
         raise InputError("edges are sampled of CAD parts; other surfaces have no sharp edges.")
     reach = given.request.reach
     if reach is not None:
+        place_of_samples(surface, given.on)  # raises
         reach = reach._on(kept_map(surface, given.cells, given.on)._conditions_of(reach))
         given = given._replace(request=replace(given.request, reach=reach))
     if density == "gauss" and normals is not None:
