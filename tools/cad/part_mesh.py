@@ -51,7 +51,7 @@ class PartMesh(CreasedMesh):
 
     @cached_property
     def closed(self) -> bool:
-        """As `CreasedMesh.closed`; False if a face is missing."""
+        """As `Mesh.closed`; False if a face is missing."""
         return not self.failed and super().closed
 
     def summary(self) -> str:

@@ -67,24 +67,6 @@ class CreasedMesh(Mesh):
         return self._named("CreasedMesh")
 
     @cached_property
-    def closed(self) -> bool:
-        """Whether each edge is in two triangles, which traverse it in opposite directions."""
-        count = max(len(self.vertices), 1)
-        one, other = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
-        ways = np.sort(one * count + other)
-        back = np.sort(other * count + one)
-        twice = (ways[1:] == ways[:-1]).any()
-        return bool(len(ways) and not twice and (ways == back).all())
-
-    @property
-    def volume(self) -> float:
-        """The volume that the triangles enclose, in L³; NaN unless the mesh is `closed`."""
-        if not self.closed:
-            return float("nan")
-        corners = self.vertices[self.triangles] - self.vertices.mean(axis=0)
-        return float(np.linalg.det(corners).sum() / 6.0)
-
-    @cached_property
     def split(self) -> Mesh:
         """A mesh of the same triangles, with a separate vertex for each normal at a point."""
         normals = self.corner_normals.reshape(-1, 3).round(DIGITS)

@@ -164,6 +164,34 @@ class Mesh(Methods):
         edges, times = self._edges
         return edges[times == 1]
 
+    @cached_property
+    def closed(self) -> bool:
+        """Whether each edge is in two triangles, which traverse it in opposite directions.
+
+        Examples
+        --------
+        >>> import gaussmap as gm
+        >>> import numpy as np
+        >>> mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
+        >>> mesh.closed, bool(0.9 < mesh.volume / (2 * np.pi**2 * 0.35**2) < 1)
+        (True, True)
+
+        """
+        count = max(len(self.vertices), 1)
+        one, other = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
+        ways = np.sort(one * count + other)
+        back = np.sort(other * count + one)
+        twice = (ways[1:] == ways[:-1]).any()
+        return bool(len(ways) and not twice and (ways == back).all())
+
+    @property
+    def volume(self) -> float:
+        """The volume that the triangles enclose, in L³; NaN unless the mesh is `closed`."""
+        if not self.closed:
+            return float("nan")
+        corners = self.vertices[self.triangles] - self.vertices.mean(axis=0)
+        return float(np.linalg.det(corners).sum() / 6.0)
+
     @property
     def euler_characteristic(self) -> int:
         """M − E + T: 2 for a sphere, 1 for a disk, 0 for a torus, a band or a Klein bottle."""

@@ -53,6 +53,9 @@ class TestMesh:
             sample_index=np.arange(4),
         )
         assert closed.summary().startswith("4 vertices, 4 triangles, closed; 95 % have")
+        assert closed.closed
+        assert not square().closed
+        assert np.isnan(square().volume)
         some = square(left_out=1200).summary()
         assert some.startswith("4 vertices (1 of them added), 1,200 of the samples left out, 2")
         assert repr(square(name="hill")) == "Mesh(4 vertices, 2 triangles on hill)"
