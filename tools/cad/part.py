@@ -435,7 +435,10 @@ class Face:
 
     @property
     def loops(self) -> tuple[Array, ...]:
-        """The closed polygons (k, 2) in u, v that trim the face; first points are not repeated."""
+        """The closed polygons (k, 2) that trim the face; first points are not repeated.
+
+        They are in u and v of the file: if the face is `reversed`, u of `surface` runs backwards.
+        """
         arrays = self.part.arrays
         first, last = arrays["face_loops"][self.index : self.index + 2].tolist()
         starts = arrays["loop_point_starts"]
