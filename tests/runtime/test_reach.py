@@ -119,6 +119,7 @@ def test_a_reach_of_everything_leaves_nothing_out() -> None:
     assert reached.coverage() < 1.3 * whole.coverage()
 
 
+@pytest.mark.slow
 def test_terrain_meshes_and_pickles() -> None:
     x = np.linspace(0.0, 6.0, 30)
     heights = gm.terrain(2.0 * np.sin(x)[:, None] * np.cos(x), spacing=(0.2, 0.2))

@@ -107,7 +107,7 @@ def _hull(sums: Convolution) -> Triangulated:
             f"both sides of the tangent planes of {count:,} of {len(sums):,}."
         )
     if side < 0.0:
-        triangles = triangles[:, [0, 2, 1]]
+        triangles = np.take(triangles, [0, 2, 1], axis=1)  # in C order, as kernels take it
     uv = np.stack([np.arctan2(normals[:, 1], normals[:, 0]), np.arcsin(normals[:, 2])], axis=1)
     adjacent, _ = neighbours(triangles, np.zeros(len(sums), dtype=np.bool_))
     every, free = np.arange(len(sums)), np.ones(len(sums), dtype=np.bool_)

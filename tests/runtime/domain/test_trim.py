@@ -444,6 +444,7 @@ def test_predicates_that_are_not_inequalities_leave_boxes_open(within):
 
 
 @pytest.mark.parametrize("radius", [0.5, 0.6])
+@pytest.mark.quick_for("0.5")
 def test_a_callable_has_values_inside_its_trim_only(radius):
     def half_sphere(u, v):
         height = np.sqrt(1.0 - u * u - v * v)

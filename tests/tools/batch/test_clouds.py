@@ -244,6 +244,7 @@ def test_wrong_arguments_are_refused_at_once(dataset, wrong, error, text):
         refused(text, dataset.clouds, **wrong, error=error)
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_number_of_parts(tmp_path):
     peaks = []
     for parts in (20, 80):

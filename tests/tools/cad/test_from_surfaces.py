@@ -184,6 +184,7 @@ def test_an_edge_of_three_faces():
 
 
 @pytest.mark.compiled
+@pytest.mark.slow
 def test_wavy_patches_are_a_closed_body():
     part = gm.Part(globe())
     says(part, closed=True, solids=1, gap=NONE)

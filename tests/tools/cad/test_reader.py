@@ -98,6 +98,7 @@ def test_a_process_that_crashes_is_an_error(path, installed, monkeypatch):
     refused(r"crash \(SIGSEGV\)", gm.read_cad, path, error=gm.errors.FileError)
 
 
+@pytest.mark.slow
 def test_an_interruption_leaves_nothing_behind(path, tmp_path, installed, monkeypatch):
     folder, alive = tmp_path / "temporary", tmp_path / "alive"
     folder.mkdir()

@@ -222,6 +222,7 @@ def test_pictures(options, figure, capsys):
     np.testing.assert_array_equal(*(image.imread(x) for x in ("a.png", "b.png")))
 
 
+@pytest.mark.slow
 def test_data_sets() -> None:
     """With the count that is the default, and all that is for data sets only."""
     pytest.importorskip("pyarrow")
