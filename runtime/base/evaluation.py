@@ -52,7 +52,7 @@ def check_finite(
     if bad.any():
         where = np.unravel_index(int(np.argmax(bad)), bad.shape)
         place = ", ".join(f"{name} = {float(array[where])}" for name, array in parameters.items())
-        hint = "; surface.trimmed(within=f) leaves out where a function f(u, v) is False"
+        hint = "; choose a domain where it is finite, or a surface that is trimmed to such places"
         untrimmed = needed is None and len(parameters) == 2
         raise SurfaceError(
             f"{label} is not finite at {place}: {values[where]}{hint if untrimmed else ''}."
