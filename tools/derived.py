@@ -163,8 +163,8 @@ def mesh(
           until a tenth of the others would be left out (`Mesh.left_out` counts all). Samples are
           left out where distances change by a factor of two from one sample to the next, since
           triangles there cannot have large angles. Of a count of samples with
-          ``density="balanced"`` on a closed surface, none is left out beside most narrow bends,
-          and up to 8 % beside the sharpest. Samples on a grid are never left out, even if its
+          ``density="balanced"`` on a closed surface, most narrow bends cost none, and very
+          sharp ones cost up to 8 % of the count. Samples on a grid are never left out, even if its
           cells are long.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction only. A

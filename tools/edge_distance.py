@@ -14,6 +14,7 @@ import numpy as np
 
 from ..runtime.base.aliases import Array, Flags, Indices
 from ..runtime.base.errors import InputError
+from ..runtime.base.repeats import repeated
 from ..runtime.base.trees import tree_of
 from ..runtime.directions.regions import Condition, Reach
 from ..runtime.map import GaussMap
@@ -65,8 +66,7 @@ class AwayFrom:
         found, middles, radius, size = list[tuple[Any, ...]](), [np.empty((0, 3))], 0.0, 0.0
         for k, (part, along) in enumerate(zip(parts, lengths, strict=True)):
             counts = np.where(along > 0.0, np.ceil(along / step), 0.0).astype(np.int64)
-            rows = np.repeat(np.arange(len(counts)), counts)
-            number = np.arange(len(rows)) - (np.cumsum(counts) - counts)[rows]
+            rows, number = repeated(counts)
             first, last = number / counts[rows], (number + 1) / counts[rows]
             ends = [part.at(rows, t)[1] for t in (first, (first + last) / 2.0, last)]
             away = [np.linalg.norm(ends[1] - x, axis=1).max(initial=0.0) for x in ends]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..base.aliases import Array, Flags
 from ..base.checks import finite_array, listed
 from ..base.errors import InputError, shown
+from ..base.repeats import repeated
 from ..base.scales import scale_to_one
 from ..base.threads import over_ranges
 from .domain import Boundary, Domain, closes
@@ -194,8 +195,7 @@ def _steps(polygon: Array, steps: Array) -> Array:
     """Return points on a polygon (k, 2), spaced by at most `steps` (2,) along u and v."""
     along = np.roll(polygon, -1, axis=0) - polygon
     parts = np.ceil(np.abs(along / steps).max(axis=1)).astype(np.int64) + 1
-    owner = np.repeat(np.arange(len(polygon)), parts)
-    number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+    owner, number = repeated(parts)
     return polygon[owner] + (number / parts[owner])[:, None] * along[owner]
 
 

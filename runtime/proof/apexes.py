@@ -43,8 +43,8 @@ class Apex:
     """A line that is one point of the surface: there u (axis 0) or v (axis 1) is `end`.
 
     The line is a side of the domain, or `inside`; `end` may have a rounding `error`. The tape of
-    the surface gives bounds over boxes beside the line. The `period` of parameter `axis` is 0 if
-    there is none. The `normal` of a side is None if several places of it have different ones.
+    the surface gives bounds over boxes beside the line. `period` is that of the parameter, or
+    0. The `normal` of a side is None if several places of it have different ones.
     """
 
     tape: Tape

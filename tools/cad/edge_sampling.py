@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.repeats import repeated
 from ...runtime.base.trees import tree_of
 from ...runtime.samples.fields import EDGE_NAMES, INTEGER_NAMES, dtype_of, row_shape
 from ..density.filling import spacing
@@ -106,8 +107,7 @@ def _many_places(edges: Edges) -> tuple[Indices, Array]:
     steps = np.diff(edges.starts) - 1
     parts = -(-PLACES // np.maximum(steps, 1))
     counts = steps * parts + 1
-    owner = np.repeat(np.arange(len(edges)), counts)
-    number = np.arange(len(owner)) - (np.cumsum(counts) - counts)[owner]
+    owner, number = repeated(counts)
     return owner, number / parts[owner]
 
 

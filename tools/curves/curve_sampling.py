@@ -25,6 +25,7 @@ from ...runtime.base.checks import checked_count, known_name
 from ...runtime.base.errors import GaussmapWarning, InputError, in_memory
 from ...runtime.base.formula_calls import plane_vector, python_function
 from ...runtime.base.memory import check_memory
+from ...runtime.base.repeats import repeated
 from ...runtime.base.wording import at_normals
 from ...runtime.directions.circle import arc_of_normals, circle
 from ...runtime.directions.unit import as_normals
@@ -325,12 +326,12 @@ def find(spline: CurveSpline | CurveArcs, normals: Array) -> Hits:
     steps = np.where(spline.reversing, 0, np.diff(places))
     counts, signs = np.abs(steps), np.sign(steps)
     first = np.where(steps > 0, places[:-1], places[:-1] - 1)
-    number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    ranks = np.repeat(first, counts) + np.repeat(signs, counts) * number
+    owner, number = repeated(counts)
+    ranks = first[owner] + signs[owner] * number
     return Hits(
-        np.repeat(np.arange(spline.pieces), counts),
+        owner,
         order[np.mod(ranks, len(normals))],
-        np.repeat(signs, counts).astype(np.float64),
+        signs[owner].astype(np.float64),
     )
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.aliases import Array, Flags
+from ...runtime.base.repeats import repeated
 from ...runtime.domain.domain import Domain, brought_inside
 from ...runtime.domain.trim import Trim
 from ...runtime.onto_surface.on_spline import OnSpline
@@ -133,8 +134,7 @@ class Piece(ABC):
         for polygon in self.polygons:
             steps = np.diff(polygon, axis=0, append=polygon[:1])
             parts = np.maximum(np.ceil(np.abs(steps / self.sizes).max(axis=1) / step), 1.0)
-            owner = np.repeat(np.arange(len(steps)), parts.astype(np.int64))
-            number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+            owner, number = repeated(parts.astype(np.int64))
             inner = polygon[owner] + (number / parts[owner])[:, None] * steps[owner]
             yield np.concatenate([inner, polygon[:1]])
 

@@ -7,6 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from ...runtime.base.repeats import repeated
+
 __all__ = ["Evaluation", "distances", "refined"]
 
 Array = NDArray[np.float64]
@@ -35,8 +37,7 @@ def refined(uv: Array, evaluate: Evaluation, size: float, onto_curve: Evaluation
             break
         parts = np.ones(len(start), dtype=np.int64)
         parts[cut] = np.minimum(np.ceil(np.sqrt(height[cut] / size)), MOST_PARTS)
-        owner = np.repeat(np.arange(len(start)), parts)
-        number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+        owner, number = repeated(parts)
         straight = start[owner] + (number / parts[owner])[:, None] * along[owner]
         moved = np.where(number[:, None] > 0, onto_curve(straight), straight)
         near = np.abs(moved - straight).max(axis=1) <= longest[owner]

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from ...runtime.base.repeats import repeated
 from ...runtime.domain.domain import Boundary
 from ...runtime.domain.loops import Loops
 from ...runtime.domain.trim import TrimPart
@@ -70,8 +71,7 @@ def _dense(line: Array, spline: Spline) -> Array:
     along = np.diff(line, axis=0)
     reach = (np.abs(along) * spline.cells).max(axis=1, initial=0.0)
     parts = np.maximum(np.ceil(STEPS_A_CELL * reach), 1).astype(np.int64)
-    owner = np.repeat(np.arange(len(along)), parts)
-    number = np.arange(len(owner)) - (np.cumsum(parts) - parts)[owner]
+    owner, number = repeated(parts)
     points = line[owner] + (number / parts[owner])[:, None] * along[owner]
     return np.concatenate([points, line[-1:]])
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.repeats import repeated
 from ...runtime.base.trees import tree_of
 from ...runtime.directions.unit import unit_vector
 from .mesh import Mesh
@@ -53,7 +54,7 @@ class Front:
             for x in (flat.min(axis=1), flat.max(axis=1))
         )
         sizes = last - first + 1
-        owner, k = _runs(sizes.prod(axis=1))
+        owner, k = repeated(sizes.prod(axis=1))
         i, j = np.divmod(k, sizes[owner, 1])
         listed = (first[owner, 0] + i) * grid + first[owner, 1] + j
         order = np.argsort(listed, kind="stable")
@@ -70,7 +71,7 @@ class Front:
     def _at(self, places: Array) -> Array:
         squares = np.clip(np.floor((places - self.low) / self.step), 0, self.grid - 1)
         own = squares.astype(np.int64) @ [self.grid, 1]
-        place, k = _runs(self.starts[own + 1] - self.starts[own])
+        place, k = repeated(self.starts[own + 1] - self.starts[own])
         near = self.triangles[self.owners[self.starts[own][place] + k]]
         inside, depths = _depths(near, places[place])
         found = np.full(len(places), -np.inf)
@@ -108,7 +109,7 @@ class FreeAlong:
         sides, times = np.unique(sides, axis=0, return_counts=True)
         ends, step = turned[sides[times == 1], :2], size / STEPS
         parts = np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / step).astype(np.int64) + 1
-        owner, k = _runs(parts)
+        owner, k = repeated(parts)
         share = (k / np.maximum(parts[owner] - 1, 1))[:, None]
         points = ends[owner, 0] + share * (ends[owner, 1] - ends[owner, 0])
         return cls(rows, Front.of(turned[chosen]), BELOW * size, tree_of(points), step)
@@ -137,7 +138,7 @@ def in_front(triangles: Array) -> Flags:
     depths, owners = np.full((PIXELS + 1) ** 2, -np.inf), np.full((PIXELS + 1) ** 2, -1)
     for start in range(0, len(triangles), AT_ONCE):
         rows = np.arange(start, min(start + AT_ONCE, len(triangles)))
-        row, k = _runs(sizes[rows].prod(axis=1))
+        row, k = repeated(sizes[rows].prod(axis=1))
         row = rows[row]
         pixels = first[row] + np.stack(np.divmod(k, np.maximum(sizes[row, 1], 1)), axis=1)
         scaled = np.concatenate([flat[row], triangles[row][..., 2:]], axis=2)
@@ -159,12 +160,6 @@ def _depths(triangles: Array, places: Array) -> tuple[Flags, Array]:
     weights /= np.where(total == 0.0, np.nan, total)
     inside = np.all(weights >= -1e-9, axis=1)
     return inside, np.einsum("ij,ij->i", weights, triangles[..., 2])[inside]
-
-
-def _runs(counts: Indices) -> tuple[Indices, Indices]:
-    """Return each k repeated counts[k] times, and the numbers 0 … counts[k] − 1 for each k."""
-    which = np.repeat(np.arange(len(counts)), counts)
-    return which, np.arange(len(which)) - (np.cumsum(counts) - counts)[which]
 
 
 def cross_of(left: Array, right: Array) -> Array:

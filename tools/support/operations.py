@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ...generated import support as formulas
 from ...runtime.base.bridge import normal_components
 from ...runtime.base.formula_calls import python_function, vector
+from ...runtime.base.repeats import repeated
 from ...runtime.base.tolerances import RADIUS_ERROR
 from ...runtime.directions.unit import as_normals
 from ...runtime.spline.nets import AnySpline
@@ -158,10 +159,8 @@ def pairs(
     """Return the rows i, j of all pairs with first[i] == second[j]; both are ascending."""
     partners = np.bincount(second, minlength=count)
     starts = np.cumsum(partners) - partners
-    repeats = partners[first]
-    i = np.repeat(np.arange(len(first)), repeats)
-    within = np.arange(len(i)) - np.repeat(np.cumsum(repeats) - repeats, repeats)
-    return i, starts[first[i]] + within
+    i, number = repeated(partners[first])
+    return i, starts[first[i]] + number
 
 
 def _exact(value: float) -> Any:  # noqa: ANN401
