@@ -73,9 +73,8 @@ def write(
           `normals`.
         - `.vtp`: VTK PolyData with all arrays, and the report as field data; needs `points`, and
           the extra `vtk`.
-        - `.parquet`, `.arrow`, `.feather`: the columns of `.csv` in binary, and the report and
-          the units in the metadata of the schema; need the extra "tables" (PyArrow). Feather is
-          the format of `.arrow`.
+        - `.parquet`: the columns of `.csv` in binary, and the report and the units in the
+          metadata of the schema; needs the extra "tables" (PyArrow).
         - `.las`, `.laz`: points, with all other columns as extra dimensions, and the CRS of a
           `terrain`, whose `origin` is added again; coordinates are rounded to 1e-8 of the
           extent. Need `points`, and the extra "gis" (laspy).

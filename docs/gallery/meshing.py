@@ -91,7 +91,7 @@ for name, mesh, samples in (
 # %% [markdown]
 # ## To other programs
 #
-# `write` has the formats .ply, .obj, .stl, .3mf, .vtk, .vtu, .vtp and .glb. `to_trimesh`,
+# `write` has the formats .ply, .obj, .stl, .3mf, .vtu, .vtp and .glb. `to_trimesh`,
 # `to_pyvista` and `to_open3d` convert the mesh without a file.
 
 # %%

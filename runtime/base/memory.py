@@ -23,10 +23,6 @@ UNCHECKED = 2.0**24
 # estimates are not exact.
 SHARE = 0.75
 PROC, CONTROL_GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
-# Control groups of versions 1 and 2: their folder, the files of limit and use, and the line of
-# memory.stat for cached files, which the system can drop.
-VERSION_1 = ("memory", "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
-VERSION_2 = ("", "memory.max", "memory.current", "inactive_file")
 
 
 class Cost(NamedTuple):
@@ -114,8 +110,8 @@ def _limits() -> Iterator[tuple[float, float]]:
     with suppress(OSError):  # a system without control groups
         for line in (PROC / "self" / "cgroup").read_text(encoding="utf-8").splitlines():
             _, controllers, path = line.split(":", 2)
-            if controllers == "" or "memory" in controllers.split(","):
-                yield from _limits_of_group(path, VERSION_1 if controllers else VERSION_2)
+            if not controllers:  # of version 2
+                yield from _limits_of_group(path)
 
 
 def _limits_of_process(page: float) -> Iterator[tuple[float, float]]:
@@ -134,22 +130,19 @@ def _limits_of_process(page: float) -> Iterator[tuple[float, float]]:
                 yield float(soft), used
 
 
-def _limits_of_group(
-    path: str, version: tuple[str, str, str, str]
-) -> Iterator[tuple[float, float]]:
+def _limits_of_group(path: str) -> Iterator[tuple[float, float]]:
     """Yield the limits of a control group and of its ancestors.
 
     In a container the path may be the host's; then the root is the group of the process.
     """
-    folder, limit, use, droppable = version
-    root = CONTROL_GROUPS / folder
-    group = root / path.lstrip("/")
+    group = CONTROL_GROUPS / path.lstrip("/")
     for each in (group, *group.parents):
         with suppress(OSError, ValueError):  # "max", or no such group
-            most = float(int((each / limit).read_text(encoding="ascii")))
-            used = float(int((each / use).read_text(encoding="ascii")))
-            yield most, used - _line(each / "memory.stat", droppable, 0.0)
-        if each == root:
+            most = float(int((each / "memory.max").read_text(encoding="ascii")))
+            used = float(int((each / "memory.current").read_text(encoding="ascii")))
+            # The system can drop cached files.
+            yield most, used - _line(each / "memory.stat", "inactive_file", 0.0)
+        if each == CONTROL_GROUPS:
             return
 
 

@@ -76,13 +76,8 @@ def settings(context: click.Context, _: click.Parameter, begun: str) -> list[str
     return _begun([f"{name}=" for x in surfaces[:1] for name in x["parameters"]], begun)
 
 
-def formula_names(context: click.Context, _: click.Parameter, begun: str) -> list[str]:
-    """Complete the name of a formula, from the formulas page, because loading SymPy is slow.
-
-    With --tape, the name of a surface.
-    """
-    if context.params.get("tape"):
-        return _begun(_catalogue(), begun)
+def formula_names(_: click.Context, __: click.Parameter, begun: str) -> list[str]:
+    """Complete the name of a formula, from the formulas page, because loading SymPy is slow."""
     page = (files("gaussmap.generated") / "formulas.md").read_text(encoding="utf-8")
     names = re.findall(r"^### `(\w+)`$", page, re.MULTILINE)
     return _begun([name for name in names if name not in _catalogue()], begun)

@@ -141,14 +141,6 @@ examples:
   gaussmap batch parts/ --scheduler tcp://10.0.0.1:8786 -o /shared/dataset
 """
 
-FORMULAS_EXAMPLES = """\
-\b
-examples:
-  gaussmap formulas support_function
-  gaussmap formulas --tape torus
-  gaussmap formulas --tape --formula u v "sin(u)*v"
-"""
-
 FOLDER = click.Path(file_okay=False, readable=False)
 FILE = click.Path(readable=False)  # for completion; files are checked where they are used
 
@@ -188,8 +180,8 @@ def _sample() -> Command:
         "gaps between these, as where the surface is flat or developable.",
         *_sampling(default_count=10_000),
         _output(
-            ".npz, .ply, .csv, .vtp, .xyz, .parquet, .arrow, .feather, .gpkg, .geojson, .las or "
-            ".laz; with --format -, which is standard output"
+            ".npz, .ply, .csv, .vtp, .xyz, .parquet, .gpkg, .geojson, .las or .laz; with --format "
+            "-, which is standard output"
         ),
         Option("--format FORMAT", format_, click.Choice(("csv", "xyz", "ply", "npy")), main=True),
         Option("--edges", edges, group="the surface"),
@@ -216,7 +208,7 @@ def _mesh() -> Command:
         "Sample a surface and write a triangle mesh of it. The vertices are the samples, and "
         "points on open boundaries and at poles; the mesh of a CAD part has as many new vertices.",
         *_sampling(default_count=10_000),
-        _output(".ply, .obj, .stl, .3mf, .vtk, .vtu, .vtp or .glb"),
+        _output(".ply, .obj, .stl, .3mf, .vtu, .vtp or .glb"),
         Option("--deviation DEGREES", deviation, number, main=True),
         Option(
             "--prefer KIND", prefer, click.Choice(("shape", "normals")), default="shape", main=True
@@ -322,18 +314,11 @@ def _faces() -> Command:
 
 
 def _formulas() -> Command:
-    tape = (
-        "Show the operations that compute the surface NAME, or --formula, each on results of "
-        "earlier rows. Proofs about samples at given normals evaluate these operations."
-    )
     return _command(
         "formulas",
         "List the formulas that the program computes with, or show the formula NAME.",
         click.Argument(["name"], required=False, shell_complete=formula_names),
-        Option("--latex", "Show LaTeX (of all without a NAME).", exclusive=True),
-        Option("--tape", tape, exclusive=True),
-        Option("--formula X Y Z", "With --tape, in place of NAME: texts in u and v."),
-        epilog=FORMULAS_EXAMPLES,
+        Option("--latex", "Show LaTeX (of all without a NAME)."),
     )
 
 

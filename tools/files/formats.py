@@ -11,10 +11,10 @@ from ...runtime.base.errors import InputError, UnknownNameError
 from ...runtime.base.extras import check_extra
 from ...runtime.base.georeference import warn_of_rounding
 from ...runtime.samples.samples import Samples
-from .arrow import write_arrow, write_parquet
 from .las import write_las
 from .npz import read_npz, write_npz
 from .of_terrain import write_points
+from .parquet import write_parquet
 from .paths import (
     PathLike,
     atomic_path,
@@ -28,7 +28,7 @@ from .reading import opened
 from .tables import write_csv, write_xyz
 from .threemf import write_3mf
 from .triangle_files import write_glb, write_obj, write_stl
-from .vtk import write_mesh_vtp, write_vtk, write_vtp, write_vtu
+from .vtk import write_mesh_vtp, write_vtp, write_vtu
 
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
@@ -63,8 +63,6 @@ OF_SAMPLES = {
     ".vtp": Format(write_vtp, ("points",), "pyvista", "vtk"),
     ".xyz": Format(write_xyz, ("points", "normals")),
     ".parquet": Format(write_parquet, (), "pyarrow", "tables"),
-    ".arrow": Format(write_arrow, (), "pyarrow", "tables"),
-    ".feather": Format(write_arrow, (), "pyarrow", "tables"),
     ".gpkg": Format(write_points, ("points",), "pyogrio", "gis"),
     ".geojson": Format(write_points, ("points",), "pyogrio", "gis"),
     ".las": Format(write_las, ("points",), "laspy", "gis"),
@@ -75,7 +73,6 @@ OF_MESHES = {
     ".obj": Format(write_obj),
     ".stl": Format(write_stl),
     ".3mf": Format(write_3mf),
-    ".vtk": Format(write_vtk, (), "pyvista", "vtk"),
     ".vtu": Format(write_vtu, (), "pyvista", "vtk"),
     ".vtp": Format(write_mesh_vtp, (), "pyvista", "vtk"),
     ".glb": Format(write_glb, (), "trimesh", "trimesh"),

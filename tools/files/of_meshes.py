@@ -38,8 +38,8 @@ def write(self: Mesh, path: str | os.PathLike[str]) -> None:
         - `.stl`: binary, float32; triangles alone.
         - `.3mf`: vertices and triangles, for 3-D printers, with the unit of length, or millimetres
           if it is unknown.
-        - `.vtk`, `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`; these and
-          `.vtp` need the extra `vtk`.
+        - `.vtu`: VTK's unstructured grid with normals, u, v and `sample_index`; this and `.vtp`
+          need the extra `vtk`.
         - `.vtp`: VTK's PolyData with normals, uv and `sample_index`.
         - `.glb`: binary glTF with normals, and u and v as the attribute `_UV`, float32; needs the
           extra `trimesh`. It is closed where the mesh is; but a vertex on a sharp edge of a CAD

@@ -1,4 +1,4 @@
-"""Files in VTK's formats, by VTK itself: PolyData and unstructured grids in XML, and legacy."""
+"""Files in VTK's formats, by VTK itself: PolyData and unstructured grids, in XML."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .of_samples import polydata, to_pyvista
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = ["write_mesh_vtp", "write_vtk", "write_vtp", "write_vtu"]
+__all__ = ["write_mesh_vtp", "write_vtp", "write_vtu"]
 
 
 def write_vtp(samples: Samples, path: Path) -> None:
@@ -33,35 +33,19 @@ def write_mesh_vtp(mesh: Mesh, path: Path) -> None:
 
 def write_vtu(mesh: Mesh, path: Path) -> None:
     """Write an unstructured grid, with normals, u, v and sample_index of the vertices."""
-    _write_xml("vtkXMLUnstructuredGridWriter", _grid(mesh), path)
-
-
-def write_vtk(mesh: Mesh, path: Path) -> None:
-    """Write the grid of a .vtu file in the legacy format, version 5.1."""
-    from vtkmodules.vtkIOLegacy import vtkUnstructuredGridWriter
-
-    writer = vtkUnstructuredGridWriter()
-    writer.SetFileTypeToBinary()
-    path.write_bytes(_run(writer, _grid(mesh)).GetOutputStdString())
-
-
-def _grid(mesh: Mesh) -> Any:  # noqa: ANN401
     pv = from_extra("pyvista", "vtk", "a file of VTK")
     u, v = np.ascontiguousarray(mesh.uv.T)
     cells = {pv.CellType.TRIANGLE: mesh.triangles}
     arrays = {"normals": mesh.normals, "sample_index": mesh.sample_index, "u": u, "v": v}
-    return polydata(pv, pv.UnstructuredGrid(cells, mesh.vertices), arrays)
+    grid = polydata(pv, pv.UnstructuredGrid(cells, mesh.vertices), arrays)
+    _write_xml("vtkXMLUnstructuredGridWriter", grid, path)
 
 
 def _write_xml(name: str, data: Any, path: Path) -> None:  # noqa: ANN401
+    """Let a writer of VTK write to memory, since it only prints errors about files."""
     writer = getattr(import_module("vtkmodules.vtkIOXML"), name)()
     writer.SetDataModeToBinary()
-    path.write_text(_run(writer, data).GetOutputString(), encoding="ascii")
-
-
-def _run(writer: Any, data: Any) -> Any:  # noqa: ANN401
-    """Let a writer of VTK write to memory, since it only prints errors about files."""
     writer.SetInputData(data)
     writer.WriteToOutputStringOn()
     writer.Write()
-    return writer
+    path.write_text(writer.GetOutputString(), encoding="ascii")

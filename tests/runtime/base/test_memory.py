@@ -226,33 +226,24 @@ def test_free_memory_is_less_than_all() -> None:
 
 
 @pytest.mark.parametrize("inside", [True, False], ids=["of the job", "of the container"])
-@pytest.mark.parametrize("version", [1, 2])
-def test_control_groups(
-    version: int, inside: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_control_groups(inside: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of any group that holds the process counts; files that can be dropped are free."""
     groups, proc = tmp_path / "cgroup", tmp_path / "proc"
-    limit, use, droppable = {
-        1: ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
-        2: ("memory.max", "memory.current", "inactive_file"),
-    }[version]
-    root = groups / "memory" if version == 1 else groups
-    job = root / "user" / "job"
+    job = groups / "user" / "job"
     job.mkdir(parents=True)
     (proc / "self").mkdir(parents=True)
     (proc / "meminfo").write_text("MemTotal: 9000000 kB\nMemAvailable: 700000 kB\n")
-    line = "4:cpu,memory:/user/job" if version == 1 else "0::/user/job"
-    (proc / "self" / "cgroup").write_text(f"9:pids:/other\n{line}\n")
-    (job / limit).write_text("max\n")
-    group = job if inside else root
-    (group / limit).write_text("500000000\n")
-    (group / use).write_text("300000000\n")
-    (group / "memory.stat").write_text(f"anon 5\n{droppable} 100000000\n")
+    (proc / "self" / "cgroup").write_text("9:pids:/other\n0::/user/job\n")
+    (job / "memory.max").write_text("max\n")
+    group = job if inside else groups
+    (group / "memory.max").write_text("500000000\n")
+    (group / "memory.current").write_text("300000000\n")
+    (group / "memory.stat").write_text("anon 5\ninactive_file 100000000\n")
     monkeypatch.setattr(memory, "PROC", proc)
     monkeypatch.setattr(memory, "CONTROL_GROUPS", groups)
     assert memory.memory_limit() == 500e6
     assert memory.free_memory() == 300e6
-    (group / limit).write_text("900000000000\n")
+    (group / "memory.max").write_text("900000000000\n")
     assert memory.free_memory() == 700_000 * 1024.0
 
 

@@ -198,47 +198,6 @@ def test_all_formulas_in_latex(capsys: pytest.CaptureFixture[str]) -> None:
     assert all(f.latex() in out for f in gm.formulas.values())
 
 
-TAPE_OF_WAVES = """\
-0  u
-1  v
-2  sin [0]
-3  cos [0]
-4  product [1] [2]
-5  shift [4] 0.3333333333333333 ± 1.9e-17
-x = [0], y = [1], z = [5]
-"""
-
-
-def test_the_tape_of_a_formula(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["formulas", "--tape", "--formula", "u", "v", "v*sin(u) + 1/3"]) == 0
-    assert capsys.readouterr().out == TAPE_OF_WAVES
-
-
-@pytest.mark.parametrize("name", gm.surfaces.names())
-def test_the_tape_that_is_shown_computes_the_surface(name, capsys):
-    """Each operation is that of NumPy of the same name, or one of `own`."""
-    surface = gm.surfaces.surface(name)
-    own: dict[str, Any] = {
-        "sum": np.add, "product": np.multiply, "shift": np.add, "scale": np.multiply,
-        "cube": lambda x: x**3,
-    }  # fmt: skip
-    assert main(["formulas", "--tape", name]) == 0
-    *lines, last = capsys.readouterr().out.splitlines()
-    u, v = (low + 0.3 * (high - low) for low, high in surface.domain)
-    rows: list[float] = []
-    for line in lines:
-        number, operation, *words = line.split(" ± ")[0].split()
-        assert int(number) == len(rows)
-        values = [rows[int(x[1:-1])] if x.startswith("[") else float(x) for x in words]
-        leaves = {"u": u, "v": v, "constant": values[-1] if values else 0.0}
-        if operation in leaves:
-            rows.append(leaves[operation])
-        else:
-            rows.append((own.get(operation) or getattr(np, operation))(*values))
-    found = [rows[int(x.split("[")[1].rstrip("]"))] for x in last.split(", ")]
-    np.testing.assert_allclose(found, surface.evaluate(u, v), rtol=1e-13, atol=1e-13)
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -440,12 +399,6 @@ SQUARE = ["--domain", "-1", "1", "-1", "1"]
         (["surfaces", "torus", "sphere"], r"unexpected extra argument \(sphere\)"),
         (["formulas", "support_functoin"], r"no formula 'support_functoin'; did you mean"),
         (["sample", "patch", *TO], "did you mean ellipsoid_patch"),
-        (["formulas", "--tape"], "needs the name of a surface, or --formula X Y Z"),
-        (["formulas", "--tape", "tours"], "no surface 'tours'; did you mean torus"),
-        (["formulas", "--tape", "--latex", "torus"], "--tape is not allowed with --latex"),
-        (["formulas", "--tape", "torus", "--formula", "u", "v", "u"], "--tape needs"),
-        (["formulas", "--formula", "u", "v", "u"], "--formula is for --tape"),
-        (["formulas", "--tape", "--formula", "u", "v", "floor(u)"], "has no tape"),
     ],
 )  # fmt: skip
 def test_an_error_is_one_line(command, message, capsys):
@@ -626,7 +579,6 @@ COMMANDS = [
         ("gaussmap surfaces tor", ["torus"]),
         ("gaussmap sample torus --set mi", ["minor="]),
         ("gaussmap formulas support_f", ["support_function"]),
-        ("gaussmap formulas --tape tor", ["torus"]),
         ("gaussmap completion z", ["zsh"]),
         ("gaussmap mesh torus --density un", ["uniform"]),
         ("gaussmap mesh torus -o a", ["file:a"]),

@@ -13,7 +13,7 @@ from gaussmap.tools.commands.cli import main
 FEW = ["--count", "100", "--cells", "8", "8"]
 
 
-@pytest.mark.parametrize("suffix", ["ply", "obj", "stl", "vtk", "vtu"])
+@pytest.mark.parametrize("suffix", ["ply", "obj", "stl", "vtu", "vtp"])
 def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["mesh", "torus", *FEW, "-o", f"torus.{suffix}"]) == 0
     out, err = capsys.readouterr()
@@ -56,7 +56,7 @@ def test_normals_of_a_part(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["torus", "-o", "torus.npz"], "use one of .ply, .obj, .stl, .3mf, .vtk, .vtu, .vtp, .glb"),
+        (["torus", "-o", "torus.npz"], "use one of .ply, .obj, .stl, .3mf, .vtu, .vtp, .glb"),
         (["torus", "-o", "no/torus.ply"], "create the folder first"),
         (["torus", *FEW, "--deviation", "0", "-o", "a.ply"], "angle must lie between 0 and 180"),
         (["torus", "--deviation", "wide", "-o", "torus.ply"], "it must be a number, not 'wide'"),

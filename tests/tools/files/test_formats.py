@@ -532,8 +532,7 @@ def test_pickles_are_never_read(tmp_path):
 
 def test_the_suffixes():
     assert SUFFIXES == (
-        ".npz", ".ply", ".csv", ".vtp", ".xyz", ".parquet", ".arrow", ".feather", ".gpkg",
-        ".geojson", ".las", ".laz",
+        ".npz", ".ply", ".csv", ".vtp", ".xyz", ".parquet", ".gpkg", ".geojson", ".las", ".laz",
     )  # fmt: skip
     assert READABLE_SUFFIXES == (".npz", ".ply")
 

@@ -19,7 +19,7 @@ OWN = (".ply", ".obj", ".stl", ".3mf")  # without further libraries
 
 
 class TestFiles:
-    @pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl", ".vtk", ".vtu", ".vtp"])
+    @pytest.mark.parametrize("suffix", [".ply", ".obj", ".stl", ".vtu", ".vtp"])
     def test_pyvista_reads_triangles(self, tmp_path, suffix):
         pv = pytest.importorskip("pyvista")
         mesh, path = square(), tmp_path / f"square{suffix}"
@@ -94,7 +94,7 @@ class TestFiles:
             square().write(tmp_path / "a.glb")
         assert not list(Path(tmp_path).iterdir())
 
-    @pytest.mark.parametrize("suffix", [".vtk", ".vtu", ".vtp"])
+    @pytest.mark.parametrize("suffix", [".vtu", ".vtp"])
     def test_files_of_vtk_need_it(self, tmp_path, suffix, monkeypatch):
         monkeypatch.setitem(sys.modules, "pyvista", None)
         with pytest.raises(gm.errors.MissingExtraError, match=r"gaussmap\[vtk\]"):

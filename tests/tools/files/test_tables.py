@@ -14,10 +14,6 @@ from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.files import tables
 from gaussmap.tools.files.formats import check_samples_target
 
-from ...products import covering
-
-BINARY = [".parquet", ".arrow", ".feather"]
-
 
 def noise(count: int, dtype: Any = np.float64) -> gm.Samples:
     """Samples of numbers of all sizes, some of which are neither finite nor normal."""
@@ -57,14 +53,12 @@ def assert_equal(column: Any, wanted: np.ndarray) -> None:
     assert np.ascontiguousarray(found).tobytes() == np.ascontiguousarray(wanted).tobytes()
 
 
-@covering(dtype=[np.float64, np.float32], suffix=BINARY)
-def test_arrow_keeps_every_bit_types_units_and_the_report(tmp_path, suffix, dtype):
-    arrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
-    samples, path = noise(5000, dtype), tmp_path / f"a{suffix}"
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_parquet_keeps_every_bit_types_units_and_the_report(tmp_path, dtype):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    samples, path = noise(5000, dtype), tmp_path / "a.parquet"
     samples.write(path)
-    read = (
-        parquet.read_table(path) if suffix == ".parquet" else arrow.ipc.open_file(path).read_all()
-    )
+    read = parquet.read_table(path)
     columns = columns_of(samples)
     assert read.column_names == list(columns)
     for name, column in columns.items():
@@ -77,19 +71,16 @@ def test_arrow_keeps_every_bit_types_units_and_the_report(tmp_path, suffix, dtyp
     assert read.schema.field("v").metadata[b"field"] == b"uv"
 
 
-@pytest.mark.parametrize("suffix", BINARY)
-def test_without_pyarrow_the_extra_is_named_before_sampling(
-    tmp_path, monkeypatch, suffix, capsys, main
-):
+def test_without_pyarrow_the_extra_is_named_before_sampling(tmp_path, monkeypatch, capsys, main):
     found = importlib.util.find_spec
     monkeypatch.setattr(
         "importlib.util.find_spec", lambda name: None if name == "pyarrow" else found(name)
     )
-    path = str(tmp_path / f"a{suffix}")
+    path = str(tmp_path / "a.parquet")
     with pytest.raises(gm.errors.MissingExtraError, match=r'pip install "gaussmap\[tables\]"'):
         check_samples_target(path)
     assert main(["sample", "torus", "-o", path]) == 2
-    assert f"a {suffix} file needs pyarrow" in capsys.readouterr().err
+    assert "a .parquet file needs pyarrow" in capsys.readouterr().err
 
 
 def written(samples: gm.Samples, monkeypatch: pytest.MonkeyPatch, least: int) -> list[str]:

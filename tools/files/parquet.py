@@ -1,4 +1,4 @@
-"""Arrow tables: .parquet files, and .arrow files, also called Feather."""
+"""Parquet files, by Arrow."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .lengths import units_of
 from .of_faces import columns_of_faces
 from .of_terrain import columns_of_terrain
 
-__all__ = ["write_arrow", "write_parquet"]
+__all__ = ["write_parquet"]
 
 
 def write_parquet(samples: Samples, path: Path) -> None:
@@ -26,14 +26,6 @@ def write_parquet(samples: Samples, path: Path) -> None:
     from_extra("pyarrow.parquet", "tables", "a .parquet file").write_table(
         table, path, use_dictionary=False
     )
-
-
-def write_arrow(samples: Samples, path: Path) -> None:
-    """Write the same table in Arrow's own format, uncompressed, so that it can be memory-mapped."""
-    table = _table(samples, path)
-    arrow = from_extra("pyarrow", "tables", "this")
-    with arrow.OSFile(str(path), "wb") as file, arrow.ipc.new_file(file, table.schema) as writer:
-        writer.write_table(table)
 
 
 def _table(samples: Samples, path: Path) -> Any:  # noqa: ANN401
