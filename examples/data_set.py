@@ -60,8 +60,8 @@ def main():
         if row["status"] == "failed":
             print(f"{row['name']}: {row['error']}")
     clouds = np.full((COUNT, POINTS, 3), np.nan, dtype=np.float32)
-    for points, _, parts in dataset.batches(points=POINTS, parts=50, shuffle=0):
-        clouds[parts] = points
+    for points, _, part in dataset.clouds(POINTS):
+        clouds[part] = points
     check(dataset, clouds)
 
 

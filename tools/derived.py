@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..runtime.base.checks import known_name, listed, positive_number, whole_number
+from ..runtime.base.checks import known_name, listed, positive_number
 from ..runtime.base.errors import InputError, shown
 from ..runtime.base.progress import busy
 from ..runtime.samples.samples import Samples, spline_or
@@ -26,10 +26,8 @@ if TYPE_CHECKING:
     from .cad.part import Part
     from .gauss_map.silhouette import Silhouette
     from .meshes.mesh import Mesh
-    from .meshes.triangulated import Prefer
 
 __all__ = [
-    "levels",
     "mesh",
     "offset",
     "unobstructed",
@@ -232,64 +230,6 @@ def mesh(
         raise InputError("an offset of a CAD part has no mesh.")
     with busy("meshing", progress):
         return mesh_of(self, spline_or(self, spline, self.offset_of), angle, prefer)
-
-
-def levels(
-    self: Samples,
-    counts: Sequence[int],
-    spline: AnySpline | None = None,
-    *,
-    prefer: Prefer = "shape",
-    progress: bool = False,
-) -> tuple[Mesh, ...]:
-    """Return nested levels of detail: meshes of prefixes of the samples in progressive order.
-
-    Every sample of a level is also in all finer levels.
-
-    Parameters
-    ----------
-    counts : sequence of int
-        The numbers of samples of the levels, each from 1 to the number of all samples.
-    spline : Spline, optional
-        As in `mesh`.
-    prefer : {"shape", "normals"}, default "shape"
-        As in `mesh`.
-    progress : bool, default False
-        Show the progress on a terminal, after the first second.
-
-    Returns
-    -------
-    tuple of Mesh
-        A mesh for each count. Its `sample_index` refers to the rows of ``samples.progressive()``,
-        so that a vertex has the same index in all levels.
-
-    Raises
-    ------
-    InputError
-        For invalid counts, and as `mesh`: the coarsest level may have too few samples.
-    MissingFieldError
-        As `mesh`.
-
-    See Also
-    --------
-    progressive : the order.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> gm.sample("torus", 2000, cells=(16, 16)).levels([125, 500, 2000])
-    (Mesh(125 vertices, ...), Mesh(500 vertices, ...), Mesh(2,000 vertices, ...))
-
-    """
-    asked = listed(counts)
-    if asked is None:
-        raise InputError(f"levels takes a list of counts, not {shown(counts)}.")
-    numbers = [whole_number(x, "a count of levels") for x in asked]
-    if numbers and max(numbers) > len(self):
-        raise InputError(f"a level has at most as many samples as there are: {len(self):,}.")
-    spline = spline_or(self, spline, self.offset_of)
-    ordered = self.progressive(progress=progress)
-    return tuple(ordered[:x].mesh(spline, prefer=prefer, progress=progress) for x in numbers)
 
 
 def weights(

@@ -24,7 +24,6 @@ class Methods:
     normal_deviation = Later(DENSITY)
     progressive = Later(DENSITY)
 
-    levels = Later(TOOLS)
     mesh = Later(TOOLS)
     offset = Later(TOOLS)
     plot = Later("gaussmap.tools.pictures.plot", "plot_samples")

@@ -5,7 +5,6 @@ class Methods:
     from ...tools.density.methods import in_order as in_order
     from ...tools.density.methods import normal_deviation as normal_deviation
     from ...tools.density.methods import progressive as progressive
-    from ...tools.derived import levels as levels
     from ...tools.derived import mesh as mesh
     from ...tools.derived import offset as offset
     from ...tools.derived import unobstructed as unobstructed

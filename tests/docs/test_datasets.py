@@ -95,7 +95,7 @@ def test_examples(folder, monkeypatch, capsys):
     check(run(BLOCKS[1:]))
     printed = capsys.readouterr().out.splitlines()
     assert printed[0] in BLOCKS[1]
-    assert printed[1].startswith("(2, 256, 3) (2, 256, 3)")
+    assert printed[1] == "3 (256, 3) (256, 3) 2 1"
 
 
 @pytest.mark.slow

@@ -10,12 +10,11 @@ from typing import Any, SupportsIndex
 import numpy as np
 from numpy.typing import NDArray
 
-from ...runtime.base.errors import InputError
 from ...runtime.samples.fields import COLUMNS, row_shape
 from .folder import Settings
 from .part_files import arrays_in, opened_part
 
-__all__ = ["Clouds", "batches"]
+__all__ = ["Clouds"]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -36,10 +35,8 @@ class Clouds:
         The type of each requested field.
     seed : tuple of int or None
         The seed for drawing points; without it, the first points are taken.
-    labels : dict of int to number or None
-        The labels, keyed by part index.
-    label_type : dtype or None
-        The type of the labels.
+    labels : (P,) array or None
+        A number for each part of the data set.
 
     """
 
@@ -49,8 +46,7 @@ class Clouds:
     points: int
     types: Mapping[str, np.dtype[Any]]
     seed: tuple[int, ...] | None
-    labels: Mapping[int, Any] | None
-    label_type: np.dtype[Any] | None
+    labels: NDArray[Any] | None
 
     def __len__(self) -> int:
         return len(self.parts)
@@ -63,7 +59,8 @@ class Clouds:
         rows = self._rows(part, len(table))
         columns = arrays_in(table, tuple(self.types))
         taken = (self._taken(x, rows, name) for name, x in columns.items())
-        return (*taken, part, *self._label(part))
+        label = () if self.labels is None else (self.labels[part].item(),)
+        return (*taken, part, *label)
 
     def __iter__(self) -> Iterator[tuple[Any, ...]]:
         return (self[place] for place in range(len(self)))
@@ -72,7 +69,9 @@ class Clouds:
         """Return the indices of the samples to take: each once before any is repeated."""
         if self.seed is None:
             return np.arange(self.points, dtype=np.int64) % count
-        rng = self.generator(0, part)
+        # The key includes the length of the seed; otherwise (1,) and (1, 0) would be the same.
+        key = (len(self.seed), 0, part)
+        rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=key))
         if count >= self.points:
             return rng.choice(count, self.points, replace=False)
         rounds = -(-self.points // count)
@@ -84,38 +83,3 @@ class Clouds:
         for k, column in enumerate(columns):
             by_column[:, k] = column[rows]
         return taken
-
-    def _label(self, part: int) -> tuple[Any, ...]:
-        if self.labels is None or self.label_type is None:
-            return ()
-        if part not in self.labels:
-            raise InputError(f"part {part} has no label; labels must have all parts.")
-        value = self.labels[part]
-        return (np.array(np.nan if value is None else value, dtype=self.label_type).item(),)
-
-    def generator(self, *key: int) -> np.random.Generator:
-        """Return an independent generator for each key."""
-        seed = self.seed or ()
-        # The key includes the length of the seed; otherwise (1,) and (1, 0) would be the same.
-        return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(len(seed), *key)))
-
-
-def batches(
-    clouds: Clouds, parts: int, shard: tuple[int, int], drop_last: bool
-) -> Iterator[tuple[NDArray[Any], ...]]:
-    """Yield the batches of one worker, `parts` clouds each; a seed shuffles them."""
-    count = len(clouds)
-    order = np.arange(count) if clouds.seed is None else clouds.generator(1).permutation(count)
-    index, workers = shard
-    mine = order[index::workers]
-    for start in range(0, len(mine), parts):
-        places = mine[start : start + parts]
-        if len(places) < parts and drop_last:
-            return
-        columns = list(zip(*(clouds[k] for k in places), strict=True))
-        types = [np.dtype(np.int64)] if clouds.labels is None else [np.int64, clouds.label_type]
-        fields = len(clouds.types)
-        yield (
-            *(np.stack(x) for x in columns[:fields]),
-            *(np.array(x, kind) for x, kind in zip(columns[fields:], types, strict=True)),
-        )

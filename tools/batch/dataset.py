@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, SupportsIndex
@@ -11,15 +11,14 @@ from typing import TYPE_CHECKING, Any, SupportsIndex
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from ...runtime.base.checks import listed, whole_number, yes_or_no
-from ...runtime.base.errors import GaussmapWarning, InputError, UnknownNameError, shown
+from ...runtime.base.checks import listed, real_values, whole_number
+from ...runtime.base.errors import GaussmapWarning, InputError, UnknownNameError
 from ...runtime.base.extras import check_extra
 from ...runtime.base.wording import plural
 from ...runtime.samples.fields import COLUMNS, UNITS, checked_dtype, dtype_of
 from ..files.paths import PathLike, checked_path
-from .clouds import Clouds, batches
+from .clouds import Clouds
 from .folder import MANIFEST, Settings, checked_names, part_path, parts_in, read_settings
-from .labels import checked_labels
 from .manifest import COLUMNS as MANIFEST_COLUMNS
 from .manifest import FAILED, ManifestRow, manifest_table
 from .part_files import arrays_in, opened_manifest, opened_part, rows_of, stacked
@@ -246,35 +245,39 @@ class Dataset:
         fields: Sequence[str] = ("points", "normals"),
         shuffle: int | Sequence[int] | None = None,
         dtype: DTypeLike | None = None,
-        labels: str | Mapping[int, float] | Mapping[str, float] | ArrayLike | None = None,
+        labels: ArrayLike | None = None,
     ) -> Clouds:
         """Return the same number of points of each part, for training: a data set for PyTorch.
 
         Parameters
         ----------
         points : int, default 2048
-            The number of points of each part, as in `batches`.
+            The number of points of each part. If a part has fewer samples, they are repeated, each
+            about equally often, and a warning says so once.
         fields : sequence of str, default ("points", "normals")
-            The requested fields of the samples.
+            The requested fields of the samples. A field that a part lacks is NaN, −1, False or 0.
         shuffle : int or sequence of int, optional
-            A seed for drawing points; without it, the first points are taken.
+            A seed for drawing points at random, without repetition if the part has enough.
+            ``shuffle=(seed, epoch)`` draws others in each epoch. Without a seed, the first points
+            are taken.
         dtype : {float32, float64}, optional
             The type of the numbers; that of the data set by default.
-        labels : str, mapping or (P,) array_like, optional
-            A number for each part, as in `batches`.
+        labels : (P,) array_like, optional
+            A number for each of the P parts of the data set, failed ones included.
 
         Returns
         -------
         A sequence, usable as a map-style data set of PyTorch: ``clouds[k]`` is a tuple of an array
-        for each field, the index of the part, and its label, if any; ``len(clouds)`` is the number
-        of parts that have samples. A file is read when its part is accessed.
+        (points, 3) or (points,) for each field, the index of the part, and its label, if any;
+        ``len(clouds)`` is the number of parts that have samples. A file is read when its part is
+        accessed; the arrays are contiguous, writable and never reused.
 
         Raises
         ------
         InputError
-            If an argument is out of range, or a name in `labels` belongs to several parts.
+            If an argument is out of range.
         UnknownNameError
-            If the data set has no such field, or its manifest no such column.
+            If the data set has no such field.
         FileError
             If a file cannot be read.
 
@@ -282,6 +285,10 @@ class Dataset:
         -----
         GaussmapWarning
             If a part has fewer samples than `points`.
+
+        Notes
+        -----
+        The points drawn from a part depend on the seed and the part only.
 
         Examples
         --------
@@ -293,121 +300,22 @@ class Dataset:
         >>> # torch.utils.data.DataLoader(clouds, batch_size=16, shuffle=True, num_workers=4)
 
         """
-        return self._clouds(points, fields, shuffle, dtype, labels)
-
-    def batches(
-        self,
-        points: int = 2048,
-        parts: int = 16,
-        *,
-        fields: Sequence[str] = ("points", "normals"),
-        shuffle: int | Sequence[int] | None = None,
-        dtype: DTypeLike | None = None,
-        labels: str | Mapping[int, float] | Mapping[str, float] | ArrayLike | None = None,
-        shard: tuple[int, int] = (0, 1),
-        drop_last: bool = False,
-    ) -> Iterator[tuple[NDArray[Any], ...]]:
-        """Return batches for training: the same number of points of each of several parts.
-
-        Parameters
-        ----------
-        points : int, default 2048
-            The number of points of each part. If a part has fewer samples, they are repeated, each
-            about equally often, and a warning says so once.
-        parts : int, default 16
-            The number of parts in a batch; parts without samples are left out.
-        fields : sequence of str, default ("points", "normals")
-            The requested fields of the samples. A field that a part lacks is NaN, −1, False or 0.
-        shuffle : int or sequence of int, optional
-            A seed for shuffling the parts and for drawing points at random, without repetition if
-            the part has enough. ``shuffle=(seed, epoch)`` gives each epoch its own order. Without a
-            seed, parts come in the order of the list, with their first points.
-        dtype : {float32, float64}, optional
-            The type of the numbers; that of the data set by default.
-        labels : str, mapping or (P,) array_like, optional
-            A number for each part: the name of a column of the manifest; an array with one number
-            for each of the P parts of the data set; or a mapping from part indices, or from part
-            names if each name in it belongs to one part only.
-        shard : (int, int), default (0, 1)
-            ``(i, n)`` selects the batches of worker `i` of `n`, counted from 0: each part is in the
-            batches of exactly one worker.
-        drop_last : bool, default False
-            Leave out the last batch if it has fewer parts.
-
-        Returns
-        -------
-        iterator of tuple of array
-            A batch is an array (parts, points, 3) or (parts, points) for each field; then the
-            indices of the parts, (parts,) int64; then their labels, (parts,) int64 or float64, if
-            any. The arrays are contiguous, writable and never reused, so that ``torch.from_numpy``
-            takes them without a copy.
-
-        Raises
-        ------
-        InputError
-            If an argument is out of range, a part has no label, or a name in `labels` belongs to
-            several parts.
-        UnknownNameError
-            If the data set has no such field, or its manifest no such column.
-        FileError
-            If a file cannot be read.
-
-        Warns
-        -----
-        GaussmapWarning
-            Once for all batches, if a part has fewer samples than `points`.
-
-        Notes
-        -----
-        The same seed gives the same batches. The points drawn from a part do not depend on the
-        number of workers. One part and one batch are in memory at a time.
-
-        Examples
-        --------
-        >>> import gaussmap as gm
-        >>> dataset = gm.open_dataset("dataset")
-        >>> for points, normals, part in dataset.batches(256, 2, shuffle=0, dtype="float32"):
-        ...     print(points.shape, normals.dtype, part.shape)
-        (2, 256, 3) float32 (2,)
-        (1, 256, 3) float32 (1,)
-        >>> kinds = {"torus": 0, "sphere": 1, "ellipsoid": 1}
-        >>> points, part, kind = next(dataset.batches(100, 3, fields=("points",), labels=kinds))
-        >>> part.tolist(), kind.tolist()
-        ([0, 1, 2], [0, 1, 1])
-
-        """
-        return batches(
-            self._clouds(points, fields, shuffle, dtype, labels),
-            whole_number(parts, "parts"),
-            _checked_shard(shard),
-            yes_or_no(drop_last, "drop_last"),
-        )
-
-    def _clouds(
-        self,
-        points: int,
-        fields: Sequence[str],
-        shuffle: int | Sequence[int] | None,
-        dtype: DTypeLike | None,
-        labels: str | Mapping[int, float] | Mapping[str, float] | ArrayLike | None,
-    ) -> Clouds:
-        """Return the clouds; a warning names the user's line, two calls above."""
         count, types = whole_number(points, "points"), self._types(fields, dtype)
-        seed = _checked_seed(shuffle)
-        known, label_type = checked_labels(labels, self.manifest)
-        table = self.manifest(("part", "samples"))
+        seed, table = _checked_seed(shuffle), self.manifest(("part", "samples"))
         numbers, samples = (np.asarray(table[name]) for name in ("part", "samples"))
+        known = (
+            None if labels is None else _checked_labels(labels, int(numbers.max(initial=-1)) + 1)
+        )
         few = (samples > 0) & (samples < count)
         if few.any():
             part, held = numbers[few][0], samples[few][0]
             warnings.warn(
                 f"part {part} has {held:,} samples, fewer than {count} points: some of them are "
-                "repeated in its batch, as are those of other parts with fewer.",
+                "repeated, as are those of other parts with fewer.",
                 GaussmapWarning,
-                stacklevel=3,
+                stacklevel=2,
             )
-        held = numbers[samples > 0]
-        return Clouds(self.folder, self.settings, held, count, types, seed, known, label_type)
+        return Clouds(self.folder, self.settings, numbers[samples > 0], count, types, seed, known)
 
     def _types(self, fields: Sequence[str], dtype: DTypeLike | None) -> dict[str, np.dtype[Any]]:
         number = checked_dtype(self.settings.dtype if dtype is None else dtype)
@@ -416,7 +324,7 @@ class Dataset:
 
 
 def _samples(arrays: dict[str, NDArray[Any]], row: ManifestRow) -> Samples:
-    # Imported here because these modules load Numba, which reading batches does not need.
+    # Imported here because these modules load Numba, which reading clouds does not need.
     from ...runtime.samples.report import SamplingReport
     from ...runtime.samples.samples import Samples
 
@@ -437,12 +345,11 @@ def _checked_seed(seed: int | Sequence[int] | None) -> tuple[int, ...] | None:
     return (whole_number(seed, "shuffle", least=0),)
 
 
-def _checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
-    try:
-        index, count = shard
-    except Exception:  # conversion may raise anything
-        raise InputError(f"shard must be a pair (i, n), not {shown(shard)}.") from None
-    index, count = whole_number(index, "shard[0]", least=0), whole_number(count, "shard[1]")
-    if index >= count:
-        raise InputError(f"shard is ({index}, {count}); workers count from 0 to {count - 1}.")
-    return index, count
+def _checked_labels(labels: ArrayLike, parts: int) -> NDArray[Any]:
+    values = real_values(labels, "labels")
+    if values.shape != (parts,):
+        raise InputError(
+            f"labels must be an array with one number for each of {parts:,} parts, of the shape "
+            f"({parts},), not {values.shape}."
+        )
+    return values

@@ -3,7 +3,6 @@
     dataset.json           the settings
     points/000000.parquet  the samples of a part, and its row of the manifest
     manifest.parquet       the rows of all parts, when a run has ended
-    files/                 a file for each part, if requested
     normals.npy            the prescribed normals, if there are any
     partial/               files that are being written; it exists only during a run
 
@@ -17,7 +16,6 @@ import os
 import re
 import secrets
 import shutil
-import unicodedata
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, fields
@@ -32,8 +30,6 @@ from ...runtime.samples.fields import COLUMNS, EDGE_NAMES
 from ..files.paths import BEGUN, PathLike, atomic_path, checked_path, reason_of
 
 __all__ = [
-    "CODECS",
-    "FILES",
     "MANIFEST",
     "NORMALS",
     "PARTIAL",
@@ -41,7 +37,6 @@ __all__ = [
     "SETTINGS",
     "Settings",
     "checked_names",
-    "file_name",
     "opened",
     "part_path",
     "parts_in",
@@ -51,11 +46,9 @@ __all__ = [
 ]
 
 SETTINGS, LOCK, NORMALS, MANIFEST = "dataset.json", ".lock", "normals.npy", "manifest.parquet"
-POINTS, PARTIAL, FILES = FOLDERS = "points", "partial", "files"
-FORMAT = 3
-CODECS = ("zstd", "snappy", "gzip", "lz4", "none")
+POINTS, PARTIAL = FOLDERS = "points", "partial"
+FORMAT = 4
 FIELDS = tuple(name for name in COLUMNS if name not in EDGE_NAMES)
-LONGEST_NAME = 60  # the most characters of a part's name that the name of its file contains
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,10 +64,6 @@ class Settings:
         The fields of the samples.
     dtype : {"float64", "float32"}
         The type of all numbers but the indices.
-    compression : str
-        The compression of the Parquet files.
-    files : str or None
-        The suffix of additional files in another format, one for each part, if any.
     gaussmap, formulas : str
         The version of the package, and a digest of the formulas and kernels.
     format : int
@@ -85,25 +74,17 @@ class Settings:
     asked: dict[str, Any]
     fields: tuple[str, ...]
     dtype: str
-    compression: str
-    files: str | None
     gaussmap: str
     formulas: str
     format: int
 
     @classmethod
     def of_this_version(
-        cls,
-        asked: dict[str, Any],
-        fields: tuple[str, ...],
-        dtype: str = "float64",
-        compression: str = "zstd",
-        files: str | None = None,
+        cls, asked: dict[str, Any], fields: tuple[str, ...], dtype: str = "float64"
     ) -> Settings:
         """Return settings of samples computed by this version of the package."""
-        how = fields, dtype, compression, files
         # As if read from JSON: tuples become lists.
-        return cls.from_json(cls(asked, *how, __version__, digest(), FORMAT).to_json())
+        return cls.from_json(cls(asked, fields, dtype, __version__, digest(), FORMAT).to_json())
 
     def to_json(self) -> str:
         """Return the text of `dataset.json`."""
@@ -128,8 +109,6 @@ class Settings:
             asked=known["asked"],
             fields=checked_names(known["fields"], FIELDS, "field"),
             dtype=known_name(known["dtype"], ("float64", "float32"), "dtype"),
-            compression=known_name(known["compression"], CODECS, "compression"),
-            files=None if known["files"] is None else text(known["files"], "files"),
             gaussmap=text(known["gaussmap"], "gaussmap"),
             formulas=text(known["formulas"], "formulas"),
             format=FORMAT,
@@ -168,33 +147,20 @@ def part_path(folder: Path, part: int) -> Path:
     return folder / POINTS / f"{part:06d}.parquet"
 
 
-def file_name(part: int, name: str, suffix: str) -> str:
-    """Return the name of a part's file in another format: its index and a harmless part name."""
-    plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
-    clean = re.sub(r"[^A-Za-z0-9_-]+", "-", plain).strip("-")[:LONGEST_NAME]
-    return f"{part:06d}{'-' if clean else ''}{clean}{suffix}"
-
-
 def parts_in(folder: Path) -> list[int]:
     """Return the indices of the parts that are done, in order."""
-    return sorted(_numbers(folder / POINTS, r"([0-9]{6,})\.parquet"))
-
-
-def _numbers(folder: Path, names: str) -> dict[int, Path]:
-    """Return the files of the parts in a folder, keyed by part index."""
-    with suppress(FileNotFoundError), os.scandir(folder) as entries:
-        found = ((re.fullmatch(names, x.name), Path(x.path)) for x in entries)
-        return {int(match[1]): path for match, path in found if match}
-    return {}
+    with suppress(FileNotFoundError):
+        found = (re.fullmatch(r"([0-9]{6,})\.parquet", x) for x in os.listdir(folder / POINTS))
+        return sorted(int(match[1]) for match in found if match)
+    return []
 
 
 def remove_from(folder: Path, parts: int) -> None:
     """Remove the parts from index `parts` on, left by a run with a longer list."""
     with _writing(folder):
-        for kind, names in {POINTS: r"([0-9]{6,})\.parquet", FILES: r"([0-9]{6,})\b.*"}.items():
-            for number, path in _numbers(folder / kind, names).items():
-                if number >= parts:
-                    path.unlink()
+        for part in parts_in(folder):
+            if part >= parts:
+                part_path(folder, part).unlink()
 
 
 @contextmanager
@@ -267,10 +233,10 @@ def _begin(path: Path, settings: Settings, overwrite: bool) -> None:
     else:  # first of all: without settings the folder would not count as a data set
         with atomic_path(path / SETTINGS) as temporary:
             temporary.write_text(settings.to_json(), encoding="utf-8")
-    for left in [*path.glob(f"{BEGUN}*"), *path.glob(f"{FILES}/{BEGUN}*"), path / MANIFEST]:
+    for left in [*path.glob(f"{BEGUN}*"), path / MANIFEST]:
         left.unlink(missing_ok=True)
     shutil.rmtree(path / PARTIAL, ignore_errors=True)
-    for name in (POINTS, PARTIAL, *([] if settings.files is None else [FILES])):
+    for name in FOLDERS:
         (path / name).mkdir(exist_ok=True)
 
 

@@ -25,12 +25,12 @@ from ..sampling.sample import sample_and_normals
 from .dataset import Dataset, open_dataset
 from .inputs import Source
 from .making import make
-from .plan import CODEC, SECONDS, plan_of
+from .plan import SECONDS, plan_of
 
 __all__ = ["sample_many"]
 
 Surfaces = Iterable[Surface | Spline | str]
-ON_ERROR = ("raise", "skip", "none", "return")
+ON_ERROR = ("raise", "skip", "return")
 
 
 class _How(TypedDict, total=False):
@@ -56,21 +56,8 @@ class _Stored(_How, total=False):
     time_limit: float
     memory_limit: float | None
     measure: bool
-    files: str | None
-    compression: str
     overwrite: bool
     retry_failed: bool
-
-
-@overload
-def sample_many(
-    surfaces: Surfaces,
-    count: int | None = None,
-    *,
-    on_error: Literal["none"],
-    threads: int | None = None,
-    **how: Unpack[_How],
-) -> Iterator[Samples | None]: ...
 
 
 @overload
@@ -127,11 +114,9 @@ def sample_many(
     time_limit: float = SECONDS,
     memory_limit: float | None = None,
     measure: bool = False,
-    files: str | None = None,
-    compression: str = CODEC,
     overwrite: bool = False,
     retry_failed: bool = False,
-) -> Iterator[Samples | GaussmapError | None] | Dataset:
+) -> Iterator[Samples | GaussmapError] | Dataset:
     """Yield the samples of each of several surfaces, in order; or make a data set of them.
 
     With `out` the parts are sampled by several processes, on this machine or on a cluster, into a
@@ -151,9 +136,9 @@ def sample_many(
         As in `sample`.
     progress : bool, default True
         Show a bar on standard error, if that is a terminal.
-    on_error : {"raise", "skip", "none", "return"}, default "raise"
+    on_error : {"raise", "skip", "return"}, default "raise"
         Without `out`, for a surface that cannot be sampled: raise its error; leave it out, with a
-        warning; yield None in its place, with a warning; or yield its error.
+        warning; or yield its error in its place.
     out : path, optional
         The folder of the data set. All following arguments are for data sets only.
     workers : int, optional
@@ -169,10 +154,6 @@ def sample_many(
     measure : bool, default False
         Measure coverage and normal deviation of each part for the manifest, even where they were
         not requested; that may take ten times as long as sampling.
-    files : str, optional
-        A suffix such as ".ply": each part also gets a file in this format, in the folder ``files``.
-    compression : {"zstd", "snappy", "gzip", "lz4", "none"}, default "zstd"
-        The compression of the Parquet files.
     overwrite : bool, default False
         Remove the data set that is in the folder, if any, first.
     retry_failed : bool, default False
@@ -180,7 +161,7 @@ def sample_many(
 
     Yields
     ------
-    Samples, GaussmapError or None
+    Samples or GaussmapError
         The samples of the next surface: ``samples.report.index`` is its index in `surfaces`, and
         ``samples.report.surface`` its name.
 
@@ -205,7 +186,7 @@ def sample_many(
     Warns
     -----
     GaussmapWarning
-        If a surface is left out or replaced by None.
+        If a surface is left out.
 
     Notes
     -----
@@ -234,9 +215,7 @@ def sample_many(
     shows = yes_or_no(progress, "progress")
     if isinstance(surfaces, str | bytes) or not _iterates(surfaces):
         raise InputError(f"sample_many takes an iterable of surfaces, not {shown(surfaces)}.")
-    of_data_sets = {
-        "workers": workers, "scheduler": scheduler, "memory_limit": memory_limit, "files": files
-    }  # fmt: skip
+    of_data_sets = {"workers": workers, "scheduler": scheduler, "memory_limit": memory_limit}
     if out is None:
         for name, value in of_data_sets.items():
             if value is not None:
@@ -252,7 +231,7 @@ def sample_many(
         raise InputError(f"{name}=… does not go together with out=…; leave it out.")
     plan = plan_of(
         request, cells=cells, on=on, measured=yes_or_no(measure, "measure"), fields=fields,
-        dtype=dtype, compression=compression, files=files,
+        dtype=dtype,
     )  # fmt: skip
     make(
         surfaces,
@@ -281,7 +260,7 @@ def _iterates(surfaces: Iterable[Source]) -> bool:
 
 def _each(
     surfaces: Iterable[Any], request: Request, how: dict[str, Any], on_error: str, shows: bool
-) -> Iterator[Samples | GaussmapError | None]:
+) -> Iterator[Samples | GaussmapError]:
     """Yield the samples of each surface, or the substitute that `on_error` names."""
     from tqdm import tqdm
 
@@ -291,11 +270,8 @@ def _each(
             samples, _ = sample_and_normals(surface, request, progress=False, **how)
         except GaussmapError as error:
             where = f"surface {place} ({_name(surface)})"
-            if on_error in ("skip", "none"):
-                left = "left out" if on_error == "skip" else "None"
-                warnings.warn(f"{where} is {left}: {error}", GaussmapWarning, stacklevel=2)
-                if on_error == "none":
-                    yield None
+            if on_error == "skip":
+                warnings.warn(f"{where} is left out: {error}", GaussmapWarning, stacklevel=2)
                 continue
             error.add_note(f"This is {where} of sample_many.")
             if on_error == "raise":

@@ -49,7 +49,7 @@ __all__ = [
     "write_part",
 ]
 
-LONGEST_REASON = 100
+LONGEST_REASON, CODEC = 100, "zstd"
 REMEDY = "remove it, and run the same sampling again"
 # The fields that all samples have if requested, of surfaces and of CAD parts.
 ALWAYS = tuple(name for name in ARRAY_NAMES if name in ARRAY_NAMES_OF_PART)
@@ -106,7 +106,7 @@ def write_part(
     table = table.replace_schema_metadata({**schema.metadata, ROW: json.dumps(asdict(row))})
     with replaced(folder, part_path(folder, row.part)) as temporary:
         _parquet().write_table(
-            table, temporary, compression=settings.compression, write_page_checksum=True,
+            table, temporary, compression=CODEC, write_page_checksum=True,
             use_dictionary=["part"],
         )  # fmt: skip
 
@@ -117,7 +117,7 @@ def write_manifest(folder: Path, settings: Settings, parts: Iterable[int]) -> No
     with (
         replaced(folder, folder / MANIFEST) as temporary,
         _parquet().ParquetWriter(
-            temporary, manifest_schema(), compression=settings.compression, write_page_checksum=True
+            temporary, manifest_schema(), compression=CODEC, write_page_checksum=True
         ) as file,
     ):
         while some := list(islice(rows, ROWS_AT_ONCE)):

@@ -13,17 +13,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from ...runtime.base.checks import known_name, listed, pair_of_cells
+from ...runtime.base.checks import listed, pair_of_cells
 from ...runtime.onto_surface.on_surface import checked_place
 from ...runtime.samples.fields import FLOAT_NAMES, PART_NAMES, checked_dtype, checked_fields
 from ..density.request import Request
-from ..files.formats import SUFFIXES
 from ..sources.named import Named
-from .folder import CODECS, FILES, NORMALS, Settings, file_name
+from .folder import NORMALS, Settings
 
-__all__ = ["CODEC", "SECONDS", "Plan", "plan_of"]
+__all__ = ["SECONDS", "Plan", "plan_of"]
 
-CODEC, SECONDS = "zstd", 600.0
+SECONDS = 600.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -64,11 +63,6 @@ class Plan:
     again: bool = False
     run: str = field(default_factory=secrets.token_hex)
 
-    def file(self, part: int, name: str) -> Path | None:
-        """Return the path of a part's file in another format, or None without such files."""
-        suffix = self.settings.files
-        return None if suffix is None else self.folder / FILES / file_name(part, name, suffix)
-
     def normals(self) -> NDArray[np.float64] | None:
         """Return the prescribed normals, read from their file, as they may be large."""
         return _read(self.folder / NORMALS) if "normals" in self.settings.asked else None
@@ -87,8 +81,6 @@ def plan_of(
     measured: bool,
     fields: Sequence[str] | None,
     dtype: DTypeLike,
-    compression: str,
-    files: str | None,
     named: Named | None = None,
 ) -> Plan:
     """Return the plan of a run; `named` has the options for reading files."""
@@ -111,8 +103,6 @@ def plan_of(
         asked=asked,
         fields=FLOAT_NAMES if fields is None else _known_fields(fields, "normals" in asked),
         dtype=checked_dtype(dtype).name,
-        compression=known_name(compression, CODECS, "compression"),
-        files=None if files is None else known_name(files, SUFFIXES, "suffix of files"),
     )
     return Plan(settings, arguments, named, measured)
 

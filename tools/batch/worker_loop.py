@@ -138,7 +138,7 @@ def _source(task: Task) -> tuple[Any, dict[str, str]]:
 
 
 def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: ANN401
-    """Return numbers for the manifest, and the samples; write the file in another format."""
+    """Return numbers for the manifest, and the samples."""
     from ...runtime.onto_surface.on_surface import place_of_samples
     from ...runtime.samples.fields import checked_fields
     from ..cad.part import Part
@@ -176,7 +176,4 @@ def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: AN
     if plan.measured and len(samples):
         about["coverage"] = samples.coverage(threads=1)
         about["angle"] = samples.normal_deviation(threads=1).normal_space
-    file = plan.file(task.input.part, task.input.name)
-    if file is not None:
-        samples.write(file)
     return about, samples

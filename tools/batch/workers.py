@@ -217,14 +217,9 @@ def sampled(parts: Iterable[Input], crew: Sequence[Worker]) -> Generator[Tally]:
 def _task(plan: Plan, part: Input) -> Task:
     """Return the task of a part, with its existing row, if any."""
     row = row_of(plan.folder, plan.settings, part.part)
-    file = plan.file(part.part, part.name)
-    if row is not None and (row.name, row.source) != (part.name, part.source):
-        old = plan.file(row.part, row.name)
-        if old is not None and old != file:
-            old.unlink(missing_ok=True)
-        row = None
-    lacks = file is not None and not file.exists()
-    if row is not None and (plan.again if row.status == FAILED else lacks):
+    if row is not None and (
+        (row.name, row.source) != (part.name, part.source) or (plan.again and row.status == FAILED)
+    ):
         row = None
     return Task(part, plan, row)
 

@@ -39,8 +39,7 @@ def run(options: SimpleNamespace) -> None:
     fields = None if options.fields is None else options.fields.split(",")
     plan = plan_of(
         request, cells=options.cells, on=options.on, measured=options.measure, fields=fields,
-        dtype=np.float32 if options.float32 else np.float64, compression=options.compression,
-        files=options.files, named=named,
+        dtype=np.float32 if options.float32 else np.float64, named=named,
     )  # fmt: skip
     start = time.monotonic()
     try:

@@ -254,10 +254,8 @@ def _batch() -> Command:
         "see the folder by the same path. Needs pip install 'gaussmap[cluster]'."
     )
     parts = "A file with a part in each line, a name or a path; - for standard input."
-    files = "Also write a file for each part, with this suffix, such as .ply."
     measure = "Measure coverage and normal deviation of each part, which may take ten times longer."
     again = "Sample again the parts that failed in an earlier run."
-    codecs = "zstd (default), snappy, gzip, lz4 or none."
     seconds = "The time limit of a part, in seconds (default: 600)."
     memory = "The memory limit of a process, in GiB (default: its share of 0.9 of all memory)."
     return _command(
@@ -277,8 +275,6 @@ def _batch() -> Command:
         ),
         Option("--list FILE", parts, FILE, main=True),
         *_contents(data, "those of real numbers"),
-        Option("--compression CODEC", codecs, group=data, default="zstd"),
-        Option("--files SUFFIX", files, group=data),
         Option("--measure", measure, group=data),
         Option("--overwrite", "First remove the data set in the folder, if any.", group=data),
         Option("--workers N", workers, whole(MOST), group=run, exclusive=False),

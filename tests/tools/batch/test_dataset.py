@@ -120,11 +120,11 @@ def test_parts_are_seen_as_they_are_done(tmp_path):
 def test_reading_needs_no_numba(dataset):
     code = (
         "import sys, gaussmap as gm;"
-        f"print(len(list(gm.open_dataset({str(dataset.folder)!r}).batches(8, shuffle=1))));"
+        f"print(len(list(gm.open_dataset({str(dataset.folder)!r}).clouds(3))));"
         "assert not {'numba', 'sympy', 'scipy'} & {*sys.modules}"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.stdout == "1\n", done.stderr
+    assert done.stdout == f"{len(made.HELD)}\n", done.stderr
 
 
 class TestOtherReaders:
@@ -164,17 +164,16 @@ class TestOtherReaders:
         assert len(joined) == made.COUNTS[2]
 
 
-@pytest.mark.parametrize("compression", ["none", "zstd", "snappy"])
-def test_single_precision_and_compression(tmp_path, compression):
+def test_single_precision(tmp_path):
     import pyarrow.parquet as parquet
 
-    dataset = made.write(tmp_path, dtype="float32", compression=compression)
+    dataset = made.write(tmp_path, dtype="float32")
     found = dataset.samples(4)
     assert found.points.dtype == found.gaussian_curvature.dtype == np.float32
     assert found.normal_index.dtype == np.int64
     np.testing.assert_array_equal(found.points, made.samples_of(4, 70, "float32").points)
     column = parquet.ParquetFile(part_path(tmp_path, 0)).metadata.row_group(0).column(1)
-    assert column.compression == {"none": "UNCOMPRESSED"}.get(compression, compression.upper())
+    assert column.compression == "ZSTD"
     assert column.physical_type == "FLOAT"
 
 

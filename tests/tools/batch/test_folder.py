@@ -10,11 +10,9 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.batch.folder import (
-    FILES,
     MANIFEST,
     PARTIAL,
     POINTS,
-    file_name,
     opened,
     part_path,
     parts_in,
@@ -128,7 +126,6 @@ def test_settings_are_compared_as_they_are_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "what"),
     [
-        ({"compression": "none"}, 'compression "zstd", not "none"'),
         ({"asked": {"count": 6}}, "count 5, not 6"),
         ({"dtype": "float32"}, 'dtype "float64", not "float32"'),
         ({"formulas": "other"}, "another version"),
@@ -180,42 +177,35 @@ def test_one_run_at_a_time(tmp_path: Path, overwrite: bool) -> None:
 def test_what_killed_runs_leave_is_removed(tmp_path: Path) -> None:
     for name in (".gaussmap-0123.json", ".lock"):  # of one that was killed at once
         (tmp_path / name).write_text("{")
-    begin(tmp_path, files=".ply")
-    with (
-        opened(tmp_path, replace(KNOWN, files=".ply")),
-        replaced(tmp_path, part_path(tmp_path, 0)) as temporary,
-    ):
+    begin(tmp_path)
+    with opened(tmp_path, KNOWN), replaced(tmp_path, part_path(tmp_path, 0)) as temporary:
         assert temporary.parent == tmp_path / PARTIAL
         temporary.touch()
-        for left in (temporary.with_name("a"), tmp_path / FILES / ".gaussmap-0.ply"):
-            left.write_bytes(b"PAR1")
-    begin(tmp_path, files=".ply")
+        temporary.with_name("a").write_bytes(b"PAR1")
+    begin(tmp_path)
     left = sorted(str(x.relative_to(tmp_path)) for x in tmp_path.rglob("*"))
-    assert left == [".lock", "dataset.json", "files", "points", "points/000000.parquet"]
+    assert left == [".lock", "dataset.json", "points", "points/000000.parquet"]
 
 
 def test_parts_of_a_longer_list_are_removed(tmp_path: Path) -> None:
     (tmp_path / POINTS).mkdir()
-    (tmp_path / FILES).mkdir()
     for part in (13, 14, 1_234_567):
         part_path(tmp_path, part).touch()
-        (tmp_path / FILES / file_name(part, "a part", ".ply")).touch()
     (tmp_path / POINTS / "mine.txt").touch()
     remove_from(tmp_path, 14)
-    left = sorted(x.name for kind in (POINTS, FILES) for x in (tmp_path / kind).iterdir())
-    assert left == ["000013-a-part.ply", "000013.parquet", "mine.txt"]
+    left = sorted(x.name for x in (tmp_path / POINTS).iterdir())
+    assert left == ["000013.parquet", "mine.txt"]
 
 
 @pytest.mark.parametrize("overwrite", [False, True])
 @pytest.mark.parametrize(
-    "name", [POINTS, FILES, PARTIAL, MANIFEST, "normals.npy", ".lock", "dataset.json",
-             "points/000001.parquet", "partial/a", "files/000000.ply"],
+    "name", [POINTS, PARTIAL, MANIFEST, "normals.npy", ".lock", "dataset.json",
+             "points/000001.parquet", "partial/a"],
 )  # fmt: skip
 def test_links_are_refused(tmp_path: Path, name: str, overwrite: bool) -> None:
     folder, target = tmp_path / "set", tmp_path / "elsewhere"
     made.write(folder)
-    for kind in (FILES, PARTIAL):
-        (folder / kind).mkdir()
+    (folder / PARTIAL).mkdir()
     if (folder / name).exists():
         (folder / name).rename(target)
     (folder / name).symlink_to(target)
@@ -229,20 +219,3 @@ def test_the_folder_itself_may_be_a_link(tmp_path: Path) -> None:
     (tmp_path / "set").symlink_to("disk")
     begin(tmp_path / "set")
     assert (tmp_path / "disk" / "dataset.json").is_file()
-
-
-@pytest.mark.parametrize(
-    ("part", "name", "expected"),
-    [
-        (42, "bracket", "000042-bracket.ply"),
-        (42, "../etc/Größe 3,5\n", "000042-etc-Groe-3-5.ply"),
-        (3, "../../etc/passwd", "000003-etc-passwd.ply"),
-        (0, "/a/b", "000000-a-b.ply"),
-        (42, "螺丝", "000042.ply"),
-        (1_234_567, "", "1234567.ply"),
-        (1, "." * 5, "000001.ply"),
-        (1, "x" * 1000, f"000001-{'x' * 60}.ply"),
-    ],
-)
-def test_names_of_files_are_harmless_and_stay_in_their_folder(part, name, expected):
-    assert file_name(part, name, ".ply") == expected

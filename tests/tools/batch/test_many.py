@@ -51,14 +51,6 @@ def test_a_bad_surface_does_not_stop_the_others():
     )
 
 
-def test_none_stands_for_a_bad_surface():
-    surfaces = [BROKEN, TORUS, 3.0]
-    with pytest.warns(gm.GaussmapWarning, match="is None: ") as caught:
-        found = many(surfaces, normals=[[1, 1, 1]], cells=(6, 6), on_error="none")
-    assert [x if x is None else x.report.index for x in found] == [None, 1, None]
-    assert len(caught) == 2
-
-
 def test_an_error_takes_the_place_of_a_bad_surface():
     surfaces = [BROKEN, TORUS, 3.0]
     error, samples, other = many(surfaces, normals=[[1, 1, 1]], cells=(6, 6), on_error="return")

@@ -110,8 +110,6 @@ def test_arguments(tmp_path):
     (tmp_path / "other").touch()
     refused("for data sets", sampled, workers=2)
     refused("on_error", sampled, out=out, on_error="skip")
-    refused("compression", sampled, out=out, compression="zip", error=LookupError)
-    refused("suffix", sampled, out=out, files="ply", error=LookupError)
     refused("workers must be a whole number", sampled, out=out, workers=0)
     refused("new or empty", sampled, out=tmp_path, error=gm.errors.FileError)
     assert not out.exists()
@@ -150,18 +148,6 @@ class TestSlow:
             assert [row["status"] for row in rows] == ["failed", "ok"] * len(kinds)
             for row, text in zip(rows[::2], kinds.values(), strict=True):
                 assert text in row["error"]
-
-    def test_a_file_for_each_part(self, tmp_path):
-        parts = [waves(1), "torus"]
-        out = tmp_path / "set"
-        gm.sample_many(parts, 50, out=out, files=".ply", progress=False, **ASKED)
-        names = sorted(x.name for x in (out / "files").iterdir())
-        assert names == ["000000-waves-1.ply", "000001-torus.ply"]
-        (out / "files" / names[0]).unlink()
-        gm.sample_many(parts, 50, out=out, files=".ply", progress=False, **ASKED)
-        assert len(gm.read_samples(out / "files" / names[0])) == 50
-        gm.sample_many(["sphere"], 50, out=out, files=".ply", progress=False, **ASKED)
-        assert [x.name for x in (out / "files").iterdir()] == ["000000-sphere.ply"]
 
     def test_any_number_of_workers_gives_the_same_bytes(self, tmp_path):
         parts = [waves(k) for k in range(130)]

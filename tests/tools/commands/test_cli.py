@@ -205,7 +205,7 @@ def test_all_formulas_in_latex(capsys: pytest.CaptureFixture[str]) -> None:
         (["--help"], ["to try:", "gaussmap sample torus --count 1000 -o torus.csv"]),
         (["sample", "--help"], ["--count N", "default: 10000", "the surface  ", "--spacing"]),
         (["sample", "--help-all"], ["how many samples", "default: 10000", "--spacing DX DY"]),
-        (["batch", "--help-all"], ["the data set", "--compression CODEC"]),
+        (["batch", "--help-all"], ["the data set", "--measure"]),
         (["view", "--help"], ["default: 5000", "gaussmap[view]", ".html or .htm"]),
         (["plot", "--help"], ["default: 2000", "gaussmap[plot]", ".png, .pdf or .svg"]),
         (["surfaces", "--help"], ["NAME"]),

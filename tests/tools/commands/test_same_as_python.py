@@ -227,11 +227,11 @@ def test_data_sets() -> None:
     """With the count that is the default, and all that is for data sets only."""
     pytest.importorskip("pyarrow")
     words = ["batch", "torus", "--fields", "points,normals,normal_index", "--float32", "--measure"]
-    words += ["--compression", "gzip", "--files", ".ply", "--workers", "1", "--quiet", "-o", "one"]
+    words += ["--workers", "1", "--quiet", "-o", "one"]
     assert main(words) == 0
     other = gm.sample_many(
         ["torus"], 2048, fields=["points", "normals", "normal_index"], dtype=np.float32,
-        measure=True, compression="gzip", files=".ply", out="other", workers=1, progress=False,
+        measure=True, out="other", workers=1, progress=False,
     )  # fmt: skip
     one = gm.open_dataset("one")
     assert one.settings == other.settings
