@@ -1,15 +1,16 @@
-"""Exact decisions on undecided hits: whether a patch has a normal.
+"""Exact decisions whether a patch has a normal, for the pairs that rounding leaves undecided.
 
-Coefficients and normals are binary fractions, and the formulas need only +, − and ×: on integers
-they give the exact sign of every form. Exact zeros (a normal on the common boundary of two Gaussian
-images, or of a parabolic line) are decided by Simulation of Simplicity (Edelsbrunner and Mücke,
-https://doi.org/10.1145/77635.77639): the normal is displaced by an infinitesimal vector, the same
-for all patches. The displaced normal lies on no boundary, so that exactly one of the patches has
-it. A pole is one point: where several of its patches have the displaced normal, hits of opposite
-signs cancel. Integers of fixed length decide nearly all pairs: with integers of any length alone,
-splines take 2 to 15 times as long where normals are symmetric (26 November 2026, five surfaces of
-the catalogue, one thread). The only tolerance is at the open boundary of the domain: a normal whose
-point lies outside the domain by at most the error of the data is a hit.
+The coefficients of a spline and the components of normals are binary fractions, and the formulas of
+the forms U, V, W, D need only +, − and ×: evaluated on integers, they give exact signs. Exact zeros
+(a normal on the common boundary of two Gaussian images, or of a parabolic line) are decided by
+Simulation of Simplicity (Edelsbrunner and Mücke, https://doi.org/10.1145/77635.77639): the normal
+is displaced by an infinitesimal vector, the same for all patches. The displaced normal lies on no
+boundary, so that exactly one of the patches has it. A pole is one point: if several patches around
+it have the displaced normal, pairs of hits with opposite signs of K cancel. Integers of fixed
+length decide nearly all pairs: with integers of any length alone, a search for symmetric normals
+takes 2 to 15 times as long (26 November 2026, five surfaces of the catalogue, one thread). The only
+tolerance is at the open boundary of the domain: a normal whose point lies outside the domain by at
+most the error of the data is a hit.
 """
 
 from __future__ import annotations
@@ -30,11 +31,12 @@ from .long_integers import forms_of_pairs
 __all__ = ["Decision", "decide", "decided_forms", "uncancelled"]
 
 PAIRS_AT_A_TIME = 1 << 10
-# Batches of Python integers are smaller: a pair has many of them, each of about a hundred bytes.
+# The number of pairs that are decided together on Python integers. It bounds the memory: a pair has
+# many such integers, each of about a hundred bytes.
 LONG_PAIRS_AT_A_TIME = 1 << 14
-# Two hits of one normal at the open boundary are the same if they are closer than this, in cells; a
-# hit this close to a pole is at the pole. This is far more than rounding, which is below 1e-14, and
-# far less than a cell.
+# A distance in the parameter plane, in cells: hits of one normal at the open boundary that are
+# closer than this are one point, and a hit that is closer to a pole is at the pole. The distance is
+# far more than rounding errors, which are below 1e-14, and far less than 1.
 SAME_PLACE = 1e-6
 
 
@@ -42,9 +44,9 @@ SAME_PLACE = 1e-6
 class Decision:
     """The pairs of a patch and a normal that are hits.
 
-    `which` (k,) are the positions of the hits among all pairs. `local` (k, 5) holds u, v, the sign
-    of K, and the parameters at which curvatures are evaluated: u, v, or those of a nearby point if
-    the point is singular.
+    `which` (k,) are the indices of the hits among all pairs. The columns of `local` (k, 5) are the
+    parameters u, v of the point in its patch, the sign of K, and the parameters at which curvatures
+    are evaluated; these are u, v again, or those of a nearby point if the point is singular.
     """
 
     which: NDArray[np.int64]
@@ -61,9 +63,9 @@ def decide(
 ) -> Decision:
     """Decide which of the pairs (patches[k], normals[k]) are hits.
 
-    `numbers[k]` is the index of the normal: equal normals with different indices are all kept.
-    `forgiven[k]` is the tolerance of W at the open boundary of the domain, in units of the scaled
-    spline, and 0 for a patch that does not touch the boundary.
+    `numbers[k]` is the index of the normal; equal normals with different indices each have their
+    own hits. `forgiven[k]` is the amount by which W may have the wrong sign at the open boundary of
+    the domain, for the scaled spline; it is 0 for a patch that does not touch this boundary.
     """
     local, size, signs = decided_forms(spline, patches, normals, threads)
     inside = (signs[:, 0] != 0) & (signs[:, 0] == signs[:, 1]) & (signs[:, 1] == signs[:, 2])
@@ -91,7 +93,11 @@ def decided_forms(
     normals: NDArray[np.float64],
     threads: int | None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
-    """Return U/D and V/D (k, 2), |D| (k,), and the signs of U, V, W (k, 3)."""
+    """Return U/D and V/D (k, 2), |D| (k,), and exact signs of U, V, W (k, 3), for k pairs.
+
+    Where zeros would leave undecided whether the patch has the normal, the signs are those at the
+    displaced normal.
+    """
     count = len(patches)
     local, size = np.empty((count, 2)), np.empty(count)
     signs, known = np.empty((count, 3), dtype=np.int8), np.empty(count, dtype=np.bool_)
@@ -114,10 +120,11 @@ def decided_forms(
 def _regular_places(
     spline: Spline, patches: NDArray[np.int64], local: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return regular points (k, 2) and the normals there (k, 3), not of unit length.
+    """Return parameters (k, 2) of regular points, and p_u × p_v (k, 3) at these points.
 
-    A point is singular if p_u × p_v is negligible relative to that at the centre of the patch; such
-    a point is moved slightly towards the centre.
+    A point is singular if |p_u × p_v| is negligible relative to its value at the centre of the
+    patch; the parameters of a singular point are moved slightly towards the centre, the others are
+    kept.
     """
 
     def normals(places: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -135,7 +142,7 @@ def _regular_places(
 def _in_cells(
     spline: Spline, patches: NDArray[np.int64], local: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the positions (k, 2) of hits, in cells from the corner of the domain."""
+    """Return the positions (k, 2) of hits in the domain, in cells from its lower left corner."""
     cell, turn = np.divmod(patches, 4)
     centre = np.stack(np.divmod(cell, spline.cells[1]), axis=1) + 0.5
     return centre + np.einsum("kc,kcx->kx", local, CORNERS[turn])
@@ -147,12 +154,12 @@ def _in_cells(
 def uncancelled(
     numbers: NDArray[np.int64], poles: NDArray[np.int64], signs: NDArray[np.int8]
 ) -> NDArray[np.bool_]:
-    """Return which of the hits (k,) to keep: at a pole, hits of opposite signs cancel.
+    """Return a mask (k,) of the hits to keep: at a pole, pairs of hits with opposite signs cancel.
 
-    `poles` (k,) are the indices of poles, −1 for hits elsewhere. Around a pole the Gaussian image
-    of a spline has folds, due to rounding, or where the principal curvatures of the surface differ
-    there. The number of remaining hits is the winding number of the image around the normal: one,
-    at a regular point of the surface. If hits cancel completely, all of them remain.
+    `poles` (k,) has the index of the pole at which a hit is, or −1. Around a pole the Gaussian
+    image of a spline may be folded, by rounding, or because the principal curvatures of the surface
+    are different there. The number of hits that remain is the winding number of the image around
+    the normal, which is 1 at a regular point of the surface. If no hit would remain, all are kept.
     """
     keep = np.ones(len(numbers), dtype=bool)
     at = np.flatnonzero(poles >= 0)
@@ -170,7 +177,7 @@ def uncancelled(
 
 
 def _poles_at(spline: Spline, places: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the index of the pole at positions (k, 2) in cells, −1 for none."""
+    """Return the index of the pole at each position (k, 2), given in cells; −1 where none is."""
     poles = np.full(len(places), -1)
     for axis, end in np.ndindex(2, 2):
         if spline.boundary[axis][end] == "pole":
@@ -188,7 +195,7 @@ def _first_of_each_place(
     place: NDArray[np.float64],
     near: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
-    """Return which hits to keep; near the boundary, only one of several that coincide."""
+    """Return a mask of the hits to keep: one of those hits near the boundary that coincide."""
     keep = np.ones(len(place), dtype=bool)
     if not near.any():
         return keep

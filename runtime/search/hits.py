@@ -1,4 +1,4 @@
-"""The hits of a search, pairs of a normal and a patch, and the fields of samples at them."""
+"""The hits of a search, which are pairs of a normal and a patch, and the samples at these hits."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ class Hits:
     """Pairs of a normal and a patch that has it, sorted by normal and then by patch.
 
     `keys` (N,) are (index of the normal) << 32 | index of the patch. `exact` (k,) are the positions
-    of hits that were decided exactly, and `local` (k, 5) their results, as in `Decision`.
-    `developable` is the number of patches that are developable up to the rounding of their
-    coordinates.
+    in `keys` of the hits that were decided by exact arithmetic, and `local` (k, 5) are the columns
+    of `Decision` for these hits. `developable` is the number of all patches of the spline that are
+    developable up to the rounding of their coordinates.
     """
 
     keys: Indices
@@ -42,12 +42,12 @@ class Hits:
 
     @classmethod
     def none(cls, developable: int) -> Hits:
-        """Return no hits."""
+        """Return an empty set of hits."""
         return cls(np.empty(0, np.int64), np.empty(0, np.int64), np.empty((0, 5)), developable)
 
     @classmethod
     def joined(cls, parts: Sequence[Hits]) -> Hits:
-        """Return the hits of consecutive ranges of normals."""
+        """Return the hits of all parts, which belong to consecutive ranges of normals."""
         if len(parts) == 1:
             return parts[0]
         starts = np.cumsum([0, *(len(part) for part in parts[:-1])])
@@ -73,7 +73,7 @@ class Hits:
         return self.keys >> 32
 
     def __getitem__(self, key: slice) -> Hits:
-        """Return consecutive hits."""
+        """Return the hits with the indices of a slice with step 1."""
         first, last, _ = key.indices(len(self))
         low, high = np.searchsorted(self.exact, (first, last))
         exact = self.exact[low:high] - first
@@ -87,7 +87,10 @@ class Hits:
         return Hits(self.keys[rows], place[kept], self.local[kept], self.developable)
 
     def whole_normals(self, size: int) -> Iterator[Hits]:
-        """Yield one or more groups of hits, each of at most `size`, or of one normal."""
+        """Yield groups of at most `size` hits; all hits of a normal are in the same group.
+
+        A normal with more than `size` hits is a group. Without hits, one empty group is yielded.
+        """
         first = 0
         while True:
             last = len(self)
@@ -109,9 +112,10 @@ def fill(
     dtype: DTypeLike = np.float64,
     memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> dict[str, NDArray[Any]]:
-    """Return fields of samples at hits of normals (S, 3), see `Samples`; floats become `dtype`.
+    """Return the requested fields of the samples at hits; `normals` (S, 3) are those of the search.
 
-    The fields are written to the arrays of the same names in `memory` that are large enough.
+    Floating-point fields have the type `dtype`. A field is written into the array of the same name
+    in `memory` if that array is large enough, and else into a new one.
     """
     if isinstance(spline, NetSpline):
         known = {"normal_index": hits.normal_index, "patch_index": hits.patch_index}
@@ -142,9 +146,10 @@ def fill_hits(
     last: int,
     arrays: Sequence[NDArray[Any]],
 ) -> None:
-    """Fill the rows [first, last) of arrays with the samples of keys, see `Hits`.
+    """Write the samples at the hits keys[first:last] to the rows [first, last) of `arrays`.
 
-    The arrays are in the order of FLOAT_NAMES and INDEX_NAMES; absent fields are empty.
+    There is an array for each of FLOAT_NAMES, then for each of INDEX_NAMES; that of a field that
+    was not requested is empty.
     """
     fill_samples(
         spline.coefficients, spline.scale, normals, spline.frame, keys, first, last,

@@ -1,11 +1,12 @@
-"""Exact decisions on undecided hits of a spline of nets, and the fields of its samples.
+"""Exact decisions whether a patch of a spline of nets has a normal, and the fields of its samples.
 
-The signs of U, V, W decide whether a patch has a normal (Sect. 3.2). If rounding leaves a sign
-open, or the two patches of a joint disagree, the sign is that of the boundary cone of the joint:
-one form for both patches, on integers. The cones of all edges at a corner pass through one normal
-exactly, and ties are broken by an infinitesimal displacement of the normal, the same for all
-patches. So the images of the patches are a decomposition without gaps or overlaps. At a pole the
-images are wedges; that of a patch with a collapsed edge is a curve, and has no normals.
+The signs of the forms U, V, W at a normal decide whether a patch has it (paper, Sect. 3.2). If
+rounding leaves the sign of a form open, it is replaced by that of the boundary cone of the joint
+at this edge: one quadratic form for both patches of the joint, evaluated on integers. The boundary
+cones of all edges at a vertex contain the same normal there, exactly. Ties are broken by an
+infinitesimal displacement of the normal, the same for all patches. Thus the Gaussian images of the
+patches have neither gaps nor overlaps. At a pole the images are wedges. The image of a patch with a
+collapsed edge is a curve, and no normal is decided to be in it.
 """
 
 from __future__ import annotations
@@ -40,25 +41,28 @@ from .long_integers import (
 
 __all__ = ["decide_in_nets", "edge_signs", "errors_of", "fields_in_nets", "flat_nets"]
 
-# Permutations of a net that turn the edges u = 0, v = 0, w = 0 to the edge v = 0.
+# For each of the edges u = 0, v = 0, w = 0, the permutation of the six control points of a patch
+# after which this edge is the edge v = 0.
 TURNED = tuple(
     (x.end, k, x.start, x.end_beside, x.middle, x.start_beside) for k, x in enumerate(EDGES)
 )
-# The least cosine between a normal and the normal of the patch at its point, or next to it.
+# At a singular point: the least cosine between the requested normal and the normal of the patch
+# next to the point, for which the point is accepted.
 SAME_NORMAL = 0.999
-# Wedges decide normals this close to that of a pole. This is far more than the angle at which
-# rounding of forms matters (1e-14), and far less than the size of Gaussian images of patches.
+# Normals whose distance from the normal of a pole is less than this are decided by wedges. It is
+# far more than the angle at which rounding of forms matters (1e-14), and far less than the size of
+# Gaussian images of patches.
 NEAR_POLE = 1e-9
 
 
 def errors_of(spline: NetSpline) -> Array:
-    """Return bounds of the errors of U, V, W (T,) of the patches."""
+    """For each of the T patches, return a bound of the errors of its forms U, V, W."""
     largest = _largest(spline)
     return 8.0 * largest * (_rounding(spline) + 2.0 * largest * spline.topology.angles)
 
 
 def flat_nets(spline: NetSpline) -> Flags:
-    """Return which patches (T,) are developable, up to the rounding of their coordinates."""
+    """Return a mask (T,) of the patches that are developable up to rounding of coordinates."""
 
     def flat() -> Flags:
         cubic = python_function(formulas.parabolic_cubic)(spline.patch())
@@ -69,19 +73,20 @@ def flat_nets(spline: NetSpline) -> Flags:
 
 
 def _largest(spline: NetSpline) -> Array:
-    """Return the largest sum of the moduli of components of a vector of each patch (T,)."""
+    """For each of the T patches, return the largest 1-norm of its vectors a, b, c, d, e."""
     return np.abs(spline.vectors).sum(axis=2).max(axis=1)
 
 
 def _rounding(spline: NetSpline) -> Array:
-    """Return the error of the linear forms of each patch (T,)."""
+    """For each of the T patches, return a bound of the errors of its linear forms n·a, …, n·e."""
     return FORM_ERROR * _largest(spline) + DATA_ERROR * spline._largest * spline.scale
 
 
 def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decision:
-    """Decide which of the pairs (patches[k], normals[k]) are hits, by the cones of edges.
+    """Decide which of the pairs (patches[k], normals[k]) are hits, by boundary cones of edges.
 
-    At an edge on the boundary, a normal within the error is inside.
+    At an edge on the boundary of the spline, a pair is a hit if the form of the edge is 0 up to its
+    error.
     """
     _, *forms = python_function(formulas.forms)(spline.patch(patches), vector(normals))
     values, errors = np.stack(forms, axis=1), errors_of(spline)[patches, None]
@@ -96,10 +101,10 @@ def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decis
 
 
 def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
-    """Return whether normals are those of patches at points (k, 2), or near singular ones.
+    """Return whether each normal agrees with the normal of its patch at the parameters `places`.
 
-    At a singular point the tangents are perpendicular to a whole circle of directions. At a tip no
-    normal agrees with the tangents of the patches.
+    It must not be its opposite. At a singular point (k, 2), where tangents are perpendicular to a
+    circle of directions, and at tips, the cosine of the angle must be at least SAME_NORMAL.
     """
     N, singular = spline.normals_in_patches(patches, places)
     tips = tips_of(spline)
@@ -112,7 +117,10 @@ def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -
 def _decided(
     spline: NetSpline, patches: Indices, normals: Array, signs: NDArray[np.int8]
 ) -> tuple[Flags, Array]:
-    """Return which pairs are hits, and u, v, sign of K (k, 3), from known `signs` (k, 3)."""
+    """Return a mask of the pairs that are hits, and their u, v and sign of K (k, 3).
+
+    `signs` (k, 3) are those of U, V, W, and 0 where rounding leaves them open.
+    """
     topology = spline.topology
     signs = signs.copy()
     pairs, edges = np.nonzero(signs == 0)
@@ -139,11 +147,11 @@ def _decided(
 def _decide_at_poles(
     spline: NetSpline, patches: Indices, normals: Array, inside: Flags, local: Array
 ) -> None:
-    """Decide pairs next to poles, in place.
+    """Decide the pairs whose normal is near that of a pole of their patch; write the results.
 
-    Around a pole the Gaussian images of the patches are wedges between planes, through the normals
-    at the ends of their edges. Whether a wedge has the displaced normal is exact; the forms of the
-    patches are rounding errors there.
+    Around a pole the Gaussian image of a patch is a wedge between two planes: that of an edge at
+    the pole contains the normals at both of its ends. Signs with respect to planes are exact,
+    whereas the forms of the patches consist of rounding errors there.
     """
     topology = spline.topology
     shared, fan = topology.corners
@@ -173,7 +181,10 @@ def _cross(x: Integers, y: Integers) -> Integers:
 
 
 def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
-    """Return u, v (k, 2) of the nearest point of the triangle, from exact quotients."""
+    """Return the parameters u, v (k, 2) of the points of patches with given normals.
+
+    They are exact quotients, rounded; parameters outside the triangle are moved to its boundary.
+    """
     nets, _ = integers(spline.control_nets[patches])
     vectors = np.asarray(vectors_of_nets(np.asarray(nets, dtype=object)), dtype=object)
     n, _ = integers_by_row(normals)
@@ -187,12 +198,13 @@ def _places(spline: NetSpline, patches: Indices, normals: Array) -> Array:
 
 
 def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
-    """Return the signs (k,) of the forms of edges, U, V or W, at normals (k, 3).
+    """Return the signs (k,) of the boundary cones of edges at normals (k, 3).
 
-    Edge j of patch p has the row 3 p + j. Its form is V of the patch turned so that the edge is v =
-    0, with the tangents at its ends projected onto the planes perpendicular to the normals that all
-    patches share there. The form of the other patch of a joint is its negative. An edge with an end
-    at a pole has a form of its own, see `_polar_signs`.
+    Edge j of patch p has the index 3 p + j in `rows`. Its boundary cone is the form V of the patch
+    after a permutation that makes this edge the edge v = 0. The tangents at the ends of the edge
+    are first projected onto the planes perpendicular to the normals there, which all patches at a
+    vertex share. The other patch of the joint has the opposite sign. For an edge with an end at a
+    pole, see `_polar_signs`.
     """
     topology = spline.topology
     owner, side = topology.owner[0][rows], topology.owner[1][rows]
@@ -222,11 +234,11 @@ def edge_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.i
 
 
 def _polar_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np.int8]:
-    """Return the signs (k,) of V at edges with an end at a pole.
+    """Return the signs (k,) of the boundary cones, at normals (k, 3), of edges that end at a pole.
 
-    At the pole the tangents along and across the edge are parallel, and V is a product of two
-    linear forms. One vanishes in the plane through the normals at both ends, which contains all
-    normals along the edge; the other one is the product with the tangent.
+    At the pole the tangents along and across the edge are parallel, and the form V of the edge is a
+    product of two linear forms of the normal n. The first one vanishes in a plane that contains the
+    normals at both ends, and with them all normals along the edge; the second one is n · tangent.
     """
     topology = spline.topology
     shared, fan = topology.corners
@@ -247,7 +259,10 @@ def _polar_signs(spline: NetSpline, rows: Indices, normals: Array) -> NDArray[np
 
 
 def _tangents_at(spline: NetSpline, rows: Indices, end: Indices) -> tuple[Integers, Integers]:
-    """Return the tangents along and across edges (k, 3), as integers, at their ends 0 or 1."""
+    """Return the tangents along and across edges, each (k, 3), as integers.
+
+    `end` (k,) is 0 for a tangent at the start of its edge, 1 at the end.
+    """
     patches, edge = np.divmod(rows, 3)
     nets, _ = integers(spline.control_nets[patches])
     turned = nets[np.arange(len(rows))[:, None], np.array(TURNED)[edge]]
@@ -265,7 +280,7 @@ def _plane_signs(planes: Integers, normals: Array) -> NDArray[np.int8]:
 
 
 def _tangential(x: Vector, normals: Integers) -> Vector:
-    """Return |n|² times the part of x perpendicular to normals n (k, 3); x where n is 0."""
+    """Return |n|² times the part of x perpendicular to n (k, 3), or x where n = 0."""
     found = python_function(gaussian_image.tangential)(x, vector(normals))
     none = np.asarray((normals == 0).all(axis=1, keepdims=True), dtype=bool)
     return vector(np.where(none, np.stack(x, axis=1), np.stack(found, axis=1)))
@@ -280,10 +295,10 @@ def fields_in_nets(
     fields: Sequence[str],
     dtype: DTypeLike,
 ) -> dict[str, NDArray[Any]]:
-    """Return fields of samples of patches (k,) at normals (k, 3), see `Samples`.
+    """Return the requested fields of samples, one in each of the patches (k,) at normals (k, 3).
 
-    `exact` are the indices of samples that were decided exactly, with `local` as in `Decision`.
-    Floats are stored as `dtype`.
+    `exact` are the indices of the samples that were decided exactly; `local` has their rows of
+    `Decision.local`. Floating-point fields have the type `dtype`.
     """
     patch, n = spline.patch(patches), normals
     D, U, V, _ = python_function(formulas.forms)(patch, vector(n))

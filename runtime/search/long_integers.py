@@ -1,7 +1,8 @@
-"""The forms of patches and normals on integers of any length, for pairs that kernels cannot decide.
+"""The forms U, V, W, D of patches at normals, evaluated on Python integers of any length.
 
-Coefficients and normals are binary fractions, and the formulas need only +, − and ×: run on Python
-integers they give the exact sign of every form.
+They decide the pairs of a patch and a normal for which the integers of kernels are too short.
+Coefficients and normals are binary fractions, and the formulas need only +, − and ×, so that the
+sign of every form is exact.
 """
 
 from __future__ import annotations
@@ -35,10 +36,10 @@ MANTISSA = 53
 def forms_of_pairs(
     spline: Spline, patches: NDArray[np.int64], normals: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
-    """Return U/D and V/D (k, 2), |D| (k,) and the signs of U, V, W (k, 3) of pairs.
+    """Return U/D and V/D (k, 2), |D| (k,) and the signs of U, V, W (k, 3) for k pairs.
 
-    If a zero among U, V, W leaves undecided whether the patch has the normal, the values are those
-    of a normal displaced by an infinitesimal vector.
+    If a zero among U, V, W leaves undecided whether the patch has the normal, values and signs are
+    those at the normal displaced by an infinitesimal vector, see `displaced_forms`.
     """
     vectors, exponent = patch_vectors(spline, patches)
     n, exponents = integers_by_row(normals)
@@ -57,7 +58,10 @@ def forms_of_pairs(
 
 
 def patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers, int]:
-    """Return a, b, c, d, e (5, 3, k) of the patches as integers, and the exponent of their unit."""
+    """Return the vectors a, b, c, d, e (5, 3, k) of patches as integers, in units of 2^exponent.
+
+    The second result is the exponent.
+    """
     cell, turn = np.divmod(patches, 4)
     i, j = np.divmod(cell, spline.cells[1])
     steps = NEIGHBOURS[turn]
@@ -70,7 +74,7 @@ def patch_vectors(spline: Spline, patches: NDArray[np.int64]) -> tuple[Integers,
 
 
 def exact_forms(vectors: Integers, n: Integers) -> Integers:
-    """Return D, U, V, W (4, k), exactly."""
+    """Return the exact values of D, U, V, W (4, k) for vectors (5, 3, k) and normals (3, k)."""
     values = python_function(forms)(patch(np.moveaxis(vectors, -1, 0)), vector(n.T))
     return np.array(values, dtype=object)
 
@@ -78,9 +82,10 @@ def exact_forms(vectors: Integers, n: Integers) -> Integers:
 def displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[np.int8]]:
     """Return D, U, V, W and signs of U, V, W at n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁².
 
-    A quadratic form F is then a sum of ten monomials in n, ε₁, ε₂, ε₃, each infinitesimal relative
-    to the one before. The first nonzero one gives the sign. For quotients by D, the coefficients of
-    the leading monomial of D are returned.
+    A quadratic form at this sum has ten monomials in n, ε₁, ε₂, ε₃, each infinitesimal relative to
+    the one before, so that the first nonzero coefficient gives the sign. The values returned are
+    the coefficients of one monomial, the first one whose coefficient in D is not 0: their
+    quotients by that of D are the parameters of the point.
     """
     coefficients = monomials_of_forms(vectors, n)
     leading = np.argmax(np.asarray(coefficients != 0, dtype=bool), axis=0)
@@ -90,9 +95,10 @@ def displaced_forms(vectors: Integers, n: Integers) -> tuple[Integers, NDArray[n
 
 
 def monomials_of_forms(vectors: Integers, n: Integers) -> Integers:
-    """Return the coefficients (10, 4, k) of the quadratic forms D, U, V, W.
+    """Return the coefficients (10, 4, k) of the ten monomials of the forms D, U, V, W.
 
-    The coefficients of mixed monomials are F(x + y) − F(x) − F(y), for two of n and the axes.
+    The variables are the normal n and the three axes. The coefficient of a mixed monomial is
+    F(x + y) − F(x) − F(y), where F is the form and x, y are two of these vectors.
     """
     axes = [
         n,
@@ -110,10 +116,11 @@ def monomials_of_forms(vectors: Integers, n: Integers) -> Integers:
 
 
 def leading_sign(n: Integers) -> Integers:
-    """Return the sign of the first nonzero component of each column.
+    """Return the sign of the first nonzero component of each column of n (3, k).
 
-    The forms are even in n. A normal and its opposite must be displaced to opposite normals: where
-    a surface is joined to its own mirror image, one patch has a normal, its neighbour the opposite.
+    A normal times this sign is the same for n and −n, so that both are displaced to opposite
+    normals. This is needed where a surface is joined to its own mirror image (a Möbius strip): one
+    patch has a normal where its neighbour has the opposite normal. The forms are even in n.
     """
     signs = sign(n)
     first = np.argmax(signs != 0, axis=0)
@@ -121,7 +128,7 @@ def leading_sign(n: Integers) -> Integers:
 
 
 def _scaled(values: Integers, exponents: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return values × 2^exponents as floats."""
+    """Return values × 2^exponents, as floating-point numbers."""
     pairs = zip(values, exponents.tolist(), strict=True)
     return np.array([x << e if e >= 0 else x / (1 << -e) for x, e in pairs], dtype=np.float64)
 
@@ -139,7 +146,7 @@ def integers(values: NDArray[np.float64]) -> tuple[Integers, int]:
 
 
 def integers_by_row(vectors: NDArray[np.float64]) -> tuple[Integers, NDArray[np.int64]]:
-    """Return vectors (k, 3) as integers (3, k), with an exponent for each vector."""
+    """Return vectors (k, 3) as integers (3, k), and for each vector the exponent of their unit."""
     mantissas, exponents = np.frexp(vectors)
     whole = np.ldexp(mantissas, MANTISSA).astype(np.int64).astype(object)
     lowest = np.where(mantissas != 0, exponents, 2**30).min(axis=1)
@@ -148,10 +155,10 @@ def integers_by_row(vectors: NDArray[np.float64]) -> tuple[Integers, NDArray[np.
 
 
 def sign(values: Integers) -> NDArray[np.int8]:
-    """Return the signs −1, 0, 1."""
+    """Return the sign −1, 0 or 1 of each value."""
     return np.asarray(values > 0, dtype=np.int8) - np.asarray(values < 0, dtype=np.int8)
 
 
 def ratio(numerator: Integers, denominator: Integers) -> NDArray[np.float64]:
-    """Return quotients of integers, correctly rounded."""
+    """Return quotients of integers as the nearest floating-point numbers."""
     return np.asarray(numerator / denominator, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""The index of a spline: pieces with cones of normals, listed by bins of the sphere."""
+"""The index of a spline: for each bin of the sphere, the patches that may have normals in it."""
 
 from __future__ import annotations
 
@@ -31,28 +31,29 @@ from .kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces
 
 __all__ = ["MOST_PATCHES", "Index", "index_of", "listed", "open_sides", "ordered", "sorted_keys"]
 
-# The largest number of patches of one index, which is kept with the spline and takes 230 bytes a
-# patch. A larger spline has an index for each range of patches, made anew for each search.
+# An index of all patches takes 230 bytes a patch, and is cached with the spline. A spline with more
+# than MOST_PATCHES patches has an index for each range of patches; each search makes them anew.
 MOST_PATCHES = 1 << 20
 PIECES_AT_A_TIME, NORMALS_AT_A_TIME = 1 << 12, 1 << 16
-# The average number of bins of a piece determines the size of bins.
+# Bins are halved until a piece is listed in more than this number of bins on average.
 BINS_PER_PIECE = 7.0
-# Initial room for keys.
+# The initial capacity of the array of keys (bin, piece).
 KEYS_PER_PIECE = 16
 # Normals are sorted by bins with at least this many normals on average.
 NORMALS_PER_BIN = 4
-# The number of pieces from which the size of bins is estimated.
+# The size of bins is chosen from about this number of pieces, evenly spaced among all.
 LOOKED_AT = 1 << 10
-# Bins cover only a cap if the tangent of half its opening angle is below the first of these;
-# tangents are at least the second one.
+# If all normals are in a cap, bins cover only this cap, unless the tangent of half its opening
+# angle exceeds WIDEST_CAP. Smaller tangents than NARROWEST_CAP are replaced by NARROWEST_CAP.
 WIDEST_CAP, NARROWEST_CAP = 0.5, 2.0**-30
 
 
 @dataclass(frozen=True, eq=False)
 class Index:
-    """Pieces, and for each bin the pieces that may have its normals; shared by threads.
+    """Pieces of a surface, and for each bin of the sphere the pieces that may have normals in it.
 
-    `first` is the index of the first piece, `most` the largest number of pieces in a bin.
+    `first` is the index of the first piece among all patches of the spline, `most` the largest
+    number of pieces in one bin. Threads share an index: it is never changed.
     """
 
     pieces: Pieces
@@ -62,14 +63,14 @@ class Index:
 
     @property
     def bounds(self) -> Array:
-        """Bounds of the errors of U, V, W (K,) of the pieces."""
+        """For each of the K pieces, a bound of the rounding errors of its forms U, V, W."""
         return self.pieces.patches[:, BOUND]
 
 
 def index_of(spline: AnySpline, threads: int | None, first: int = 0) -> Index:
     """Return the index of the patches [first, first + MOST_PATCHES) of a spline.
 
-    An index of all patches is kept with the spline.
+    If these are all patches, the index is cached with the spline.
     """
 
     def make() -> Index:
@@ -96,7 +97,7 @@ def coefficients_of(spline: Spline) -> Coefficients:
 
 
 def _of_grid(spline: Spline, first: int, last: int, threads: int | None) -> Pieces:
-    """Return the pieces of the cells [first, last)."""
+    """Return the patches [first, last) of a spline on a grid, as pieces."""
     pieces, coefficients, start = Pieces.new(last - first), coefficients_of(spline), first // 4
 
     def work(low: int, high: int) -> None:
@@ -108,7 +109,7 @@ def _of_grid(spline: Spline, first: int, last: int, threads: int | None) -> Piec
 
 
 def _of_nets(spline: NetSpline, first: int, last: int) -> Pieces:
-    """Return the pieces of nets."""
+    """Return the patches [first, last) of a spline of nets, as pieces."""
     topology, pieces = spline.topology, Pieces.new(last - first)
     vectors, control, angles, bounds = (
         np.ascontiguousarray(x[first:last])
@@ -119,7 +120,10 @@ def _of_nets(spline: NetSpline, first: int, last: int) -> Pieces:
 
 
 def _listed(spline: AnySpline, cones: Array, first: int) -> Lists:
-    """Return the lists of patches from `first` on, without patches at tips."""
+    """Return, for each bin, the list of patches with the given cones, without patches at tips.
+
+    `first` is the index of the patch of the first cone among all patches of the spline.
+    """
     tips = tips_of(spline)
     if tips is None:
         return listed(cones)
@@ -129,13 +133,13 @@ def _listed(spline: AnySpline, cones: Array, first: int) -> Lists:
 
 
 def listed(cones: Array) -> Lists:
-    """Return the lists of pieces with cones (K, 8)."""
+    """Return, for each bin of the sphere, the list of pieces whose cones (K, 8) meet it."""
     frame, tangent = _frame_of(cones)
     faces, inverse = 6 if tangent == 1.0 else 1, np.linalg.inv(frame).astype(np.float64)
     level = _level_of(cones, faces, tangent)
     caps = np.empty((faces << 2 * level, 4))
     write_caps(inverse, faces, level, caps)
-    # The least cosine between a direction and the axis of its face.
+    # The least cosine between a direction in a bin and the axis of the face of the cube it is on.
     least = (1.0 - 1e-12) / math.sqrt(1.0 + 2.0 * tangent**2)
     keys = np.empty(0, np.int64)
     room = KEYS_PER_PIECE * len(cones)
@@ -148,10 +152,10 @@ def listed(cones: Array) -> Lists:
 
 
 def _frame_of(cones: Array) -> tuple[Array, float]:
-    """Return the linear map (3, 3) of a cap with all cones to a face of a cube, and a tangent.
+    """Return a linear map (3, 3) from a cap that contains all cones to a face of the unit cube.
 
-    It is the tangent of half the opening angle of the cap. If the cones need a wider cap than
-    WIDEST_CAP, return the identity and 1, for all faces of a cube.
+    The second result is the tangent of half the opening angle of the cap. If it exceeds WIDEST_CAP,
+    the results are the identity and 1: the bins then cover all six faces of the cube.
     """
     axes, chords = cones[:, :3], cones[:, CHORD]
     mean = axes.mean(axis=0)
@@ -164,8 +168,8 @@ def _frame_of(cones: Array) -> tuple[Array, float]:
     x, y, height = directions @ axes.T
     if not (height - chords > 0.5).all():
         return everything
-    # The tangent of the largest angle between a direction and the mean axis, with a bound for
-    # cones.
+    # The tangent of the largest angle between a direction of a cone and the mean axis: the exact
+    # value for the axes of cones, plus a bound for the half angles of cones.
     far = (np.hypot(x, y) / height + chords / (height * (height - chords))).max()
     tangent = max(float(far) * (1.0 + 1e-9), NARROWEST_CAP)
     if tangent > WIDEST_CAP:
@@ -174,9 +178,10 @@ def _frame_of(cones: Array) -> tuple[Array, float]:
 
 
 def _level_of(cones: Array, faces: int, tangent: float) -> int:
-    """Return how often faces are halved: a piece is in at most BINS_PER_PIECE bins on average.
+    """Return how often each face of the cube is halved, along both directions, to make bins.
 
-    There are at most as many bins as pieces, or four on each face.
+    It is the largest number for which a piece is in at most BINS_PER_PIECE bins on average, and for
+    which there are at most as many bins as pieces (four on each face are always allowed).
     """
     chords = cones[:: max(len(cones) // LOOKED_AT, 1), CHORD] / tangent
     level = 0
@@ -189,10 +194,10 @@ def _level_of(cones: Array, faces: int, tangent: float) -> int:
 
 
 def ordered(normals: Array, lists: Lists, threads: int | None) -> Indices:
-    """Return keys bin << 32 | index of the normals (S, 3) that may be in bins, partly sorted.
+    """Return keys bin << 32 | index of normals (S, 3), sorted by bins of about NORMALS_PER_BIN.
 
-    The bins are the finest ones; keys are sorted by coarser bins, which have at least
-    NORMALS_PER_BIN normals on average.
+    The bins in the keys are the finest ones. The keys are sorted only by coarser bins, which hold
+    at least NORMALS_PER_BIN normals on average. Normals outside all bins have no key.
     """
     keys = np.empty(len(normals), np.int64)
 
@@ -209,9 +214,9 @@ def ordered(normals: Array, lists: Lists, threads: int | None) -> Indices:
 
 
 def sorted_keys(parts: Sequence[Indices], shift: int, count: int) -> Indices:
-    """Return the keys of all parts, sorted by their leading bits: key >> shift, below `count`.
+    """Return all keys of `parts`, sorted by their leading bits key >> shift, which are < `count`.
 
-    Keys with the same leading bits keep their order.
+    The sort is stable.
     """
     starts = np.zeros(count + 1, np.int32)
     for keys in parts:

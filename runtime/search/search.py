@@ -1,8 +1,8 @@
 """The search for all points of a spline with given normals, each found exactly once.
 
-An index lists the patches by bins of the sphere. For normals sorted by bins, the signs of U, V, W
-and D decide which patches of their bin have them. Exact arithmetic decides pairs that rounding
-leaves undecided.
+An index lists, for each bin of the sphere, the patches that may have normals in it. Whether a patch
+has a normal follows from the signs of its quadratic forms U, V, W and D at this normal (paper,
+Sect. 3.2). Exact arithmetic decides the pairs for which rounding leaves a sign open.
 """
 
 from __future__ import annotations
@@ -30,9 +30,10 @@ from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sor
 
 __all__ = ["Hits", "developable_patches", "find", "find_in_turn", "on_border"]
 
-# The largest number of normals that are searched together, and of hits that are sorted together.
+# At most so many normals are searched together, and at most so many hits are sorted together.
 NORMALS_AT_A_TIME, MOST_HITS = 1 << 20, 1 << 23
-# The number of normals in the range of a thread, and the initial room for keys.
+# The number of normals that a thread takes at a time, and the initial capacity of its arrays of
+# keys.
 RANGE, ROOM = 1 << 13, 1 << 15
 PATCHES_AT_A_TIME = 1 << 14
 
@@ -40,7 +41,7 @@ PATCHES_AT_A_TIME = 1 << 14
 def find(
     spline: AnySpline, normals: Array, threads: int | None = None, progress: bool = False
 ) -> Hits:
-    """Return all hits: the pairs of a patch of a spline and a unit normal (S, 3) that it has."""
+    """Return all hits: the pairs of a patch and one of the unit normals (S, 3), which it has."""
     check_memory("search", len(normals))
     return Hits.joined(list(find_in_turn(spline, normals, threads, progress)))
 
@@ -48,7 +49,10 @@ def find(
 def find_in_turn(
     spline: AnySpline, normals: Array, threads: int | None = None, progress: bool = False
 ) -> Iterator[Hits]:
-    """Yield the hits of consecutive ranges of normals, at least one range, in bounded memory."""
+    """Yield hits, one `Hits` for each range of consecutive normals, so that memory is bounded.
+
+    There is at least one range, also if there are no normals.
+    """
     developable = developable_patches(spline, threads)
     tips = tips_of(spline)
     nothing = developable == spline.patches or (tips is not None and tips.collapsed.all())
@@ -69,9 +73,10 @@ def find_in_turn(
 def _keys(
     spline: AnySpline, normals: Array, threads: int | None, progress: bool
 ) -> tuple[list[Indices], Indices, Array] | None:
-    """Return keys of certain and of undecided hits, and the errors of forms of undecided hits.
+    """Return the keys of certain hits and of undecided pairs, and error bounds for the latter.
 
-    Return None if there are more than MOST_HITS hits, and more than one normal.
+    An error bound holds for the forms U, V, W of the patch of a pair. The result is None if several
+    normals have more than MOST_HITS hits together.
     """
     certain, undecided, bounds, total = [], [], [], 0
     for first in range(0, spline.patches, MOST_PATCHES):
@@ -91,7 +96,7 @@ def _keys(
 def _ranges(
     index: Index, normals: Array, threads: int | None, progress: bool
 ) -> Generator[list[tuple[Indices, Indices]], None, None]:
-    """Yield the keys of certain and undecided hits of ranges of sorted normals, in parts."""
+    """Yield, for each range of sorted normals, arrays of keys of certain and undecided hits."""
     order = ordered(normals, index.lists, threads)
 
     def work(first: int, last: int) -> list[tuple[Indices, Indices]]:
@@ -113,10 +118,13 @@ def _decided(
     spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
     bounds: Array, first: int, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
-    """Return the hits, and decide undecided keys; the index of the first normal is `first`."""
+    """Return the certain hits and those of the undecided pairs that exact arithmetic confirms.
+
+    `first` is the index of the first of these normals among all normals.
+    """
     exact, local = np.empty(0, np.int64), np.empty((0, 5))
     if len(undecided) > 0:
-        # Sorted by patches: pairs of the same patch are decided faster one after the other.
+        # Sorting by patches is faster: the vectors of a patch are converted to integers only once.
         patches, numbers = undecided & NUMBER, undecided >> 32
         order = np.lexsort((numbers, patches))
         patches, numbers = patches[order], numbers[order]
@@ -128,8 +136,8 @@ def _decided(
         decided = undecided[order][decision.which]
         order = np.argsort(decided)
         exact, local = decided[order], decision.local[order]
-    # Hits of a normal are in the order of patches, but those that were decided exactly come last;
-    # `order_few` moves these.
+    # The hits of each normal are in the order of patches, followed by the hits that were decided
+    # exactly. `order_few` moves these to their positions.
     keys = sorted_keys([*certain, exact], 32, len(normals))
     if len(exact) > 0:
         order_few(keys)
