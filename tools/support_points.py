@@ -38,8 +38,8 @@ __all__ = ["NetEdges", "Segments", "SupportPoints", "bounds_of", "lines_of", "su
 
 # Sides of the domain are cut into this number of segments for each cell.
 STEPS_A_CELL = 2
-# Segments are bounded in blocks of BLOCK, for at most PRODUCTS_AT_A_TIME pairs with a direction.
-BLOCK, PRODUCTS_AT_A_TIME = 8, 1 << 21
+# Directions are halved until PAIRS of a direction and a segment that may be farthest are left.
+PAIRS = 1 << 13
 # Steps of Newton's method, and of bisection where the boundary of a trim crosses a side.
 STEPS, BISECTIONS = 6, 50
 # Newton's method starts at these positions in undecided boxes.
@@ -159,8 +159,9 @@ def support(self: GaussMap, directions: ArrayLike) -> SupportPoints:
     if not np.isfinite(found.values).all():
         name = getattr(self.surface, "name", "surface")
         raise SurfaceError(f"{name!r} has no farthest point: no point inside its trim is finite.")
-    rounding = ROUNDING * np.maximum(np.abs(found.values), np.linalg.norm(found.points, axis=1))
-    return found._replace(errors=found.errors + rounding)
+    size = max((np.abs(x.points).max(initial=0.0) for x in _curves_of(self)), default=0.0)
+    sizes = np.maximum(np.linalg.norm(found.points, axis=1), size)
+    return found._replace(errors=found.errors + ROUNDING * sizes)
 
 
 def bounds_of(self: Surface | Whole) -> Array:
@@ -273,8 +274,7 @@ class NetEdges:
 class Curves:
     """Segments of one surface or more, with the points and tangents (M, 2, 3) at their ends.
 
-    Each segment is within a distance `reach` (M,) of its start, and each block of segments is in a
-    ball.
+    Each segment is within a distance `reach` (M,) of its start.
     """
 
     parts: Sequence[Segments | NetEdges]
@@ -283,8 +283,6 @@ class Curves:
     points: Array
     tangents: Array
     reach: Array
-    centres: Array
-    radii: Array
 
     @classmethod
     def of(cls, parts: Sequence[Segments | NetEdges]) -> Curves:
@@ -301,54 +299,67 @@ class Curves:
         part, row, points, tangents = part[finite], row[finite], points[finite], tangents[finite]
         rounding = ROUNDING * np.abs(points).max(initial=0.0)
         reach = np.linalg.norm(points[:, 1] - points[:, 0], axis=1) + rounding
-        if not len(part):
-            return cls(parts, part, row, points, tangents, reach, points[:, 0], reach)
-        firsts = np.arange(0, len(part), BLOCK)
-        sizes = np.diff(firsts, append=len(part))
-        centres = np.add.reduceat(points[:, 0], firsts) / sizes[:, None]
-        away = np.linalg.norm(points[:, 0] - np.repeat(centres, sizes, axis=0), axis=1) + reach
-        radii = np.maximum.reduceat(away, firsts)
-        return cls(parts, part, row, points, tangents, reach, centres, radii)
+        return cls(parts, part, row, points, tangents, reach)
 
     def add(self, found: SupportPoints, normals: Array) -> None:
         """Take the points of segments that are farther in the directions (S, 3)."""
-        size = max(PRODUCTS_AT_A_TIME // max(len(self.centres), 1), 1)
-        for first in range(0, len(normals) if len(self.part) else 0, size):
-            here = slice(first, first + size)
-            owner, rows = self._near(normals[here], found.values[here])
-            self._add(found, normals, first + owner, rows)
-
-    def _near(self, normals: Array, values: Array) -> tuple[Indices, Indices]:
-        """Return directions (k,) and segments (k,) that may have points beyond the values (S,)."""
-        best = np.maximum(values, (normals @ self.points[::BLOCK, 0].T).max(axis=1))
-        owner, block = np.nonzero(normals @ self.centres.T + self.radii >= best[:, None])
-        rows = (block[:, None] * BLOCK + np.arange(BLOCK)).ravel()
-        owner = np.repeat(owner, BLOCK)[rows < len(self.part)]
-        rows = rows[rows < len(self.part)]
-        heights = np.einsum("kx,kx->k", self.points[rows, 0], normals[owner])
-        np.maximum.at(best, owner, heights)
-        near = heights + self.reach[rows] >= best[owner]
-        return owner[near], rows[near]
-
-    def _add(self, found: SupportPoints, normals: Array, owner: Indices, rows: Indices) -> None:
-        """Take the highest points of segments (k,) in the directions (k,), which are sorted."""
-        ends = np.einsum("kex,kx->ek", self.points[rows], normals[owner])
-        slopes = np.einsum("kex,kx->ek", self.tangents[rows], normals[owner])
-        inside = (slopes[0] > 0.0) & (slopes[1] < 0.0)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            t = np.where(inside, slopes[0] / (slopes[0] - slopes[1]), ends[1] > ends[0])
-        # A concave curve is below its tangents; twice the slopes allow for other curves.
-        most = (ends + np.array([[2.0], [-2.0]]) * slopes).min(axis=0)
-        peaks = np.flatnonzero(inside & (most >= found.values[owner]))
-        highest = np.flatnonzero(~inside)
-        highest = highest[np.lexsort((-ends[:, highest].max(axis=0), owner[highest]))]
-        highest = highest[np.diff(owner[highest], prepend=-1) != 0]
-        rest = np.concatenate([peaks, highest])
-        order = rest[np.argsort(self.part[rows[rest]], kind="stable")]
+        near = self._near(found, normals) if len(self.part) else ()
+        pairs = [self._highest(found, normals, some, rows) for some, rows in near]
+        if not pairs:
+            return
+        owner, rows, t = map(np.concatenate, zip(*pairs, strict=True))
+        order = np.argsort(self.part[rows], kind="stable")
         numbers, firsts = np.unique(self.part[rows[order]], return_index=True)
         for k, some in zip(numbers, np.split(order, firsts[1:]), strict=True):
             part = self.parts[k]
             _add_highest(part, found, normals, owner[some], self.row[rows[some]], t[some])
+
+    def _near(self, found: SupportPoints, normals: Array) -> Iterator[tuple[Indices, Indices]]:
+        """Yield a few directions at a time, and the segments that may be farthest in them.
+
+        If all directions are within δ of a vector a, a segment whose start is lower along a than a
+        known point, by more than its `reach` and δ times their distance, is lower in all of them.
+        """
+        halves = [(np.arange(len(normals)), np.arange(len(self.part)))]
+        while halves:
+            some, rows = halves.pop()
+            n = normals[some]
+            mean = n.mean(axis=0)
+            apart = np.linalg.norm(n - mean, axis=1).max()
+            starts = self.points[rows, 0]
+            known = np.concatenate([starts, found.points[some]])
+            starts = starts - known[np.nanargmax(known @ mean)]
+            above = starts @ mean + self.reach[rows] + apart * np.linalg.norm(starts, axis=1)
+            rows = rows[above >= 0.0]
+            if len(some) * len(rows) > PAIRS and len(some) > 1:
+                order = some[n[:, np.ptp(n, axis=0).argmax()].argsort(kind="stable")]
+                halves += [(x, rows) for x in np.array_split(order, 2)]
+            elif len(rows):
+                yield some, rows
+
+    def _highest(
+        self, found: SupportPoints, normals: Array, some: Indices, rows: Indices
+    ) -> tuple[Indices, Indices, Array]:
+        """Return directions, and segments (k,) that may be highest in them, near t (k,)."""
+        n = normals[some].T[:, :, None]
+        ends, slopes = (
+            x[0] * n[0] + x[1] * n[1] + x[2] * n[2]
+            for x in (y[rows].T[:, :, None] for y in (self.points, self.tangents))
+        )
+        inside = (slopes[0] > 0.0) & (slopes[1] < 0.0)
+        # A concave curve is below its tangents; twice the slopes allow for other curves.
+        most = (ends + np.array([2.0, -2.0])[:, None, None] * slopes).min(axis=0)
+        highest = ends.max(axis=0)
+        best = np.fmax(highest.max(axis=1), found.values[some])
+        owner, peaks = np.nonzero(inside & (most >= best[:, None]))
+        slopes = slopes[:, owner, peaks]
+        highest = highest.argmax(axis=1)
+        ends = ends[:, np.arange(len(some)), highest]
+        return (
+            some[np.concatenate([np.arange(len(some)), owner])],
+            rows[np.concatenate([highest, peaks])],
+            np.concatenate([ends[1] > ends[0], slopes[0] / (slopes[0] - slopes[1])]),
+        )
 
 
 def _add_highest(

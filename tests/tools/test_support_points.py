@@ -7,7 +7,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from ..products import covering
 from ..refusals import refused
@@ -137,7 +137,12 @@ def test_points_of_nets() -> None:
 @pytest.mark.parametrize("name", ["box", "all_kinds"])
 def test_points_of_parts(parts: Any, name: str) -> None:
     part = getattr(parts, name)()
-    found = gm.GaussMap(part).support(DIRECTIONS)
+    known = gm.GaussMap(part)
+    found = known.support(DIRECTIONS)
+    alone = [known.support([n]).points[0] for n in DIRECTIONS[::6]]
+    assert_array_equal(alone, found.points[::6])
+    many = known.support(np.concatenate([DIRECTIONS, gm.icosphere(12)]))
+    assert_array_equal(many.points[: len(DIRECTIONS)], found.points)
     samples = gm.sample(part, 3_000)
     assert (found.values >= (samples.points @ DIRECTIONS.T).max(axis=0)).all()
     faces = [part.faces[k].surface for k in found.face_index]
@@ -153,6 +158,7 @@ def test_values_of_a_box(parts: Any) -> None:
     found = gm.GaussMap(parts.box(1.0, 2.0, 3.0)).support(DIRECTIONS)
     assert_allclose(found.values, np.maximum(DIRECTIONS * [1, 2, 3], 0.0).sum(axis=1), atol=1e-14)
     assert found.on_border[:40].all()
+    assert found.errors.min() > 3.0 * np.finfo(float).eps  # also for the corner at 0
 
 
 def test_functions_without_a_proof_have_larger_errors() -> None:
