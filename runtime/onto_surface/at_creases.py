@@ -1,10 +1,11 @@
-"""Points of creases whose normal is between those of both sides.
+"""Points of creases at given normals n: n is between the normals of both sides of the crease.
 
-On a crease u = c, a normal n is perpendicular to x_v, and n·x_u has different signs on both sides:
-across the crease the height n·x has a maximum or a minimum. Along it, the height has one or the
-other, too. The index is 1 if both are of one kind, −1 if not; it is that of points on a surface
-that rounds the crease off. For creases u = c or v = c, w is the parameter along the crease, and s
-the parameter across.
+At such a point of a crease u = c, n is perpendicular to x_v, and n·x_u has different signs on both
+sides. So across the crease the height n·x has a maximum or a minimum. Along the crease it has a
+maximum or a minimum, too, or neither. The index of the point is 1 for two maxima or two minima, −1
+for one of each, and else 0: it is the index of the points that a surface has which rounds the
+crease off. For creases u = c and v = c alike, w is the parameter along the crease, and s the
+parameter across it.
 """
 
 from __future__ import annotations
@@ -27,15 +28,19 @@ from ..tape.tapes import bounds_over_boxes, jets_of
 
 __all__ = ["Creases", "OnCreases"]
 
-# Intervals in which n·x_w may have several zeros are halved at most DEEPEST times, or until there
-# are MANY for a normal, as on a straight crease. STEPS of Newton's method find single zeros.
+# Intervals of w in which n·x_w may have several zeros are halved at most DEEPEST times, or until a
+# normal has more than MANY intervals, as on a straight crease. An interval with at most one zero
+# takes STEPS steps of Newton's method.
 DEEPEST, MANY, STEPS = 20, 4096, 12
-# Normals of both sides are known up to SMOOTH. The distance of two components is at least APART,
-# relative to the crease; at this distance from a component, signs of n·x_w on both sides are taken.
+# The normals of both sides are known up to the angle SMOOTH. Points of one crease and normal that
+# are closer than APART, relative to the length of the crease in w, are one component. The signs of
+# n·x_w before and after a component are taken at this distance from it.
 SMOOTH, APART = 1e-9, 1e-6
-# Over the radius of a corner, SMOOTH times the domain, normals turn by at most TURNED.
+# The box of a corner has the radius SMOOTH, relative to the domain; within it, normals are assumed
+# to turn by at most the angle TURNED.
 TURNED = 16.0 * SMOOTH
-# Whether the height increases along each of four creases, and the index of their corner then.
+# All combinations of whether the height increases along each of the four creases at a corner, and
+# the index of the corner for each combination.
 RISES = np.indices((2, 2, 2, 2)).reshape(4, -1).T == 1
 DEGREES = 1.0 - (np.roll(RISES, 1, axis=1) != RISES).sum(axis=1) / 2.0
 PRODUCTS_AT_A_TIME = 1 << 21
@@ -44,11 +49,11 @@ SECOND = (3, 5)
 
 
 class OnCreases(NamedTuple):
-    """Points of creases, in the order of their normals.
+    """Points of creases at given normals, one for each component, sorted by normal.
 
-    `numbers` (k,) are the rows of the normals; `degrees` (k,) are the indices of the points; all
-    points of a component are within `radius` (k, 2) of uv (k, 2). Points are `unsure` if the normal
-    is that of one side, up to rounding.
+    `numbers` (k,) are the indices of the normals, `degrees` (k,) the indices −1, 0 or 1 of the
+    points. The parameters of all points of a component differ by at most `radius` (k, 2) from `uv`
+    (k, 2). A point is `unsure` if its normal is that of one side, up to rounding.
     """
 
     numbers: Indices
@@ -60,10 +65,12 @@ class OnCreases(NamedTuple):
 
 
 class Corner(NamedTuple):
-    """A point where two creases cross: those of u and of v with the indices `lines` (2,).
+    """A point where a crease u = const and a crease v = const cross.
 
-    Along them it extends by `radius` (2,) of u and v. `tangents` (4, 3) are those of its four
-    creases at this distance, away from it and counter-clockwise; `point` (3,) is that of `uv` (2,).
+    `lines` (2,) are the indices of both creases. `uv` (2,) are its parameters, `point` (3,) is its
+    position. Points of creases within `radius` (2,) of `uv` belong to the corner. `tangents` (4, 3)
+    are tangents of the four creases that leave the corner, counter-clockwise, at the distance
+    `radius` from it.
     """
 
     lines: Indices
@@ -74,7 +81,7 @@ class Corner(NamedTuple):
 
     @classmethod
     def of(cls, tape: Tape, numbers: Sequence[int], lines: Array, spans: Array) -> Corner:
-        """Return the corner of two creases, rows of `lines` and `spans` as in `Creases`."""
+        """Return the corner of two creases with the given rows of `Creases.lines` and `.spans`."""
         (_, left, right, _), (_, below, above, _) = lines
         radius = SMOOTH * np.ptp(spans[::-1], axis=1)
         u = np.array([right, right + radius[0], right, left - radius[0], right])
@@ -84,7 +91,10 @@ class Corner(NamedTuple):
         return cls(np.array(numbers), np.array([right, above]), radius, jets[0, 0], tangents)
 
     def is_near(self, rows: Indices, along: Array, periods: Array) -> Flags:
-        """Return whether the parameters along creases (k,) with given indices are in the corner."""
+        """Return a mask (k,) of the points of creases that belong to the corner.
+
+        `rows` (k,) are the indices of their creases, `along` (k,) their parameters along these.
+        """
         near = np.zeros(len(rows), np.bool_)
         for axis, line in enumerate(self.lines.tolist()):
             away = along - self.uv[1 - axis]
@@ -96,8 +106,9 @@ class Corner(NamedTuple):
     def at(self, normals: Array) -> OnCreases:
         """Return the corner for each of the unit normals (S, 3) in its normal cone.
 
-        The slope of the height n·x changes its sign twice around a point without an index. Degrees
-        are NaN, and points `unsure`, if they depend on slopes that are 0 up to `TURNED`.
+        The index follows from the signs of the slopes of n·x along the four creases; corners with
+        the index 0 are left out. Where the index depends on a slope that is 0 up to `TURNED`, the
+        degree is NaN and the point `unsure`.
         """
         facing = normals @ _unit(np.cross(self.tangents, np.roll(self.tangents, -1, 0))).sum(axis=0)
         slopes = normals @ _unit(self.tangents).T
@@ -115,9 +126,11 @@ class Corner(NamedTuple):
 
 
 class _Sides(NamedTuple):
-    """Vectors (k, 3) of intervals of creases: x_w and x_ww along them, and x_s across on each side.
+    """Bounds of derivatives over k intervals of creases.
 
-    Each is a pair: the value in the middle of the interval, and the largest difference from it.
+    `first` and `second` are x_w and x_ww along the crease, `before` and `after` are x_s on both
+    sides. Each is a pair of vectors (k, 3): the value in the middle of the interval, and bounds of
+    the differences from it.
     """
 
     first: tuple[Array, Array]
@@ -130,10 +143,11 @@ class _Sides(NamedTuple):
 class Creases:
     """Creases of a surface, cut into intervals.
 
-    A row of `lines` (m, 4) has the axis of the parameter that is constant, its values before and
-    after the crease, and the period of the parameter along the crease or 0; `spans` (m, 2) are the
-    bounds of the parameter along it. `rows` (k,) are the lines to which the intervals belong;
-    intervals have `ends` (k, 2), and bounds of derivatives on both `sides`.
+    Each of the m creases has a row of `lines` (m, 4): the axis of the parameter that is constant on
+    it (0 for u), the values of this parameter just before and after the crease, and the period of
+    the parameter w along it, or 0. `spans` (m, 2) are the bounds of w. Each of the k intervals has
+    the index of its crease in `rows` (k,), bounds of w in `ends` (k, 2), and bounds of derivatives
+    in `sides`.
     """
 
     tape: Tape
@@ -171,7 +185,7 @@ class Creases:
         return cls(tape, trim, table, bounds, row, end, _sides(tape, table[row], end), corners)
 
     def at(self, normals: Array) -> OnCreases:
-        """Return the points with unit normals (S, 3)."""
+        """Return the points of creases that have one of the unit normals (S, 3)."""
         numbers, rows, ends = self._intervals(normals)
         numbers, rows, ends = self._merged(numbers, rows, ends)
         given, middle = normals[numbers], ends.mean(axis=1)
@@ -202,10 +216,10 @@ class Creases:
         return OnCreases._make(x[np.argsort(found.numbers, kind="stable")] for x in found)
 
     def besides(self, found: Samples, normals: Array) -> OnCreases:
-        """Return the points `at` normals, without those that are among the samples `found`.
+        """Return the points of creases at unit normals that are not among the samples `found`.
 
-        The normal of such a point is that of one side, or it is in the box of an isolated point.
-        The samples have the fields `component` and `points`.
+        A point of a crease may be among the samples if its normal is that of one side, or if it is
+        in the box of an isolated point. The samples have the fields `component` and `points`.
         """
         at, kinds = self.at(normals), found.component
         assert kinds is not None
@@ -221,7 +235,10 @@ class Creases:
         return OnCreases._make(x[keep] for x in at)
 
     def _intervals(self, normals: Array) -> tuple[Indices, Indices, Array]:
-        """Return numbers of normals and of lines, and intervals (k, 2) with a zero of n·x_w."""
+        """Return intervals (k, 2) of w with a zero of n·x_w, for the normals (S, 3).
+
+        The first two results (k,) are the index of the normal and that of the crease.
+        """
         found: list[tuple[Indices, Indices, Array]] = []
         size = max(PRODUCTS_AT_A_TIME // len(self.rows), 1)
         for first in range(0, len(normals), size):
@@ -253,7 +270,10 @@ class Creases:
         return numbers, rows, ends
 
     def _zeros(self, rows: Indices, ends: Array, normals: Array) -> tuple[Array, Flags]:
-        """Return zeros of monotonic n·x_w, as intervals (k, 2) of length 0, and if they exist."""
+        """Return the zeros of n·x_w in intervals (k, 2) where it is monotonic, and a mask (k,).
+
+        A zero is returned as an interval of length 0; the mask is False where there is none.
+        """
         low, high = ends.T
         at = 0.5 * (low + high)
         along = 2 - self.lines[rows, 0].astype(int)
@@ -270,7 +290,10 @@ class Creases:
     def _merged(
         self, numbers: Indices, rows: Indices, ends: Array
     ) -> tuple[Indices, Indices, Array]:
-        """Return the intervals of one normal and crease, joined where they are not apart."""
+        """Return the intervals, those of one normal and crease joined if they are close to another.
+
+        Close means a gap of at most APART; intervals on different sides of a corner stay apart.
+        """
         order = np.lexsort((ends[:, 0], rows, numbers))
         numbers, rows, ends = numbers[order], rows[order], ends[order]
         slack = APART * np.ptp(self.spans[rows], axis=1)
@@ -281,7 +304,7 @@ class Creases:
         lasts = np.append(firsts, len(rows))[1:] - 1
         numbers, rows = numbers[firsts], rows[firsts]
         ends = np.stack([ends[firsts, 0], ends[lasts, 1]], axis=1)
-        # Around a closed crease, the last interval may continue in the first one.
+        # On a closed crease, the last interval may be close to the first one.
         period, slack = self.lines[rows, 3], slack[firsts]
         keep = np.ones(len(rows), np.bool_)
         begins = np.flatnonzero((period > 0.0) & (ends[:, 0] <= self.spans[rows, 0] + slack))
@@ -294,7 +317,10 @@ class Creases:
         return numbers[keep], rows[keep], ends[keep]
 
     def _turning(self, rows: Indices, ends: Array, normals: Array) -> Array:
-        """Return 1 where the height along a crease has a maximum, −1 for a minimum, else 0."""
+        """Return 1 for intervals in which the height n·x has a maximum along the crease.
+
+        Return −1 for a minimum, and 0 for neither.
+        """
         step = APART * np.ptp(self.spans[rows], axis=1)
         signs, between = [], self._arcs(rows, ends.mean(axis=1))[1].T
         for at in (ends[:, 0] - step, ends[:, 1] + step):
@@ -307,9 +333,10 @@ class Creases:
         return 0.5 * (signs[0] - signs[1])
 
     def _arcs(self, rows: Indices, along: Array) -> tuple[Indices, Array]:
-        """Return the arcs between corners that have the parameters along creases, and their ends.
+        """Return which arc of a crease, between corners, contains each of the parameters w (k,).
 
-        These are numbers (k,) for each crease, and bounds (k, 2) of the parameters.
+        The first result (k,) is the index of the arc, counted along the crease; the second one
+        (k, 2) has the bounds of the arc.
         """
         arcs, ends = np.zeros(len(rows), np.int64), np.tile([-np.inf, np.inf], (len(rows), 1))
         for line in np.unique(np.array([x.lines for x in self.corners], np.int64)).tolist():
@@ -322,19 +349,22 @@ class Creases:
         return arcs, ends
 
     def _uv(self, rows: Indices, along: Array, side: int) -> Array:
-        """Return parameters (k, 2) just before (side 1) or after (2) creases."""
+        """Return u and v (k, 2) just before creases, for `side` 1, or just after them, for 2.
+
+        `rows` (k,) are the indices of the creases, `along` (k,) the parameters w.
+        """
         is_u, fixed = self.lines[rows, 0] == 0.0, self.lines[rows, side]
         low, high = self.spans[rows].T
         along = along - np.floor((along - low) / (high - low)) * self.lines[rows, 3]
         return np.where(is_u[:, None], np.stack([fixed, along], 1), np.stack([along, fixed], 1))
 
     def _jets(self, rows: Indices, along: Array, side: int) -> Array:
-        """Return jets (k, 6, 3) just before (side 1) or after (2) creases."""
+        """Return the 2-jets (k, 6, 3) just before or after creases, see `_uv`."""
         return jets_of(self.tape, *self._uv(rows, along, side).T.copy())
 
 
 def _sides(tape: Tape, lines: Array, ends: Array) -> _Sides:
-    """Return bounds over intervals (k, 2) of creases (k, 4)."""
+    """Return bounds of derivatives over intervals (k, 2) of creases with rows `lines` (k, 4)."""
     axis, index = lines[:, 0].astype(int), np.arange(len(lines))
     middle, half = ends.mean(axis=1), np.ptp(ends, axis=1) / 2.0
     of_sides = []
@@ -355,10 +385,10 @@ def _sides(tape: Tape, lines: Array, ends: Array) -> _Sides:
 
 
 def _may_be_zero(normals: Array, bounds: tuple[Array, Array], all_pairs: bool = False) -> Flags:
-    """Return whether products of normals and vectors may be 0, up to the tolerance of normals.
+    """Return whether n·x may be 0 for some vector x within given bounds, and n known up to SMOOTH.
 
-    Normals (k, 3) belong to the vectors of the same row. With `all_pairs`, the result is (S, k) for
-    S normals and k vectors.
+    The result is a mask (k,) for normals (k, 3) and bounds of k vectors; with `all_pairs`, a mask
+    (S, k) for S normals and k vectors.
     """
     reach = bounds[1] + SMOOTH * np.linalg.norm(bounds[0], axis=1, keepdims=True)
     if all_pairs:
@@ -368,20 +398,20 @@ def _may_be_zero(normals: Array, bounds: tuple[Array, Array], all_pairs: bool = 
 
 
 def _may_be_between(normals: Array, sides: _Sides) -> Flags:
-    """Return whether the slopes of both sides may have different signs, or one may be 0."""
+    """Return where (k,) n·x_s may have different signs on both sides, or be 0 on one side."""
     slopes = [_product(normals, x) for x in (sides.before, sides.after)]
     zero = [_may_be_zero(normals, x) for x in (sides.before, sides.after)]
     return zero[0] | zero[1] | (slopes[0][0] * slopes[1][0] < 0.0)
 
 
 def _product(normals: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Return products (k,) of normals and vectors, and the largest difference from them."""
+    """Return products (k,) n·x for the middle values of vectors x, and bounds of their errors."""
     return (
         np.einsum("kx,kx->k", normals, bounds[0]), np.einsum("kx,kx->k", np.abs(normals), bounds[1])
     )  # fmt: skip
 
 
 def _unit(vectors: Array) -> Array:
-    """Return vectors (k, 3) with length 1, or 0."""
+    """Return vectors (k, 3) divided by their lengths; zero vectors stay 0."""
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)

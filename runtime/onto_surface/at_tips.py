@@ -1,4 +1,4 @@
-"""Samples at prescribed normals, and at the tips whose normal cones contain one of these."""
+"""Samples at prescribed normals, including tips and points of creases that have these normals."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ def samples_at(
     progress: bool = False,
     density: float | None = None,
 ) -> Samples:
-    """Return all points that have one of the unit normals (S, 3), and tips, by normal.
+    """Return all points that have one of the unit normals (S, 3), sorted by normal.
 
-    A tip comes after the other points with a normal.
+    A tip has the normals in its normal cone. For each normal, tips are the last samples.
     """
     at_tips = _at_tips(geometry, normals)
     if not at_tips:
@@ -51,7 +51,7 @@ def samples_in_turn(
     progress: bool,
     density: float,
 ) -> Iterator[Samples]:
-    """Yield at most `size` of the samples at a time; see `samples_at`."""
+    """Yield the samples of `samples_at` in parts of at most `size` samples."""
     at_tips = _at_tips(geometry, normals)
     if not at_tips:
         return geometry.samples_in_turn(normals, fields, dtype, size, progress, density)
@@ -73,10 +73,11 @@ def with_creases(
     found: Samples, creases: Creases, normals: Array, fields: Sequence[str], dtype: DTypeLike,
     reach: Reach | None,
 ) -> Samples:  # fmt: skip
-    """Return samples with fields, and the points of creases that have one of the unit normals.
+    """Return the samples `found` and the points of creases that have one of the unit normals.
 
-    For each normal, they come after the other points. The samples `found` have components, points
-    and the indices of normals. Corners with an unknown index are undecided.
+    For each normal, points of creases are the last samples. The samples `found` must have the
+    fields `component`, `points` and `normal_index`; the result has `fields`. Corners of creases
+    with an unknown index become undecided boxes of the report.
     """
     at = creases.besides(found, normals)
     if reach is not None:
@@ -93,7 +94,7 @@ def with_creases(
 
 
 def _corners(at: OnCreases) -> list[UndecidedNormal]:
-    """Return corners as undecided boxes."""
+    """Return an undecided box for each of the given corners."""
     low, high = (at.uv - at.radius).tolist(), (at.uv + at.radius).tolist()
     return [
         UndecidedNormal(number, (u0, u1, v0, v1), "open", False)
@@ -105,7 +106,10 @@ def _joined(
     found: Samples, more: Sequence[Fields], fields: Sequence[str],
     left: Sequence[UndecidedNormal] = (),
 ) -> Samples:  # fmt: skip
-    """Return the given fields of the samples `found` and of `more`, in the order of normals."""
+    """Return the samples `found` and those of `more` together, sorted by normal, with `fields`.
+
+    The boxes `left` are added to the undecided ones of the report.
+    """
     parts = [found.arrays(), *more]
     index = np.concatenate([x["normal_index"] for x in parts])
     order = np.argsort(index, kind="stable")
@@ -120,7 +124,7 @@ def _joined(
 
 
 def _at_tips(geometry: Geometry, normals: Array) -> list[tuple[Tip | Pinch, Indices]]:
-    """Return the tips that have some of the normals (S, 3), with the indices of these."""
+    """Return each tip that has some of the normals (S, 3), with the indices of these normals."""
     tips = [(x, x.degrees(normals) != 0) for x in tips_on(geometry)]
     if geometry.reach is not None:
         tips = [
@@ -133,7 +137,7 @@ def _fields(
     geometry: Geometry, tip: Tip | Pinch, numbers: Indices, normals: Array,
     fields: Sequence[str], dtype: DTypeLike,
 ) -> Fields:  # fmt: skip
-    """Return fields of the samples at a tip, for the normals with the given indices."""
+    """Return fields of the samples at a tip: one for each normal with an index in `numbers`."""
     there: Fields = {}
     if isinstance(geometry, OnSpline):
         there = geometry.at_parameters(
@@ -147,7 +151,10 @@ def _special(
     known: Mapping[str, Any], numbers: Indices, normals: Array, fields: Sequence[str],
     dtype: DTypeLike,
 ) -> Fields:  # fmt: skip
-    """Return fields of samples that are not regular, for the normals with the given indices."""
+    """Return fields of samples that are not regular points; those not in `known` are 0.
+
+    There is a sample for each normal with an index in `numbers`.
+    """
     given = normals[numbers]
     own = {
         "normals": given,

@@ -1,7 +1,8 @@
-"""Components of the points with one normal, where the boundary of a trim may cut them.
+"""Components of the set of points with one normal, cut by the boundary of a trim.
 
-A curve or a region is sampled on a grid of its box, from which Gauss–Newton steps lead to points
-with the normal. Neighbouring points inside the trim are in one piece.
+A component that is a curve or a region is sampled: Gauss–Newton steps lead from the points of a
+grid on its box to points with the normal. Those inside the trim, joined to their neighbours, are
+the pieces.
 """
 
 from __future__ import annotations
@@ -23,15 +24,16 @@ __all__ = ["components_in"]
 Jets = Callable[[Array, Array], Array]
 
 OPEN_BOX, ISOLATED = KINDS.index("open"), KINDS.index("isolated")
-# The number of grid points along a box that is a line: its width is at most THIN times its length,
-# both relative to the domain. Other boxes have SIDE grid points along each side.
+# A box is thin if its width is at most THIN times its length, both relative to the domain. Its grid
+# is one row of PLACES points; that of other boxes has SIDE points along each side.
 PLACES, SIDE, THIN = 257, 65, 1e-3
-# Points are neighbours within this multiple of the step of the grid; of points within half a step,
-# one is kept.
+# Points are neighbours if their distance is at most NEIGHBOURS steps of the grid. Points are
+# rounded to multiples of 1/HALVES steps, and of those that become equal one is kept.
 NEIGHBOURS, HALVES = 1.5, 2.0
-# At most STEPS steps lead to a point. They end where the angles between the normal and the tangents
-# differ from 90° by at most SETTLED; points where they differ by more than NEAR are left out. An
-# eigenvalue of the Hessian counts as 0 if it is less than SINGULAR times the other one.
+# From each grid point there are at most STEPS Gauss–Newton steps. They end when the angles between
+# the normal and the tangents differ from 90° by at most SETTLED; points at which these angles still
+# differ by more than NEAR are left out. An eigenvalue of the Hessian counts as 0 if it is less than
+# SINGULAR times the other one.
 STEPS, SETTLED, NEAR, SINGULAR = 16, 1e-14, 1e-9, 1e-4
 
 
@@ -40,8 +42,9 @@ def components_in(
 ) -> tuple[Undecided, Undecided]:
     """Return the known components inside a trim, and the boxes that remain undecided.
 
-    A component that the trim cuts has a row for each piece inside. `jets` returns the jets of the
-    surface at u and v (k,). The normals (S, 3) are unit vectors.
+    A component is known if its kind is. One that the boundary of the trim cuts has a row for each
+    of its pieces inside the trim; if no piece is found, its box is undecided. `jets` returns the
+    2-jets of the surface at u and v (k,). The normals (S, 3) are unit vectors.
     """
     known = open_.kinds != OPEN_BOX
     if trim is None or len(known) == 0:
@@ -66,9 +69,9 @@ def _rows(open_: Undecided, rows: Indices | Flags | list[int]) -> Undecided:
 
 
 class Grid(NamedTuple):
-    """A grid on a box: points (k, 2) of integers, with the parameters `low` + `step` · point.
+    """A grid on a box of parameters, which are `low` + `step` · place for integers `places` (k, 2).
 
-    The step is 0 across a box that is a line. `periods` (2,) are those of the points, 0 for none.
+    The step across a thin box is 0. `periods` (2,) are the periods of places, 0 for none.
     """
 
     places: Array
@@ -98,7 +101,7 @@ def _pieces(trim: Trim, one: Undecided, normal: Array, jets: Jets) -> Undecided:
 
 
 def _grid(trim: Trim, box: Array) -> Grid:
-    """Return the grid of a box: one row on its middle line if it is thin."""
+    """Return the grid of a box; that of a thin box is one row on its middle line."""
     low, high = box.reshape(2, 2).T
     shares = (high - low) / np.ptp(trim.domain, axis=1)
     is_thin = shares <= THIN * shares.max()
@@ -110,9 +113,10 @@ def _grid(trim: Trim, box: Array) -> Grid:
 
 
 def _with_normal(grid: Grid, ends: Array, normal: Array, jets: Jets) -> Array:
-    """Return points (k, 2) in a box that have a normal, by Gauss–Newton steps from a grid.
+    """Return the parameters (k, 2) of points in a box that have `normal`.
 
-    `ends` (2, 2) are the lowest and the highest parameters of the box.
+    Gauss–Newton steps lead to them from the points of a grid. `ends` (2, 2) are the lowest u and v
+    of the box, and the highest ones.
     """
     uv, scale = grid.low + grid.step * grid.places, np.ptp(ends, axis=0)
     for _ in range(STEPS):

@@ -1,4 +1,4 @@
-"""Samples at normals, moved from a spline to its surface."""
+"""Samples at given normals: found on a spline, then moved to its surface."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .on_spline import Fields, FieldsOfSamples
 
 __all__ = ["as_fields", "moved_samples", "part_of", "unmoved"]
 
-# The fields of samples that are moved; the other fields follow from them.
+# The fields that are computed for samples to be moved; other fields are computed from these.
 NEEDED = (
     *("points", "normals", "uv", "gaussian_curvature", "mean_curvature"),
     *("normal_index", "patch_index"),
@@ -48,10 +48,10 @@ def moved_samples(
 
 
 def unmoved(spline: Spline, numbers: Indices, uv: Array) -> tuple[UndecidedNormal, ...]:
-    """Return a box of parameters for each normal with points of a spline that could not be moved.
+    """Return an undecided box for each normal with points of a spline that could not be moved.
 
-    uv (k, 2) are the parameters of the points, numbers (k,) the increasing indices of their
-    normals. A box holds the cells around its points.
+    `uv` (k, 2) are the parameters of these points, `numbers` (k,) the indices of their normals, in
+    increasing order. A box contains the points of its normal, and one cell around each.
     """
     if len(numbers) == 0:
         return ()
@@ -68,12 +68,12 @@ def unmoved(spline: Spline, numbers: Indices, uv: Array) -> tuple[UndecidedNorma
 
 
 def part_of(arrays: Fields, kept: NDArray[np.bool_]) -> Fields:
-    """Return the selected samples."""
+    """Return the fields of the samples with True in `kept`."""
     return arrays if kept.all() else {name: array[kept] for name, array in arrays.items()}
 
 
 def as_fields(arrays: Fields, fields: Sequence[str], dtype: DTypeLike) -> FieldsOfSamples:
-    """Return the requested fields, of samples with all fields except the support."""
+    """Return the requested fields of samples that have all fields except the support."""
     unrefined = int(np.count_nonzero(~arrays[FLAG_NAMES[0]]))
     if "support" in fields:
         support = np.einsum("ij,ij->i", arrays["points"], arrays["normals"])

@@ -1,7 +1,8 @@
-"""Samples of a spline moved to the surface that it approximates, by Newton's method.
+"""Newton's method: from samples of a spline to the points of its surface with the same normals.
 
-The samples of a spline at prescribed normals are close to those of the surface. Newton's method for
-n·x_u = n·x_v = 0 moves them there, except at parabolic and singular points.
+A point of the spline with the normal n is close to one of the surface. Starting from its
+parameters, Newton's method solves n·x_u = n·x_v = 0 on the surface, except at parabolic and
+singular points.
 """
 
 from __future__ import annotations
@@ -37,18 +38,18 @@ __all__ = ["FOUND", "Target", "evaluate_on_surface", "near_poles", "refine"]
 Jets = Callable[[Array, Array], Array]
 
 ROWS_AT_A_TIME = 4096
-# The last unsolved rows of a batch, at most this part of it, are solved together with those of
-# other batches.
+# If at most this share of the rows of a batch is unsolved, these rows are left for a last batch,
+# which has the unsolved rows of all batches.
 FEW = 1 / 32
 MOST_STEPS = 32
 
 
 @dataclass(frozen=True, eq=False)
 class Parameters:
-    """Two parameters of a surface: its 2-jets by them, and their behaviour at the ends.
+    """A parametrization of a surface, by u and v or by the coordinates of a chart at a pole.
 
-    The surface times `size` has cells of about the size 1. Rounding may keep the angle between
-    normals from falling below `noise`.
+    `jets` returns its 2-jets; `box` has the bounds of both parameters and what happens there. Cells
+    of the surface times `size` have sides of about 1. Rounding errors of normals are up to `noise`.
     """
 
     jets: Jets
@@ -58,7 +59,7 @@ class Parameters:
 
     @classmethod
     def of_domain(cls, surface: Surface, spline: Spline) -> Parameters:
-        """Return the parameters u and v."""
+        """Return the parametrization by u and v."""
         (u0, u1), (v0, v1) = surface.domain
         along_u, along_v = (
             PERIODIC if ends[0] == "periodic" else CLAMPED for ends in spline.boundary
@@ -69,14 +70,17 @@ class Parameters:
 
     @classmethod
     def of_chart(cls, chart: PoleChart, spline: Spline) -> Parameters:
-        """Return s and t in a chart at a pole: unbounded, and with the noise of u and v."""
+        """Return the parametrization by s and t, the unbounded coordinates of a chart at a pole."""
         largest = max(abs(chart.end), abs(chart.other))
         ends = (-largest, largest, -largest, largest)
         box = Box(ends, (FREE, FREE), (chart.cell, chart.cell))
         return cls(chart.jets, box, spline.scale, max(NORMAL_NOISE, spline.noise))
 
     def solve(self, target: Target, numbers: Indices, few: int) -> Indices:
-        """Solve for rows, from target.uv on, until at most `few` are unsolved; return these."""
+        """Do Newton steps until at most `few` rows are unsolved; return the indices of these.
+
+        `numbers` are the indices of the rows to solve; the steps start from target.uv.
+        """
         count, rows = len(numbers), Rows.new(numbers)
         begin(target.uv, count, rows, self.box)
         for _ in range(MOST_STEPS):
@@ -90,13 +94,14 @@ class Parameters:
 
 
 def refine(surface: Surface, spline: Spline, target: Target, threads: int | None = None) -> None:
-    """Move samples of a spline at unit normals to the surface.
+    """Replace samples of a spline by the points of the surface with the same unit normals.
 
-    Overwrites the parameters, points and curvatures where the normal of the surface agrees with the
-    prescribed one, up to NORMAL_ERROR, and K has the sign of target.signs. Elsewhere they stay
-    those of the spline: at parabolic and singular points, and if the solution is outside the domain
-    or more than three cells away. Next to a pole K may have any sign, since the spline has folds
-    there. target.state is overwritten for all samples.
+    A sample is found if Newton's method leads to a point of the surface whose normal is the
+    prescribed one, up to NORMAL_ERROR, and where K has the sign of target.signs; next to a pole the
+    sign does not matter, since the spline has folds there. The parameters, point and curvatures of
+    such a sample are overwritten. The others stay those of the spline: at parabolic and singular
+    points, and where the solution is outside the domain or more than three cells away.
+    target.state says of each sample whether it was found.
     """
     target.state[:] = NOT_FOUND
     charts = pole_charts(surface, spline.cells)
@@ -112,7 +117,7 @@ def _refine_away(
     target: Target,
     threads: int | None,
 ) -> list[Indices]:
-    """Move the samples that are not next to poles; return the indices of the others, by chart."""
+    """Do `refine` for samples away from poles; return the indices of the others for each chart."""
     domain = Parameters.of_domain(surface, spline)
 
     def work(first: int, last: int) -> tuple[Indices, list[Indices]]:
@@ -135,7 +140,7 @@ def _refine_away(
 def _on_rows(
     target: Target, numbers: Indices, solve: Callable[[Target], object], threads: int | None
 ) -> None:
-    """Call `solve` with copies of the given rows; write the results to those of all samples."""
+    """Call `solve` with copies of the rows `numbers` of `target`; write found rows back to it."""
 
     def work(first: int, last: int) -> None:
         rows = numbers[first:last]
@@ -152,7 +157,7 @@ def _on_rows(
 def _refine_at_pole(
     chart: PoleChart, spline: Spline, target: Target, numbers: Indices, threads: int | None
 ) -> None:
-    """Move rows next to a pole in its chart, whatever the sign of K."""
+    """Do `refine` for the samples next to a pole, with the parameters s and t of its chart."""
     parameters = Parameters.of_chart(chart, spline)
 
     def solve(part: Target) -> None:
@@ -161,7 +166,7 @@ def _refine_at_pole(
         part.uv[:] = chart.places(part.uv)
         parameters.solve(part, np.arange(len(part.uv)), 0)
         part.uv[:] = chart.parameters(part.uv)
-        # Evaluated by u and v: finite differences in the chart have larger errors.
+        # The fields are evaluated at u and v: finite differences by s and t have larger errors.
         found = part.state == FOUND
         points, _, gaussian, mean = evaluate_on_surface(
             chart.surface, spline, part.uv[found], threads=1
@@ -199,7 +204,7 @@ def evaluate_on_surface(
 def near_poles(
     charts: list[PoleChart], scale: float, uv: Array
 ) -> Iterator[tuple[Indices, Array, Array, Array]]:
-    """Yield the rows (k,) of parameters that need a chart, and unit normals, K and H there."""
+    """For each chart, yield which rows (k,) of `uv` need it, with unit normals, K and H there."""
     for chart in charts:
         rows = np.flatnonzero(chart.next_to(uv))
         if len(rows):

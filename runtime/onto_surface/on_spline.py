@@ -1,8 +1,7 @@
-"""The geometry that samples lie on: a spline, or the surface that it approximates.
+"""Sampling of splines: the points of a spline at given normals, and at given parameters.
 
-Points with prescribed normals are searched on the spline. On a surface, such a sample is then moved
-to the point with its normal; other samples are evaluated at their parameters. Sizing functions and
-solid angles take the curvature of the surface from the Gauss points of the cells.
+`OnSurface`, which inherits from `OnSpline`, moves these samples to the surface that the spline
+approximates.
 """
 
 from __future__ import annotations
@@ -63,10 +62,11 @@ def count_of(arrays: Fields) -> int:
 
 
 class FieldsOfSamples(NamedTuple):
-    """Fields of samples, how many are not on the surface, and for which normals.
+    """Fields of samples, with the samples and the normals for which the surface has no point.
 
-    `undecided` lists normals with points of the spline that could not be moved to the surface; None
-    for samples of the spline.
+    `unrefined` is the number of samples that are points of the spline, not of its surface.
+    `undecided` has a box for each normal with points of the spline that could not be moved to the
+    surface. Both are None if the spline itself is sampled.
     """
 
     fields: Fields
@@ -81,9 +81,9 @@ class FieldsOfSamples(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class OnPatches:
-    """A spline, on a grid of cells or of nets, whose own points are the samples.
+    """A spline of patches, on a grid or of nets, whose own points are the samples.
 
-    Samples at normals are written to those fields in `memory` that are large enough.
+    Fields of samples at normals are written to the arrays in `memory` if these are large enough.
     """
 
     on: ClassVar[str] = "spline"
@@ -100,17 +100,17 @@ class OnPatches:
         return self
 
     def with_fit(self, samples: Samples, density: float | None = None) -> Samples:
-        """Return samples with their spline, which these already have; see `ProvedSurface`."""
+        """Return `samples`, which have their spline already; see `ProvedSurface.with_fit`."""
         del density
         return samples
 
     @property
     def has_tips(self) -> bool:
-        """Whether there are patches at a tip."""
+        """Whether the spline has patches with a tip."""
         return tips_of(self.spline) is not None
 
     def within(self, reach: Reach | None) -> Self:
-        """Return self; InputError for nets with a `reach`, as they have no grid to cut."""
+        """Return self; InputError for a `reach` of a spline of nets, which has no trim."""
         if reach is not None:
             on_grid(self.spline)
         return self
@@ -142,7 +142,7 @@ class OnPatches:
 
     @property
     def distance(self) -> float:
-        """The largest distance between the sampled points and those of the spline."""
+        """The largest distance between the sampled surface and its spline."""
         return 0.0
 
     # --- samples at normals -----------------------------------------------------------------------
@@ -157,7 +157,7 @@ class OnPatches:
     ) -> Samples:
         """Return all points that have one of the unit normals (S, 3).
 
-        The report takes `density` for the normals per steradian, by default S / 4π.
+        `density` is the number of normals per steradian in the report, by default S / 4π.
         """
         hits = find(self.spline, normals, self.threads, progress)
         return self.samples_at_hits(normals, hits, fields, dtype, density)
@@ -187,7 +187,7 @@ class OnPatches:
         progress: bool,
         density: float,
     ) -> Iterator[Samples]:
-        """Yield at most `size` of the samples at normals at a time; see `samples_at`."""
+        """Yield the samples of `samples_at` in parts of at most `size` samples."""
         report = self.report(len(normals), density, None, {})
         parts = find_in_turn(self.spline, normals, self.threads, progress)
         for found in self.at_hits_in_turn(normals, parts, fields, dtype, size):
@@ -206,11 +206,11 @@ class OnPatches:
     def near_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits, including samples of the spline that could not be moved."""
+        """Return the samples at hits: points of the surface, or if there is none, of the spline."""
         return self.at_hits(normals, hits, fields, dtype)
 
     def share_at(self, normals: Array, hits: Hits) -> float:
-        """Return the share of hits that become samples, estimated from some of them."""
+        """Return an estimate of the share of hits that become samples."""
         return 1.0
 
     def at_hits(
@@ -231,7 +231,7 @@ class OnPatches:
         dtype: DTypeLike,
         size: int,
     ) -> Iterator[FieldsOfSamples]:
-        """Yield at most `size` samples at a time; the hits of the normals come in `parts`."""
+        """Yield the samples at the hits of all `parts`, at most `size` at a time."""
         for hits in grouped(parts, size):
             yield self.at_hits(normals, hits, fields, dtype)
 
@@ -251,7 +251,7 @@ class OnPatches:
         )
 
     def samples(self, fields: Fields, report: SamplingReport) -> Samples:
-        """Return samples of fields with their report."""
+        """Return the samples with the given fields and report."""
         return Samples(
             **fields, report=report, spline=self.spline, surface=self.surface, offset_of=None
         )
@@ -259,16 +259,17 @@ class OnPatches:
 
 @dataclass(frozen=True, eq=False)
 class OnSpline(OnPatches):
-    """A spline on a grid of cells, which is sampled; `OnSurface` samples its `surface` instead.
+    """A spline on a grid of cells that is sampled; `OnSurface` samples its `surface` instead.
 
-    With a `reach`, the trim excludes all points of the `whole` that are outside it.
+    With a `reach`, the trim of the spline excludes the points outside it, and `whole` is the same
+    geometry without the reach.
     """
 
     spline: Spline
     whole: OnSpline | None = None
 
     def within(self, reach: Reach | None) -> Self:
-        """Return the part in a reach; all of it for None."""
+        """Return the part of the geometry in a reach, or all of it for None."""
         if reach is None:
             return self
         spline = reached(self.spline, self.normals, self.jets, reach)
@@ -276,7 +277,7 @@ class OnSpline(OnPatches):
         return replace(self, spline=spline, surface=surface, reach=reach, whole=self)
 
     def normals(self, places: Array) -> Array:
-        """Return the unit normals (k, 3) at parameters (k, 2); 0 or NaN where there is none."""
+        """Return unit normals (k, 3) at parameters (k, 2); 0 or NaN at singular points."""
         places = places.copy()
         for axis, ends in enumerate(self.spline.boundary):
             low, high = self.spline.domain[axis]
@@ -287,7 +288,7 @@ class OnSpline(OnPatches):
 
     @cached_property
     def size(self) -> float:
-        """The root of the area inside the trim, in L; 0 if the area is rounding error."""
+        """The square root of the area inside the trim; 0 if the area is rounding error."""
         spline = self.spline
         extents = np.ptp(spline.coefficients[1:-1, 1:-1].reshape(-1, 3) * spline.scale, axis=0)
         diagonal, area = float(np.linalg.norm(extents)), float(spline.measure[0].sum())
@@ -301,7 +302,7 @@ class OnSpline(OnPatches):
         return True
 
     def jets(self, u: Array, v: Array) -> Array:
-        """Return the 2-jets (k, 6, 3) of the sampled surface or spline, see `Surface.jets`."""
+        """Return the 2-jets (k, 6, 3) of the sampled surface or spline; see `Surface.jets`."""
         return self.jets_of_spline(u, v)
 
     def jets_of_spline(self, u: Array, v: Array) -> Array:
@@ -313,7 +314,11 @@ class OnSpline(OnPatches):
     def at_parameters(
         self, uv: Array, normals: Array, K: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> Fields:
-        """Return fields of samples at parameters (k, 2), with unit normals and the signs of K."""
+        """Return fields of samples at parameters (k, 2).
+
+        At a singular point, where they do not follow from the parameters, the normal is the row of
+        `normals` (k, 3), and the sign of K is that of `K` (k,).
+        """
         count, spline = len(uv), self.spline
         patches, places = np.empty(count, dtype=np.int64), np.empty((count, 2))
         patches_at(*spline.cells, self._in_cells(*uv.T), patches, places)
@@ -341,7 +346,7 @@ class OnSpline(OnPatches):
 
     @property
     def _size(self) -> float:
-        """The factor from lengths to scaled lengths."""
+        """The factor by which lengths are multiplied in `forms` and solid angles."""
         return SCALE * self.spline.scale
 
     def _in_parts(self, work: Callable[[int, int], None], count: int) -> None:
@@ -349,20 +354,20 @@ class OnSpline(OnPatches):
             pass
 
     def _in_cells(self, u: Array, v: Array) -> Array:
-        """Return parameters in cells from the corner of the domain (k, 2)."""
+        """Return the positions (k, 2) of parameters, in cells from the corner of the domain."""
         frame = self.spline.frame
         return (np.stack([u, v], axis=1) - frame[:2]) / frame[2:]
 
 
 def on_grids(geometries: Sequence[OnPatches]) -> list[OnSpline]:
-    """Return the geometries, which must have grids of cells; InputError if one has nets."""
+    """Return the geometries, all with splines on grids; InputError if one has a spline of nets."""
     for geometry in geometries:
         on_grid(geometry.spline)
     return [x for x in geometries if isinstance(x, OnSpline)]
 
 
 def in_turn(found: Samples, size: int) -> Iterator[Samples]:
-    """Yield at most `size` of the samples at a time; the first part reports undecided normals."""
+    """Yield the samples in parts of at most `size`; only the first part reports undecided boxes."""
     yield found[:size]
     report = found.report
     proved, undecided = report.proved and 0, report.undecided and ()
@@ -375,7 +380,7 @@ def in_turn(found: Samples, size: int) -> Iterator[Samples]:
 
 
 def grouped(parts: Iterator[Hits], size: int) -> Iterator[Hits]:
-    """Yield consecutive hits in groups of `size`, and a last group with the remaining ones."""
+    """Yield the hits of all parts, in their order, in groups of `size`; the last may be smaller."""
     group: list[Hits] = []
     room = size
     for hits in parts:

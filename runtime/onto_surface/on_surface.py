@@ -1,4 +1,4 @@
-"""A surface as a geometry to sample: samples are moved to it from its spline."""
+"""Sampling of surfaces without a proof: points are searched on the spline, and moved from there."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ from .repeats import kept_once
 
 __all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
 
-# Samples that are yielded in parts are tested for repeats in groups of about this number.
+# In streams, samples are moved, and tested for repeats, in groups of about this number.
 TOGETHER = 1 << 17
-# About this many hits are moved to estimate the share of hits that can be moved.
+# The share of hits that become samples is estimated from about this number of hits.
 TRIED = 1 << 12
 
 
 def place_of_samples(surface: object, on: str | None) -> str:
-    """Return "surface" or "spline": where samples of a surface are to lie.
+    """Return "surface" or "spline": on which of both the samples of a surface lie.
 
     Raises UnknownNameError for another word, InputError if samples cannot lie on the surface.
     """
@@ -60,14 +60,14 @@ def place_of_samples(surface: object, on: str | None) -> str:
 
 
 def checked_place(on: str | None) -> str | None:
-    """Return "surface", "spline" or None; UnknownNameError otherwise."""
+    """Return `on` if it is "surface", "spline" or None; UnknownNameError otherwise."""
     return None if on is None else known_name(on, PLACES, "place of samples")
 
 
 def geometry_of(
     surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None
 ) -> OnPatches:
-    """Return the geometry of a surface: a spline, or the surface with its spline.
+    """Return the geometry that is sampled without a proof: a spline, or a surface with its spline.
 
     Raises what `place_of_samples` and `spline_of` raise.
     """
@@ -84,7 +84,7 @@ def geometry_of(
 
 @dataclass(frozen=True, eq=False)
 class OnSurface(OnSpline):
-    """A surface to sample, with the spline on which samples are searched."""
+    """A surface that is sampled without a proof, and the spline on which points are searched."""
 
     on: ClassVar[str] = "surface"
 
@@ -95,7 +95,7 @@ class OnSurface(OnSpline):
         return 0.0 if misfit is None else misfit.distance
 
     def normals(self, places: Array) -> Array:
-        """Return the unit normals (k, 3) at parameters (k, 2); 0 where there is none."""
+        """Return unit normals (k, 3) of the surface at parameters (k, 2); 0 at singular points."""
         assert self.surface is not None
         return evaluate_on_surface(self.surface, self.spline, places.copy(), threads=1)[1]
 
@@ -103,9 +103,10 @@ class OnSurface(OnSpline):
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`.
 
-        Each patch has an equal part of the solid angle of its cell, from K at the Gauss points. If
-        derivatives are differences of many evaluations, the solid angles are those of the spline.
-        Both arrays are kept with the spline, which belongs to one surface.
+        The solid angle of a cell is integrated by K of the surface at the Gauss points of the cell,
+        and a fourth of it is that of each patch. For surfaces whose derivatives are finite
+        differences, which take many evaluations, the solid angles are those of the spline. Both
+        arrays are cached with the spline.
         """
         return kept(self.spline, "measure of the surface", self._measured)
 
@@ -127,7 +128,10 @@ class OnSurface(OnSpline):
 
     @property
     def _at_gauss_points(self) -> Array:
-        """K times the area of a cell (4 cells,) at the Gauss points; 0 at singular points."""
+        """K times the area element of a cell at its four Gauss points, (4 · cells,).
+
+        It is 0 at singular points.
+        """
         found, columns = np.empty(self.spline.patches), self.spline.cells[1]
         ends = 0.5 + kernels.GAUSS * np.array([-0.5, 0.5])
         u0, v0, du, dv = self.spline.frame
@@ -150,7 +154,8 @@ class OnSurface(OnSpline):
     ) -> FieldsOfSamples:
         """Return the requested fields of the samples at hits.
 
-        Coincident samples become one sample. A hit that cannot be moved to the surface gives none.
+        Samples that coincide on the surface are one sample. A hit without a point of the surface
+        has no sample; its box is undecided.
         """
         arrays, left = self._found(normals, hits)
         return as_fields(arrays, fields, dtype)._replace(undecided=left)
@@ -158,11 +163,11 @@ class OnSurface(OnSpline):
     def near_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits, including samples of the spline that could not be moved."""
+        """Return the samples at hits: points of the surface, or if there is none, of the spline."""
         return as_fields(self._moved_once(normals, hits), fields, dtype)
 
     def share_at(self, normals: Array, hits: Hits) -> float:
-        """Return the share of hits that become samples, estimated from some of them."""
+        """Return the share of hits that become samples, estimated from about TRIED hits."""
         some = hits.normal_index % max(len(hits) // TRIED, 1) == 0
         moved = self._moved(normals, hits.rows(np.flatnonzero(some)))
         found = moved[FLAG_NAMES[0]] & self._kept_once(moved)
@@ -176,9 +181,9 @@ class OnSurface(OnSpline):
         dtype: DTypeLike,
         size: int,
     ) -> Iterator[FieldsOfSamples]:
-        """Yield at most `size` samples at a time; the hits of the normals come in `parts`.
+        """Yield the samples at the hits of all `parts`, at most `size` at a time.
 
-        Samples that coincide have the same normal, so that all hits of a normal are moved together.
+        All hits of a normal are moved together, since only samples of one normal can coincide.
         """
         came, rest, left = False, list[Fields](), tuple[UndecidedNormal, ...]()
         for hits in (x for part in parts for x in part.whole_normals(TOGETHER)):
@@ -199,14 +204,14 @@ class OnSurface(OnSpline):
             yield as_fields(arrays, fields, dtype)._replace(undecided=left)
 
     def _found(self, normals: Array, hits: Hits) -> tuple[Fields, tuple[UndecidedNormal, ...]]:
-        """Return the samples on the surface, and boxes for the normals of the others."""
+        """Return the samples on the surface, and an undecided box for each hit without a sample."""
         arrays = self._moved_once(normals, hits)
         left = np.flatnonzero(~arrays[FLAG_NAMES[0]])
         numbers, uv = arrays["normal_index"][left], arrays["uv"][left]
         return part_of(arrays, arrays[FLAG_NAMES[0]]), unmoved(self.spline, numbers, uv)
 
     def _moved_once(self, normals: Array, hits: Hits) -> Fields:
-        """Return the samples at hits without repeats, with all fields but the support."""
+        """Return the samples of `_moved`, of those that coincide only one."""
         arrays = self._moved(normals, hits)
         return part_of(arrays, self._kept_once(arrays))
 
@@ -217,12 +222,12 @@ class OnSurface(OnSpline):
         return samples_inside(self.spline.trim, arrays, tuple(arrays))
 
     def _at_poles(self, arrays: Fields) -> NDArray[np.bool_]:
-        """Return which samples are next to a pole."""
+        """Return a mask of the samples that are next to a pole."""
         at_poles = [chart.near(arrays["uv"]) for chart in self._charts]
         return np.logical_or.reduce([np.zeros(len(arrays["uv"]), dtype=bool), *at_poles])
 
     def _kept_once(self, arrays: Fields) -> NDArray[np.bool_]:
-        """Return which samples do not repeat another one."""
+        """Return a mask that is True for one of the samples that coincide; see `kept_once`."""
         return kept_once(self.spline, arrays, self._at_poles(arrays))
 
     @property
@@ -234,7 +239,7 @@ class OnSurface(OnSpline):
 
     @property
     def knows_jets(self) -> bool:
-        """Whether derivatives are exact: they are not for a function of a user."""
+        """Whether derivatives are exact, not finite differences of a user's function."""
         function = None if self.surface is None else self.surface.function
         return isinstance(function, Differentiable) and function.differentiable
 
@@ -248,7 +253,8 @@ class OnSurface(OnSpline):
     ) -> Fields:
         """Return fields of samples on the surface at parameters (k, 2).
 
-        At singular points, they are those of the spline, with the given normals and signs of K.
+        At singular points of the surface, the fields are those of the spline; `normals` and the
+        signs of `K` are for these.
         """
         assert self.surface is not None
         points, directions, gaussian, mean = evaluate_on_surface(
@@ -270,7 +276,7 @@ class OnSurface(OnSpline):
 
 
 def _joined(parts: Sequence[Fields]) -> Fields:
-    """Return the fields of consecutive samples."""
+    """Return the fields of the samples of all parts, one after the other."""
     if len(parts) == 1:
         return parts[0]
     return {name: np.concatenate([x[name] for x in parts]) for name in parts[0]}

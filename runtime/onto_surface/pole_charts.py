@@ -20,12 +20,12 @@ from .kernels.refine import chart_jets, jet_of_pole
 __all__ = ["PoleChart", "pole_charts"]
 
 
-# Within four cells of a pole the spline is inaccurate and may have folds; its samples are up to a
-# cell away from those of the surface. If this number is 1, samples are lost; above 3 it only
-# changes rounding errors.
+# Samples of the spline are moved in the chart if they are within this number of cells of the pole.
+# Within four cells the spline is inaccurate and may have folds; its samples are up to a cell away
+# from those of the surface. For 1 cell, samples are lost; above 3, only rounding errors change.
 POLE_CELLS = 6
-# Closer to a pole than this part r of the domain, the 2-jet of the pole is used. Its error is of
-# order r; derivatives by the angle have errors of up to ε/r² by cancellation.
+# Closer to a pole than this share r of the domain, the 2-jet at the pole is used, with an error of
+# order r. Derivatives by the angle would have cancellation errors of up to ε/r².
 NEAR = 2.0**-20
 
 
@@ -33,8 +33,8 @@ NEAR = 2.0**-20
 class PoleChart:
     """The chart at one pole.
 
-    Parameter `angle` (0 or 1) runs around the pole; the other one is `end` there and `other` at the
-    opposite side of the domain.
+    `angle` is the index of the parameter (0 for u, 1 for v) that runs around the pole. The other
+    parameter has the value `end` at the pole, and `other` at the opposite side of the domain.
     """
 
     surface: Surface
@@ -45,7 +45,7 @@ class PoleChart:
 
     @property
     def inward(self) -> float:
-        """1 or −1: whether the other parameter increases or decreases away from the pole."""
+        """1 if the parameter towards the pole increases away from it, −1 if it decreases."""
         return math.copysign(1.0, self.other - self.end)
 
     @property
@@ -55,37 +55,38 @@ class PoleChart:
 
     @property
     def cell(self) -> float:
-        """The size of a cell towards the pole."""
+        """The length of a cell in the parameter towards the pole."""
         return abs(self.other - self.end) / self.cells
 
     @property
     def turn(self) -> float:
-        """The derivative of φ by the parameter that runs around the pole."""
+        """The derivative of the angle φ by the parameter that runs around the pole."""
         low, high = self.surface.domain[self.angle]
         return 2.0 * math.pi / (high - low)
 
     def near(self, uv: Array) -> Flags:
-        """Return which parameters (k, 2) lie in the cells around the pole."""
+        """Return a mask (k,) of the parameters (k, 2) within POLE_CELLS cells of the pole."""
         cells = min(POLE_CELLS, self.cells // 2)
         return self._distances(uv) < cells * self.cell
 
     def next_to(self, uv: Array) -> Flags:
-        """Return which parameters (k, 2) are so close to the pole that they need the chart.
+        """Return a mask (k,) of the parameters (k, 2) at which fields are evaluated by the chart.
 
-        Differences have large relative errors on small circles around a pole.
+        They are those of `near` if derivatives are finite differences, which have large relative
+        errors on small circles around the pole, and else those closer than NEAR.
         """
         if self.surface.differences is not None:
             return self.near(uv)
         return self._distances(uv) <= NEAR * abs(self.other - self.end)
 
     def places(self, uv: Array) -> Array:
-        """Return s and t (k, 2)."""
+        """Return the coordinates s and t (k, 2) of parameters (k, 2)."""
         phi = (uv[:, self.angle] - self.surface.domain[self.angle][0]) * self.turn
         r = self._distances(uv)
         return np.stack([r * np.cos(phi), r * np.sin(phi)], axis=1)
 
     def parameters(self, places: Array) -> Array:
-        """Return the parameters (k, 2) of s and t, clipped to the domain."""
+        """Return the parameters (k, 2) of coordinates s and t (k, 2), clipped to the domain."""
         low, high = self.surface.domain[self.angle]
         phi = np.arctan2(places[:, 1], places[:, 0])
         phi[phi < 0.0] += 2.0 * math.pi
@@ -96,7 +97,7 @@ class PoleChart:
         return uv
 
     def jets(self, s: Array, t: Array) -> Array:
-        """Return 2-jets (k, 6, 3) by s and t."""
+        """Return the 2-jets (k, 6, 3) with respect to s and t."""
         if self.surface.differences is not None:
             step = power_of_two(self.surface.differences.step * abs(self.other - self.end))
             return differences(self._evaluate, s, t, (step, step))[0]
@@ -118,7 +119,7 @@ class PoleChart:
 
     @cached_property
     def _at_pole(self) -> Array:
-        """The 2-jet (1, 6, 3) of the pole."""
+        """The 2-jet (1, 6, 3) at the pole, with respect to s and t."""
         low, high = self.surface.domain[self.angle]
         uv = np.full((2, 3), self.end)
         uv[self.angle] = low + (high - low) * np.array([0.0, 0.125, 0.25])
@@ -131,7 +132,7 @@ class PoleChart:
 
 
 def pole_charts(surface: Surface, cells: tuple[int, int]) -> list[PoleChart]:
-    """Return the charts at the poles of a surface, whose spline has m × n cells."""
+    """Return a chart for each pole of a surface; `cells` are those of its spline."""
     charts = []
     for axis in (0, 1):
         ends = surface.domain[axis]

@@ -1,4 +1,4 @@
-"""Points of a surface at given normals, all of them, with a proof."""
+"""Sampling of surfaces with a proof: all points at given normals, without a spline."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ from .reach import with_conditions
 __all__ = ["CODE", "Proof", "ProvedSurface", "index_of", "proof_of", "with_components"]
 
 PLACES_AT_A_TIME = 1 << 14
-# Curvatures at a side that is one point are taken at this distance from it, relative to the domain.
+# Curvatures at a collapsed side are evaluated at this distance from it, relative to the domain.
 BESIDE = 1e-5
-# The column of solutions that holds the code of the component, if not all are regular points.
+# The column of solutions that has the code of their component, if not all are regular points.
 CODE = 6
 CURVE = KINDS.index("curve")
 
 
 class Proof(NamedTuple):
-    """The number of normals whose points are all known, and boxes where others may have more."""
+    """The number of normals with a proof that all points are known, and the undecided boxes."""
 
     proved: int
     undecided: tuple[UndecidedNormal, ...]
@@ -58,7 +58,7 @@ class Proof(NamedTuple):
 def index_of(
     surface: Surface, threads: int | None = None, cells: tuple[int, int] = CELLS
 ) -> ProvedIndex | None:
-    """Return the index of a surface; None unless derivatives have bounds, also next to poles."""
+    """Return the index of a surface, or None if its derivatives have no bounds somewhere."""
     if surface.tape is None:
         return None
     index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, cells, threads)
@@ -69,9 +69,10 @@ def index_of(
 class ProvedSurface:
     """A surface that gives all points with given normals, with a proof and without a spline.
 
-    The `surface` has the poles that were found at its sides. On the surface times `scale`,
-    neighbouring points of a grid are about 1 apart; `largest` is the largest of their coordinates.
-    The spline, which densities need, is fitted with `cells` at first access.
+    The boundary conditions of `surface` include the poles that were found at collapsed sides of its
+    domain. `scale` is a power of two by which neighbouring points of a grid are about 1 apart,
+    `largest` the largest coordinate of these points. Densities need a spline; it is fitted with
+    `cells` cells at first access.
     """
 
     on: ClassVar[str] = "surface"
@@ -126,7 +127,7 @@ class ProvedSurface:
         return self if threads == self.threads else replace(self, threads=threads)
 
     def within(self, reach: Reach | None) -> ProvedSurface:
-        """Return the part whose normals are in a reach; all of it for None."""
+        """Return the part of the surface in a reach, or all of it for None."""
         return self if reach is None else replace(self, reach=reach)
 
     def samples_at(
@@ -137,9 +138,9 @@ class ProvedSurface:
         progress: bool = False,
         density: float | None = None,
     ) -> Samples:
-        """Return all points that have unit normals (S, 3), and the proof.
+        """Return all points that have one of the unit normals (S, 3), with the proof in the report.
 
-        The points are in the order of normals, then of u and v. Each component has one sample.
+        Each component has one sample. Samples are sorted by normal, then by u and v.
         """
         del progress, density  # searches take little time; the report has no entries on a fit
         surface, found = self.surface, self.index.query(normals, self.threads)
@@ -172,14 +173,14 @@ class ProvedSurface:
         progress: bool,
         density: float,
     ) -> Iterator[Samples]:
-        """Yield at most `size` of the samples at a time; the proof is with the first ones."""
+        """Yield the samples in parts of at most `size`; the report of the first has the proof."""
         found = self.with_fit(self.samples_at(normals, fields, dtype, progress), density)
         return in_turn(found, size)
 
     def with_fit(self, samples: Samples, density: float | None = None) -> Samples:
-        """Return samples with the spline, and with the entries on it in their report.
+        """Return samples with the spline of the surface, and with a report that describes its fit.
 
-        The report takes `density` for the normals per steradian, by default S / 4π.
+        `density` is the number of normals per steradian in the report, by default S / 4π.
         """
         geometry, known, arrays = self.fitted, samples.report, samples.arrays()
         report = geometry.report(
@@ -191,7 +192,7 @@ class ProvedSurface:
     def _arrays(
         self, normals: NDArray[np.float64], found: ProvedPlaces, fields: Sequence[str]
     ) -> Fields:
-        """Return the requested fields of the samples at the places that were found."""
+        """Return the requested fields of the samples at the solutions that were found."""
         numbers, places = found.numbers, found.places
         count = len(numbers)
         rooms = SampleFields(
@@ -236,9 +237,10 @@ class ProvedSurface:
         self, places: NDArray[np.float64], scales: NDArray[np.float64], K: NDArray[np.float64],
         H: NDArray[np.float64],
     ) -> None:  # fmt: skip
-        """Write curvatures beside sides that are one point, for which error bounds are that wide.
+        """Replace curvatures at collapsed sides, which are 0, by those at nearby points.
 
-        There x_u × x_v is 0, and so is what was written.
+        x_u × x_v is 0 on a collapsed side. Its points are recognized by error bounds of u and v
+        that are as large as half the domain.
         """
         known = K if len(K) > 0 else H
         wide = places[: len(known), 2:4] >= 0.5 * np.ptp(self.surface.domain, axis=1)
@@ -256,7 +258,10 @@ class ProvedSurface:
         return jets_of(self.index.tape, u, v)
 
     def component_degrees(self, normals: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Return the sums of the degrees of components with a sample, except regular points."""
+        """Return, for each normal, the sum of the degrees of its curves and isolated points.
+
+        These are all components with a known kind but regular points; undecided boxes do not count.
+        """
         found = self.index.query(normals, self.threads)
         trim = self.surface.trim
         components, _ = components_in(trim, found.undecided, normals, self._jets)
@@ -267,9 +272,9 @@ class ProvedSurface:
 def with_components(
     numbers: NDArray[np.int64], places: NDArray[np.float64], components: Undecided
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return solutions and the points of components, with a column of component codes.
+    """Return solutions and points of components together, sorted, with a column of component codes.
 
-    `places` (k, 6) are as in `ProvedPlaces`, for normals with the indices `numbers` (k,).
+    `places` (k, 6) are solutions as in `ProvedPlaces`, `numbers` (k,) the indices of their normals.
     """
     sides, uv = components.boxes.reshape(-1, 2, 2), components.uv
     rows = np.zeros((len(uv), CODE + 1))
@@ -287,7 +292,7 @@ def with_components(
 
 
 def proof_of(normals: NDArray[np.float64], open_: Undecided, face: int | None = None) -> Proof:
-    """Return the proof for unit normals (S, 3) and their undecided boxes, on a face of a part."""
+    """Return the proof for unit normals (S, 3) and undecided boxes; `face` is that of a part."""
     if len(open_.numbers) == 0:
         return Proof(len(normals), ())
     undecided = tuple(

@@ -1,4 +1,4 @@
-"""The reach, a part of a surface that is given by its normals and points, as a trim."""
+"""A reach as a trim: the part of a surface whose normals and points satisfy given conditions."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ __all__ = ["in_reach", "reached", "with_conditions"]
 Whole = TypeVar("Whole", Spline, Surface)
 Evaluated = Callable[[Array, Array], Array]
 
-# The boundary of a condition may pass a cell if it may be this many times as far from its centre as
-# the corners are.
+# The boundary of a condition is searched in a cell if it may come closer to the centre of the cell
+# than AROUND times the distance of the farthest corner.
 AROUND = 1.25
 
 
@@ -32,7 +32,7 @@ AROUND = 1.25
 class InReach:
     """The condition that the normal is in a cap.
 
-    `normals` returns unit normals (k, 3) at parameters (k, 2), 0 or NaN at singular points.
+    `normals` returns the unit normals (k, 3) at parameters (k, 2), and 0 or NaN at singular points.
     """
 
     normals: Callable[[Array], Array]
@@ -45,8 +45,9 @@ class InReach:
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
         """Return the cells (m, n) whose normals may enter the cap, or leave it.
 
-        The cosine of the angle is evaluated at the corners and the centre of each cell. Its range
-        in the cell is assumed to exceed that of these values by at most their spread on each side.
+        The cosine of the angle between normal and axis is evaluated at the corners and the centre
+        of each cell. Its range in the cell is assumed to be that of these values, extended on both
+        sides by the length of this range.
         """
         nodes, middles = (self._cosines(_places(domain, cells, shift)) for shift in (0.0, 0.5))
         nodes = [nodes[i : i + cells[0], j : j + cells[1]] for i in (0, 1) for j in (0, 1)]
@@ -61,7 +62,10 @@ class InReach:
         return np.where(self.cap.contains(normals), 1, -1).astype(np.int8)
 
     def _cosines(self, places: Array) -> Array:
-        """Return cosines (…) at parameters (…, 2); NaN at points without a normal."""
+        """Return the cosines (…) of the angles to the axis at parameters (…, 2).
+
+        They are NaN at singular points.
+        """
         normals = self.normals(places.reshape(-1, 2))
         normals[~normals.any(axis=1)] = np.nan
         return (normals @ self.cap.axis).reshape(places.shape[:-1])
@@ -69,7 +73,10 @@ class InReach:
 
 @dataclass(frozen=True, eq=False)
 class OnPoints:
-    """A condition on points as one of a trim; `jets` returns 2-jets (k, 6, 3) at parameters."""
+    """A condition on points of a surface, as a condition on parameters.
+
+    `jets` returns the 2-jets (k, 6, 3) of the surface at u and v (k,).
+    """
 
     jets: Evaluated
     condition: Condition
@@ -96,7 +103,10 @@ class OnPoints:
 
 
 def _places(domain: Domain, cells: tuple[int, int], shift: float) -> Array:
-    """Return the corners (m + 1, n + 1, 2) of cells, or points (m, n, 2) with a shift in them."""
+    """Return a grid of parameters: the corners (m + 1, n + 1, 2) of m × n cells if `shift` is 0.
+
+    Else it is the points (m, n, 2) with this shift from the first corners, in cells.
+    """
     u, v = (
         low + (high - low) * ((np.arange(count + (shift == 0.0)) + shift) / count)
         for (low, high), count in zip(domain, cells, strict=True)
@@ -114,7 +124,10 @@ def reached(
 
 
 def with_conditions(whole: Whole, jets: Evaluated, reach: Reach) -> Whole:
-    """Return the part of a spline or a surface whose points are in a reach, with any normals."""
+    """Return the part of a spline or a surface that satisfies the conditions of a reach on points.
+
+    Its condition on normals is ignored.
+    """
     conditions = [OnPoints(jets, x) for x in reach._conditions]
     if not conditions:
         return whole
@@ -122,7 +135,7 @@ def with_conditions(whole: Whole, jets: Evaluated, reach: Reach) -> Whole:
 
 
 def in_reach(surface: Surface | None, reach: Reach | None) -> Surface | None:
-    """Return a surface of several pieces, trimmed to the points in a reach."""
+    """Return a surface of several pieces, trimmed to the part in a reach."""
     if surface is None or reach is None:
         return surface
 

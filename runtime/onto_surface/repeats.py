@@ -1,9 +1,11 @@
-"""Repeated samples: samples on a fold of the spline that coincide on the surface without a fold.
+"""Repeated samples: samples at a fold of the spline that become the same point of the surface.
 
-Of the preimages of a normal on a fold, all but one cancel in the sum of the signs of K.
+A fold of the Gaussian image of the spline has several points with one normal where the surface may
+have one. Their signs of K cancel but for one.
 
-A patch has at most one point with a normal. So of two coincident samples of one normal at least one
-has left its patch, and only normals of such samples are examined.
+A patch has at most one point with a given normal. So if two samples of one normal coincide after
+they were moved, at least one of them has left its patch. Only normals with such samples are
+examined.
 """
 
 from __future__ import annotations
@@ -21,13 +23,13 @@ __all__ = ["kept_once", "left_patch"]
 
 
 def kept_once(spline: Spline, arrays: Fields, at_pole: Flags) -> Flags:
-    """Return which samples (k,) to keep, so that none on the surface is repeated.
+    """Return a mask (k,) of the samples to keep, so that none on the surface is repeated.
 
     Samples are repeated if they have the same normal, sign of K and point, and the same parameters
-    modulo periods; next to a pole, parameters are ignored. All but one are removed, those outside
-    their patch first. Away from poles, each of them is removed together with a sample of the same
-    normal and the other sign of K that is not on the surface: the other side of a fold that the
-    surface does not have. So the sum of the signs does not change.
+    modulo periods; next to a pole, parameters are ignored. Of repeated samples one is kept, if
+    possible one that is in its patch. With each sample that is removed away from poles, a sample
+    that was not moved is removed, too, with the same normal and the other sign of K: it is on the
+    other side of a fold that the surface does not have. So the sum of the signs does not change.
     """
     kept, found, normal_index = np.ones_like(at_pole), arrays[FLAG_NAMES[0]], arrays["normal_index"]
     left = left_patch(spline, arrays)
@@ -47,12 +49,12 @@ def kept_once(spline: Spline, arrays: Fields, at_pole: Flags) -> Flags:
 
 
 def _keys(arrays: Fields, rows: Indices) -> Indices:
-    """Return keys that are equal for rows with the same normal and the same sign of K."""
+    """Return a key for each row: equal if and only if normal and sign of K are the same."""
     return 2 * arrays["normal_index"][rows] + np.signbit(arrays["gaussian_curvature"][rows])
 
 
 def left_patch(spline: Spline, arrays: Fields) -> Flags:
-    """Return which samples are outside their patches, or close enough to a side to coincide."""
+    """Return a mask of the samples outside their patch, or within MEETING of one of its sides."""
     left = np.empty(len(arrays["uv"]), dtype=np.bool_)
     mark_left(arrays["uv"], arrays["patch_index"], spline.frame, spline.cells[1], MEETING, left)
     return left
@@ -61,10 +63,10 @@ def left_patch(spline: Spline, arrays: Fields) -> Flags:
 def _repeats(
     spline: Spline, arrays: Fields, at_pole: Flags, rows: Indices
 ) -> tuple[Indices, Indices]:
-    """Return which of the rows, sorted by normal, repeat another row, and that other row.
+    """Return the rows that repeat an earlier row with the same normal, and these earlier rows.
 
-    Rows are repeated if points, parameters (in cells) and the sign of K agree; at poles, parameters
-    are ignored.
+    The rows are sorted by normal. A row is repeated if its point, its parameters (in cells) and its
+    sign of K agree with those of the other row; next to poles, parameters are ignored.
     """
     points, uv = arrays["points"][rows] * spline.scale, arrays["uv"][rows] / spline.frame[2:]
     places, normals = np.hstack([points, uv]), arrays["normal_index"][rows]
@@ -85,13 +87,16 @@ def _repeats(
 
 
 def _starts(values: Indices) -> Indices:
-    """Return for each of the sorted values the index of the first equal one."""
+    """Return, for each of the sorted values, the index of the first value equal to it."""
     new = np.r_[True, values[1:] != values[:-1]]
     return np.maximum.accumulate(np.where(new, np.arange(len(values)), 0))
 
 
 def _paired(rows: Indices, keys: Indices, others: Indices) -> Indices:
-    """Return as many rows with each key as `others` has, or all such rows if fewer."""
+    """Return, for each key, as many of the rows with this key as `others` contains it.
+
+    If there are fewer such rows, all are returned.
+    """
     if len(rows) == 0 or len(others) == 0:
         return rows[:0]
     order = np.argsort(keys, kind="stable")

@@ -39,7 +39,7 @@ __all__ = [
 # The largest number of pieces: each takes 20 ms to be fitted and searched.
 MOST_PIECES = 2000
 FEWEST_CELLS = 4
-# A piece smaller than this part of the largest is degenerate, and gets no samples.
+# A piece is degenerate, and gets no samples, if its size is less than this times the largest size.
 NO_SIZE = 1e-6
 # Pieces whose Gaussian images have less than this solid angle have no samples at prescribed
 # normals.
@@ -49,9 +49,9 @@ LARGEST = ("fit_distance", "fit_angle")
 
 
 def pieces_to_sample(surface: object) -> tuple[Surface, ...]:
-    """Return the pieces of a surface that has more than one, and () for any other.
+    """Return the smooth pieces of a surface; () if it has only one.
 
-    Raises InputError if there are too many.
+    Raises InputError for more than MOST_PIECES pieces.
     """
     pieces = surface.pieces() if isinstance(surface, Surface) else ()
     if len(pieces) > MOST_PIECES and isinstance(surface, Surface):
@@ -74,7 +74,7 @@ def geometries_of(
 def proved_or_fitted(
     surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None
 ) -> tuple[OnPatches | ProvedSurface, ...]:
-    """Return a geometry for each piece: its index if it can be proved, else as `geometries_of`."""
+    """Return a geometry for each piece: a `ProvedSurface` if possible, else that of its spline."""
     if place_of_samples(surface, on) == "spline":
         return geometries_of(surface, cells, on)
     return tuple(
@@ -86,7 +86,7 @@ def proved_or_fitted(
 def _with_cells(
     surface: Surface | AnySpline, cells: Sequence[int] | None
 ) -> list[tuple[Surface | AnySpline, tuple[int, int] | None]]:
-    """Return the pieces of a surface with their cells."""
+    """Return each piece of a surface with the numbers of cells of its spline, or None."""
     if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
         return [(x, cells_of_piece(surface, x, cells)) for x in pieces]
     return [(surface, None if cells is None else pair_of_cells(cells))]
@@ -95,7 +95,10 @@ def _with_cells(
 def cells_of_piece(
     surface: Surface, piece: Surface, cells: Sequence[int] | None
 ) -> tuple[int, int] | None:
-    """Return the cells of a piece, in proportion to its part of the domain of the whole surface."""
+    """Return the numbers of cells (m, n) of a piece: the share of those of the whole surface.
+
+    The share along u, or v, is that of the piece in the domain of the whole surface.
+    """
     if cells is None:
         return None
     m, n = (

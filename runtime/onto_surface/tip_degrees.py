@@ -1,12 +1,12 @@
-"""How often the normals at a tip cover a direction: the degree of a tip.
+"""The degree of a tip at a normal: the signed number of times that normals at the tip cover it.
 
-Near a tip the surface is a cone over a closed curve of rays. The index of the function n·x on a
-small ring around the tip is 1 − changes/2 (Banchoff), where changes is the number of changes of
-sign of n·ray. The index is the sum of the degrees at n and at −n. Their difference is the winding
-number of the normals of the cone around n.
+Near a tip the surface is approximately a cone of rays. The index of the height n·x at the tip is
+1 − changes/2 (Banchoff), where changes is the number of sign changes of n·ray around the tip. This
+index is the sum of the degrees at n and at −n; their difference is the winding number of the
+normals of the cone around n.
 
-A cone through finitely many rays has wrong signs for normals that nearly touch the surface between
-two of them: n·ray has an extreme value near 0 there. The ray next to it is moved to it.
+The cone is represented by finitely many rays. If n·ray has an extreme value near 0 between two of
+them, sign changes may be missed; therefore the nearest ray is moved to the extreme value.
 """
 
 from __future__ import annotations
@@ -31,25 +31,25 @@ __all__ = ["Pinch", "Tip", "Tipped", "tip_degrees", "tips_on"]
 
 Jets = Callable[[Array, Array], Array]
 
-# The least number of rays of a tip of a surface.
+# A tip of a surface is represented by at least this number of rays.
 RAYS = 1 << 11
-# An extreme value is searched by cutting an interval into PARTS, TIMES times: the last intervals
-# are 5e-8 rad long, and the error of the value is of the order of the square of that.
+# To find an extreme value, an interval is cut into PARTS parts, TIMES times. The last parts have a
+# length of 5e-8 rad, and the error of the value is of the order of its square.
 PARTS, TIMES = 32, 4
 PRODUCTS_AT_A_TIME = 1 << 20
 ROUNDING = 1e-9
-# The number of points of a side that are compared.
+# A side is collapsed if this number of its points coincide.
 ALONG = 65
-# A tip is inside of a trim if the line at this distance from it is, relative to the domain.
+# A tip is inside a trim if the parameter line at this distance from it is, relative to the domain.
 BESIDE = 1e-6
 
 
 class Tip(NamedTuple):
-    """A tip of a surface: its point (3,), one of its parameter pairs (2,), and its rays (k, 3).
+    """A tip of a surface: its position, one of its parameter pairs, and its rays (k, 3).
 
-    The rays are anticlockwise around it; `bends` (k,) are the sizes of their second differences,
-    and `ray_at` returns rays at fractional indices (m,). The degree is `outside` at all normals n
-    with n·axis < cosine.
+    The rays are in anticlockwise order. `bends` (k,) are the lengths of their second differences;
+    `ray_at` returns the rays at fractional indices (m,). All normals n with n·axis < cosine have
+    the degree `outside`.
     """
 
     point: Array
@@ -62,7 +62,7 @@ class Tip(NamedTuple):
     outside: int
 
     def degrees(self, normals: Array) -> NDArray[np.int64]:
-        """Return the degrees (S,) at unit normals (S, 3)."""
+        """Return the degree of the tip at each of the unit normals (S, 3)."""
         found = np.full(len(normals), self.outside, np.int64)
         near = np.flatnonzero(normals @ self.axis >= self.cosine)
         size = max(PRODUCTS_AT_A_TIME // len(self.rays), 1)
@@ -78,8 +78,8 @@ class Tip(NamedTuple):
         return found
 
     def _degrees(self, rays: Array, heights: Array, normals: Array) -> NDArray[np.int64]:
-        """Return the degrees of a cone at normals (S, 3), from the heights (k, S) of its rays."""
-        # All normals that have the whole cone below them have the same degree.
+        """Return the degree of a cone of rays at normals (S, 3); heights (k, S) are n·ray."""
+        # All normals for which the whole cone is below the tangent plane have the same degree.
         is_below, found = (heights < 0.0).all(axis=0), np.empty(len(normals), np.int64)
         found[~is_below] = _degrees(rays, normals[~is_below])
         if is_below.any():
@@ -88,9 +88,9 @@ class Tip(NamedTuple):
         return found
 
     def _with_extremes(self, normal: Array, heights: Array) -> Array:
-        """Return the rays; rays next to an extreme value of n·ray that may be 0 are moved to it.
+        """Return the rays, after moving some to extreme values of n·ray that are nearly 0.
 
-        The heights (k,) are n·ray.
+        The heights (k,) are n·ray; a ray is moved if it is the one next to the extreme value.
         """
         rays, signs = self.rays.copy(), np.sign(heights)
         before, here, after = (signs * np.roll(heights, x) for x in (1, 0, -1))
@@ -107,10 +107,11 @@ class Tip(NamedTuple):
 
 
 class Pinch(NamedTuple):
-    """A line inside of the domain that is one point: a tip `above` it and one `below`.
+    """A parameter line inside the domain that is collapsed to a point: two tips that are joined.
 
-    Near the line the surface is one annulus, and not two disks: its Euler characteristic is 0, and
-    not 2. So the degree is the sum of those of both tips, less 1.
+    One tip is `above` the line in its parameter, one `below`. The surface near the line is an
+    annulus, not two disks, and its Euler characteristic is 0 instead of 2. Therefore the degree is
+    the sum of the degrees of both tips minus 1.
     """
 
     above: Tip
@@ -118,7 +119,7 @@ class Pinch(NamedTuple):
 
     @property
     def point(self) -> Array:
-        """The point (3,)."""
+        """The position (3,) of the point."""
         return self.above.point
 
     @property
@@ -127,12 +128,12 @@ class Pinch(NamedTuple):
         return self.above.uv
 
     def degrees(self, normals: Array) -> NDArray[np.int64]:
-        """Return the degrees (S,) at unit normals (S, 3)."""
+        """Return the degree of the point at each of the unit normals (S, 3)."""
         return self.above.degrees(normals) + self.below.degrees(normals) - 1
 
 
 def tip_degrees(geometry: OnPatches | ProvedSurface, normals: Array) -> NDArray[np.int64]:
-    """Return the sums (S,) of the degrees of all tips of a surface at unit normals (S, 3)."""
+    """Return, for each of the unit normals (S, 3), the sum of the degrees of all tips there."""
     found = np.zeros(len(normals), np.int64)
     for tip in tips_on(geometry):
         found += tip.degrees(normals)
@@ -140,7 +141,7 @@ def tip_degrees(geometry: OnPatches | ProvedSurface, normals: Array) -> NDArray[
 
 
 def tips_on(geometry: OnPatches | ProvedSurface) -> list[Tip | Pinch]:
-    """Return the tips with a degree, which are kept with the spline or the index."""
+    """Return the tips of a geometry; they are cached with its spline or index."""
     if isinstance(geometry, ProvedSurface):
         surface, index = geometry.surface, geometry.index
         lines = [(x.axis, x.end) for x in index.apexes if x.inside]
@@ -161,7 +162,11 @@ def tips_on(geometry: OnPatches | ProvedSurface) -> list[Tip | Pinch]:
 
 
 class Tipped(NamedTuple):
-    """A surface that may have tips: its 2-jets, domain and trim, and the numbers of rays."""
+    """A surface that may have tips: its 2-jets, domain and trim.
+
+    `parts` are the numbers of rays of a tip at a line v = const, along which u varies, and of a tip
+    at a line u = const.
+    """
 
     jets: Jets
     domain: Domain
@@ -170,7 +175,7 @@ class Tipped(NamedTuple):
     parts: tuple[int, int] = (RAYS, RAYS)
 
     def sides(self) -> list[tuple[int, int]]:
-        """Return the axis and the end, 0 or 1, of each open side that is a single point."""
+        """Return the open sides that are collapsed: the axis (0 for u) and the end, 0 or 1."""
         points, steps = list[Array](), np.linspace(0.0, 1.0, ALONG)
         for axis, end in np.ndindex(2, 2):
             low, high = self.domain[1 - axis]
@@ -186,7 +191,7 @@ class Tipped(NamedTuple):
     def tips(
         self, sides: Sequence[tuple[int, int]], lines: Sequence[tuple[int, float]] = ()
     ) -> list[Tip | Pinch]:
-        """Return the tips at sides of the domain, and at lines inside, where u or v is a number."""
+        """Return the tips at collapsed sides (axis, end) and at collapsed lines (axis, value)."""
         found: list[Tip | Pinch | None] = [
             self._tip(axis, self.domain[axis][end], end) for axis, end in sides
         ]
@@ -196,16 +201,16 @@ class Tipped(NamedTuple):
         return [x for x in found if x is not None]
 
     def _tip(self, axis: int, place: float, end: int) -> Tip | None:
-        """Return the tip at a line, if there are rays all around it.
+        """Return the tip at the line where a parameter is `place`; None without rays all around it.
 
-        The surface is above the line if `end` is 0, and below if it is 1.
+        On the surface this parameter is larger than `place` if `end` is 0, and smaller if it is 1.
         """
         if self.boundary[1 - axis][0] != "periodic":
             return None
         parts, (low, high), way = self.parts[1 - axis], self.domain[1 - axis], (1.0, -1.0)[end]
 
         def uv_at(numbers: Array, away: float = 0.0) -> Array:
-            """Return parameters at fractional indices of rays, all anticlockwise or all clockwise.
+            """Return the parameters at which rays with fractional indices leave the line.
 
             Their distance from the line is `away`, relative to the domain.
             """
@@ -231,8 +236,7 @@ class Tipped(NamedTuple):
         if not np.abs(rays @ mean[0]).max() > ROUNDING:
             return None  # a smooth pole, whose opposite meridians have other parameters
         cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
-        # A cap smaller than a half-sphere contains all normals at the tip, and the arcs between
-        # them.
+        # Only a cap smaller than a half-sphere contains the arcs between the normals in it, too.
         cosine = cosine if cosine > 0.0 else -math.inf
         outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
         uv = uv_at(np.zeros(1) if axis == end else np.full(1, parts - 1.0))
@@ -241,13 +245,13 @@ class Tipped(NamedTuple):
 
 
 def _unit(vectors: Array) -> Array:
-    """Return vectors (k, 3) with length 1, or 0."""
+    """Return vectors (k, 3) divided by their lengths; zero vectors stay 0."""
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
 
 
 def _degrees(rays: Array, normals: Array) -> NDArray[np.int64]:
-    """Return the degrees (S,) of a cone at unit normals (S, 3)."""
+    """Return the degree of a cone of rays (k, 3) at each of the unit normals (S, 3)."""
     positive = rays @ normals.T >= 0.0
     changes = (positive != np.roll(positive, 1, axis=0)).sum(axis=0)
     of_cone = np.cross(rays, np.roll(rays, -1, axis=0))
