@@ -1,8 +1,9 @@
-"""Apexes, sides of the domain or lines inside that are one point, and normals absent near them.
+"""Apexes: collapsed sides of the domain and collapsed lines inside, and the points beside them.
 
-On such a line u = u₁, x_v = 0. By the mean value theorem n·x_v(u, v) = (u − u₁) n·x_uv(ξ, v) with ξ
-between u₁ and u, on both sides of a line. So a point with the normal n near the line, but not on
-it, has n·x_u = 0, and n·x_uv = 0 at some ξ.
+On a line u = u₁ that is collapsed to a point, x_v = 0. By the mean value theorem n·x_v(u, v) =
+(u − u₁) n·x_uv(ξ, v) with ξ between u₁ and u, on both sides of the line. So at a point beside the
+line with the normal n, n·x_u = 0, and n·x_uv = 0 at some ξ. If bounds over a box that touches the
+line exclude one of both, the box has no point with this normal.
 """
 
 from __future__ import annotations
@@ -21,30 +22,31 @@ from .kernels.cell_bounds import SMOOTH
 
 __all__ = ["Apex", "apexes_of"]
 
-# A side of the domain is mapped to one point if PLACES points along it agree up to ROUNDINGS units
-# in the last place of the largest coordinate of all sides. The coordinates of the point itself do
-# not serve as a scale: near the origin they are small, but their rounding errors are not.
+# A side of the domain is collapsed if PLACES points along it agree up to ROUNDINGS units in the
+# last place of the largest coordinate of all sides. The coordinates of the point itself are no
+# scale: near the origin they are small, but their rounding errors are not.
 PLACES, ROUNDINGS = 17, 64.0
-MIXED = 4  # the index of the coefficient of u v in Taylor polynomials; those of u and v are 1 and 2
+MIXED = 4  # the index of the Taylor coefficient of u v; those of u and v are 1 and 2
 BOXES_AT_A_TIME = 1 << 14  # 8 MB of bounds
-# Lines inside of the domain that are one point are searched between LINES equidistant lines. Their
-# distance from the side is this part of a step, so that none of them is likely to be one point.
+# Collapsed lines inside the domain are searched between LINES equidistant lines. The first of these
+# is SHIFT steps from the side, so that none of them is likely to be collapsed itself.
 LINES, SHIFT = 32, 0.381966
-# Boxes are beside a line up to this distance, relative to the domain.
+# A box is beside a line if its distance is at most this, relative to the domain.
 BESIDE = 1e-6
-# A box beside a side with one normal holds that point only if it is SMALL, relative to the domain,
-# and the normals at its other side, or at the distance LEAST, differ from it by up to WIDE. The
-# normal at the side is known up to ONE.
+# A collapsed side with one normal is the only point of a box beside it with this normal if two
+# conditions hold: the width of the box is at most SMALL, relative to the domain, and the normals at
+# its far side (or at the distance LEAST, if that is farther) differ from the normal of the side,
+# but by at most WIDE. The normal of the side has errors up to ONE.
 SMALL, LEAST, WIDE, ONE = 1e-2, 1e-5, 0.5, 4.0 * SMOOTH
 
 
 @dataclass(frozen=True, eq=False)
 class Apex:
-    """A line that is one point of the surface: there u (axis 0) or v (axis 1) is `end`.
+    """A line u = `end` (axis 0) or v = `end` (axis 1) that is collapsed to a point of the surface.
 
-    The line is a side of the domain, or `inside`; `end` may have a rounding `error`. The tape of
-    the surface gives bounds over boxes beside the line. `period` is that of the parameter, or
-    0. The `normal` of a side is None if several places of it have different ones.
+    The line is a side of the domain, or `inside` it; `end` may have a rounding `error`. `tape` is
+    that of the surface, and `period` that of the parameter, or 0. `normal` is the limit of the
+    normals at a side, or None if it is not the same all along the side.
     """
 
     tape: Tape
@@ -57,11 +59,13 @@ class Apex:
     normal: Array | None = None
 
     def at_pole(self, open_: Undecided, normals: Array) -> tuple[Undecided, Array, Indices]:
-        """Return undecided boxes without those whose only point is a side with one normal.
+        """Return the boxes that remain undecided, and solutions at a collapsed side with one normal.
 
-        These sides have rows (k, 6) of places, see `ProvedPlaces`, and numbers (k,) of normals. So
-        it is where a surface does not go all the way around a pole. Boxes with other normals are
-        left out. At the far ends of the boxes normals are different, and K has one sign.
+        Such a side is where a surface goes only part of the way around a smooth pole. The results
+        are the remaining boxes, rows (k, 6) of `ProvedPlaces.places`, and the indices (k,) of their
+        normals. A box beside the side is decided if the normals at its far side are different from
+        that of the side, and K has one sign there: it has the point of the side if its normal is
+        that of the side, and no point if it is another one.
         """
         sides = open_.boxes.reshape(-1, 2, 2)
         away = np.abs(sides[:, self.axis] - self.end)
@@ -91,7 +95,7 @@ class Apex:
         return left, np.array(rows).reshape(-1, 6), np.array(list(found), np.int64)
 
     def _beside(self, reach: float) -> tuple[Array, Array]:
-        """Return normals (k, 3), and the signs (k,) of K, at a distance from the side."""
+        """Return normals (k, 3) and the signs (k,) of K at k points at the distance `reach`."""
         inward = 1.0 if self.end == self.domain[self.axis][0] else -1.0
         at = np.array([self.end + inward * reach])
         jets = _jets_on(self.tape, self.domain, self.axis, at)[0]
@@ -101,9 +105,9 @@ class Apex:
         return normals, np.sign(a * c - b * b)
 
     def decided(self, open_: Undecided, normals: Array) -> Undecided:
-        """Return undecided boxes without those at the line that have no point with their normal.
+        """Return the undecided boxes, without boxes beside the line that have no point.
 
-        The normals (S, 3) are those to which `open_.numbers` refer.
+        `normals` (S, 3) are those of the query, with the indices `open_.numbers`.
         """
         sides = open_.boxes.copy()
         low, high = sides.reshape(-1, 2, 2)[:, self.axis].T
@@ -137,9 +141,9 @@ class Apex:
 
 
 def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
-    """Return the sides of a domain, and lines inside, that are one point up to rounding.
+    """Return the sides of a domain and the lines inside that are collapsed, up to rounding.
 
-    The periods (2,) of u and v are 0 if there are none.
+    `periods` (2,) are those of u and v, 0 if there are none.
     """
     lines = [(axis, end) for axis in (0, 1) for end in domain[axis]]
     sides = len(lines)
@@ -159,7 +163,7 @@ def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
 
 
 def _normal(tape: Tape, domain: Domain, axis: int, end: float) -> Array | None:
-    """Return the normal at a side that is one point; None if its places have different ones."""
+    """Return the limit of the normals at a collapsed side; None if it varies along the side."""
     jets = _jets_on(tape, domain, axis, np.array([end]))[0]
     with np.errstate(all="ignore"):
         normals = np.cross(jets[:, 1 + axis], jets[:, MIXED]) * (1.0 if axis == 0 else -1.0)
@@ -169,10 +173,10 @@ def _normal(tape: Tape, domain: Domain, axis: int, end: float) -> Array | None:
 
 
 def _reversals(tape: Tape, domain: Domain, axis: int, period: float) -> list[float]:
-    """Return the u (axis 0) or v of inner lines across which tangents along lines are reversed.
+    """Return the values of u (axis 0) or v of inner lines that may be collapsed.
 
-    If a line is one point, and the lines beside it are not, the tangents along lines on one side of
-    it are opposite to those on the other side.
+    On both sides of a collapsed line, the tangents along parallel lines have opposite directions.
+    Such reversals are searched.
     """
     low, high = domain[axis]
     places = low + (high - low) * (np.arange(LINES + (period > 0.0)) + SHIFT) / LINES
@@ -193,7 +197,7 @@ def _reversals(tape: Tape, domain: Domain, axis: int, period: float) -> list[flo
 
 
 def _jets_on(tape: Tape, domain: Domain, axis: int, ends: Array) -> Array:
-    """Return jets (k, PLACES, 6, 3) on lines where u (axis 0) or v (axis 1) is one of `ends`."""
+    """Return 2-jets (k, PLACES, 6, 3) on the lines where u (axis 0) or v is one of `ends` (k,)."""
     across, along = np.meshgrid(ends, np.linspace(*domain[1 - axis], PLACES), indexing="ij")
     u, v = (across, along) if axis == 0 else (along, across)
     return jets_of(tape, u.ravel(), v.ravel()).reshape(len(ends), PLACES, 6, 3)

@@ -1,4 +1,4 @@
-"""Arrays of balls: midpoints with radii that bound their errors, rounding included."""
+"""Arrays of balls: enclosures given by midpoints and radii, including rounding errors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from ..base.aliases import Array
 __all__ = ["Ball"]
 
 
-# The relative rounding error of a midpoint, and a factor for that of a radius (a few operations).
+# UNIT bounds the relative rounding error of a midpoint; WIDER is a factor for radii that covers the
+# rounding errors of the few operations by which they are computed.
 UNIT, WIDER = 2.0**-53, 1.0 + 2.0**-48
 TINY = 1e-290  # above the error of an underflow
 
@@ -33,12 +34,12 @@ class Ball:
 
     @property
     def largest(self) -> Array:
-        """The largest absolute values."""
+        """The largest absolute value in each ball."""
         return np.abs(self.middle) + self.radius
 
     @property
     def least(self) -> Array:
-        """The smallest absolute values."""
+        """The smallest absolute value in each ball."""
         return np.maximum(np.abs(self.middle) - self.radius, 0.0)
 
     def __neg__(self) -> Ball:

@@ -1,8 +1,9 @@
-"""Components of the points with one normal, other than regular points: one box for each.
+"""Components of the set of points with one normal, other than regular points: a box for each.
 
-Boxes that bisection leaves undecided are joined where they touch. A box contains a point if its
-index is not 0. The index is the winding number of the gradient of the height along a path around
-the box, minus the indices of regular points inside the path. The search marks boxes along curves.
+Boxes that bisection leaves undecided are joined where they touch. If the index of a box is not 0,
+the box contains a point. The index is the winding number of the gradient of the height n·x along a
+path around the box, minus the indices of the regular points inside the path. Boxes along curves
+are marked by the search itself.
 """
 
 from __future__ import annotations
@@ -20,17 +21,18 @@ from .kernels.sorting import Sorted
 
 __all__ = ["Undecided", "boxes_of", "components_of", "with_kinds"]
 
-# Boxes touch if their distance is at most the larger width, or this part of the domain.
+# Two boxes touch if their distance is at most the larger of their widths, or at most this share of
+# the domain.
 NEAR = 3e-6
 
 
 class Undecided(NamedTuple):
-    """Boxes of parameters whose points are not regular, or not known.
+    """Boxes of parameters that contain points other than regular ones, or may contain points.
 
-    numbers (k,) int64 are indices of normals; boxes (k, 4) are u₀, u₁, v₀, v₁; kinds (k,) int64 are
-    positions in `KINDS`; border (k,) bool is True for boxes that touch an open side of the domain;
-    degree (k,) is the degree of the Gauss map on the box: the sum of sign K over its points with a
-    nearby generic normal, NaN if unknown; uv (k, 2) is a point in the box.
+    Each of the k boxes has the index of its normal in `numbers`; u₀, u₁, v₀, v₁ in `boxes`; a
+    position in `KINDS` in `kinds`; whether it touches an open side of the domain in `border`; and
+    the parameters of a point in `uv` (k, 2). `degree` is the degree of the Gauss map on the box:
+    the sum of sign K over the points with a nearby generic normal, or NaN if unknown.
     """
 
     numbers: Indices
@@ -48,7 +50,7 @@ NOTHING = Undecided(
 
 
 def boxes_of(answers: Sequence[Answers]) -> Undecided:
-    """Return the undecided boxes of answers, in the order of normals. Degrees are unknown."""
+    """Return the undecided boxes of answers, sorted by normal; their degrees are NaN."""
     answers = [x for x in answers if len(x.open_numbers) > 0]
     if not answers:
         return NOTHING
@@ -63,7 +65,7 @@ def boxes_of(answers: Sequence[Answers]) -> Undecided:
 
 
 def components_of(open_: Undecided, domain: Array) -> Undecided:
-    """Return boxes, joined where they touch.
+    """Return the boxes, after joining those of one normal that touch.
 
     `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v or 0.
     """
@@ -81,7 +83,10 @@ def components_of(open_: Undecided, domain: Array) -> Undecided:
 
 
 def _join(open_: Undecided, keep: NDArray[np.bool_], domain: Array) -> None:
-    """Join the boxes of one normal that touch; mark the first box of each component in `keep`."""
+    """Join the boxes of one normal that touch, in place: each component becomes its first box.
+
+    `keep` is set to False for the other boxes.
+    """
     k, slack, periods = 0, NEAR * (domain[1:4:2] - domain[0:4:2]), domain[4:]
     rows, kinds, border = open_.boxes, open_.kinds, open_.border
     while k < len(rows):
@@ -105,14 +110,15 @@ def _join(open_: Undecided, keep: NDArray[np.bool_], domain: Array) -> None:
 
 
 def _shift(x: Array, towards: Array, periods: Array) -> Array:
-    """Return the multiples of the periods that bring x (k, 2) nearest to another point."""
+    """Return the multiples of the periods by which points x (k, 2) come nearest to `towards`."""
     return periods * np.rint((towards - x) / np.where(periods > 0.0, periods, 1.0))
 
 
 def with_kinds(open_: Undecided, around: Array, places: Sorted, domain: Array) -> Undecided:
-    """Return components with degrees and kinds, and a point of each in the domain.
+    """Return the components with their degrees and kinds, and with a point of each in the domain.
 
-    `around` (k, 5) are winding numbers and the boxes of their paths, `places` the regular points.
+    `around` (k, 5) has the winding number around each component, and the box of the path;
+    `places` are the regular points.
     """
     degree = around[:, 0].copy()
     for k in np.flatnonzero(np.isfinite(degree)).tolist():
@@ -130,9 +136,10 @@ def with_kinds(open_: Undecided, around: Array, places: Sorted, domain: Array) -
 
 
 def _others(number: int, path: Array, boxes: Array, places: Sorted, periods: Array) -> float:
-    """Return the sum of the indices of the regular points of a normal inside a path's box.
+    """Return the sum of the indices of the regular points inside a path around a component.
 
-    The sum is NaN if the path's box meets two of the boxes (k, 4) or more.
+    They are those with the normal of index `number` in the box `path` (4,). The sum is NaN if this
+    box meets more than one of the boxes (k, 4) of components.
     """
     low, high = path[0::2], path[1::2]
 

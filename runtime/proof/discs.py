@@ -1,10 +1,11 @@
 """Discs around the poles of a surface: bounds of the surface as a graph over its tangent plane.
 
-At a pole p, u is the parameter around it, and r = 0. The tangent plane has coordinates q1 and q2 in
-which the curve x_r (u, 0) is as close to a circle as possible; h is the height over it. By Taylor's
-theorem the quotients of `generated.jet.graph_at_pole` at r are derivatives at some ρ between 0 and
-r: of x and of x_u, or of the spline (x − p) / r. That h_r (u, 0) = 0, and that the surface has no
-creases, is checked at sampled points only.
+Near a pole p the parameters are polar coordinates: u runs around the pole, and r = 0 is the pole.
+The coordinates q1 and q2 of the tangent plane are chosen so that the curve x_r (u, 0) is as close
+to a circle as possible; h is the height over the plane. The formulas of
+`generated.jet.graph_at_pole` contain quotients by r. By Taylor's theorem they are derivatives, at
+some ρ between 0 and r, of x and x_u, or of the spline (x − p) / r. Two conditions are checked only
+at sampled points: h_r (u, 0) = 0, and that the surface has no creases.
 """
 
 from __future__ import annotations
@@ -35,22 +36,22 @@ __all__ = ["PoleDisc", "pole_disc"]
 
 
 SECTORS = 512
-# The factor by which sectors are narrowed if bounds are too wide otherwise, as they always are for
-# quotients of splines, which have powers of u in each knot span. The number of rings, and that for
-# quotients: these have exact values at the pole, so that they need no smaller rings.
+# If bounds over SECTORS sectors are too wide, NARROW times as many are used. Quotients of splines
+# need these always, since they contain powers of u in each knot span. Bounds are taken over RINGS
+# rings of decreasing radii, or over RINGS_OF_QUOTIENTS for quotients, which are exact at the pole.
 NARROW, RINGS, RINGS_OF_QUOTIENTS = 4, 8, 2
-# Bounds hold up to this distance, relative to the radius of the disc.
+# Bounds are computed up to this distance from the pole, relative to the radius of the disc.
 WHOLE = 2.0
-# Discs down to this fraction of a row of cells are tried.
+# The radius of a disc is at least this fraction of the height of a row of cells.
 SMALLEST = 2.0**-8
-# The largest change of the Hessian in a disc, relative to the Hessian.
+# In a disc the Hessian changes by at most this fraction of it.
 CHANGE = 0.4
-# The least multiple of the radius of a disc up to which bounds have to hold.
+# Bounds must hold at least up to this multiple of the radius of a disc.
 BEYOND = 1.25
-# Creases are looked for at these parts of the radius.
+# Creases are searched at these fractions of the radius.
 PARTS = (0.25, 0.5, 1.0)
-# Angles of tangents with the tangent plane, and of normals on both sides of a line, count as
-# rounding errors up to this size.
+# Smaller angles count as 0: those between tangents and the tangent plane, and those between the
+# normals on both sides of a line.
 SMOOTH = 1e-9
 # Taylor coefficients: U1R2 is that of u r², …
 ONE, U1, R1, U2, U1R1, R2, _, U2R1, U1R2, _ = range(10)
@@ -67,13 +68,13 @@ class PoleDisc:
 
 
 class Bounds(NamedTuple):
-    """Bounds over the sectors of a disc, for r up to some radius.
+    """Bounds over the sectors of a disc, for r up to some radius; q is (q1, q2).
 
-    hessian: the three entries of the Hessian of h by q1 and q2, each (sectors,).
-    q: the least and the largest length of (q1, q2) / r.
-    slope: the largest length of the gradient of h by q1 and q2.
-    by_q: the largest lengths of r ∇u and ∇r, where ∇ is the gradient by q1 and q2.
-    along: the largest lengths of q_u / r and q_r, where q is (q1, q2).
+    hessian: enclosures of the three entries of the Hessian of h(q), each (sectors,).
+    q: the smallest and the largest length of q / r.
+    slope: the largest length of the gradient of h(q).
+    by_q: the largest lengths of r ∇u and ∇r, where ∇ is the gradient with respect to q.
+    along: the largest lengths of q_u / r and q_r.
     """
 
     hessian: list[Ball]
@@ -83,18 +84,18 @@ class Bounds(NamedTuple):
     along: tuple[float, float]
 
     def changes(self, middle: Array) -> Array:
-        """Return bounds (3,) of the differences of the entries of the Hessian from `middle`."""
+        """Return bounds (3,) of the differences between the entries of the Hessian and `middle`."""
         pairs = zip(self.hessian, middle.tolist(), strict=True)
         return np.array([(np.abs(x.middle - y) + x.radius).max() for x, y in pairs])
 
 
 @dataclass(frozen=True, eq=False)
 class Pole:
-    """A pole: its tapes, with the coordinates q1, q2 and h, and the interval of u around it.
+    """A pole: tapes of the coordinates q1, q2 and h by u and r, and the interval `around` of u.
 
-    The columns of `basis` are the derivatives of x by q1, q2 and h. `tilt` is the largest
-    derivative of h at the pole, or the largest jump of derivatives across lines where the surface
-    may have creases, if that is larger.
+    The columns of `basis` are the derivatives of x by q1, q2 and h. `tilt` is the larger of two
+    errors, which are 0 for a smooth surface: the derivative of h at the pole, and the jump of
+    derivatives across lines where the surface may have creases.
     """
 
     tapes: PolarTapes
@@ -106,7 +107,7 @@ class Pole:
     def of(
         cls, tapes: PolarTapes, around: tuple[float, float], turned: float, radius: float
     ) -> Pole | None:
-        """Return a pole; None if the surface has no tangent plane there, or creases up to a radius.
+        """Return a pole; None without a tangent plane there, or with creases closer than `radius`.
 
         `turned` is the sign of x_u × x_r relative to the oriented normal.
         """
@@ -131,7 +132,10 @@ class Pole:
         return replace(pole, tilt=float(tilt)) if is_smooth else None
 
     def _jump(self, radius: float) -> float:
-        """Return the largest jump of derivatives of h across lines u = const, up to a radius."""
+        """Return the largest jump of the derivatives of h across lines u = const, for r ≤ `radius`.
+
+        The jumps are measured at the radii PARTS · `radius`.
+        """
         low, high = self.around
         inner = jumps_of(self.tapes.tape, 0, low, high)
         step = 4.0 * np.spacing(max(abs(low), abs(high)))
@@ -143,7 +147,7 @@ class Pole:
         return float(np.abs(one - other).max())
 
     def slopes(self, u: Array, r: Array) -> Array:
-        """Return the derivatives (k, 2) of h by q1 and q2, at r > 0."""
+        """Return the derivatives (k, 2) of h with respect to q1 and q2, at u and r > 0 (k,)."""
         jets = jets_of(self.tapes.tape, u, r)
         around, away = jets[:, 1] / r[:, None], jets[:, 2]
         if self.tapes.slope is None:
@@ -154,7 +158,7 @@ class Pole:
         return np.stack(values[4:], axis=1)
 
     def bounds(self, reach: float, count: int) -> Bounds:
-        """Return bounds for r up to `reach`, in `count` sectors."""
+        """Return bounds over about `count` sectors of the disc r ≤ `reach`."""
         lines = lines_of(self.tapes.tape, 0, np.array(self.around), count)
         middles, half = 0.5 * (lines[1:] + lines[:-1]), 0.5 * np.diff(lines)
         centres = np.column_stack([middles, np.full_like(middles, 0.5 * reach)])
@@ -188,7 +192,7 @@ class Pole:
         )
 
     def noise(self, reach: float, bounds: Bounds) -> tuple[float, float]:
-        """Return n0 and n1: computed derivatives of h have errors up to n0 + n1 / r."""
+        """Return n0 and n1: rounding errors of the derivatives of h are at most n0 + n1 / r."""
         tape = self.tapes.tape
         middles, radii, errors = np.empty((3, BALL * (len(tape.operations) + 1)))
         low, high = self.around
@@ -211,14 +215,14 @@ class Pole:
 
 
 class _Coefficients:
-    """Bounds of the Taylor coefficients of x, y and z over boxes."""
+    """Bounds of Taylor coefficients over boxes: item k has those of the coordinates x, y and z."""
 
     def __init__(self, bounds: Array) -> None:
         self._bounds = bounds
 
     @classmethod
     def of(cls, tape: Tape, centres: Array, widths: Array) -> _Coefficients:
-        """Return the bounds of a tape."""
+        """Return the bounds of the coefficients of a tape over boxes with given half widths."""
         return cls(bounds_over_boxes(tape, centres, widths, 3))
 
     def __getitem__(self, k: int) -> list[Ball]:
@@ -226,10 +230,10 @@ class _Coefficients:
 
 
 def pole_disc(tape: Tape, domain: Domain, angle: int, end: float, radius: float) -> PoleDisc | None:
-    """Return a disc around a pole; None if the surface is not smooth there.
+    """Return a disc around a pole, of at most the given radius; None if the surface is not smooth.
 
-    Its radius is at most `radius`. Parameter `angle`, 0 for u and 1 for v, runs around the pole;
-    the other one is `end` there.
+    `angle` is the index of the parameter that runs around the pole, 0 for u and 1 for v; the other
+    parameter is `end` at the pole.
     """
     if not _is_point(tape, domain, angle, end):
         return None
@@ -253,7 +257,10 @@ def pole_disc(tape: Tape, domain: Domain, angle: int, end: float, radius: float)
 
 
 def _disc(pole: Pole, size: float, sectors: int, place: Array) -> PoleDisc | None:
-    """Return a disc; None if bounds are too wide."""
+    """Return the disc of radius `size` around a pole; None if its bounds are too wide.
+
+    `place` has the value of the parameter r at the pole, its sign inwards, and the index `angle`.
+    """
     count = RINGS_OF_QUOTIENTS if pole.tapes.slope is None else RINGS
     whole, last = (pole.bounds(WHOLE * size * 0.5**k, sectors) for k in (0, count - 1))
     unit = size * whole.q[1]
@@ -295,13 +302,13 @@ def _disc(pole: Pole, size: float, sectors: int, place: Array) -> PoleDisc | Non
 
 
 def _middles(around: tuple[float, float]) -> Array:
-    """Return the middles of the sectors."""
+    """Return the values of u in the middles of the sectors."""
     low, high = around
     return low + (high - low) * (np.arange(SECTORS) + 0.5) / SECTORS
 
 
 def _is_point(tape: Tape, domain: Domain, angle: int, end: float) -> bool:
-    """Return whether a side is one point, tested at some parameters."""
+    """Return whether a side of the domain is collapsed; some of its points are compared."""
     u = _middles(domain[angle])[:: SECTORS // 16]
     places = u, np.full_like(u, end)
     jets = jets_of(tape, *(places if angle == 0 else places[::-1]))
@@ -310,10 +317,10 @@ def _is_point(tape: Tape, domain: Domain, angle: int, end: float) -> bool:
 
 
 def _frame(rows: Array, turned: float) -> Array | None:
-    """Return the rows of q1, q2 and h for the directions x_r (k, 3) around a pole.
+    """Return the matrix (3, 3) from x to (q1, q2, h), for the directions x_r (k, 3) around a pole.
 
-    In the first two rows, these directions are as close to unit vectors as possible. None if there
-    are no such rows.
+    Its first two rows take these directions to vectors (q1, q2) that are as close to unit vectors
+    as possible. The result is None if the directions do not span a plane.
     """
     normal = turned * np.cross(np.roll(rows, -1, axis=0), rows).sum(axis=0)
     size = np.linalg.norm(normal)
@@ -332,7 +339,7 @@ def _frame(rows: Array, turned: float) -> Array | None:
 
 
 def _moved(tapes: PolarTapes, frame: Array, shift: Array) -> PolarTapes | None:
-    """Return tapes after an affine map."""
+    """Return the tapes of the surface after the affine map x → frame x + shift."""
     if tapes.slope is None:
         tape = mapped_spline(tapes.tape, frame)
         return None if tape is None else replace(tapes, tape=tape)

@@ -1,4 +1,4 @@
-"""Lines of a grid of parameters, including those where second derivatives of a spline jump."""
+"""Parameter lines of a grid, and lines where derivatives of a spline jump: joints and creases."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ from .kernels.cell_bounds import SMOOTH
 
 __all__ = ["PLACES", "creases_of", "joints_of", "jumps_of", "lines_of"]
 
-# Normals on both sides of a line are compared at about this number of points.
+# The normals on both sides of a line are compared at about this number of points.
 PLACES = 64
 
 
 def jumps_of(tape: Tape, axis: int, low: float, high: float) -> Array:
-    """Return the u (axis 0) or v in an interval where second derivatives of a spline jump."""
+    """Return the values of u (axis 0) or v at which second derivatives of a spline may jump.
+
+    Only values inside the interval [low, high] are returned.
+    """
     x = tape.spline
     breaks, smooth = ((x.breaks_u, x.smooth_u), (x.breaks_v, x.smooth_v))[axis]
     jumps = breaks[smooth < 2]
@@ -34,7 +37,10 @@ def jumps_of(tape: Tape, axis: int, low: float, high: float) -> Array:
 
 
 def lines_of(tape: Tape, axis: int, ends: Array, count: int) -> Array:
-    """Return about `count` lines of a grid between both ends of u or v, and the lines of jumps."""
+    """Return about `count` + 1 values of u (axis 0) or v for grid lines, including those of jumps.
+
+    They lie between both `ends`, which are included; the spacing is nearly equal.
+    """
     low, high = ends.tolist()
     pieces = np.unique([low, high, *jumps_of(tape, axis, low, high)])
     counts = np.maximum(1, np.round(count * np.diff(pieces) / (high - low))).astype(int)
@@ -46,10 +52,10 @@ def lines_of(tape: Tape, axis: int, ends: Array, count: int) -> Array:
 
 
 def joints_of(tape: Tape, axis: int, domain: Domain, boundary: Boundary) -> Array:
-    """Return the u (axis 0) or v where derivatives may jump, but the tangent plane does not.
+    """Return the values of u (axis 0) or v where derivatives may jump, but the normal does not.
 
-    The seam of a periodic spline is such a line, too. Normals of both sides are compared at sampled
-    points.
+    The seam of a periodic spline may be such a line. The normals on both sides of a line are
+    compared at sampled points.
     """
     jumps = jumps_of(tape, axis, *domain[axis]).tolist()
     smooth = [
@@ -63,14 +69,14 @@ def joints_of(tape: Tape, axis: int, domain: Domain, boundary: Boundary) -> Arra
 def creases_of(
     tape: Tape, axis: int, domain: Domain, boundary: Boundary
 ) -> list[tuple[float, float]]:
-    """Return the u (axis 0) or v just before and after lines where the tangent plane jumps.
+    """Return the values of u (axis 0) or v just before and just after each crease.
 
-    Both ends of a domain are one line if all their points are the same.
+    Both ends of a domain are one line if their points are the same.
     """
     x = tape.spline
     smooth = (x.smooth_u, x.smooth_v)[axis]
     jumps = jumps_of(tape, axis, *domain[axis]).tolist() if (smooth == 0).any() else []
-    # Bounds over boxes take a parameter nearer to a knot than SLACK to be on either side.
+    # A parameter closer to a knot than SLACK is on both sides of it in bounds over boxes.
     step = 4.0 * SLACK * sum(map(abs, domain[axis]))
     lines = _with_seam(tape, axis, domain, boundary, jumps)
     if boundary[axis] == ("open", "open") and _is_closed(tape, axis, domain):
@@ -85,7 +91,10 @@ def creases_of(
 def _with_seam(
     tape: Tape, axis: int, domain: Domain, boundary: Boundary, jumps: Sequence[float]
 ) -> list[tuple[float, float]]:
-    """Return parameters below and above lines: for the seam of a periodic spline, both its ends."""
+    """Return the parameter below and above each line; these are both ends of u or v for a seam.
+
+    Lines are those at `jumps`, and the seam of a periodic spline.
+    """
     lines = [(x, x) for x in jumps]
     if boundary[axis][0] == "periodic" and len(tape.spline.breaks_u) > 0:
         lines.append((domain[axis][1], domain[axis][0]))
@@ -93,7 +102,7 @@ def _with_seam(
 
 
 def _is_closed(tape: Tape, axis: int, domain: Domain) -> bool:
-    """Return whether both ends of u (axis 0) or v have the same points."""
+    """Return whether the surface has the same points at both ends of u (axis 0) or v."""
     along = lines_of(tape, 1 - axis, np.array(domain[1 - axis]), PLACES)
     ends = []
     for end in domain[axis]:
@@ -104,7 +113,7 @@ def _is_closed(tape: Tape, axis: int, domain: Domain) -> bool:
 
 
 def _turning(tape: Tape, axis: int, domain: Domain, below: float, above: float) -> float:
-    """Return the largest angle between the normals on both sides of a line, at sampled points."""
+    """Return the largest distance of unit normals on both sides of a line, at sampled points."""
     other = lines_of(tape, 1 - axis, np.array(domain[1 - axis]), PLACES)
     along = (0.5 * (other[1:] + other[:-1])).ravel()
     step = 4.0 * np.spacing(max(map(abs, domain[axis])))

@@ -1,9 +1,9 @@
 """All points of a surface with given normals, each exactly once, with a proof.
 
 If the coordinates of a surface are a tape (`runtime.tape.kernels.points`), its derivatives have
-bounds over boxes of parameters. An index cuts the domain into cells, each with a cone of normals.
-For a normal, a cell is excluded by bounds, has one point by a contraction, or is cut. What remains
-undecided lies in small boxes, which are listed.
+bounds over boxes of parameters. An index cuts the domain into cells, each with a cone that contains
+its normals. For a given normal, either bounds exclude a cell, or a contraction proves that it has
+exactly one point, or the cell is cut. Small boxes that remain undecided are listed.
 """
 
 from __future__ import annotations
@@ -48,34 +48,35 @@ from .poles import Cap, poles_of
 __all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
 
 
-# Irregular cells are cut into four this many times. Cells without a narrow cone of normals are cut
-# further while this adds at most MOST cells per cell of the grid, or of a grid of FEWEST cells: the
-# cells of NURBS may be as large as their spans.
+# Irregular cells are cut into four at most LEVELS times. Cells without a narrow cone of normals are
+# cut up to ROUNDS times more, as long as this adds at most MOST cells per cell of the grid. For the
+# coarse grids of NURBS, whose cells may be knot spans, at least FEWEST cells are counted.
 LEVELS, ROUNDS, MOST, FEWEST = 2, 3, 8, 256
 CELLS = (64, 64)
-# Whether a surface has normals at all is tested on this number of cells, of this size.
+# Whether a surface has normals at all is tested on PROBES cells, shrunk by the factor SMALL.
 PROBES, SMALL = 16, 2.0**-5
-# The numbers of base cells, of normals and of hard normals in one batch.
+# The numbers of grid cells, of normals, and of normals that need bisection in one batch.
 CELLS_AT_A_TIME, NORMALS_AT_A_TIME, HARD_AT_A_TIME = 512, 1 << 13, 1 << 8
 # The initial lengths of arrays: of cells, of pairs of a normal and a cell, and of answers.
 CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
-# Cells without a cone of normals are in all bins. There is no index if they cover more than this
-# part of the domain.
+# Cells without a cone of normals are listed in all bins. There is no index if they cover more than
+# this share of the domain.
 MOST_OPEN = 0.25
-# Mirrored parameters are continued beyond their upper ends by this part of their length. In the
-# middle of that strip one side of the seam ends and the other begins; strips are far wider than
-# rounding errors, so that both sides agree.
+# The domain of a mirrored parameter is extended beyond its upper end, by this share of its length.
+# Points in the first half of the strip count as beyond the upper end, those in the second half as
+# at the lower end. The strip is far wider than rounding errors, so that no point is lost or
+# doubled.
 BEYOND = 2.0**-30
 NO_PAIRS = np.empty((0, 2), np.int64)
 
 
 class ProvedPlaces(NamedTuple):
-    """The points with given normals, in the order of the normals, then of u and v.
+    """The points with given normals, sorted by normal, then by u and v.
 
-    numbers (k,) int64 are indices of normals. A row of places (k, 6) holds u, v, the error bound of
-    each, a number with the sign of the Gaussian curvature, and 1 if the exact parameters may be
-    outside of the domain, by at most the error bound, else 0. All other points with these normals
-    are in the boxes of `undecided`, or in the boxes of the index that are `unbounded`.
+    `numbers` (k,) are the indices of the normals. The columns of `places` (k, 6) are u, v, an error
+    bound of each, a number with the sign of the Gaussian curvature, and 1 if the exact parameters
+    may be outside the domain (by at most the error bounds), else 0. All other points with these
+    normals are in the boxes `undecided`, or in the boxes `unbounded` of the index.
     """
 
     numbers: NDArray[np.int64]
@@ -83,7 +84,7 @@ class ProvedPlaces(NamedTuple):
     undecided: Undecided
 
     def only(self, normals: NDArray[np.bool_]) -> ProvedPlaces:
-        """Return the points of some of the normals, flags (S,)."""
+        """Return the points and boxes of the normals selected by a mask (S,)."""
         rows, left = normals[self.numbers], normals[self.undecided.numbers]
         undecided = Undecided._make(x[left] for x in self.undecided)
         return ProvedPlaces(self.numbers[rows], self.places[rows], undecided)
@@ -105,12 +106,12 @@ class ProvedPlaces(NamedTuple):
 
     @property
     def border(self) -> NDArray[np.bool_]:
-        """Whether the exact parameters may be outside of the domain (k,)."""
+        """A mask (k,) of the points whose exact parameters may be outside the domain."""
         return self.places[:, 5] > 0.0
 
 
 class Places(NamedTuple):
-    """Places in no order: rows (k, 6), and the indices (k,) of their normals."""
+    """Solutions in no order: rows (k, 6) of `ProvedPlaces.places`, and indices of their normals."""
 
     rows: NDArray[np.float64]
     numbers: NDArray[np.int64]
@@ -132,10 +133,10 @@ class Rooms(NamedTuple):
 class ProvedIndex:
     """The index of a surface: immutable, and shared by threads.
 
-    `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v, 0 if there is none. A mirrored
-    parameter, of an axis in `seams`, has no period here, since normals change their sides at its
-    ends; its upper end is beyond that of the surface by BEYOND times its length. In the boxes
-    `unbounded` (m, 4), u₀, u₁, v₀, v₁, derivatives have no bounds, and nothing is known.
+    `domain` (6,) is u₀, u₁, v₀, v₁, and the periods of u and v, 0 if there is none. A parameter
+    with a mirrored seam, whose axis is in `seams`, has no period here, since the oriented normal
+    is reversed across the seam; its upper end is moved outwards by BEYOND times its length. In the
+    boxes `unbounded` (m, 4), derivatives have no bounds, and no point is known or excluded.
     """
 
     tape: Tape
@@ -159,7 +160,7 @@ class ProvedIndex:
         cells: tuple[int, int] = CELLS,
         threads: int | None = None,
     ) -> ProvedIndex | None:
-        """Return the index of a surface; None if it has no normals, as a line has none.
+        """Return the index of a surface; None if the surface has no normals, such as a curve.
 
         Parameters
         ----------
@@ -246,10 +247,11 @@ class ProvedIndex:
         return ProvedPlaces(*places, open_)
 
     def _once_at_seams(self, places: Sorted) -> Sorted:
-        """Return places so that those at seams of mirrored parameters occur once.
+        """Return the solutions, those at mirrored seams only once.
 
-        A place at the lower end is also beyond the upper end, with the opposite normal: it is left
-        out at the lower end, and places beyond the upper end are moved to this end.
+        A point at the lower end of a mirrored parameter is also in the strip beyond the upper end,
+        with the opposite normal. Solutions in the first half of the strip are moved to the upper
+        end, and the same ones at the lower end are left out.
         """
         keep, rows = np.ones(len(places.numbers), np.bool_), places.places
         for axis in self.seams:
@@ -262,7 +264,11 @@ class ProvedIndex:
         return Sorted(places.numbers[keep], rows[keep])
 
     def _around(self, open_: Undecided, normals: NDArray[np.float64]) -> Array:
-        """Return winding numbers around boxes, and the boxes of their paths (k, 5)."""
+        """For each undecided box, return the winding number around it and the box of its path.
+
+        The columns of the result (k, 5) are the winding number, NaN if unknown, and four bounds of
+        the parameters.
+        """
         around, points = np.empty((len(open_.numbers), 5)), np.zeros(4)
         for x in self.apexes:
             if not x.inside:
@@ -277,12 +283,15 @@ class ProvedIndex:
     def _search(
         self, normals: NDArray[np.float64], threads: int | None
     ) -> tuple[list[Places], NDArray[np.int64]]:
-        """Return places found without bisection, and the hard pairs (k, 2) of normal and cell."""
+        """Return the solutions found without bisection, and the pairs (k, 2) that need bisection.
+
+        A pair is the index of a normal and that of a cell.
+        """
         order = ordered(normals, self.lists, threads)
 
         def work(first: int, last: int) -> list[tuple[Places, NDArray[np.int64]]]:
             numbers, count, parts, start = order[first:last] & NUMBER, last - first, [], 0
-            # Normals are copied side by side: those of a bin are read for each of its cells.
+            # A copy with the normals of a bin side by side is faster: each is read for many cells.
             some = np.take(normals, numbers, axis=0)
             keys = (order[first:last] & ~NUMBER) | np.arange(count)
             with self.room() as rooms:
@@ -304,9 +313,10 @@ class ProvedIndex:
     def _evaluated(
         self, normals: NDArray[np.float64], numbers: NDArray[np.int64], rooms: Rooms
     ) -> tuple[Places, NDArray[np.int64]]:
-        """Return the places and the hard pairs of the pairs in `rooms.pairs`; see `_search`.
+        """Return solutions and hard pairs for the pairs of normals and cells in `rooms.pairs`.
 
-        `numbers` (k,) are the indices of the normals (k, 3) in the query.
+        They are those of `_search`. `numbers` (k,) are the indices of the normals (k, 3) in the
+        query.
         """
         certain, undecided = rooms.pairs[0].counts
         keys = rooms.pairs[0].certain[:certain]
@@ -330,7 +340,7 @@ class ProvedIndex:
     def _decide(
         self, normals: NDArray[np.float64], hard: NDArray[np.int64], threads: int | None
     ) -> list[Answers]:
-        """Return the answers of bisection for hard pairs of normals and cells."""
+        """Return the answers of bisection for the pairs (k, 2) of a normal and a cell in `hard`."""
         hard = hard[np.lexsort((hard[:, 1], hard[:, 0]))]
         in_discs = hard[hard[:, 1] >= self.index.discs]
         hard = hard[hard[:, 1] < self.index.discs]
@@ -365,10 +375,11 @@ class ProvedIndex:
         parts: list[Places],
         count: int,
     ) -> tuple[Places, list[Answers]]:
-        """Return each place of the answers once, without those in `parts`, and undecided answers.
+        """Return each solution of `answers` once, without those in `parts`, and undecided boxes.
 
-        `parts` are the places found without bisection, and `count` is the number of normals. Places
-        that may or may not be the same are undecided: their boxes are in the returned answers.
+        `parts` are the solutions found without bisection, and `count` is the number of normals. If
+        two solutions may or may not be the same, their boxes are undecided: they are in the answers
+        that are returned.
         """
         slow = np.concatenate([x.places for x in answers])
         of_slow = np.concatenate([x.numbers for x in answers])
@@ -434,9 +445,10 @@ class ProvedIndex:
 
 
 def _has_no_normals(tape: Tape, grid: Array) -> bool:
-    """Return whether some small cells all lack cones of normals, as if the surface were a curve.
+    """Return whether the surface seems to be a curve: no small probe cell has a cone of normals.
 
-    All cells of such a surface would be cut as often as allowed, which takes seconds.
+    Without this test, all cells of such a surface would be cut as often as allowed, which takes
+    seconds.
     """
     few = grid[np.linspace(0, len(grid) - 1, PROBES).round().astype(int)]
     few[:, 2:] *= SMALL
@@ -445,14 +457,17 @@ def _has_no_normals(tape: Tape, grid: Array) -> bool:
 
 
 def _grid(lines_u: Array, lines_v: Array) -> Array:
-    """Return the places (k, 4) of the cells of a grid."""
+    """Return the midpoints and half sizes (k, 4) of the cells between grid lines."""
     (u, h_u), (v, h_v) = ((0.5 * (x[1:] + x[:-1]), 0.5 * np.diff(x)) for x in (lines_u, lines_v))
     columns = [*np.meshgrid(u, v, indexing="ij"), *np.meshgrid(h_u, h_v, indexing="ij")]
     return np.column_stack([x.ravel() for x in columns])
 
 
 def _cut(tape: Tape, places: Array, levels: int, threads: int | None) -> CellBounds:
-    """Return the cells at places (k, 4), cut into four at most `levels` times."""
+    """Return bounds for the cells with midpoints and half sizes (k, 4).
+
+    Irregular cells are cut into four, at most `levels` times.
+    """
     deepest = 3 * levels + 2
 
     def work(first: int, last: int) -> list[CellBounds]:
@@ -470,7 +485,7 @@ def _cut(tape: Tape, places: Array, levels: int, threads: int | None) -> CellBou
 
 
 def _narrowed(tape: Tape, cells: CellBounds, most: int, threads: int | None) -> CellBounds:
-    """Return at most `most` cells; those without a narrow cone of normals are cut."""
+    """Return at most `most` cells, after cutting those without a narrow cone of normals."""
     done = list[CellBounds]()
     for _ in range(ROUNDS):
         wide = cells.cone[:, 3] >= WIDE
@@ -484,7 +499,7 @@ def _narrowed(tape: Tape, cells: CellBounds, most: int, threads: int | None) -> 
 
 
 def _quarters(places: Array) -> Array:
-    """Return the places of the quarters of cells at places (k, 4)."""
+    """Return the midpoints and half sizes (4 k, 4) of the quarters of cells (k, 4)."""
     half = 0.5 * places[:, 2:]
     sides = np.array([(-1, -1), (-1, 1), (1, -1), (1, 1)])
     return np.concatenate([np.hstack([places[:, :2] + x * half, half]) for x in sides])
@@ -496,7 +511,10 @@ def _joined(parts: list[CellBounds]) -> CellBounds:
 
 
 def _pieces_of(index: Index) -> Pieces:
-    """Return the cells as pieces of a search; discs and wide cones keep opposite normals."""
+    """Return the cells as pieces of a search.
+
+    The cones of discs, and wide cones, do not exclude the opposites of their normals.
+    """
     cells = index.cells
     cones = np.zeros((len(cells.cone), CONE))
     cones[:, : CHORD + 1], cones[:, WIDTH] = cells.cone, 1.0
@@ -506,7 +524,7 @@ def _pieces_of(index: Index) -> Pieces:
 
 
 def _taken(room: Answers) -> Answers:
-    """Return a copy of the answers without unused rows."""
+    """Return a copy of the used rows of an array of answers."""
     places, boxes = room.counts
     return Answers(
         room.places[:places].copy(), room.numbers[:places].copy(), room.open_boxes[:boxes].copy(),
@@ -515,7 +533,7 @@ def _taken(room: Answers) -> Answers:
 
 
 def _sorted(parts: list[Places], count: int) -> Sorted:
-    """Return places in the order of `count` normals."""
+    """Return solutions sorted by normal, of which there are `count`, then by u and v."""
     starts = np.zeros(count + 1, np.int64)
     room = Sorted.new(sum(len(x.numbers) for x in parts))
     for part in parts:

@@ -1,7 +1,8 @@
 """Tapes of surfaces in polar coordinates at a pole, and of quotients that are finite there.
 
-The parameters are u around the pole, a parameter of the surface, and r, the distance of the other
-parameter from its value at the pole. All points with r = 0 are one point p.
+The polar coordinates are u, the parameter of the surface that runs around the pole, and r, the
+distance of the other parameter from its value at the pole. The line r = 0 is collapsed to a point
+p.
 """
 
 from __future__ import annotations
@@ -27,9 +28,10 @@ Slope = Traced | float  # the number 0.0 if a row does not depend on the angle
 
 @dataclass(frozen=True)
 class PolarTapes:
-    """The tapes of x(u, r) and x_u; or the tape of (x − p) / r, and None.
+    """Tapes of a surface in polar coordinates: those of x(u, r) and of its derivative x_u.
 
-    Bounds hold up to r = `most`.
+    For a spline, `tape` is that of (x − p) / r and `slope` is None. The tapes are valid for r ≤
+    `most`.
     """
 
     tape: Tape
@@ -38,10 +40,10 @@ class PolarTapes:
 
 
 def polar_tapes(tape: Tape, angle: int, end: float, inward: float) -> PolarTapes | None:
-    """Return the tapes at a pole; None if they do not exist, as for infinite numbers.
+    """Return the tapes at a pole; None if they contain numbers that are not finite.
 
-    Parameter `angle` (0 or 1) runs around it; the other one is end + inward r, where `inward` is 1
-    or −1.
+    `angle` is the index of the parameter that runs around the pole; the other parameter is
+    end + inward · r, where `inward` is 1 or −1.
     """
     if (tape.operations[:, 0] == elementary.SPLINE).any():
         found = spline_quotient(tape, angle, end, inward)
@@ -60,7 +62,7 @@ def polar_tapes(tape: Tape, angle: int, end: float, inward: float) -> PolarTapes
 def _with_slopes(
     writer: TapeWriter, tape: Tape, variables: list[Traced], slopes: list[Slope]
 ) -> list[tuple[Traced, Slope]]:
-    """Return the values of the rows of a tape and their derivatives, 0.0 for those of constants."""
+    """Return the value of each row of a tape and its derivative by the angle; 0.0 for constants."""
     rows: list[tuple[Traced, Slope]] = []
     for (code, a, b, _), (number, distance) in zip(
         tape.operations.tolist(), tape.numbers.tolist(), strict=True
@@ -88,7 +90,7 @@ def _with_slopes(
 
 
 def _applied(writer: TapeWriter, name: str, x: Traced, slope: Slope) -> tuple[Traced, Slope]:
-    """Return a function of a row and its derivative, by the chain rule."""
+    """Return the function `name` of a row, and the derivative of this by the chain rule."""
     value = Traced(writer, writer.write(name, x.row))
     if isinstance(slope, float):
         return value, 0.0

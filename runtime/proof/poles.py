@@ -1,9 +1,9 @@
 """The poles of a surface: each has a disc or a cap, or is left open.
 
 In a disc the surface is a graph over its tangent plane (`discs.py`). A cap is a strip of parameters
-around a pole without a disc, where only normals have bounds. At a pole r = 0 the derivative around
-it vanishes: each coordinate of x_u (u, r) is r x_ur (u, ρ) with some ρ between 0 and r. So the
-normals lie in the cone of the vectors x_ur × x_r over the strip.
+around a pole without a disc; only its normals have bounds. At a pole r = 0 the derivative x_u
+around it vanishes, so that each coordinate of x_u (u, r) is r x_ur (u, ρ) with some ρ between 0 and
+r. Therefore the normals in the strip lie in a cone that contains all vectors x_ur × x_r.
 """
 
 from __future__ import annotations
@@ -22,19 +22,21 @@ from .kernels.answers import CURVE, OPEN_BOX, Answers
 
 __all__ = ["Cap", "Poles", "poles_of"]
 
-# The largest half angle of a cap, in radians; its least size, relative to the given one.
+# The largest half angle of the cone of a cap, in radians; and the smallest size of a cap, relative
+# to a row of cells.
 WIDEST, SMALLEST = 0.05, 2.0**-8
 # The positions of Taylor coefficients.
 U1, V1, U1V1 = 1, 2, 4
 ROUNDING = 2.0**-40
-# A cap is in a plane if its normals at PLACES² places differ by at most SMOOTH.
+# A cap is in a plane if its normals at PLACES² points differ by at most SMOOTH.
 PLACES, SMOOTH = 16, 1e-9
 
 
 class Cap(NamedTuple):
-    """A box u₀, u₁, v₀, v₁ of parameters around a pole, its size, and the cone of its normals.
+    """A box u₀, u₁, v₀, v₁ of parameters around a pole, its size, and a cone with all its normals.
 
-    A cap in a plane is a region with one normal, of the `kind` CURVE; other caps are open boxes.
+    A cap in a plane is a region whose points all have one normal: its `kind` is CURVE. Other caps
+    are undecided boxes for the normals in their cone.
     """
 
     box: Array
@@ -44,7 +46,7 @@ class Cap(NamedTuple):
     kind: int = OPEN_BOX
 
     def answers(self, normals: Array) -> Answers:
-        """Return the cap as an undecided box for each of the unit normals (S, 3) in its cone."""
+        """Return an answer for each of the unit normals (S, 3) in the cone: the box of the cap."""
         away = np.linalg.norm(normals - self.axis, axis=1)
         numbers = np.flatnonzero(away <= 2.0 * np.sin(0.5 * self.angle) + ROUNDING)
         row = np.array([*self.box, 0.0, *self.box.reshape(2, 2).mean(axis=1)])
@@ -53,9 +55,9 @@ class Cap(NamedTuple):
 
 
 class Poles(NamedTuple):
-    """The discs and caps around poles; `inside` (2, 2) is the rest of the domain.
+    """The discs and caps around poles, and the domain `inside` (2, 2) without these.
 
-    The boxes `unknown` (k, 4) are the poles with neither.
+    A pole with neither disc nor cap is a box in `unknown` (k, 4), of which nothing is known.
     """
 
     discs: tuple[PoleDisc, ...]
@@ -65,9 +67,10 @@ class Poles(NamedTuple):
 
 
 def poles_of(tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, int]) -> Poles:
-    """Return the discs and caps around the poles of a surface whose domain has m × n cells.
+    """Return the discs and caps around the poles of a surface.
 
-    Open sides of the domain that are a smooth pole have discs, too.
+    Their sizes are at most those of the m × n `cells` of the domain. Open sides that are collapsed
+    to a smooth pole have discs, too.
     """
     discs, caps, unknown = list[PoleDisc](), list[Cap](), list[list[float]]()
     inside = np.array(domain, dtype=np.float64)
@@ -97,9 +100,9 @@ def poles_of(tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, i
 
 
 def _cap_of(tape: Tape, domain: Domain, angle: int, end: float, size: float) -> Cap | None:
-    """Return the cap around a pole, of at most `size`; None if its normals are not bounded.
+    """Return the cap around a pole, of at most `size`; None if its normals have no bounds.
 
-    Parameter `angle` (0 or 1) runs around the pole, the other one is `end` there.
+    `angle` is the index of the parameter that runs around the pole; the other one is `end` there.
     """
     inward = 1.0 if end == domain[1 - angle][0] else -1.0
     smallest = SMALLEST * size
@@ -118,7 +121,7 @@ def _cap_of(tape: Tape, domain: Domain, angle: int, end: float, size: float) -> 
 
 
 def _normals_in(tape: Tape, box: Array) -> Array:
-    """Return unit normals (PLACES², 3) at places in a box."""
+    """Return the unit normals (PLACES², 3) at a grid of points in a box."""
     parts = (np.arange(PLACES) + 0.5) / PLACES
     u, v = (low + (high - low) * parts for low, high in box.reshape(2, 2))
     jets = jets_of(tape, np.repeat(u, PLACES), np.tile(v, PLACES))
@@ -129,7 +132,11 @@ def _normals_in(tape: Tape, box: Array) -> Array:
 def _cone(
     tape: Tape, domain: Domain, angle: int, side: tuple[float, float], size: float
 ) -> tuple[Array, float] | None:
-    """Return axis and half angle of a cone of the normals of a strip; None if there is none."""
+    """Return axis and half angle of a cone that contains the normals of a strip; None without one.
+
+    `side` has the value of the parameter towards the pole there, and its sign inwards; `size` is
+    the width of the strip.
+    """
     (low, high), (end, inward), count = domain[angle], side, NARROW * SECTORS
     half = np.array([0.5 * (high - low) / count, 0.5 * size])
     around = low + half[0] * (2.0 * np.arange(count) + 1.0)

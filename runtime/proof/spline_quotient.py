@@ -1,8 +1,8 @@
-"""The quotient (x − p) / r of a spline x at a side r = 0 of its domain that is the point p.
+"""The quotient (x − p) / r of a spline x beside a side r = 0 that is collapsed to the point p.
 
-On the spans next to the side the numerators of x − p are polynomials in r without a constant term;
-divided by r, they are polynomials as well. The operations of a tape on the coordinates of a spline
-are linear: division by the weight, rotation, and translation.
+On the knot spans next to the side, the numerators of x − p are polynomials in r without a constant
+term; divided by r, they are polynomials as well. All operations of a tape after the spline must be
+linear in its coordinates: division by the weight, rotation, and translation.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from ..tape.tapes import BINARY, LEAVES, TapeWriter, moved_tape
 __all__ = ["mapped_spline", "spline_quotient"]
 
 
-# A side is one point if its coefficients differ by at most this many roundings of the largest one.
+# A side is collapsed if its coefficients differ by at most this many roundings of the largest one.
 ROUNDINGS = 2.0**10
 
 
 def spline_quotient(tape: Tape, angle: int, end: float, inward: float) -> tuple[Tape, float] | None:
-    """Return the tape of (x − p) / r, where a parameter is end + inward r.
+    """Return the tape of (x − p) / r, and the largest r for which it is valid.
 
-    The parameters of this tape are parameter `angle` (0 or 1) of the spline, and r. The largest r
-    for which the tape is valid is returned as well. Return None if the side r = 0 of the spline is
-    not one point, or if an operation other than the spline depends on r.
+    `angle` is the index of the parameter of the spline that remains, 0 for u and 1 for v; the other
+    one is end + inward · r. The result is None if the side r = 0 of the spline is not collapsed, or
+    if an operation other than the spline depends on r.
     """
     (row,) = np.nonzero(tape.operations[:, 0] == codes.SPLINE)
     turned, total = int(tape.operations[row[0], 3]), tuple(tape.numbers[row[0]].tolist())
@@ -54,7 +54,10 @@ def spline_quotient(tape: Tape, angle: int, end: float, inward: float) -> tuple[
 def _quotients(
     spline: Polynomials, axis: int, end: float, inward: float, is_rational: bool
 ) -> tuple[Polynomials, float] | None:
-    """Return polynomials in r in place of a parameter, and the largest r, where their span ends."""
+    """Return the polynomials of (x − p) / r, and the largest r: the end of their knot span.
+
+    The parameter of the given axis is end + inward · r.
+    """
     breaks, frames = (spline.breaks_u, spline.breaks_v)[axis], (spline.frames_u, spline.frames_v)
     at = 0 if inward > 0.0 else -1
     if not abs(breaks[at] - end) <= SLACK * np.abs(breaks[[0, -1]]).sum():
@@ -62,7 +65,7 @@ def _quotients(
     middle, scale = frames[axis][at].tolist()
     place = (float(breaks[at]) - middle) * scale
     off = 4.0 * UNIT * (abs(end) + abs(middle)) * scale
-    # The coefficients (spans, p + 1, q + 1, 4) next to the side; the last power is that of r.
+    # The coefficients (spans, p + 1, q + 1, 4) next to the side; the third index is the power of r.
     table, errors = (
         np.take(x, at, axis=axis) if axis == 1 else np.take(x, at, axis=0).swapaxes(1, 2)
         for x in (spline.coefficients, spline.errors)
@@ -91,9 +94,10 @@ def _quotients(
 def _expanded(
     table: Array, errors: Array, place: float, off: float, inward: float
 ) -> tuple[Array, Array]:
-    """Return the coefficients of powers of inward (s − `place`), with bounds of their errors.
+    """Return the coefficients of the powers of inward · (s − place), with bounds of their errors.
 
-    Axis −2 of the tables is that of the powers of s; `place` has an error bound `off`.
+    `table` and `errors` are those of the powers of s, along the last axis but one. The error of
+    `place` is at most `off`.
     """
     degree = table.shape[2] - 1
     shift, sizes, slopes = np.zeros((3, degree + 1, degree + 1))
@@ -113,7 +117,7 @@ def _expanded(
 def _as_polynomials(
     spline: Polynomials, axis: int, tables: tuple[Array, Array], scale: float, length: float
 ) -> Polynomials:
-    """Return coefficients and errors as a spline of the other parameter and of r."""
+    """Return the spline, in the other parameter and r, with given coefficients and errors."""
     table, errors = (np.ascontiguousarray(x[:, None]) for x in tables)
     if axis == 1:
         breaks, smooth, frames = spline.breaks_u, spline.smooth_u, spline.frames_u
@@ -127,11 +131,10 @@ def _as_polynomials(
 
 
 def _replayed(writer: TapeWriter, tape: Tape, first: int, is_rational: bool) -> list[int] | None:
-    """Write a tape again, with rows from `first` on in place of the coordinates of its spline.
+    """Copy the operations of a tape to `writer`, applied to the rows from `first` on.
 
-    Constants that are added to the coordinates are left out.
-
-    Return None if the outputs are not linear in the coordinates.
+    These rows replace the coordinates of the spline. Constants that are added to coordinates are
+    left out. Return the rows of the outputs; None if these are not linear in the coordinates.
     """
     rows: list[int] = []
     linear: list[bool] = []
@@ -161,9 +164,10 @@ def _replayed(writer: TapeWriter, tape: Tape, first: int, is_rational: bool) -> 
 
 
 def mapped_spline(tape: Tape, matrix: Array) -> Tape | None:
-    """Return the tape of matrix x for one of `spline_quotient`; None if numbers are not finite.
+    """Return the tape of matrix · x, for a tape x of `spline_quotient`; None if it is not finite.
 
-    If possible, the matrix maps coefficients of polynomials: bounds of sums of rows are wider.
+    If possible, the matrix is applied to the coefficients of the polynomials: sums of rows of the
+    tape would have wider bounds.
     """
     found = _linear_form(tape)
     if found is None:
@@ -189,7 +193,10 @@ def mapped_spline(tape: Tape, matrix: Array) -> Tape | None:
 
 
 def _linear_form(tape: Tape) -> tuple[Array, int | None] | None:
-    """Return matrix and row of the inverse weight if outputs are linear in x, y, z."""
+    """Return the matrix by which the outputs depend on x, y, z; None if they are not linear.
+
+    The second result is the row of the inverse weight by which they are multiplied, or None.
+    """
     forms: list[tuple[Array, int | None] | None] = []
     for row, (code, a, b, last) in enumerate(tape.operations.tolist()):
         number, distance = tape.numbers[row].tolist()
