@@ -30,8 +30,9 @@ ALL = "gaussmap.all"
 class Option(click.Option):
     """An option as the help writes it, such as "--spacing DX DY"; without values it is a flag.
 
-    The help lists it in its group, and the brief help explains it if it is a `main` one. At most
-    one of several `exclusive` options may be given.
+    "INDEX ..." stands for one index or several, which become one text with commas. The help lists
+    it in its group, and the brief help explains it if it is a `main` one. At most one of several
+    `exclusive` options may be given.
     """
 
     def __init__(
@@ -48,7 +49,8 @@ class Option(click.Option):
         words = usage.split()
         names = [word for word in words if word.startswith("-")]
         values = words[len(names) :]
-        valued = {"type": kind, "metavar": " ".join(values), "nargs": len(values)}
+        count = len(values) - (values[-1:] == ["..."])
+        valued = {"type": kind, "metavar": " ".join(values), "nargs": count}
         super().__init__(names, help=text, **(valued if values else {"is_flag": True}), **settings)
         self.group, self.exclusive, self.main = group, exclusive, main
 
@@ -73,7 +75,7 @@ class Command(click.Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse, and refuse two exclusive options."""
         try:
-            rest = super().parse_args(ctx, args)
+            rest = super().parse_args(ctx, self._joined(args))
         except click.UsageError as error:
             error.ctx = error.ctx or ctx
             raise
@@ -87,6 +89,17 @@ class Command(click.Command):
         if len(given) > 1:
             raise click.UsageError(f"{given[1]} is not allowed with {given[0]}", ctx)
         return rest
+
+    def _joined(self, args: list[str]) -> list[str]:
+        """Return arguments, with commas between the numbers of an option that takes several."""
+        several = {x.opts[-1] for x in self.params if str(x.metavar).endswith("...")}
+        joined: list[str] = []
+        for x in args:
+            if x.isdigit() and several.intersection(joined[-2:-1]):
+                joined[-1] += f",{x}"
+            else:
+                joined.append(x)
+        return joined
 
     def invoke(self, ctx: click.Context) -> None:
         """Import the module that does the work, and run it."""

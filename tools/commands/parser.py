@@ -111,6 +111,16 @@ examples:
   gaussmap plot heights.npy --spacing 30 30 --cells 80 80 -o terrain.png
 """
 
+SUPPORT_EXAMPLES = """\
+`gaussmap sample --help-all` explains SURFACE.
+
+\b
+examples:
+  gaussmap support torus --frequency 16 -o farthest.csv
+  gaussmap support part.step -o extremes.csv
+  gaussmap support part.step --normals directions.npy -o farthest.npz
+"""
+
 COMPLETION_EXAMPLES = """\
 \b
 to have it in every shell:
@@ -141,6 +151,7 @@ examples:
   gaussmap batch parts/ --scheduler tcp://10.0.0.1:8786 -o /shared/dataset
 """
 
+SUFFIXES = ".npz, .ply, .csv, .vtp, .xyz, .parquet, .gpkg, .geojson, .las or .laz"
 FOLDER = click.Path(file_okay=False, readable=False)
 FILE = click.Path(readable=False)  # for completion; files are checked where they are used
 
@@ -151,7 +162,7 @@ def parser() -> click.Group:
     program = Program(PROGRAM, help=text, epilog=EXAMPLES, context_settings=SETTINGS)
     click.version_option(__version__, message=f"{PROGRAM} %(version)s")(program)
     sampling = _sample, _mesh, _plot, _view, _batch
-    for make in (*sampling, _surfaces, _faces, _formulas, _warm, _completion):
+    for make in (*sampling, _support, _surfaces, _faces, _formulas, _warm, _completion):
         program.add_command(make())
     return program
 
@@ -179,10 +190,7 @@ def _sample() -> Command:
         "curvatures. The samples are all points with prescribed normals, and others that fill the "
         "gaps between these, as where the surface is flat or developable.",
         *_sampling(default_count=10_000),
-        _output(
-            ".npz, .ply, .csv, .vtp, .xyz, .parquet, .gpkg, .geojson, .las or .laz; with --format "
-            "-, which is standard output"
-        ),
+        _output(f"{SUFFIXES}; with --format -, which is standard output"),
         Option("--format FORMAT", format_, click.Choice(("csv", "xyz", "ply", "npy")), main=True),
         Option("--edges", edges, group="the surface"),
         *_contents(group, default),
@@ -289,6 +297,22 @@ def _batch() -> Command:
     )
 
 
+def _support() -> Command:
+    return _command(
+        "support",
+        "Find the farthest points of a surface in given directions: also on edges and borders, at "
+        "corners and tips. Without directions, they are those of the axes: the extremes of x, y "
+        "and z. A line of the file has the point, the direction, and the support value n.x.",
+        surface_argument(),
+        *_normals("directions (one of these)", "Directions"),
+        *surface_options(),
+        _output(SUFFIXES),
+        _quiet(),
+        epilog=SUPPORT_EXAMPLES,
+        brief=SURFACE + SUPPORT_EXAMPLES.partition("\n")[2],
+    )
+
+
 def _surfaces() -> Command:
     return _command(
         "surfaces",
@@ -384,27 +408,36 @@ def _amount(default_count: int) -> list[Option]:
     coverage = (
         "As many samples as it takes for every point to lie within this distance of a sample."
     )
-    frequency = (
-        "Normals: the 10 NU^2 + 2 vertices of an icosphere, an icosahedron whose edges are divided "
-        "into NU."
-    )
-    healpix = (
-        "Normals: the 12 NSIDE^2 centres of the HEALPix pixels, NSIDE a power of 2. Needs pip "
-        "install 'gaussmap[spheres]'."
-    )
     group = "how many samples (one of these; --coverage alone or with another one)"
     kinds: list[tuple[str, str, Any]] = [
         ("--count N", f"N samples (default: {default_count}).", whole(MOST)),
         ("--angle DEGREES", angle, number),
         ("--coverage LENGTH", coverage, number),
+    ]
+    beside, main = "--coverage LENGTH", "--count N"
+    amounts = [Option(*x, group=group, exclusive=x[0] != beside, main=x[0] == main) for x in kinds]
+    return amounts + _normals(group, "Normals")
+
+
+def _normals(group: str, what: str) -> list[Option]:
+    """Return the options for a set of normals or directions."""
+    frequency = (
+        f"{what}: the 10 NU^2 + 2 vertices of an icosphere, an icosahedron whose edges are divided "
+        "into NU."
+    )
+    healpix = (
+        f"{what}: the 12 NSIDE^2 centres of the HEALPix pixels, NSIDE a power of 2. Needs pip "
+        "install 'gaussmap[spheres]'."
+    )
+    kinds: list[tuple[str, str, Any]] = [
         ("--frequency NU", frequency, whole(MOST_FREQUENCY)),
         ("--healpix NSIDE", healpix, whole(MOST_FREQUENCY)),
-        ("--random COUNT", "Normals: COUNT random ones, uniform.", whole(MOST)),
+        ("--random COUNT", f"{what}: COUNT random ones, uniform.", whole(MOST)),
         ("--seed N", "The seed of --random (default: 0).", whole(MOST, least=0)),
-        ("--normals FILE.npy", "Normals: an array (S, 3), of any lengths.", FILE),
+        ("--normals FILE.npy", f"{what}: an array (S, 3), of any lengths.", FILE),
     ]
-    beside, main = ("--coverage LENGTH", "--seed N"), ("--count N", "--normals FILE.npy")
-    return [Option(*x, group=group, exclusive=x[0] not in beside, main=x[0] in main) for x in kinds]
+    beside, main = "--seed N", "--normals FILE.npy"
+    return [Option(*x, group=group, exclusive=x[0] != beside, main=x[0] == main) for x in kinds]
 
 
 def _distribution() -> list[Option]:

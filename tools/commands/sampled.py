@@ -16,6 +16,8 @@ from ...runtime.base.errors import InputError
 from ...runtime.base.progress import busy
 from ...runtime.directions.regions import Reach
 from ...runtime.samples.samples import Samples
+from ...runtime.spline.spline import Spline
+from ...runtime.surface.surface import Surface
 from ..cad.part import Part
 from ..density.request import Request, checked_request
 from ..files.numpy_files import array_file, is_array_file, read_array
@@ -24,7 +26,7 @@ from ..sources.elevations import is_raster_file
 from ..sources.named import Named
 from ..sources.surface_of import surface_of, with_tolerance
 
-__all__ = ["request_of", "sampled"]
+__all__ = ["named_normals", "named_surface", "request_of", "sampled", "spare_inputs"]
 
 
 def sampled(
@@ -33,16 +35,12 @@ def sampled(
     **how: Any,  # noqa: ANN401
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Return the samples that a command requests, and the requested unit normals."""
-    NOTICE.quiet = options.quiet
     progress = not options.quiet
-    _spare_inputs(options)
+    spare_inputs(options)
     if options.trimmed and options.offset is None:
         raise InputError("--trimmed goes with --offset DISTANCE only.")
     request = request_of(options, default_count)
-    named = Named.of(options)
-    surface_, cells = surface_of(named), None
-    if not isinstance(surface_, Part):
-        surface_, cells = with_tolerance(surface_, named)
+    surface_, cells = named_surface(options)
     how |= {"cells": cells, "on": options.on, "threads": options.threads, "progress": progress}
     with busy("sampling", progress):
         samples, normals = sample_and_normals(surface_, request, **how)
@@ -51,9 +49,19 @@ def sampled(
     return samples, normals
 
 
+def named_surface(
+    options: SimpleNamespace,
+) -> tuple[Surface | Spline | Part, tuple[int, int] | None]:
+    """Return the surface that a command names, and the cells of its spline, None by default."""
+    NOTICE.quiet = options.quiet
+    named = Named.of(options)
+    surface_ = surface_of(named)
+    return (surface_, None) if isinstance(surface_, Part) else with_tolerance(surface_, named)
+
+
 def request_of(options: SimpleNamespace, default_count: int) -> Request:
     """Return the request of the options; without any number or normals, the default count."""
-    normals = _named_normals(options)
+    normals = named_normals(options)
     asked = normals, options.count, options.angle, options.coverage
     count = default_count if all(x is None for x in asked) else options.count
     given = vars(options)
@@ -65,7 +73,7 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
     return checked_request(*amounts, options.density, given.get("threads"), reach)
 
 
-def _named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
+def named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
     """Return the normals given by name or in a file; None if a number of samples is given."""
     if options.seed is not None and options.random is None:
         raise InputError("--seed goes with --random COUNT only.")
@@ -78,7 +86,7 @@ def _named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
     return None if options.normals is None else read_array(options.normals)
 
 
-def _spare_inputs(options: SimpleNamespace) -> None:
+def spare_inputs(options: SimpleNamespace) -> None:
     """Raise InputError if the output file is one of the input files."""
     for source in (options.surface, options.normals):
         if source is not None and (is_array_file(source) or is_raster_file(source)):

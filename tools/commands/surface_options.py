@@ -106,7 +106,7 @@ def _of_faces() -> list[Option]:
     return [
         Option("--kind KIND", "Only faces of a kind; may be repeated.", group=FACES, multiple=True),
         Option("--name NAME", name, group=FACES),
-        Option("--faces INDEX,INDEX", indices, group=FACES),
+        Option("--faces INDEX ...", indices, group=FACES),
     ]
 
 

@@ -30,7 +30,7 @@ def read_part_file(named: Named) -> Part:
         index = None if named.faces is None else [int(x) for x in named.faces.split(",")]
     except ValueError:
         raise InputError(
-            f"--faces takes indices of faces, as in --faces 3,7, not {shown(named.faces)}."
+            f"--faces takes indices of faces, as in --faces 3 7, not {shown(named.faces)}."
         ) from None
     return part.select(kind=named.kind or None, name=named.name, index=index)
 

@@ -565,7 +565,8 @@ def test_exit_codes() -> None:
 
 
 COMMANDS = [
-    "sample", "mesh", "plot", "view", "batch", "surfaces", "faces", "formulas", "warm", "completion"
+    "sample", "mesh", "plot", "view", "batch", "support", "surfaces", "faces", "formulas", "warm",
+    "completion",
 ]  # fmt: skip
 
 

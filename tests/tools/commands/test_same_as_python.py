@@ -117,7 +117,7 @@ OTHERS: list[tuple[str, str, Made]] = [
      formula(TUBE, ((-1, 1), (0, "2*pi")), (False, True))),
     (f"--formula {SADDLE}", "--domain -1 1 -1 1/2", formula(SADDLE, ((-1, 1), (-1, "1/2")))),
     ("box.npz", "--edges", lambda: gm.sample(gm.read_part("box.npz"), 60, edges=True)),
-    ("box.npz", "--faces 0,3 --from-edges .2", lambda: gm.sample(
+    ("box.npz", "--faces 0 3 --from-edges .2", lambda: gm.sample(
         gm.read_part("box.npz").select(index=[0, 3]), 60, reach=gm.Reach(from_edges=0.2))),
     ("box.npz", "--faces 5 --unobstructed", lambda: gm.sample(
         gm.read_part("box.npz").select(index=[5]), 60, reach=gm.Reach(unobstructed=True))),
@@ -193,6 +193,31 @@ def test_commands_share_options_and_defaults(command: str) -> None:
     for name, option in options_of("sample").items():
         if name in own and not own[name].multiple:
             assert own[name].default == option.default
+
+
+@pytest.mark.parametrize(
+    ("source", "options", "normals"),
+    [
+        ("torus --cells 8 8 --on spline", "--frequency 2", gm.icosphere(2)),
+        ("box.npz --faces 0 3", "", [*0.0 - np.eye(3), *np.eye(3)]),
+    ],
+)
+def test_farthest_points(source: str, options: str, normals: Any, capsys: Any) -> None:
+    assert main(["support", *source.split(), *options.split(), "-o", "a.npz"]) == 0
+    whole, samples = source.startswith("box"), gm.read_samples("a.npz")
+    known = gm.GaussMap(
+        gm.read_part("box.npz").select(index=[0, 3]) if whole else gm.fit("torus", (8, 8))
+    )
+    found = known.support(normals)
+    for own, one in zip(
+        (samples.points, samples.support, samples.uv, samples.face_index, samples.normals),
+        (found.points, found.values, found.uv, found.face_index if whole else None, normals),
+        strict=True,
+    ):
+        np.testing.assert_array_equal(own, one)
+    error = f"{found.errors.max():.2g} {'mm' if whole else ''}".strip()
+    assert f"{len(normals)} farthest points of" in (out := capsys.readouterr().out)
+    assert f"to {error} along n\n" in out
 
 
 @pytest.mark.parametrize("how", [{}, {"angle": 30.0}, {"prefer": "normals"}])
