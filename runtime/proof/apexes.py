@@ -59,7 +59,7 @@ class Apex:
     normal: Array | None = None
 
     def at_pole(self, open_: Undecided, normals: Array) -> tuple[Undecided, Array, Indices]:
-        """Return the boxes that remain undecided, and solutions at a collapsed side with one normal.
+        """Return the remaining undecided boxes, and solutions at a collapsed side with one normal.
 
         Such a side is where a surface goes only part of the way around a smooth pole. The results
         are the remaining boxes, rows (k, 6) of `ProvedPlaces.places`, and the indices (k,) of their

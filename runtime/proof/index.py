@@ -63,9 +63,9 @@ CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
 # this share of the domain.
 MOST_OPEN = 0.25
 # The domain of a mirrored parameter is extended beyond its upper end, by this share of its length.
-# Points in the first half of the strip count as beyond the upper end, those in the second half as
-# at the lower end. The strip is far wider than rounding errors, so that no point is lost or
-# doubled.
+# A point near the seam is found in this strip and again at the lower end: it is kept in the first
+# half of the strip, and otherwise at the lower end. The strip is far wider than rounding errors, so
+# that both decisions agree.
 BEYOND = 2.0**-30
 NO_PAIRS = np.empty((0, 2), np.int64)
 
