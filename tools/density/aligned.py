@@ -1,8 +1,8 @@
 """Graded grids: samples where parameter lines cross, spaced by the rate at which the normal turns.
 
 Where parameter lines are close to lines of curvature, the cells of such a grid are long where the
-surface is curved in one direction only: it needs far fewer samples for the same angles than round
-cells do.
+surface is curved in one direction only: such a grid needs far fewer samples for the same angles
+between normals than round cells do.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ __all__ = ["AlignedGrid"]
 
 # The fundamental forms are evaluated at about this number of points along u and along v.
 PLACES = 64
-# On trimmed surfaces, BORDER samples are reserved for each sample of the grid next to the boundary.
-# At most TRIALS grids are tried, until the samples of one, with those reserved, are at least the
-# part CLOSE of the count.
+# On a trimmed surface, BORDER samples are reserved for each sample of the grid next to the
+# boundary. At most TRIALS grids are tried, until the samples of the grid and the reserved samples
+# together are at least CLOSE times the requested count, and at most the count.
 BORDER, CLOSE, TRIALS = 0.5, 0.95, 4
-# Numbers of lines along u are tried within the part AROUND of the best real number. Those whose
-# errors are at most AS_GOOD times the least error count as equally good.
+# Numbers of lines u = const from 1 − AROUND to 1 + AROUND times an estimate are tried. All with
+# errors of at most AS_GOOD times the least error count as equally good.
 AROUND, AS_GOOD = 0.12, 1.005
 # Gaps may be wider than requested by this factor, since the number of steps is an integer.
 SLACK = 1.02
@@ -41,7 +41,11 @@ DIGITS = 9
 
 @dataclass(frozen=True, eq=False)
 class AlignedGrid:
-    """The fundamental forms of a piece on a raster of its parameters, from which grids follow."""
+    """Makes graded grids on a piece, from fundamental forms on a raster of parameters.
+
+    The forms are those at the midpoints of the subintervals of `axes`, the intervals of u and v.
+    `piece` is the index of the piece in `space`.
+    """
 
     space: Space
     piece: int
@@ -51,7 +55,10 @@ class AlignedGrid:
 
     @classmethod
     def of(cls, space: Space, piece: int) -> AlignedGrid:
-        """Evaluate the forms of a piece, on a raster that is also cut where they jump."""
+        """Evaluate the forms of a piece on a raster of its parameters.
+
+        Lines u = const or v = const where the forms jump are lines of the raster, too.
+        """
         (geometry,) = space.pieces[piece].geometries(space.threads)
         axes = axes_with(geometry, (np.empty(0), np.empty(0)))
         forms = forms_on(geometry, axes)
@@ -59,7 +66,7 @@ class AlignedGrid:
         if len(along_u) or len(along_v):
             axes = axes_with(geometry, (along_u, along_v))
             forms = forms_on(geometry, axes)
-        # From the unit of length of the spline to the unit of the space.
+        # The first form is converted from the unit of length of the spline to that of the space.
         forms[:3] *= (space.unit / (SCALE * geometry.spline.scale)) ** 2
         return cls(
             space,
@@ -70,15 +77,26 @@ class AlignedGrid:
         )
 
     def steps(self, angle: float, distance: float) -> Steps:
-        """Return the steps for an angle (as a length on the sphere) and a scaled distance."""
+        """Return the steps between lines for the fewest samples within an angle and a distance.
+
+        Half the diagonal of each cell between neighbouring lines is at most `angle`, in radians, in
+        normal space, and at most `distance`, scaled as in `Space`, in space.
+        """
         return equal_steps(self.forms, angle, distance)
 
     def steps_for(self, count: float, distance: float) -> Steps:
-        """Return the steps for a count of samples (of the whole domain) and a scaled distance."""
+        """Return the steps between lines for a number of samples and a scaled distance.
+
+        The number counts all samples on the domain, also those outside the trim.
+        """
         return steps_for_count(self.forms, count, distance)
 
     def grid_for(self, most: int, distance: float) -> Grid:
-        """Return the finest grid of at most `most` samples, for a scaled distance."""
+        """Return about the finest grid of at most `most` samples, for a scaled distance.
+
+        Half the diagonals of its cells are at most `distance` in space if `most` samples suffice
+        for that.
+        """
         whole, grid = float(most), self.grid(self.steps_for(most, distance), most)
         if self.geometry.spline.trim is None:
             return grid
@@ -92,7 +110,7 @@ class AlignedGrid:
         return grid if len(grid) <= most else self.grid(self.steps_for(most, distance), most)
 
     def grid(self, steps: Steps, most: int | None) -> Grid:
-        """Return the grid with these steps.
+        """Return the grid whose lines are the given steps apart.
 
         If `most` is given, steps are scaled for at most that many samples on the whole domain.
         """
@@ -114,10 +132,10 @@ class AlignedGrid:
         return self._at(cells, rows, columns, (len(lines[0]), len(lines[1])))
 
     def _numbers(self, steps: Steps, lengths: list[Array], most: int) -> list[Indices]:
-        """Return the numbers of lines in each part of both axes, for lengths of parts in steps.
+        """Return the numbers of lines in the parts of both axes, for lengths of the parts in steps.
 
-        There are at most `most` crossings, unless one line in each part gives more. The errors are
-        about minimal.
+        The lines have at most `most` crossings, unless one line in each part already gives more.
+        The errors are about as small as possible.
         """
         total, found = float(lengths[0].sum()), []
         scale = math.sqrt(most / (total * float(lengths[1].sum())))
@@ -135,10 +153,11 @@ class AlignedGrid:
         return min((x for x in found if x[0] <= AS_GOOD * least), key=lambda x: x[1])[2]
 
     def _excess(self, steps: Steps, scales: list[Array]) -> float:
-        """Return the angle or the distance with scaled steps, relative to the requested one.
+        """Return the largest error of scaled steps, relative to the requested errors.
 
-        Of the two ratios, the larger one is returned. `scales` are the factors on the parts of each
-        axis.
+        It is the larger one of two ratios: of the angle to the requested angle, and of the distance
+        to the requested distance. `scales` has for each axis an array of factors, one for each
+        part.
         """
         along = [
             x * np.repeat(scale, np.diff(axis.breaks))
@@ -154,10 +173,11 @@ class AlignedGrid:
         return max(angle / steps.angle, distance / (SLACK * steps.distance))
 
     def _between(self, lines: list[Array], number: int) -> Array:
-        """Return midpoints of the neighbours on the grid with the largest angles between them.
+        """Return midpoints, in cells, between neighbours on the grid, the largest angles first.
 
-        Only neighbours along the shorter distance in space are taken: a sample between other
-        neighbours would be the nearest one, in space, to points that belong to other rows.
+        The angles are those between the normals of neighbours. Only neighbours along the parameter
+        with the shorter distance in space are considered: a sample between neighbours along the
+        other parameter would be the nearest one, in space, to points of other rows.
         """
         places, chords = [], []
         for axis in (0, 1):
@@ -169,10 +189,10 @@ class AlignedGrid:
         return np.concatenate(places)[order[:number]]
 
     def _middles(self, lines: list[Array], axis: int) -> tuple[Array, Array, Array]:
-        """Return the middles (k, 2) between neighbours along the parameter `axis`, in cells.
+        """Return the midpoints (k, 2), in cells, between neighbours along parameter `axis`, 0 or 1.
 
-        Also return the distances in space (2, k) of these neighbours, and of neighbours along the
-        other parameter; and the chords (k,) between the normals of these neighbours.
+        Also return distances in space (2, k), of neighbours along this parameter and along the
+        other one; and the chords (k,) between the normals of neighbours along this parameter.
         """
         steps = [np.gradient(x) if len(x) > 1 else np.full(1, np.inf) for x in lines]
         steps[axis] = np.diff(lines[axis])
@@ -194,7 +214,7 @@ class AlignedGrid:
         return cells, distances, chord.ravel()
 
     def _at(self, cells: Array, rows: Indices, columns: Indices, lines: tuple[int, int]) -> Grid:
-        """Return the samples at positions (N, 2), in cells, that are inside the trim."""
+        """Return the grid of the positions `cells` (N, 2) that are inside the trim."""
         piece, frame = self.space.pieces[self.piece], self.geometry.spline.frame
         uv = frame[:2] + frame[2:] * cells
         inside = piece.contains(uv)
@@ -203,20 +223,26 @@ class AlignedGrid:
 
 
 def axes_with(geometry: OnSpline, breaks: tuple[Array, Array]) -> tuple[Axis, Axis]:
-    """Return the axes of both parameters, cut at breaks."""
+    """Return the axes of u and v, cut into about `PLACES` subintervals, and at the given breaks."""
     (m, n), (along_u, along_v) = geometry.spline.cells, breaks
     return Axis.of(float(m), PLACES, along_u), Axis.of(float(n), PLACES, along_v)
 
 
 def forms_on(geometry: OnSpline, axes: tuple[Axis, Axis]) -> Array:
-    """Return the fundamental forms (7, k, l) at the midpoints of axes, in cells."""
+    """Return the fundamental forms (7, k, l) at the midpoints of a raster.
+
+    They are E, F, G, e, f, g and D of `OnSpline.forms`. Parameters are measured in cells.
+    """
     u, v = (x.middles for x in axes)
     cells = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     return geometry.forms(cells).T.reshape(7, len(u), len(v))
 
 
 def shared(lengths: Array, number: int) -> Indices:
-    """Divide a number of lines among parts: the part with the longest step gets the next line."""
+    """Divide a number of lines among parts, at least one line for each part.
+
+    Each further line goes to the part where the lines are the farthest apart.
+    """
     numbers = np.ones(len(lengths), dtype=np.int64)
     if number > len(lengths):
         numbers += np.floor(lengths * ((number - len(lengths)) / lengths.sum())).astype(np.int64)

@@ -18,7 +18,8 @@ __all__ = ["BorderLines", "places_along", "polygons_of"]
 
 # Boundaries are measured in steps of at most this part of the domain.
 FINE = 1.0 / 48.0
-# In a search for neighbours, domains have width 1 and pieces are this far apart.
+# In the search for the nearest cells, domains are scaled to width 1, and different pieces are
+# shifted this far apart.
 FAR = 16.0
 PLACES_AT_A_TIME = 1 << 17
 
@@ -27,8 +28,8 @@ PLACES_AT_A_TIME = 1 << 17
 class BorderLines:
     """L closed polygons along boundaries; polygon l is on the boundary of piece pieces[l].
 
-    Its vertices are places[starts[l] : starts[l + 1]], the first one repeated at the end. `rows`
-    (k, 8) and `limits` (k,) are those of cells at all k vertices; see `Cells`.
+    The vertices of polygon l are places[starts[l] : starts[l + 1]], the first one repeated at the
+    end. `rows` (k, 8) and `limits` (k,) are those of point cells at all k vertices; see `Cells`.
     """
 
     pieces: Indices
@@ -41,8 +42,9 @@ class BorderLines:
 def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Array, Array]:
     """Return the closed polygons of all trimmed pieces, with vertices at most `FINE` apart.
 
-    Return the pieces (L,), starts (L + 1,) and places (k, 2) of `BorderLines`; then the vertices
-    moved into the domains, modulo periods, and the limits (k,) of the first cells near them.
+    Return the pieces (L,), starts (L + 1,) and places (k, 2) of `BorderLines`. Also return the
+    vertices (k, 2) moved into the domains, modulo periods, and for each vertex the limit (k,) of
+    the nearest one of the `first` cells.
     """
     used = np.unique(first.pieces)
     numbers, lines = list[int](), [np.empty((0, 2))]
@@ -62,7 +64,10 @@ def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Ar
 
 
 def _apart(pieces: Indices, places: Array, trims: Trims) -> Array:
-    """Return parameters relative to the domain of their piece, shifted apart from other pieces."""
+    """Return points (k, 3) for a search for neighbours among parameters (k, 2) of pieces (k,).
+
+    Parameters are relative to the size of the domain. The third coordinate separates the pieces.
+    """
     low, high = trims.domains[pieces, :, 0], trims.domains[pieces, :, 1]
     found = np.empty((len(places), 3))
     found[:, :2], found[:, 2] = places / (high - low), FAR * pieces
@@ -98,9 +103,10 @@ def places_along(
 def _spaced(
     lines: BorderLines, target: TargetDensity, step: float, turn: float
 ) -> tuple[Indices, Indices, Array]:
-    """Return k positions along polygons: polygons (k,), vertices (k,), and fractions (k,).
+    """Return k positions along polygons, at the spacing of `places_along`.
 
-    A position is between a vertex and the next one; the fraction is the part of the way.
+    Return the indices of polygons (k,), the indices of vertices (k,), and fractions (k,): a
+    position is at this fraction of the way from the vertex to the next one.
     """
     rates = np.sqrt(np.clip(lines.rows[:, 6], target.floor, target.ceiling))
     lengths = np.linalg.norm(np.diff(lines.rows[:, :3], axis=0), axis=1)

@@ -1,4 +1,4 @@
-"""Covering in normal space: a bound for the angle from any normal to that of a sample."""
+"""Covering in normal space: every normal is within an angle of the normal of a sample."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .cover import STEP, Cover
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-# Normals at candidates are covered within an angle that is smaller than requested by this part. The
-# difference is for normals between candidates: along boundaries, half a step away.
+# Normals at candidates are covered within 1 − MARGIN of the requested angle. The rest is for points
+# between candidates: along boundaries, normals turn by this angle over half a step.
 MARGIN = 0.02
 # The radii of the greedy choice of normals fall from this multiple of the last radius.
 FIRST = 2.0
@@ -27,12 +27,14 @@ __all__ = ["MARGIN", "choose_apart", "chord_of", "cover_normals"]
 
 
 def chord_of(angle: float) -> float:
-    """Return the distance of unit vectors that are an angle in degrees apart."""
+    """Return the chord of an angle in degrees: the distance of unit vectors at this angle."""
     return 2.0 * math.sin(math.radians(angle) / 2.0)
 
 
 def cover_normals(cover: Cover, angle: float) -> float:
-    """Add samples until every normal of the surface is within `angle` degrees of a sample's.
+    """Add samples until all normals of the surface are near normals of samples.
+
+    At the end, the nearest normal of a sample is at most `angle` degrees away.
 
     If the prescribed normals are dense enough for that, only normals at the boundary of the
     Gaussian image are uncovered: the nearest prescribed normal may lie outside of the image. Return
@@ -77,7 +79,7 @@ def choose_apart(
     most: int | None = None,
     known: Array | None = None,
 ) -> Indices:
-    """Choose from normals (M, 3), so that each is within the chord `near` of a chosen one.
+    """Choose some of the normals (M, 3): all are within the chord `near` of a chosen normal.
 
     Return the indices of at most `most` normals, the widest gaps first; the radii of gaps fall from
     `widest`. The `known` normals (N, 3), no two nearly equal, count as chosen.
@@ -99,7 +101,7 @@ def choose_apart(
 def _apart(
     normals: Array, known: Array, near: float, widest: float, threads: int | None
 ) -> tuple[Indices, float]:
-    """Return the indices of normals farther than `near` from known ones, and the first radius.
+    """Return the indices of normals farther than `near` from known normals, and the first radius.
 
     The first radius of the choice is slightly above the largest distance from known normals, and at
     most `widest`; with a smaller one, fewer distances are updated.

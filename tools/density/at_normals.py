@@ -25,13 +25,13 @@ from .space import Space
 __all__ = ["Given", "at_count", "at_lattices", "at_normals"]
 
 
-# If a lattice gives too many samples, a coarser one replaces it. Its number of normals is this part
-# of the number that, in proportion, gives as many samples as allowed.
+# If a lattice gives too many samples, a coarser one replaces it: the number of normals is
+# multiplied by the ratio of the allowed samples to the samples found, and by this factor.
 FEWER = 0.98
 
 
 class PieceSamples(NamedTuple):
-    """The samples of a piece at normals (S, 3)."""
+    """Samples at normals (S, 3) on the piece with the index `piece`."""
 
     piece: int
     samples: Samples
@@ -40,10 +40,11 @@ class PieceSamples(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """Samples on some pieces of a space, at normals (S, 3), `density` of them per steradian.
+    """Samples at normals (S, 3) on some pieces of a space, with `density` normals per steradian.
 
-    If `same_normals` is False, each piece has its own normals, which are concatenated. On
-    `estimated` pieces the points are not proved to be all.
+    If `same_normals` is False, each piece has its own normals, and `normals` are those of all
+    pieces, concatenated. `estimated` are the indices of pieces whose points are not proved to be
+    all.
     """
 
     space: Space
@@ -58,13 +59,13 @@ class Given:
 
     @cached_property
     def pieces(self) -> Indices:
-        """The pieces (N,) of the samples."""
+        """The indices (N,) of the pieces on which the samples lie."""
         numbers = np.array([x.piece for x in self.found], dtype=np.int64)
         return np.repeat(numbers, [len(x.samples) for x in self.found])
 
     @property
     def rows(self) -> Array:
-        """Scaled points, normals and K (N, 7)."""
+        """The rows (N, 7) of the samples: scaled point, unit normal and K."""
         points, normals, K = (
             self.array(x, np.float64) for x in ("points", "normals", "gaussian_curvature")
         )
@@ -72,18 +73,21 @@ class Given:
 
     @property
     def samples_per_steradian(self) -> float:
-        """Samples per steradian of the Gaussian image; normals per steradian if it is empty."""
+        """Samples per steradian of the Gaussian image; normals per steradian if no sample is known.
+
+        The density of the normals is also returned if the Gaussian image has no area.
+        """
         image = float(self.space.solid_angles(self.density).sum())
         return len(self) / image if len(self) and image > 0.0 else self.density
 
     @property
     def developable(self) -> int | None:
-        """The number of patches without a support function; None if nothing was searched."""
+        """The number of patches that have no support function; None if no piece was searched."""
         numbers = [x.samples.report.developable_patches for x in self.found]
         return sum(x or 0 for x in numbers) if numbers else None
 
     def array(self, name: str, dtype: DTypeLike) -> NDArray[Any]:
-        """Return a field (N, …) of the samples."""
+        """Return the field `name` (N, …) of the samples of all pieces."""
         dtype, parts, first = dtype_of(name, dtype), [np.empty((0, *row_shape(name)))], 0
         for piece, samples, normals in self.found:
             indices = self.space.pieces[piece].indices
@@ -100,10 +104,10 @@ class Given:
 
 
 def at_normals(space: Space, normals: Array, curved: Iterable[int], progress: bool) -> Given:
-    """Return all points that have one of normals (S, 3), each once.
+    """Return all points whose normal is one of the given normals (S, 3), each point once.
 
-    On pieces with a proof all points are found. Of the other pieces, only those in `curved` are
-    searched, on their splines.
+    On pieces with a proof all points are found. Of the other pieces, only those with an index in
+    `curved` are searched, on their splines.
     """
     density, found, estimated = len(normals) / (4 * math.pi), list[PieceSamples](), list[int]()
     for k, piece in enumerate(space.pieces):
@@ -127,8 +131,8 @@ def at_lattices(
 ) -> Given:
     """Return samples at lattices of `density` normals per steradian, one lattice for each piece.
 
-    While there are more than `most` samples, coarser lattices are searched. A piece gets no samples
-    if less than half of one is expected.
+    While there are more than `most` samples, coarser lattices are searched. A piece has no samples
+    if less than half a sample is expected.
     """
     pieces = list(pieces)
     while True:
@@ -140,7 +144,7 @@ def at_lattices(
 
 
 def at_count(space: Space, counts: Indices, progress: bool) -> Given:
-    """Return samples at normals of lattices, about counts[k] of them on piece k."""
+    """Return samples at lattices of normals: about counts[k] samples on piece k."""
     parts, densities = list[PieceSamples](), [0.0]
     for piece in np.flatnonzero(counts).tolist():
 
@@ -161,7 +165,10 @@ def _given(space: Space, density: float, found: tuple[PieceSamples, ...]) -> Giv
 def _searched(
     space: Space, pieces: Iterable[int], search: Callable[[OnSpline], tuple[Samples, Array] | None]
 ) -> Iterable[PieceSamples]:
-    """Yield the results of a search on pieces, with a warning for pieces without a spline."""
+    """Yield the samples that `search` finds on the splines of pieces.
+
+    An error on one of several pieces becomes a warning; the other pieces are searched.
+    """
     for k in pieces:
         try:
             for geometry in space.pieces[k].geometries(space.threads):
@@ -187,5 +194,5 @@ def _at_lattice(geometry: OnSpline, density: float, progress: bool) -> tuple[Sam
 
 
 def _at_chosen(geometry: OnSpline, chosen: Chosen, progress: bool) -> tuple[Samples, Array]:
-    """Return the samples at the normals of a lattice, with all fields, and the normals."""
+    """Return the samples at the chosen normals, with all fields, and these normals."""
     return chosen.samples(geometry, ARRAY_NAMES_ON_SURFACE, np.float64, progress)

@@ -1,4 +1,4 @@
-"""The boundary of a trim on a raster over the parameters, to find boxes that it may intersect."""
+"""The boundary of a trim on a raster of the parameters, to find the boxes that it may intersect."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class Border:
     n: int
 
     def passes(self, boxes: Array) -> Flags:
-        """Return which boxes (M, 4), u0, v0, u1, v1, the boundary may intersect."""
+        """Return whether the boundary may intersect each box (M, 4), given as u0, v0, u1, v1."""
         i, j, k, m = self._pixels(boxes)
         sums = self._sums
         return sums[k + 1, m + 1] - sums[i, m + 1] - sums[k + 1, j] + sums[i, j] > 0
 
     def near(self, boxes: Array, places: Array) -> Flags:
-        """Return which parameters (k, 2) are in pixels that one of the boxes (M, 4) intersects."""
+        """Return whether parameters (k, 2) are in a pixel that one of the boxes (M, 4) meets."""
         marks = np.zeros((self.n + 1, self.n + 1), dtype=np.int64)
         i, j, k, m = self._pixels(boxes)
         np.add.at(marks, (i, j), 1)
@@ -42,20 +42,26 @@ class Border:
         return covered[i, j]
 
     def _pixels(self, places: Array) -> Indices:
-        """Return the pixels (2, k) of points (k, 2), or (4, k) of the corners of boxes (k, 4)."""
+        """Return the indices of pixels (2, k) that contain points (k, 2).
+
+        For boxes (k, 4), return the indices (4, k) of the pixels of their two corners.
+        """
         low, rates = self._frame
         found = np.floor((places.reshape(-1, 2) - low) * rates).astype(np.int64)
         return found.clip(0, self.n - 1).reshape(places.shape).T
 
     @cached_property
     def _frame(self) -> tuple[Array, Array]:
-        """The smallest parameters (2,), and the pixels per unit of the parameters (2,)."""
+        """The smallest u and v of the domain (2,), and the pixels per unit of u and of v (2,)."""
         low, high = np.array(self.domain).T
         return low, self.n / (high - low)
 
     @cached_property
     def _sums(self) -> NDArray[np.signedinteger]:
-        """(n + 1, n + 1): the number of boundary pixels below and left of each corner."""
+        """(n + 1, n + 1): the number of boundary pixels below and left of each corner.
+
+        If the trim does not know where its boundary is, all pixels count as boundary pixels.
+        """
         passed, all_known = self.trim.cells_of_border(self.domain, (self.n, self.n))
         dtype = np.int16 if self.n**2 <= np.iinfo(np.int16).max else np.int32
         sums = np.zeros((self.n + 1, self.n + 1), dtype=dtype)

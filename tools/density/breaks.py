@@ -1,6 +1,6 @@
 """Lines u = const or v = const at which the curvature of a surface jumps, or K changes its sign.
 
-Such lines are joints of a plane and a fillet, knots, and parabolic curves that are parameter lines.
+Examples are joints of a plane and a fillet, knots, and parabolic curves that are parameter lines.
 The lines of a grid stay half a step away from them.
 """
 
@@ -18,7 +18,8 @@ __all__ = ["breaks_along"]
 # Forms are compared along this number of lines.
 ACROSS = 8
 # A value may jump if it changes by more than JUMP between neighbouring points, relative to the
-# largest value. It jumps if REMAINS of this change is left after BISECTIONS.
+# largest value. It jumps if, in each of BISECTIONS bisections, one half of the interval still has
+# more than the part REMAINS of this change.
 JUMP, REMAINS, BISECTIONS = 0.1, 0.4, 8
 # Intervals are divided at this part, and not at 1/2, which by symmetry may be exactly where K = 0.
 HALF = 0.47
@@ -31,7 +32,7 @@ MOST = 64
 
 
 def breaks_along(geometry: OnSpline, axes: tuple[Axis, Axis], forms: Array, along: int) -> Array:
-    """Return the breaks along parameter `along` (0 or 1), in cells.
+    """Return the breaks, in cells, along u (`along` is 0) or along v (`along` is 1).
 
     `forms` (7, k, l) are the fundamental forms at the midpoints of axes.
     """
@@ -61,21 +62,30 @@ def breaks_along(geometry: OnSpline, axes: tuple[Axis, Axis], forms: Array, alon
 
 
 def _forms_at(geometry: OnSpline, places: Array, others: Array, along: int) -> Array:
-    """Return forms (7, l, k) at values (k,) of one parameter and values (l,) of the other."""
+    """Return the fundamental forms (7, l, k) where k lines cross l lines of the other parameter.
+
+    The lines are at the values `places` (k,) of the parameter of index `along`, and at the values
+    `others` (l,) of the other parameter.
+    """
     lines = np.meshgrid(others, places, indexing="ij")
     cells = np.stack(lines[::-1] if along == 0 else lines, axis=-1).reshape(-1, 2)
     return geometry.forms(cells).T.reshape(7, len(others), len(places))
 
 
 def _values(forms: Array, scales: Array) -> Array:
-    """Return values that may jump (3, l, k): rates of the normal by u and v, and sign of K."""
+    """Return values (3, l, k) that may jump: the turning of the normal along u and v, and K.
+
+    The rates of turning are relative to `scales`; K is replaced by its sign, about 0 where K is
+    tiny.
+    """
     signs = forms[6] / (np.abs(forms[6]) + FLAT * scales[2])
     return np.stack([np.sqrt(forms[3] / scales[0]), np.sqrt(forms[5] / scales[1]), signs])
 
 
 def _changes(low: Array, high: Array) -> Array:
-    """Return the changes (k,) of values (3, l, k): means over l, the largest of the three.
+    """Return the changes (k,) from `low` to `high`, both (3, l, k).
 
+    The change of each of the three values is its mean over l; the largest one of the three counts.
     K changes its sign only if it does so along most of a line; see `ALONG`.
     """
     along_u, along_v, signs = np.abs(high - low).mean(axis=1)

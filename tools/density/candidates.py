@@ -1,4 +1,4 @@
-"""The choice of samples among candidates far from all samples."""
+"""Choosing samples among candidates: a candidate far from all samples becomes a sample."""
 
 from __future__ import annotations
 
@@ -18,20 +18,21 @@ __all__ = ["Block", "Candidates"]
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
 
-# Candidates are split into parts for threads: into FEW parts at most if these have at least SMALL
-# candidates each, into MOST at most if these have at least PART.
+# Candidates are split into parts for threads: into at most FEW parts of at least SMALL candidates,
+# or, if they are many, into at most MOST parts of at least PART candidates.
 SMALL, FEW, PART, MOST = 1 << 13, 8, 1 << 16, 64
-# Candidates nearer to a sample than this part of a radius are left out of the next searches.
+# After a search with a radius, candidates nearer to a sample than this part of the radius are left
+# out of the next searches.
 LEFT_OUT = 0.7
 
 
 class Candidates:
     """Candidates for samples, each with its distance from the nearest sample.
 
-    Candidates are rows (M, 8) of point, unit normal, density w, and one more number; a candidate
-    without a normal is never chosen. All distances are multiplied by √w of the candidate. A sample
-    counts only for candidates on its side of the surface: the angle between their normals is at
-    most 60 degrees.
+    Candidates are rows (M, 8): point, unit normal, density w, and a column that is ignored. A
+    candidate without a normal is never chosen. All distances are multiplied by √w of the candidate.
+    A sample counts only for candidates on its side of the surface: the angle between their normals
+    is at most 60 degrees.
 
     A new sample updates the distances of the candidates around it: a few dozen updates of each
     candidate in total.
@@ -70,20 +71,24 @@ class Candidates:
         return known
 
     def update_distances(self, samples: Array, radius: float) -> None:
-        """Update the distances within a radius of samples (N, 6), point and unit normal."""
+        """Update the distances of candidates within a radius of samples (N, 6).
+
+        A row of a sample is its point and unit normal.
+        """
         samples = np.ascontiguousarray(samples)
         self.each(lambda k: self.parts[k].update_distances(samples, radius), len(self.parts))
 
     def reset_distances(self, squares: Array | None = None) -> None:
-        """Make all distances infinite again, or replace their squares (M,)."""
+        """Set all distances to infinity, or their squares to `squares` (M,)."""
         for part in self.parts:
             part.reset_distances(np.inf if squares is None else squares[part.order])
 
     def choose(self, radius: float, most: int) -> Indices:
-        """Choose candidates until all others are within a radius of a sample or of a chosen one.
+        """Choose candidates until all others are within a radius of a sample or a chosen one.
 
-        Return their rows. If more than `most` are chosen, return `most` of them, from all over the
-        surface; then distances are too small, since those left out count as samples.
+        Return the row indices of the chosen candidates. If they are more than `most`, return only
+        `most` of them, from all over the surface; then distances are too small, since the chosen
+        candidates that are not returned count as samples.
         """
         found = dict[int, Numbers]()
         # First the even parts, then the odd ones: neighbouring parts that choose at the same time
@@ -98,7 +103,7 @@ class Candidates:
         return chosen if len(chosen) <= most else chosen[np.arange(most) * len(chosen) // most]
 
     def _update_other_parts(self, chosen: Mapping[int, Numbers], radius: float) -> None:
-        """Update the distances in every part by the candidates chosen in all other parts."""
+        """Update the distances in each part for the candidates chosen in all other parts."""
         numbers = np.zeros(len(self.parts) + 1, dtype=np.int64)
         for k, rows in chosen.items():
             numbers[k + 1] = len(rows)
@@ -117,15 +122,15 @@ class Candidates:
         self.each(update, len(self.parts))
 
     def each(self, work: Callable[[int], Result], count: int) -> list[Result]:
-        """Return work(k) for k < count, on the threads."""
+        """Return the list of work(k) for all k < count; the calls run on the threads."""
         return list(over_ranges(lambda first, last: work(first), count, 1, self.threads))
 
 
 class Block:
-    """Some of the candidates, in hash grids of their own."""
+    """A part of the candidates, with its own hash grids."""
 
     def __init__(self, rows: Array, radius: float, order: Numbers, candidates: Array) -> None:
-        """Sort rows into `candidates`, of the same shape, and their indices into `order`."""
+        """Write sorted rows to `candidates`, of the same shape, and their indices to `order`."""
         count = len(rows)
         box, sizes = np.empty((2, 3)), np.zeros(LEVELS)
         finest, coarsest = measure(rows, box, sizes)
@@ -134,21 +139,21 @@ class Block:
         self.grids = HashGrids(candidates, starts, sizes, box, radius)
         sort_candidates(rows, finest, self.grids, np.empty(count, dtype=np.int32), order)
         self.order = order
-        # Candidates that are still farther than `least` from all samples.
+        # `searched` are the candidates that were farther than `least` from all samples.
         self.searched, self.least = np.empty(0, dtype=np.int32), np.inf
 
     def update_distances(self, samples: Array, radius: float) -> None:
-        """See `Candidates`."""
+        """See `Candidates.update_distances`."""
         update_distances(self.grids, radius, samples)
 
     def reset_distances(self, values: Array | float) -> None:
-        """See `Candidates`."""
+        """See `Candidates.reset_distances`."""
         squares = self.grids.candidates[:, SQUARE]
         squares[:] = np.where(squares < 0.0, squares, values)
         self.least = np.inf
 
     def choose(self, radius: float) -> Numbers:
-        """Choose candidates; returns their rows in the grids. See `Candidates`."""
+        """Return the rows, in the grids, of chosen candidates; see `Candidates.choose`."""
         if radius <= self.least:
             self.least = LEFT_OUT * radius
             self.searched = np.arange(len(self.order), dtype=np.int32)

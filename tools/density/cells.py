@@ -1,8 +1,8 @@
 """Cells: rectangles of parameters, each with a place, a parameter pair that may become a sample.
 
-The place of a cell is inside the trim: its midpoint, or a subplace if the trim cuts the cell. Where
-the inside is too narrow for that, the cell is replaced by points next to the boundary: *point
-cells*, which have almost no extent.
+The place of a cell is inside the trim: it is the midpoint of the cell, or another point of a raster
+in the cell if the midpoint is outside. Where the inside is too narrow for the raster, the cell is
+replaced by points next to the boundary: *point cells*, which have almost no extent.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ POINT = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """M cells: the indices of their `pieces` (M,), boxes (M, 4), u0, v0, u1, v1, places (M, 2).
+    """M cells: indices of their `pieces` (M,), boxes (M, 4) as u0, v0, u1, v1, and places (M, 2).
 
     `whole` (M,) is True for cells that no boundary intersects. `limits` (M,) are least radii of
     curvature, which replace smaller ones; 0 if unknown. `rows` (M, 8) and `numbers` (M, 7) are
@@ -68,7 +68,7 @@ class Cells:
         return Cells(*(x[chosen] for x in self._arrays))
 
     def __add__(self, other: Cells) -> Cells:
-        """Return these cells, followed by others."""
+        """Return these cells, followed by the cells of `other`."""
         return joined([self, other])
 
     @property
@@ -98,7 +98,7 @@ class Cells:
         return self
 
     def write(self, rows: Indices, cells: Cells) -> None:
-        """Replace some of the cells by as many others."""
+        """Replace the cells with the indices `rows` by as many other cells."""
         for mine, others in zip(self._arrays, cells._arrays, strict=True):
             mine[rows] = others
 
@@ -106,12 +106,15 @@ class Cells:
 
     @property
     def radii(self) -> Array:
-        """Radii (M,) of balls around the places that contain the cells."""
+        """The radii (M,) of balls around the places; each ball contains its cell."""
         return self.numbers[:, RADIUS]
 
     @property
     def chords(self) -> Array:
-        """The largest chord (M,) from a normal of each cell to that at its place, 2 if unknown."""
+        """The largest chord (M,) between the normal at each place and a normal of its cell.
+
+        It is 2 if it is unknown.
+        """
         return self.numbers[:, CHORD]
 
 
@@ -137,12 +140,15 @@ def merged(parts: Sequence[Cells]) -> Cells:
 
 
 def halved(cells: Cells, along_u: Flags) -> Cells:
-    """Return the halves (2 M) of cells, along u or along v, not evaluated."""
+    """Return the halves (2 M) of cells, not evaluated.
+
+    Where `along_u` (M,) is True, the u interval of the cell is bisected, elsewhere its v interval.
+    """
     return into_parts(cells, np.where(along_u[:, None], (2, 1), (1, 2)))
 
 
 def into_parts(cells: Cells, parts: Indices) -> Cells:
-    """Return cells cut into parts (M, 2) along u and v, not evaluated."""
+    """Return the parts of cells, not evaluated; their numbers along u and v are `parts` (M, 2)."""
     total = parts.prod(axis=1)
     check_memory("candidates", total.sum())
     owner = np.repeat(np.arange(len(cells)), total)
@@ -152,12 +158,12 @@ def into_parts(cells: Cells, parts: Indices) -> Cells:
 
 
 def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
-    """Yield the pieces of cells that are sorted by piece, with the rows of each."""
+    """Yield the index of each piece and the slice of its cells; cells are sorted by piece."""
     yield from runs(cells.pieces)
 
 
 def runs(numbers: Indices) -> Iterator[tuple[int, slice]]:
-    """Yield runs of equal numbers (k,): the number, and its rows."""
+    """Yield the runs of equal integers in an array (k,): the integer, and the slice of the run."""
     ends = (np.flatnonzero(np.diff(numbers)) + 1).tolist()
     if len(numbers):
         firsts = [0, *ends]
@@ -167,7 +173,7 @@ def runs(numbers: Indices) -> Iterator[tuple[int, slice]]:
 
 
 def grouped(numbers: Indices) -> Iterator[tuple[int, Indices]]:
-    """Yield the distinct numbers (k,), sorted, with the rows of each."""
+    """Yield the distinct integers of an array (k,), sorted, each with its indices in the array."""
     rows = np.argsort(numbers, kind="stable")
     for number, part in runs(numbers[rows]):
         yield number, rows[part]
@@ -176,7 +182,7 @@ def grouped(numbers: Indices) -> Iterator[tuple[int, Indices]]:
 def new_cells(
     pieces: Indices, boxes: Array, whole: Flags | bool = False, limits: Array | float = 0.0
 ) -> Cells:
-    """Return unevaluated cells of pieces (M,)."""
+    """Return unevaluated cells of pieces (M,), with the midpoints of their boxes as places."""
     count = len(pieces)
     places, nothing = (boxes[:, :2] + boxes[:, 2:]) / 2.0, np.empty((count, 0))
     whole, limits = np.full(count, whole), np.full(count, limits, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""The normals to search for: prescribed ones, or a lattice that yields a number of samples."""
+"""The normals to search for: given ones, or a lattice that yields about a number of samples."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ __all__ = ["Chosen", "choose"]
 # The relative accuracy of the number of samples, and the largest number of attempts.
 NEAR_ENOUGH = 0.01
 ATTEMPTS = 20
-# The first attempts, up to IN_PROPORTION, scale the density by the ratio of the counts. The others
-# vary it up and down in steps of DITHER: with few samples, several appear or vanish together.
+# Attempts before IN_PROPORTION scale the density by the ratio of the requested to the found number.
+# Later ones vary the density up and down in relative steps of DITHER: with few samples, several
+# appear or vanish together.
 IN_PROPORTION, DITHER = 6, 0.008
 # The largest number of normals per requested sample (a thin Gaussian image has few samples).
 NORMALS_PER_SAMPLE = 100
@@ -51,7 +52,7 @@ class Chosen:
         return len(self.source)
 
     def part(self, first: int, last: int, threads: int | None) -> NDArray[np.float64]:
-        """Return the normals [first, last)."""
+        """Return the normals with the indices [first, last)."""
         if isinstance(self.source, Lattice):
             return self.source.normals(self.density, first, last, threads)
         return self.source[first:last]
@@ -59,7 +60,7 @@ class Chosen:
     def samples(
         self, geometry: OnPatches, fields: Sequence[str], dtype: DTypeLike, progress: bool
     ) -> tuple[Samples, NDArray[np.float64]]:
-        """Return the samples at the normals of a lattice, and the normals.
+        """Return the samples at the chosen normals, and these normals.
 
         The search on the spline is skipped if its hits are already known.
         """
@@ -69,15 +70,16 @@ class Chosen:
         else:
             normals = self.part(0, len(self), geometry.threads)
             found = geometry.samples_at(normals, fields, dtype, progress, self.density)
-        # No user prescribed these normals: normals without a point are replaced by others.
+        # No user prescribed these normals, so that undecided ones are not reported.
         report = replace(found.report, undecided=None)
         return geometry.samples(found.arrays(), report), normals
 
 
 def choose(geometry: OnPatches, count: int, progress: bool) -> Chosen:
-    """Return a lattice with about `count` samples.
+    """Return a lattice of normals at which the surface has about `count` samples.
 
-    For more samples than `PILOT`, the density is extrapolated from that of `PILOT` samples.
+    For `count` > `PILOT`, the density of the lattice is extrapolated from the density for `PILOT`
+    samples.
     """
     pilot = min(count, PILOT)
     chosen, hits = _adapted(geometry, pilot, progress)
@@ -94,13 +96,13 @@ def choose(geometry: OnPatches, count: int, progress: bool) -> Chosen:
 
 
 def _with_samples(geometry: OnPatches, chosen: Chosen, hits: int) -> float:
-    """Return about how many of the hits at chosen normals become samples."""
+    """Return an estimate of how many of the hits at the chosen normals become samples."""
     assert chosen.found is not None
     return hits * geometry.share_at(*chosen.found)
 
 
 def _adapted(geometry: OnPatches, count: int, progress: bool) -> tuple[Chosen, int]:
-    """Adapt the density of a lattice to `count` hits; return it and the number of hits."""
+    """Return a lattice with a density adapted to about `count` hits, and the number of its hits."""
     spline, threads = geometry.spline, geometry.threads
     lattice = Lattice.around(spline, geometry.reach)
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))

@@ -17,7 +17,8 @@ from .voronoi import Voronoi
 
 __all__ = ["STEP", "Cover"]
 
-# The radii at which samples are chosen fall from WIDEST times the expected one, by the factor STEP.
+# The radii at which samples are chosen fall from WIDEST times the expected radius, by the factor
+# STEP.
 WIDEST, STEP = 1.25, 0.98
 # For a maximal set of n samples with mutual distances of at least r, relative to the sizing
 # function, n r² is about this part of the integral of the target density.
@@ -30,25 +31,26 @@ FINE, SMALLER = 0.4, 1.4
 FINEST = 0.07
 # Boundaries are covered at points whose spacing is twice this part of the covering radius.
 ON_BORDERS = 0.05
-# Added samples move to centres twice. MISSING are the parts of them that are not yet chosen before
-# the first move, between the moves, and after the second. With 0.12 before the first move, samples
-# in a row leave wider gaps than without the moves.
+# Added samples move to the centres of their Voronoi cells twice. MISSING are the parts of the
+# samples to be added that are still missing before the first move, between the moves, and after the
+# second. With 0.12 before the first move, samples in a row leave wider gaps than without the moves.
 MISSING = (0.2, 0.05, 0.0)
-# The search for gaps for the missing samples begins at this multiple of the covering radius.
+# The search for gaps, where the missing samples are added, begins with gaps of this multiple of the
+# covering radius.
 WIDEST_GAP = 2.0
-# Gaps between candidates are searched down to the radius, then to this part of it.
+# Gaps between candidates are searched down to the covering radius, then to this part of it.
 STEP_DOWN = 0.85
 # The largest number of cells that are bisected at a time, to bound the memory.
 BLOCK = 1 << 18
 
 
 class Cover:
-    """Samples of a space: given ones, and others that are added until it is covered.
+    """The samples of a space: given samples, and samples that are added until it is covered.
 
-    A point is covered if a sample is within radius/√w, with the target density w of the space.
+    A point is covered if a sample is within radius/√w, where w is the target density of the space.
     Lengths are scaled as in `Space`. The samples are rows of `points` (N, 6), point and unit
-    normal, and `curvatures` (N,), K. The first `given` samples are those `at_normals`. The others
-    lie at the places of the cells `added`; those of the `grid`, if there is one, come first.
+    normal, and `curvatures` (N,), K. The first `given` samples are those `at_normals`. The added
+    samples lie at the places of the cells `added`, first the samples of the `grid`, if it exists.
 
     Samples are chosen among the places of `cells`. Cells for a radius have numbers; cells for a
     count have sides instead, see `Space.light`. `show_count` is called with the number of samples
@@ -70,7 +72,7 @@ class Cover:
         show_count: Callable[[int], object] = lambda count: None,
         grid: Grid | None = None,
     ) -> None:
-        """Begin with samples at normals, and those of a grid."""
+        """Begin with the given samples at normals, and with the samples of a grid."""
         self.space, self.show_count, self.grid = space, show_count, grid
         self.at_normals = Given(space) if given is None else given
         rows = self.at_normals.rows
@@ -113,18 +115,18 @@ class Cover:
             self._candidates.update_distances(self.points[start:], radius)
 
     def to_count(self, count: int) -> None:
-        """Add samples until there are `count`."""
+        """Add samples until there are `count` samples in total."""
         radius, largest = WIDEST * self._radius_for(count), self._largest_radius
         self._begin(radius, count)
         while self.count == count > self.fixed + 1 and radius < largest:
-            # The first candidates used up the count, perhaps not in the widest gaps.
+            # The first chosen candidates used up the count, perhaps not in the widest gaps.
             self.remove_added()
             radius *= 2.0
             self._begin(radius, count)
         self.fill_up(count)
 
     def spread(self, count: int) -> None:
-        """Choose most of the missing samples up to `count`; then move samples and fill gaps, twice.
+        """Add samples until there are `count`: choose most of them, then move and fill gaps, twice.
 
         A move takes each sample towards the centre of the smallest ball around its Voronoi cell:
         Lloyd's method for a high power of the distance instead of its square.
@@ -134,26 +136,27 @@ class Cover:
         if self.count > self.fixed:
             for missing in MISSING[1:]:
                 assert self._sides is not None
-                # Fine points are at most 0.75 radii of a cell from its place. The sample nearest to
-                # one of them is therefore within `wide` of the place, unless a gap is there.
+                # A fine point is at most 0.75 radii of its cell from the place of the cell. The
+                # sample nearest to the fine point is therefore within `wide` of the place, except
+                # in a gap.
                 wide = (1.0 + 1.5 * FINE) * self.radius
                 voronoi = Voronoi(self._candidates, self.cells, self._sides, self.points, wide)
                 self.move_to_centres(voronoi)
                 self.fill_gaps(voronoi, WIDEST_GAP * self.radius, count - round(missing * free))
 
     def fill_up(self, count: int) -> None:
-        """Add samples in the widest gaps until there are `count`."""
+        """Add samples in the widest gaps until there are `count` samples in total."""
         self.narrow(self.radius, 0.0, count)
 
     def narrow(self, widest: float, least: float, most: int | None) -> None:
-        """Add samples, with radii that fall from `widest` to `least`, until there are `most`."""
+        """Sweep with radii that fall from `widest` to `least`, until there are `most` samples."""
         radius = widest
         while self.count != most and radius > least:
             radius = max(STEP * radius, least)
             self.sweep(radius, most)
 
     def sweep(self, radius: float, most: int | None = None) -> None:
-        """Add candidates until all of them are covered within a radius, or there are `most`."""
+        """Add candidates until all are within a radius of a sample, or there are `most` samples."""
         if radius < self._candidates.radius / SMALLER:
             self.take_candidates(radius / SMALLER, radius, light=self._sides is not None)
         self.radius = radius
@@ -162,7 +165,7 @@ class Cover:
     def take_candidates(self, radius: float, widest: float, *, light: bool = False) -> None:
         """Make candidates for `sweep` with radii that fall from `widest` to `radius`.
 
-        They are the places of cells whose radii are FINE times `radius`.
+        The candidates are the places of cells whose radii are FINE times `radius`.
         """
         for name in ("cells", "_candidates"):  # free the old ones, which take as much memory
             vars(self).pop(name, None)
@@ -174,10 +177,10 @@ class Cover:
         self._candidates = self._with_distances(self.cells.rows, radius, widest)
 
     def whole(self, turn: float) -> Cells:
-        """Return a few cells that partition the surface, and cells along its boundaries.
+        """Return a few cells that partition the surface, and point cells along its boundaries.
 
-        Normals turn by about `turn` radians between neighbours along boundaries, and by half of it
-        within each such cell.
+        Normals turn by about `turn` radians from one point cell to the next. The `chords` of these
+        cells include half of this angle.
         """
         space = self.space
         borders = space.along_borders(math.inf, turn)
@@ -190,7 +193,7 @@ class Cover:
         return self.space.middles(np.setdiff1d(self.space.first.pieces, held))
 
     def remove_last(self, number: int) -> None:
-        """Remove the samples that were added last, but leave one on each piece."""
+        """Remove the `number` samples added last, but leave an added sample on each piece."""
         numbers = np.bincount(self.added.pieces, minlength=len(self.space.pieces))
         removed: list[int] = []
         for k in range(len(self.added) - 1, self.fixed - self.given - 1, -1):
@@ -209,7 +212,10 @@ class Cover:
         self._candidates.update_distances(self.points[first:], self.radius)
 
     def evaluate_exactly(self) -> None:
-        """From now on, take points and normals from the sampled surface itself."""
+        """Replace the added samples by points and normals of the sampled surface itself.
+
+        Samples that are added later are taken from this surface, too.
+        """
         space, added = self.space.exact, self.added
         if space is not self.space:
             self.space = space
@@ -230,7 +236,7 @@ class Cover:
         self.added.write(moved - self.given, cells)
 
     def fill_gaps(self, voronoi: Voronoi, widest: float, count: int) -> None:
-        """Add samples at fine points of the cells, the widest gaps first, until there are `count`.
+        """Add samples at fine points of cells, the widest gaps first, until there are `count`.
 
         The search begins with gaps of the radius `widest`.
         """
@@ -256,7 +262,10 @@ class Cover:
             self.narrow(widest, 0.0, count)
 
     def _evaluated_at(self, rows: Indices, places: Array) -> tuple[Cells, Indices]:
-        """Return point cells at parameters (k, 2) in cells `rows`, by piece, and their order."""
+        """Return evaluated point cells, sorted by piece, and the order (k,) that sorts them.
+
+        The point cells are at parameters `places` (k, 2) in the cells with the indices `rows` (k,).
+        """
         order = np.argsort(self.cells.pieces[rows], kind="stable")
         rows = rows[order]
         pieces, limits = self.cells.pieces[rows], self.cells.limits[rows]
@@ -287,7 +296,7 @@ class Cover:
     def _choose(
         self, cells: Cells, candidates: Candidates, radius: float, most: int | None
     ) -> None:
-        """Add the places of cells that are far from all samples."""
+        """Add the places of cells farther than a radius from all samples, up to `most` samples."""
         room = len(cells) if most is None else most - self.count
         if room > 0:
             self._append(cells[candidates.choose(radius, room)])
@@ -303,7 +312,10 @@ class Cover:
         self._append(cells)
 
     def _joined(self) -> Cover:
-        """Append pending samples to the arrays: concatenating many at once is faster."""
+        """Append pending samples to the arrays, and return the cover.
+
+        Samples wait until then since concatenating many of them at once is faster.
+        """
         if self._waiting:
             added = joined(self._waiting)
             self._waiting = []
@@ -329,9 +341,9 @@ class Cover:
         self._cover_small_cells(cells[far & small], radius, most)
 
     def _borders(self, radius: float) -> Cells:
-        """Return cells along boundaries whose radii reach halfway to their neighbours.
+        """Return point cells along boundaries, with radii that reach halfway to the next cell.
 
-        In tips too narrow for other cells, these cells cover the surface.
+        In tips too narrow for other cells, the balls of these radii cover the surface.
         """
         borders = self.space.along_borders(2.0 * ON_BORDERS * radius)
         borders.numbers[:, RADIUS] += ON_BORDERS * radius / np.sqrt(borders.rows[:, 6])
@@ -348,7 +360,7 @@ class Cover:
         self._choose(cells, self._with_distances(rows, radius, radius), radius, most)
 
     def _with_distances(self, rows: Array, radius: float, widest: float) -> Candidates:
-        """Return rows as candidates with their distances from all samples, within `widest`."""
+        """Return rows (M, 8) of cells as candidates, with distances from samples up to `widest`."""
         candidates = Candidates(rows, radius, self.space.threads, split=True)
         for samples in (self._points, *(x.rows[:, :6] for x in self._waiting)):
             candidates.update_distances(samples, widest)

@@ -26,15 +26,15 @@ ON_BORDERS = 0.025
 def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
     """Return a bound of the distance from any point of the surface to the nearest sample.
 
-    Samples are points (N, 3), or points and unit normals (N, 6). With normals, the distance of a
-    point is that from the nearest sample on its side of the surface, by the normals at the places
-    of cells; without such a sample, from the nearest of all.
+    Samples are points (N, 3), or points and unit normals (N, 6). With normals, only samples on the
+    same side of the surface count for a point, judged by the normal at the place of its cell; if
+    there is no such sample, all samples count.
 
     Points and the distance are scaled as in `Space`. The method is branch and bound: a cell is cut
-    if it may contain a point farther away than a limit: TIGHT d, where d is the distance of the
-    farthest place, or `asked` if d ≤ asked < TIGHT d. If the cells are on a spline and the samples
-    on the surface, twice the distance between spline and surface is added. The bound is infinite if
-    there are no samples.
+    if it may contain a point farther than a limit from all samples. The limit is `asked` if
+    d ≤ asked < TIGHT d, where d is the largest distance of a place from the nearest sample;
+    otherwise it is TIGHT d. If the cells are on a spline and the samples on the surface, twice the
+    distance between spline and surface is added. The bound is infinite if there are no samples.
     """
     if len(samples) == 0:
         return math.inf
@@ -66,7 +66,7 @@ class _Distances:
         self.tree = tree_of(np.ascontiguousarray(samples[:, :3]))
 
     def __call__(self, rows: Array) -> Array:
-        """Return the distances (M,) of the points of rows (M, 8) of cells."""
+        """Return the distances (M,) of the points in rows (M, 8) of cells from samples."""
         workers = thread_count(self.space.threads)
         distances, nearest = self.tree.query(rows[:, :3], workers=workers)
         if self.samples.shape[1] == 3:

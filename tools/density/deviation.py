@@ -21,15 +21,16 @@ __all__ = ["normal_deviation", "widest_angle"]
 PLACES, FEWEST = 16, 20_000
 # Then cells that may contain a larger angle than any found so far are cut, at most this often.
 CUTS = 6
-# There are initially at most MOST test points; beyond that, their cells are cut further, BLOCK of
-# them at a time, to bound the memory.
+# At first there are at most MOST test points. If more are needed, their cells are cut further, at
+# most BLOCK of them at a time, to bound the memory.
 MOST, BLOCK = 1 << 21, 1 << 16
 
 
 def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDeviation:
-    """Return the largest angles found, for samples at `points` (N, 3), scaled as in `Space`.
+    """Return the largest angles found between normals of the surface and of samples.
 
-    The angles are 180 degrees if there are no samples.
+    The samples have points (N, 3), scaled as in `Space`, and unit normals (N, 3). Without samples,
+    the angles are 180 degrees.
     """
     if len(points) == 0:
         return NormalDeviation(180.0, 180.0)
@@ -47,10 +48,11 @@ def normal_deviation(space: Space, points: Array, normals: Array) -> NormalDevia
 def widest_angle(
     space: Space, normals: Array, least: float = 0.0, wider: list[Cells] | None = None
 ) -> float:
-    """Return the largest angle found, in degrees, from a normal to the nearest of normals (N, 3).
+    """Return the largest angle found from a normal of the surface to the nearest one of `normals`.
 
-    Return `least` if it is larger, which saves the search for smaller angles. Cells whose places
-    have larger angles are appended to `wider`.
+    The angle is in degrees, the normals are those (N, 3) of samples. Return `least` if it is
+    larger, which saves the search for smaller angles. Cells whose places have larger angles than
+    `least` are appended to `wider`.
     """
     if len(normals) == 0:
         return 180.0
@@ -69,7 +71,10 @@ def widest_angle(
 def _largest(
     space: Space, samples: int, chords_of: Callable[[Cells], Array], least: float = 0.0
 ) -> float:
-    """Return the largest angle found, in degrees, from chords at test points; at least `least`."""
+    """Return the largest angle found, in degrees, but at least `least`.
+
+    `chords_of` returns, for cells, the chords of the angles at their places.
+    """
     even = space.uniform.exact
     begin = found = chord_of(least)
     wanted = max(PLACES * samples, FEWEST)
@@ -82,7 +87,7 @@ def _largest(
         nonlocal found
         chords = np.where(cells.rows[:, 3:6].any(axis=1), chords_of(cells), 0.0)
         found = max(found, float(chords.max(initial=0.0)))
-        # Within a cell the normal turns by no more than this.
+        # Upper bounds of the chords anywhere in the cells.
         bounds = chords + cells.chords
         far = np.flatnonzero(bounds > found)
         for start in range(0, len(far) if cuts else 0, BLOCK):

@@ -80,7 +80,7 @@ class Lattice:
     def normals(
         self, density: float, first: int = 0, last: int | None = None, threads: int | None = None
     ) -> NDArray[np.float64]:
-        """Return unit normals (…, 3), `density` of them per steradian, at least one.
+        """Return unit normals (N, 3), `density` of them per steradian, but at least one.
 
         With `first` and `last`, return only the rows [first, last).
         """

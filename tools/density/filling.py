@@ -37,12 +37,12 @@ HEXAGON = 3.0 * math.sqrt(3.0)
 # If a greedy cover of n samples has the covering radius r, relative to the sizing function, the
 # integral of the target density is about n r² times this.
 GREEDY = 1.85
-# Balanced: the covering radius of the added samples, relative to that of the normals.
+# Density "balanced": the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
-# Balanced: the floor of the target density, relative to the mean of κ²; the ceiling of κ, relative
-# to the root of the floor, for a count or a coverage; and the ceiling for an angle. That one is
-# lower: with 20, samples on narrow faces are as close as the radius of these faces, and a wing with
-# a round trailing edge takes 6 times as many.
+# Density "balanced": the floor of the target density, relative to the mean of κ²; the ceiling of κ,
+# relative to the root of the floor, for a count or a coverage; and the ceiling of κ for an angle,
+# which is lower: with 20, samples on narrow faces are as close as the radius of these faces, and a
+# wing with a round trailing edge takes 6 times as many.
 FLOOR, MOST_CURVED, MOST_FOR_NORMALS = 0.8, 20.0, 10.0
 # For an angle, the mean of κ² is that of the capped κ: mean and ceiling are iterated until the
 # ratio of consecutive means exceeds this.
@@ -57,17 +57,17 @@ WIDEST_GAP = 1000.0
 # The number of added samples that a sample at a normal is assumed to save: up to 0.7 are saved. A
 # smaller number leaves more samples for the wide gaps of the density |K|.
 SAVED = 0.25
-# A piece has samples at the normals of a lattice only if they are at least this part of all
-# samples: the fit of its spline takes the time of many samples.
+# A piece has samples at the normals of a lattice only if these samples are at least this part of
+# all samples: the fit of its spline takes the time of many samples.
 LATTICE = 0.1
 # If some of several pieces have no lattice, this part of a count is placed where normals are
 # farthest from those of all samples.
 FOR_NORMALS = 0.05
-# For samples placed so: the chord between the normals of candidates, relative to the spacing of as
-# many points on a sphere as there are samples; and about the number of candidates minus the number
-# of samples.
+# For the samples placed in this way: the chord between the normals of candidates, relative to the
+# spacing of as many points on a sphere as the cover has samples; and about the number of candidates
+# minus the number of samples.
 NORMALS_APART, CANDIDATES = 0.2, 200_000
-# The smallest such chord.
+# The smallest chord between the normals of these candidates.
 LEAST_CHORD = math.radians(0.5)
 # Normals of samples are distinct if they differ when rounded to this number of decimals.
 DIGITS = 6
@@ -123,7 +123,7 @@ def _covered_tips(cover: Cover, angle: float) -> float:
 
 
 def fields_of(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
-    """Return fields of the samples at normals, followed by those of the other samples."""
+    """Return fields of all samples of a cover: the samples at normals, then the added samples."""
     added = cover.added
     order = np.argsort(added.pieces, kind="stable")
     added = added[order]
@@ -152,9 +152,10 @@ def _of_piece(
 
 @dataclass(frozen=True, eq=False)
 class Filling:
-    """The sampling of a space for a request; `show_count` is called with the number of samples.
+    """The sampling of a space for a request.
 
-    `each_once` is as in `fill`.
+    `show_count` is called with the number of samples whenever it grows; `each_once` is as in
+    `fill`.
     """
 
     space: Space
@@ -186,7 +187,7 @@ class Filling:
         return self._to_radius(space, Given(space), self._asked)
 
     def reached(self, cover: Cover) -> float:
-        """Return a bound of the scaled distance from any point to a sample on its side."""
+        """Return a bound of the scaled distance of a point from the nearest sample on its side."""
         asked = math.inf if self.request.coverage is None else self.request.coverage
         return coverage(self.space, cover.points, asked * self.space.unit)
 
@@ -195,8 +196,8 @@ class Filling:
     def balanced(self, *, capped: bool = False) -> Space:
         """Return the space with the floor of "balanced", and with a ceiling if `capped`.
 
-        For an angle, the floor follows from the density with this ceiling: without it, tiny fillets
-        would make all flat parts dense.
+        For an angle, the floor is computed from the density with this ceiling: without the ceiling,
+        tiny fillets would make all flat parts dense.
         """
         floor = self._floor(math.inf)
         if not capped:
@@ -218,7 +219,7 @@ class Filling:
 
     @property
     def _by_power(self) -> Space:
-        """The space with the floor of "uniform" or a power of |K|.
+        """The space whose target density is "uniform", or a power of |K| with its floor.
 
         A power of |K| is replaced by a constant on pieces whose curvature is only the error of
         their spline.
@@ -234,7 +235,7 @@ class Filling:
 
     @property
     def _asked(self) -> float | None:
-        """The requested coverage as a scaled length, between the rounding error and the size.
+        """The requested coverage as a scaled length, from the rounding error to the surface's size.
 
         If the cells are on a spline and the samples on the surface, twice the distance between
         spline and surface is subtracted; at least half of the coverage remains.
@@ -248,7 +249,11 @@ class Filling:
     # --- covers -----------------------------------------------------------------------------------
 
     def _by_radius(self) -> Cover:
-        """Sample at requested normals, or at a lattice for a coverage, and fill the gaps."""
+        """Return a cover for normals, an angle or a coverage.
+
+        It has samples at the requested normals, or, for an angle or a coverage, at lattices of
+        normals; further samples fill the gaps.
+        """
         request, asked = self.request, self._asked
         space = self.balanced(capped=request.angle is not None)
         if request.angle is not None:
@@ -272,7 +277,10 @@ class Filling:
         return self._to_radius(space, given, radius)
 
     def _to_radius(self, space: Space, given: Given, radius: float) -> Cover:
-        """Cover a space within a radius, with a sample on each piece unless there are too many."""
+        """Return a cover of a space for a radius, with a sample on each piece.
+
+        If the pieces are too many, some may have none.
+        """
         cover = self._new(space, given)
         cover.to_radius(radius)
         missing = cover.missing()
@@ -281,10 +289,10 @@ class Filling:
         return cover
 
     def _by_count(self, space: Space, count: int) -> Cover:
-        """Divide a count into samples at normals and samples that fill gaps.
+        """Return a cover with a count of samples: samples at normals, and samples that fill gaps.
 
-        If some of several pieces have no lattice of normals, a part of the filling samples are
-        where normals are farthest from those of all samples.
+        If some of several pieces have no lattice of normals, a part of the filling samples is
+        placed where the normals of the surface are farthest from the normals of all samples.
         """
         given, rest = Given(space), 0
         if self.request.density in BY_CURVATURE:
@@ -307,7 +315,11 @@ class Filling:
         return cover
 
     def _by_count_and_coverage(self, count: int) -> Cover:
-        """Find the smallest radius that leaves enough samples for a coverage."""
+        """Return a cover with `count` samples and the requested coverage, if so many suffice.
+
+        The radius is the smallest one, found by bisection, at which this coverage does not take
+        more samples than the count.
+        """
         asked, best = self._asked, None
         assert asked is not None
         high = math.log(count)
@@ -336,7 +348,7 @@ class Filling:
     # --- samples at normals -----------------------------------------------------------------------
 
     def _at_normals(self) -> Given:
-        """Return the samples at the requested normals."""
+        """Return the samples at the requested normals, or, for a count, at lattices of normals."""
         space, count = self.space, self.request.count
         if count is None:
             curved = np.flatnonzero(space.images > LEAST_IMAGE)
@@ -347,7 +359,7 @@ class Filling:
         return at_count(space, counts, self.progress)
 
     def _for_count(self, space: Space, count: int) -> Given:
-        """Return the samples at lattices of normals for a count of samples."""
+        """Return samples at lattices of normals that leave enough of `count` for filling gaps."""
         seen = space.solid_angles(count / (4 * math.pi))
         # The number of filling samples for a lattice of one normal per steradian.
         filling = space.integral / (GREEDY * (WIDER * spacing(1.0)) ** 2)
@@ -381,7 +393,7 @@ def _refuse_too_many(space: Space, radius: float, request: Request) -> None:
 
 
 def _fill_normals(cover: Cover, number: int) -> None:
-    """Add samples where normals are farthest from those of all samples."""
+    """Add `number` samples where normals of the surface are farthest from those of all samples."""
     chord = NORMALS_APART * spacing(max(cover.count + number, 1) / (4 * math.pi))
     most = CANDIDATES + cover.count
     cells, normals = list[Cells](), list[Array]()

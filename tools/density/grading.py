@@ -52,9 +52,9 @@ def growth_for(count: int, integral: float) -> float:
 
 
 def bounds_of(points: Array, sizes: Array, growth: float) -> Sources | None:
-    """Return the largest sizes, at most `sizes` (M,) at points (M, 3), that grow slowly.
+    """Return the largest slowly growing sizes that are at most `sizes` (M,) at points (M, 3).
 
-    Return None if `sizes` grow slowly.
+    Return None if `sizes` themselves grow slowly.
     """
     tree = tree_of(points)
     distances, near = (

@@ -17,10 +17,11 @@ __all__ = ["Grid", "lines_of", "without_lines"]
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """Samples on a grid: cells at whose places they lie, and the indices of their lines.
+    """Samples on a grid: cells whose places are the samples, and the indices of the grid lines.
 
-    `rows` and `columns` (N,) are the indices of the lines v = const and u = const, −1 between
-    lines; `lines` are the numbers of lines u = const and v = const.
+    `rows` and `columns` (N,) are, for each sample, the indices of its lines v = const and u =
+    const, or −1 for a sample between lines. `lines` are the numbers of lines u = const and v =
+    const.
     """
 
     cells: Cells
@@ -32,7 +33,10 @@ class Grid:
         return len(self.rows)
 
     def __add__(self, other: Grid) -> Grid:
-        """Return this grid, followed by one of another piece."""
+        """Return the samples of this grid, followed by those of the grid of another piece.
+
+        The line indices of the other grid follow those of this one.
+        """
         rows, columns = (
             np.concatenate([x, np.where(y < 0, -1, y + first)])
             for x, y, first in zip(
@@ -47,7 +51,7 @@ class Grid:
 
     @property
     def border(self) -> int:
-        """The number of samples on the grid next to a crossing of lines without a sample."""
+        """The number of samples at the boundary of a trim: next to a crossing without a sample."""
         inside = np.zeros(self.lines, dtype=np.bool_)
         on = self.rows >= 0
         inside[self.columns[on], self.rows[on]] = True
@@ -62,7 +66,10 @@ class Grid:
 
 
 def lines_of(grid: Grid | None, count: int, fields: Sequence[str]) -> dict[str, Indices]:
-    """Return the fields row and column, if requested; samples of the grid come first."""
+    """Return the fields row and column, as far as they are in `fields`, for `count` samples.
+
+    The first samples are those of the grid; for all others, row and column are −1.
+    """
     found = {name: np.full(count, -1, dtype=np.int64) for name in GRID_NAMES if name in fields}
     if grid is not None:
         for name, numbers in zip(GRID_NAMES, (grid.rows, grid.columns), strict=True):

@@ -11,16 +11,16 @@ from ...runtime.base.aliases import Array, Indices
 __all__ = ["Axis"]
 
 
-# A part of an interval is cut into at least this number of pieces.
+# A part of an interval is cut into at least this number of subintervals.
 FEWEST = 4.0
 
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """An interval of a parameter, in cells, cut at increasing `edges` (k + 1,).
+    """An interval of a parameter, in cells, with k subintervals between the `edges` (k + 1,).
 
-    The edges with the indices `breaks`, which include the first and the last, separate parts. The
-    lines of a part are half a step away from its ends.
+    The edges increase. Those with the indices `breaks`, which include the first and the last edge,
+    separate parts. The first and the last line of a part are half a step away from its ends.
     """
 
     edges: Array
@@ -28,7 +28,7 @@ class Axis:
 
     @classmethod
     def of(cls, length: float, number: int, breaks: Array) -> Axis:
-        """Cut the interval from 0 to `length` into about `number` pieces, and at breaks."""
+        """Divide the interval from 0 to `length` into about `number` subintervals and at breaks."""
         ends = np.concatenate([[0.0], breaks, [length]])
         counts = np.maximum(np.ceil(np.diff(ends) * (number / length)), FEWEST).astype(np.int64)
         parts = [
@@ -39,20 +39,23 @@ class Axis:
 
     @property
     def middles(self) -> Array:
-        """The middles (k,) of the pieces."""
+        """The midpoints (k,) of the subintervals."""
         return (self.edges[1:] + self.edges[:-1]) / 2.0
 
     @property
     def widths(self) -> Array:
-        """The widths (k,) of the pieces."""
+        """The widths (k,) of the subintervals."""
         return np.diff(self.edges)
 
     def lengths(self, steps: Array) -> Array:
-        """Return the lengths of the parts, in steps (k,) given on the pieces."""
+        """Return the length of each part in steps; `steps` (k,) are given for the subintervals."""
         return np.add.reduceat(self.widths / steps, self.breaks[:-1])
 
     def lines(self, steps: Array, numbers: Indices) -> Array:
-        """Return the positions of lines, `numbers` (parts,) in each part, spaced by steps (k,)."""
+        """Return the positions of lines: numbers[i] lines in part i, about `steps` (k,) apart.
+
+        The distances are in proportion to the steps, which are given for the subintervals.
+        """
         found = []
         for first, last, number in zip(
             self.breaks[:-1], self.breaks[1:], numbers.tolist(), strict=True

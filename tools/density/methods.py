@@ -65,9 +65,10 @@ def in_order(self: Samples, order: str) -> Samples:
     Parameters
     ----------
     order : {"path"}
-        "path" is a short path of straight lines from sample to sample, with free ends: the shortest
-        links that make one path. For 100 to 1,000 samples of surfaces and parts it is 4 to 9 %
-        longer than paths that OR-Tools finds in 20 s. Obstacles are not considered.
+        "path" is a short path of straight lines from sample to sample: the shortest links between
+        samples are joined to one path, which may begin and end anywhere. For 100 to 1,000 samples
+        of surfaces and parts it is 4 to 9 % longer than paths that OR-Tools finds in 20 s.
+        Obstacles are not considered.
 
     Returns
     -------
@@ -123,7 +124,7 @@ def coverage(
     Returns
     -------
     float
-        The bound, at most 10 % above the distance of a point that was found. For samples on the
+        The bound, at most 10 % above the largest distance that was found. For samples on the
         surface, twice the largest distance of the surface from its spline is added. Infinite if
         there are no samples.
 
@@ -197,7 +198,10 @@ def normal_deviation(
 
 
 def _space_of(samples: Samples, spline: AnySpline | None, threads: int | None) -> Space:
-    """Return the sampled space; without a spline, all pieces of the surface with an area."""
+    """Return the sampled space: the pieces of a part, a spline, or the pieces of a surface.
+
+    Without a spline, these are all pieces of the surface that have an area.
+    """
     surface = samples.surface
     if isinstance(surface, Whole):
         return surface._space(threads, reach=samples.report._in_reach)
@@ -207,6 +211,6 @@ def _space_of(samples: Samples, spline: AnySpline | None, threads: int | None) -
 
 
 def space_on(spline: Spline, surface: Surface | None, threads: int | None) -> Space:
-    """Return the space of a spline, or of the surface that it approximates."""
+    """Return the space of `surface`, approximated by `spline`; that of the spline for None."""
     on = OnSpline(spline, threads) if surface is None else OnSurface(spline, threads, surface)
     return space_of([on], threads)

@@ -19,7 +19,8 @@ __all__ = ["cover_on_grid"]
 # The covering radius of samples with round cells that follow the curvature, relative to the sizing
 # function.
 WIDEST = 1.0
-# Gaps in flat regions are wider by this factor if no coverage is requested.
+# If no coverage is requested, gaps in flat regions may be wider by this factor than the target
+# density prescribes.
 WIDER = 2.0
 # The angle and distance for the grid are smaller than the requested ones by this part.
 MARGIN = 0.02
@@ -31,9 +32,9 @@ PARTS = (1.0, 0.95, 0.9, 0.8, 0.65, 0.5, 0.3)
 def cover_on_grid(
     space: Space, request: Request, distance: float | None, show_count: Callable[[int], object]
 ) -> Cover:
-    """Return a cover with a count of samples, or for an angle or a coverage.
+    """Return a cover for a count of samples, an angle or a coverage.
 
-    `distance` is the requested coverage, scaled.
+    `distance` is the requested coverage, scaled as in `Space`.
     """
     if request.count is None:
         return _by_errors(space, request.angle, distance, show_count)
@@ -43,9 +44,9 @@ def cover_on_grid(
 
 
 def _by_count(space: Space, count: int, show_count: Callable[[int], object]) -> Cover:
-    """Return a cover with a count."""
+    """Return a cover with `count` samples."""
     grid = _grid_of(space, count, _usual_distance(space, count))
-    # A small count does not suffice for a grid with all parts of the axes.
+    # A grid has at least one line in each part of both axes: a small count may not suffice for it.
     cover = Cover(space, None, show_count, grid if len(grid) <= count else None)
     if cover.count < count:  # at the boundary of a trim
         cover.to_count(count)
@@ -78,7 +79,7 @@ def _by_errors(
 def _by_count_and_distance(
     space: Space, count: int, distance: float, show_count: Callable[[int], object]
 ) -> Cover:
-    """Return a cover with a count; it satisfies the distance if the count suffices."""
+    """Return a cover with `count` samples and a scaled coverage, if so many samples suffice."""
     apart = min((1.0 - MARGIN) * distance, _usual_distance(space, count))
     even = space.uniform
     for part in PARTS:
@@ -96,7 +97,7 @@ def _by_count_and_distance(
 
 
 def _grid_of(space: Space, count: int, distance: float) -> Grid:
-    """Return the finest grids with at most `count` samples, divided among the pieces."""
+    """Return the finest grids, as one, with at most `count` samples, divided among the pieces."""
     counts = apportioned(count, space.integrals).tolist()
     grids = (AlignedGrid.of(space, k).grid_for(n, distance) for k, n in enumerate(counts) if n)
     return reduce(add, grids)

@@ -1,4 +1,4 @@
-"""A short path through samples: shortest links first, as many as make one path."""
+"""A short path through samples: the shortest links are joined first, until there is one path."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ NEIGHBOURS = 8
 def path_order(points: Array) -> Indices:
     """Return the indices (N,) of points (N, 3) along a short path.
 
-    Each point is a path at first. The shortest link between ends of two paths joins them, in rounds
-    in which candidates are the nearest ends, until there is one path.
+    Each point is a path at first. In each round, links between neighbouring ends of paths are
+    tried, the shortest first; a link between two different paths joins them. The rounds end when
+    there is one path.
     """
     count, joined = len(points), 0
     links = [list[int]() for _ in range(count)]
@@ -40,7 +41,10 @@ def path_order(points: Array) -> Indices:
 
 
 def _candidates(points: Array, numbers: Indices) -> list[tuple[int, int]]:
-    """Return pairs of the given numbers (k,) of points (k, 3) near each other, nearest first."""
+    """Return pairs of neighbouring points (k, 3), nearest first, as pairs of indices.
+
+    The indices of the points are `numbers` (k,).
+    """
     near, rows = tree_of(points).query(points, min(NEIGHBOURS, len(points)), workers=-1)
     first = np.repeat(np.arange(len(points)), near.shape[1])
     a, b = np.minimum(first, rows.ravel()), np.maximum(first, rows.ravel())

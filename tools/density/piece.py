@@ -24,7 +24,7 @@ __all__ = ["Piece", "boxes_between"]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Piece(ABC):
-    """A smooth surface on a rectangle of parameters, or the part of it inside a trim, as a face.
+    """A smooth surface on a rectangle of parameters, or its part inside a trim, such as a face.
 
     `label` is its name in messages, `trim` the part of the domain that belongs to it, None for the
     whole domain. `indices` are fields that are constant on the piece, and the index of its first
@@ -42,16 +42,16 @@ class Piece(ABC):
 
     @property
     def polygons(self) -> Sequence[Array]:
-        """The closed polygons (k, 2) along which samples are placed, if there is a trim.
+        """The closed polygons (k, 2) along which samples are placed, if the piece has a trim.
 
-        The first point is not repeated.
+        The first point of a polygon is not repeated at its end.
         """
         return ()
 
     @cached_property
     @abstractmethod
     def size(self) -> float:
-        """The root of the area inside the trim, in L."""
+        """The square root of the area inside the trim, in the unit L of the surface."""
 
     @property
     @abstractmethod
@@ -60,7 +60,7 @@ class Piece(ABC):
 
     @abstractmethod
     def jets(self, u: Array, v: Array) -> Array:
-        """Return 2-jets (k, 6, 3) at parameters, for candidates."""
+        """Return the 2-jets (k, 6, 3) at parameters (k,), from which candidates are evaluated."""
 
     @abstractmethod
     def geometries(self, threads: int | None) -> list[OnSpline]:
@@ -80,10 +80,10 @@ class Piece(ABC):
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> dict[str, NDArray[Any]]:
-        """Return fields of samples at parameters (k, 2); rows (k, 8) are as for candidates."""
+        """Return fields of samples at parameters (k, 2); `rows` (k, 8) are those of their cells."""
 
     def solid_angle(self, density: float) -> float | None:
-        """Return the solid angle of the normals that a lattice of this density samples.
+        """Return the solid angle of the Gaussian image that lattices of this density resolve.
 
         Return None if the solid angle is to be computed from K.
         """
@@ -106,7 +106,7 @@ class Piece(ABC):
         return np.array(self.domain).mean(axis=1, keepdims=True)
 
     def border(self, n: int) -> Border | None:
-        """Return the boundary on a raster of n × n pixels; None if there is none."""
+        """Return the boundary on a raster of n × n pixels; None without a trim."""
         if self.trim is None:
             return None
         if n not in self._borders:
@@ -118,19 +118,22 @@ class Piece(ABC):
         return {}
 
     def contains(self, places: Array) -> Flags:
-        """Return which parameters (k, 2) are inside the trim."""
+        """Return whether parameters (k, 2) are inside the trim."""
         return (
             np.ones(len(places), np.bool_) if self.trim is None else self.trim.contains(places, 1)
         )
 
     def wrapped(self, places: Array) -> Array:
-        """Return parameters (k, 2) modulo periods, if there is a trim."""
+        """Return parameters (k, 2) moved into the domain by its periods.
+
+        The piece has to have a trim.
+        """
         assert self.trim is not None
         u, v = places.T
         return np.stack(brought_inside(u, v, self.domain, self.trim.boundary), axis=1)
 
     def border_lines(self, step: float) -> Iterator[Array]:
-        """Yield the polygons, closed and refined to steps of at most `step` times `sizes`."""
+        """Yield the closed polygons, refined to steps of at most `step` times `sizes`."""
         for polygon in self.polygons:
             steps = np.diff(polygon, axis=0, append=polygon[:1])
             parts = np.maximum(np.ceil(np.abs(steps / self.sizes).max(axis=1) / step), 1.0)

@@ -13,8 +13,8 @@ from .candidates import Candidates
 
 __all__ = ["progressive_order"]
 
-# Samples are chosen with mutual distances of at least a radius, in local spacings. The radius falls
-# from one that contains all samples to FINEST, by the factor STEP.
+# In each round, samples are chosen with mutual distances of at least a radius, relative to the
+# local spacing. The radius falls from one that contains all samples to FINEST, by the factor STEP.
 STEP, FINEST = 2.0**-0.5, 0.25
 # The local spacing is the mean distance to this number of nearest neighbours.
 NEIGHBOURS = 6
@@ -25,8 +25,8 @@ def progressive_order(
 ) -> NDArray[np.int64]:
     """Return the indices (N,) of points (N, 3) with normals (N, 3) in progressive order.
 
-    Distances are relative to the local spacing of the samples: the density of a prefix is that of
-    the whole, up to a factor.
+    Distances are relative to the local spacing of the samples, so that the density of a prefix is
+    that of all samples, up to a constant factor.
     """
     count = len(points)
     left = np.random.default_rng(0).permutation(count)  # no preferred direction

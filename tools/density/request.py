@@ -32,8 +32,8 @@ LARGEST_POWER = 8.0
 class Request:
     """A checked request: one of normals (S, 3), a count, an angle in degrees and a coverage.
 
-    A coverage may also be given with one of the others. `density` is one of `DENSITIES`, or α for
-    |K|^α. Normals outside of `reach` get no samples.
+    A coverage may also be combined with one of the other three. `density` is one of `DENSITIES`, or
+    α for |K|^α. Normals outside of `reach` get no samples.
     """
 
     normals: NDArray[np.float64] | None
@@ -45,7 +45,7 @@ class Request:
 
     @property
     def cost(self) -> str:
-        """The key of `memory.COSTS` for the samples."""
+        """The key of `memory.COSTS` for the memory that the samples take."""
         return self.density if isinstance(self.density, str) else "uniform"
 
     @property

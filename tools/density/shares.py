@@ -9,7 +9,10 @@ __all__ = ["apportioned"]
 
 
 def apportioned(count: int, weights: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Divide a count in proportion to weights (k,), not all 0; the largest fractions round up."""
+    """Divide a count into integers in proportion to weights (k,), which are not all 0.
+
+    The shares with the largest fractional parts are rounded up.
+    """
     shares = weights * (count / weights.sum())
     parts = np.floor(shares).astype(np.int64)
     parts[np.argsort(parts - shares, kind="stable")[: count - int(parts.sum())]] += 1

@@ -1,4 +1,4 @@
-"""Selection of the cells inside the trims of their pieces, and their places."""
+"""Selection of the cells inside the trims of their pieces, and choice of their places."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ BOXES_AT_A_TIME = 1 << 13
 def sifted(
     trims: Trims, cells: Cells, pixels: Indices, owner: Indices | None = None
 ) -> tuple[Cells, Indices]:
-    """Return the cells that are not outside their trims, with `whole` set, and their owners.
+    """Return the cells that are not entirely outside their trims, and the owners of these cells.
 
-    Owners are elements of `owner` (M,), by default indices in `cells`.
+    `whole` becomes True for cells that no boundary intersects. Owners are elements of `owner` (M,),
+    by default indices in `cells`.
     """
     whole = cells.whole | ~trims.trimmed[cells.pieces]
     open_, clear = np.flatnonzero(~whole), whole.copy()
@@ -38,7 +39,10 @@ def sifted(
 
 
 def placed(trims: Trims, cells: Cells) -> tuple[Cells, Cells]:
-    """Return the cells that have a place inside the trim, with this place, and the other cells."""
+    """Return the cells that have a place inside the trim, and the other cells.
+
+    Places of cells in the first set that are outside of the trim are replaced by subplaces.
+    """
     found, places, here = cells.whole.copy(), cells.places.copy(), np.flatnonzero(~cells.whole)
     found[here] = trims.contains(cells.pieces[here], places[here])
     lost = here[~found[here]]
@@ -50,7 +54,10 @@ def placed(trims: Trims, cells: Cells) -> tuple[Cells, Cells]:
 
 
 def beside(trims: Trims, lost: Cells, pixels: Indices) -> tuple[Indices, Array]:
-    """Return pieces and points (k, 2) next to the boundary, for cells without a place."""
+    """Return points beside boundaries, near cells that have no place.
+
+    Return the indices (k,) of the pieces, and the parameters (k, 2) of the points.
+    """
     owners, places = [np.empty(0, dtype=np.int64)], [np.empty((0, 2))]
     for k, rows in by_piece(lost):
         n = int(pixels[k])
@@ -63,7 +70,7 @@ def beside(trims: Trims, lost: Cells, pixels: Indices) -> tuple[Indices, Array]:
 
 
 def _subplaces(trims: Trims, pieces: Indices, boxes: Array) -> tuple[Flags, Array]:
-    """Return which boxes (M, 4) have subplaces inside, and the middle one of these subplaces."""
+    """Return whether boxes (M, 4) have subplaces inside the trim, and a central one of these."""
     steps = (np.arange(SUB) + 0.5) / SUB
     grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
     sizes = boxes[:, None, 2:] - boxes[:, None, :2]

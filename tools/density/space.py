@@ -45,17 +45,18 @@ from .trims import Trims
 
 __all__ = ["Space"]
 
-# The first cells bend by at most this along u and along v, in radians, unless they would have to be
-# bisected more often than MOST_BENDS.
+# The cells `Space.first` bend by at most this along u and along v, in radians, unless they would
+# have to be bisected more often than MOST_BENDS.
 FLAT = 0.3
 MOST_BENDS = 24
-# First cells without a place inside are quartered this many times.
+# These cells are quartered this many times if they have no place inside the trim.
 MOST_LOST = 4
 # The least and the largest number of pixels along u and v of the rasters of boundaries.
 FEWEST_PIXELS, MOST_PIXELS = 64, 512
-# Cells that the boundary intersects are cut in two steps if they have more parts than this.
+# Cells that the boundary intersects are cut in two steps if they are cut into more parts than this.
 AT_ONCE = 64
-# The least size of a cell, relative to the domain of its piece, and to the root of its area.
+# The least size of a cell, relative to the domain of its piece, and to the square root of the area
+# of the piece.
 DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
 # The factor by which the chord of `cut_by_normals` is increased while cells are too many.
@@ -78,10 +79,10 @@ class Space:
     """The pieces of a surface or a part, with a target density.
 
     Lengths are multiplied by `unit`, and points are relative to `centre`, a point in the unit L of
-    the surface. The target density of `first` has no floor and no ceiling, so that spaces that
-    differ only in these share it. On the `developable` pieces, K is rounding error, and its powers
-    count as 0. Sizes, 1/√w for the target density w, are bounded by the `sources` of each piece
-    that has some.
+    the surface. The target density of the cells `first` has no floor and no ceiling, so that spaces
+    that differ only in floor and ceiling share these cells. On the `developable` pieces, K is
+    rounding error, and its powers count as 0. Sizes, 1/√w for the target density w, are bounded by
+    the `sources` of each piece that has some.
     """
 
     label: str
@@ -96,7 +97,7 @@ class Space:
 
     @cached_property
     def unit(self) -> float:
-        """The scaled length of a length 1: a power of two."""
+        """The factor that scales lengths: a power of two."""
         return scale_to_one(max(x.size for x in self.pieces))
 
     @cached_property
@@ -106,7 +107,7 @@ class Space:
 
     @cached_property
     def centre(self) -> Array:
-        """The origin of scaled points, in L."""
+        """The origin of scaled points, in the unit L of the surface."""
         return self.pieces[0].jets(*self.pieces[0].middle)[0, 0]
 
     @cached_property
@@ -121,7 +122,7 @@ class Space:
 
     @property
     def size(self) -> float:
-        """The diagonal of a box around the first cells."""
+        """The diagonal of a box around the first cells, scaled."""
         points, radii = self.first.rows[:, :3], self.first.numbers[:, [RADIUS]]
         low, high = (points - radii).min(axis=0), (points + radii).max(axis=0)
         return float(np.linalg.norm(high - low))
@@ -166,13 +167,16 @@ class Space:
         return np.bincount(self.first.pieces, weights, len(self.pieces)).astype(np.float64)
 
     def solid_angles(self, density: float) -> Array:
-        """Return the solid angles of the normals that a lattice of this density samples."""
+        """Return the solid angles (P,) of Gaussian images that lattices of this density resolve."""
         known = (x.solid_angle(density) for x in self.pieces)
         return np.array([y if x is None else x for x, y in zip(known, self.images, strict=True)])
 
     @property
     def distance(self) -> float:
-        """A bound of the distance between the sampled surface and that of the cells, in L."""
+        """A bound of the distance between the sampled surface and that of the cells.
+
+        The bound is in the unit L of the surface. Cells may be evaluated on a spline.
+        """
         return max(x.distance for x in self.pieces)
 
     @property
@@ -184,8 +188,8 @@ class Space:
         corners, places = cells.boxes[chosen, :2], cells.places[chosen]
         others = places + BESIDE * (corners - places)
         chosen = chosen[self._is_flat(self.at(cells.pieces[chosen], others, keep=True))]
-        # A cell whose place is an apex has the area 0. If all cells of a piece have it, they get
-        # equal weights.
+        # A cell whose place is an apex has the area 0. If all cells of a piece have the area 0,
+        # they get equal weights.
         tiny = np.finfo(np.float64).tiny
         weights = np.maximum(cells.numbers[:, AREA], tiny)
         flat = np.bincount(cells.pieces[chosen], weights[chosen], count)
@@ -217,9 +221,9 @@ class Space:
         return made
 
     def to_power(self, exponent: float) -> Self:
-        """Return the space with another exponent of the target density; its cells are kept.
+        """Return the space with another exponent of its target density; its cells are kept.
 
-        The target density has to be a power of κ, without a Gauss weight.
+        The target density must be a power of κ alone: `target.gauss_weight` is 0.
         """
         first, borders = (replace(x, rows=x.rows.copy()) for x in (self.first, self.borders))
         for found in (first, borders):
@@ -238,7 +242,8 @@ class Space:
     def graded(self, count: int) -> Self:
         """Return the same space with sizes that grow slowly, for a number of samples.
 
-        Without this, the spacing of few samples may halve from one to the next near a narrow bend.
+        Without the slow growth, the spacing of few samples may halve from one sample to the next
+        near a narrow bend.
         """
         growth, sizes = growth_for(count, self.integral), self.densities**-0.5
         found = {
@@ -260,7 +265,7 @@ class Space:
 
     @property
     def densities(self) -> Array:
-        """The target densities of the first cells."""
+        """The target densities (M,) of the first cells."""
         return np.clip(self.first.rows[:, 6], self.target.floor, self.target.ceiling)
 
     @property
@@ -275,7 +280,7 @@ class Space:
     # --- cells ------------------------------------------------------------------------------------
 
     def nothing(self) -> Cells:
-        """Return no cells."""
+        """Return an empty set of cells."""
         return new_cells(np.empty(0, dtype=np.int64), np.empty((0, 4))).with_rows()
 
     @property
@@ -293,17 +298,20 @@ class Space:
         return self._held["borders"]
 
     def along_borders(self, step: float, turn: float = math.inf) -> Cells:
-        """Return point cells along boundaries; see `places_along`."""
+        """Return evaluated point cells along boundaries; see `places_along`."""
         return self.known(self._beside_borders(step, turn))
 
     def at(
         self, pieces: Indices, places: Array, limits: Array | float = 0.0, *, keep: bool = False
     ) -> Cells:
-        """Return point cells at parameters (k, 2) of pieces (k,), as `known` does."""
+        """Return evaluated point cells at parameters (k, 2) of pieces (k,); see `known`."""
         return self.known(points_of(pieces, places, self.sizes[pieces], limits), keep=keep)
 
     def middles(self, pieces: Indices) -> Cells:
-        """Return the cell nearest to the middle of each of the given pieces."""
+        """Return, for each of the given pieces, the cell of `first` nearest to its middle.
+
+        A piece whose cells in `first` are all singular is left out.
+        """
         first, rows, wanted = self.first, [], set(pieces.tolist())
         for k, found in by_piece(first):
             if k in wanted:
@@ -319,7 +327,7 @@ class Space:
     def cut(self, radius: float) -> Cells:
         """Return cells within radius/√w of their places, where w is the target density there.
 
-        Also return point cells along boundaries, about radius/√w apart.
+        Point cells along boundaries, about radius/√w apart, are included.
         """
         return self.known(self._cut(radius))
 
@@ -465,9 +473,10 @@ class Space:
         return (2**power).astype(np.int64)
 
     def known(self, cells: Cells, *, keep: bool = False) -> Cells:
-        """Return cells that are sorted by their pieces, with rows and numbers.
+        """Return the cells with rows and numbers; the cells have to be sorted by their pieces.
 
-        Cells that are not finite are left out, or, with `keep`, marked as singular.
+        Cells with values that are not finite are left out. With `keep`, they remain, and are marked
+        as singular: their rows are 0.
         """
         cells = cells.with_rows()
         return self._evaluated(cells, cells.numbers, evaluate_cells, keep)[0]
@@ -475,8 +484,8 @@ class Space:
     def light(self, cells: Cells, *, keep: bool = False) -> tuple[Cells, Sides]:
         """Return the same cells with rows, but without numbers; see `known`.
 
-        Their limits have to be known. Also return their sides (M, 8), see kernels/cells.py. Cells
-        that a boundary intersects have an area, but no sides.
+        The limits of the cells have to be known. Also return their sides (M, 8), see
+        kernels/cells.py. Cells that a boundary intersects have an area, but no sides.
         """
         rows, sides = np.empty((len(cells), 8)), np.empty((len(cells), 8), dtype=np.float32)
         cells, sides = self._evaluated(replace(cells, rows=rows), sides, evaluate_places, keep)
@@ -486,7 +495,10 @@ class Space:
     def _evaluated(
         self, cells: Cells, others: NDArray[Any], kernel: Callable[..., object], keep: bool
     ) -> tuple[Cells, NDArray[Any]]:
-        """Let a kernel write the rows of cells and others (M, …); see `known`."""
+        """Let a kernel write the rows of cells, and `others` (M, …): their numbers or sides.
+
+        `known` explains `keep`.
+        """
 
         def work(first: int, last: int) -> None:
             for parts in groups[first:last]:
@@ -513,9 +525,10 @@ class Space:
         return cells[finite], others[finite]
 
     def grade(self, pieces: Indices, rows: Array, *, far: bool = False) -> Array:
-        """Raise densities in rows (M, 8) of pieces (M,) to bound sizes; return the bounds (M,).
+        """Raise densities w in rows (M, 8) of cells so that the sizes 1/√w obey the sources.
 
-        Bounds that are too large to matter are inf, unless `far`.
+        `pieces` (M,) are those of the cells. Return the bounds (M,) of the sizes; bounds that are
+        too large to matter are inf, unless `far`.
         """
         sizes = np.full(len(rows), np.inf)
         if self.sources:
@@ -527,7 +540,9 @@ class Space:
         return sizes
 
     def _groups(self, cells: Cells) -> list[list[tuple[int, slice]]]:
-        """Return groups of cells to evaluate at a time: pieces, with the rows of each.
+        """Return groups of cells that are evaluated together.
+
+        A group is a list of pairs: the index of a piece, and a slice of its cells.
 
         Since pieces may have few cells each, a group has cells of several pieces if `finest` and
         the target density of these pieces are equal.

@@ -1,11 +1,11 @@
-"""The steps of a graded grid: spacings of its lines with the same error everywhere.
+"""The steps of a graded grid: distances between its lines that give the same error everywhere.
 
 A cell with the steps a along u and b along v has a diagonal of the length
 
     √(e a² + 2 |f| a b + g b²)    and    √(E a² + 2 |F| a b + G b²)
 
-in normal space and in space, with the third and the first fundamental form. Lines u = const have
-the steps a(u), lines v = const the steps b(v).
+in normal space and in space, where e, f, g are the entries of the third fundamental form and E, F,
+G those of the first. Lines u = const have the steps a(u), lines v = const the steps b(v).
 """
 
 from __future__ import annotations
@@ -24,29 +24,38 @@ __all__ = ["Forms", "Steps", "equal_steps", "steps_for_count"]
 
 _Arrays = tuple[Array, Array, Array, Array, float]
 
-# The share of the limits that steps along u use: the best one of SHARES, refined in SEARCHES steps
-# of golden-section search. It is found with forms on at most COARSE blocks along u and v.
+# Steps along u are a share of the longest ones that the limits allow. The share is the best one of
+# SHARES, refined in SEARCHES steps of golden-section search, for the forms on at most COARSE blocks
+# along u and v.
 SHARES, SEARCHES, COARSE = np.linspace(0.15, 0.95, 7), 4, 24
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 # The longest and the shortest step, as parts of the domain.
 LONGEST, SHORTEST = 0.5, 1e-9
-# The angle for a count is searched up to WIDEST, until the count is met up to the part CLOSE, or
-# TRIALS times.
+# The angle that takes a count of samples is searched up to WIDEST, until the relative error of the
+# count is below CLOSE, at most TRIALS times.
 WIDEST, CLOSE, TRIALS = math.pi, 0.002, 12
-# A distance that needs more than 1/LARGER of a count is increased until it needs about that part.
+# A distance that alone takes more than 1/LARGER of a count is increased until it takes about
+# 1/LARGER of the count.
 LARGER = 1.1
 
 
 @dataclass(frozen=True, eq=False)
 class Forms:
-    """Two fundamental forms at the middles of a grid, each (3, k, l); widths (k,) and (l,)."""
+    """The third and first fundamental forms (3, k, l) on a raster, and widths (k,) and (l,).
+
+    The forms are evaluated at the midpoints of k × l rectangles, which have these widths along u
+    and v.
+    """
 
     third: Array
     first: Array
     widths: tuple[Array, Array]
 
     def coarser(self, number: int) -> Forms:
-        """Return the largest moduli of entries on blocks, at most `number` along u and v."""
+        """Return forms on blocks of rectangles, at most `number` blocks along u and along v.
+
+        Each entry of a form becomes the largest modulus of this entry in the block.
+        """
         third, first, widths = self.third, self.first, list(self.widths)
         for axis in (0, 1):
             count = len(widths[axis])
@@ -68,7 +77,7 @@ class Forms:
 
     @cached_property
     def arrays(self) -> tuple[_Arrays, _Arrays]:
-        """The arguments of the kernel: the forms, and those with u and v exchanged."""
+        """Two arguments of `shared_steps`: the forms, and the forms with u and v exchanged."""
         along_u, along_v = (
             (x.third, x.first, x.third[0].max(axis=1), x.first[0].max(axis=1), x.widths[0].sum())
             for x in (self, self.swapped)
@@ -78,10 +87,10 @@ class Forms:
 
 @dataclass(frozen=True, eq=False)
 class Steps:
-    """Steps along u (k,) and along v (l,) for an error, with the number of samples of the grid.
+    """The steps of a grid `along` u (k,) and v (l,), with the numbers of steps and the errors.
 
-    `lengths` are the numbers of steps along u and v, `angle` and `distance` halves of the
-    longest diagonals of cells in normal space and in space.
+    `lengths` are the numbers of steps along u and v. `angle` and `distance` are half the longest
+    diagonals of cells in normal space and in space.
     """
 
     along: tuple[Array, Array]
@@ -91,14 +100,14 @@ class Steps:
 
     @property
     def count(self) -> float:
-        """The number of samples."""
+        """The number of samples of the grid, as a real number."""
         return self.lengths[0] * self.lengths[1]
 
 
 def equal_steps(forms: Forms, angle: float, distance: float) -> Steps:
     """Return the steps that give the fewest samples.
 
-    Half the diagonals of cells are at most `angle` in normal space (as a length on the sphere), and
+    Half the diagonals of cells are at most `angle`, in radians, in normal space, and at most
     `distance` in space.
     """
     limits, coarse = ((2.0 * angle) ** 2, (2.0 * distance) ** 2), forms.coarser(COARSE)
@@ -109,7 +118,7 @@ def equal_steps(forms: Forms, angle: float, distance: float) -> Steps:
 def steps_for_count(forms: Forms, count: float, distance: float) -> Steps:
     """Return the steps with the smallest angle for a count of samples, within a distance.
 
-    If the distance needs more samples, it is increased.
+    If the distance takes more samples, it is increased.
     """
     coarse = forms.coarser(COARSE)
     fewest = equal_steps(coarse, WIDEST, distance).count
@@ -126,7 +135,7 @@ def steps_for_count(forms: Forms, count: float, distance: float) -> Steps:
 
 
 def _least(value: Callable[[float], float]) -> float:
-    """Return the share with the smallest value."""
+    """Return the share at which a function is smallest: the best one of SHARES, refined."""
     values = [value(float(x)) for x in SHARES]
     best = int(np.argmin(values))
     low, high = (float(SHARES[min(max(k, 0), len(SHARES) - 1)]) for k in (best - 1, best + 1))
@@ -146,7 +155,7 @@ def _least(value: Callable[[float], float]) -> float:
 def _steps_at_share(
     forms: Forms, share: float, count: float, distance: float, angle: float
 ) -> tuple[Steps, float]:
-    """Return the steps for a share and a count, and their angle, starting from a guess."""
+    """Return the steps for a share and a count, and their angle; the search begins at `angle`."""
 
     def steps_at(angle: float) -> Steps:
         return _steps(forms, ((2.0 * angle) ** 2, (2.0 * distance) ** 2), share)
@@ -167,14 +176,18 @@ def _steps_at_share(
 
 
 def _typical(forms: Forms) -> float:
-    """Return roughly the product of the number of samples of a grid and its squared angle."""
+    """Return an estimate of the number of samples of a grid times its squared angle."""
     u, v = (np.sqrt(forms.third[k].max(axis=1 - k // 2)) for k in (0, 2))
     lengths = (u * forms.widths[0]).sum() * (v * forms.widths[1]).sum()
     return max(float(lengths) / 2.0, 1e-9)
 
 
 def _steps(forms: Forms, limits: tuple[float, float], share: float) -> Steps:
-    """Return steps, where steps along u use a share of the limits."""
+    """Return the steps for limits of the squared diagonals in normal space and in space.
+
+    At first, steps along u are `share` times the longest that the limits allow. Then steps along v,
+    and at last those along u, are as long as possible.
+    """
     along = np.empty(len(forms.widths[0])), np.empty(len(forms.widths[1]))
     shared_steps(*forms.arrays, limits, share, SHORTEST, LONGEST, *along)
     lengths = tuple(float((w / x).sum()) for w, x in zip(forms.widths, along, strict=True))

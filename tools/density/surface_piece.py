@@ -28,8 +28,8 @@ BOXES = 32
 class SurfacePiece(Piece):
     """A sampled surface with its spline, as a piece.
 
-    Candidates follow from the derivatives of the surface if it has them, otherwise from those of
-    the spline; with `exactly`, from finite differences of the surface. There are no polygons:
+    With `exactly`, candidates are evaluated from the derivatives of the surface, which are finite
+    differences if it has no others; otherwise from those of the spline. `polygons` is empty:
     samples beside the boundary would be too close to the boundary vertices of meshes.
     """
 
@@ -55,12 +55,12 @@ class SurfacePiece(Piece):
 
     @cached_property
     def size(self) -> float:
-        """The root of the area inside the trim, in L; 0 if it is rounding error."""
+        """The square root of the area inside the trim, in L; 0 if it is rounding error."""
         return self.geometry.size
 
     @property
     def boxes(self) -> Array:
-        """Boxes (M, 4) between lines of cells."""
+        """Boxes (M, 4) that partition the domain, along lines between cells of the spline."""
         u0, v0, du, dv = self.geometry.spline.frame
         return boxes_between(*(
             low + step * np.unique(np.linspace(0, cells, BOXES + 1).round())
@@ -78,11 +78,11 @@ class SurfacePiece(Piece):
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> dict[str, NDArray[Any]]:
-        """Return fields of samples at parameters (k, 2); rows (k, 8) are those of candidates."""
+        """Return fields of samples at parameters (k, 2); `rows` (k, 8) are those of their cells."""
         return self.geometry.at_parameters(uv, rows[:, 3:6], rows[:, 7], fields, dtype)
 
     def solid_angle(self, density: float) -> float:
-        """Return the solid angle of the normals that a lattice of this density samples."""
+        """Return the solid angle of the Gaussian image that a lattice of this density resolves."""
         return self.geometry.cell_measure.curved_solid_angle(density)
 
     @property
@@ -98,7 +98,7 @@ def space_of(
 ) -> Space:
     """Return the space of the pieces of a surface that have an area.
 
-    Raises SurfaceError if none has.
+    Raises SurfaceError if no piece has an area.
     """
     pieces = tuple(SurfacePiece.of(x, first) for first, x in with_area(geometries))
     return Space(f"surface {geometries[0].spline.name!r}", pieces, target, threads)

@@ -23,18 +23,18 @@ PLACES_AT_A_TIME = 1 << 17
 
 
 class Trims:
-    """The trims of pieces.
+    """The trims of all pieces.
 
-    Loops, which may be reversed, are joined for one call of a kernel; other conditions are
-    evaluated piece by piece.
+    Trims that are loops, perhaps with u reversed, are joined, so that one call of a kernel
+    evaluates them; other conditions are evaluated piece by piece.
     """
 
     def __init__(self, pieces: Sequence[Piece]) -> None:
         self.pieces = pieces
         self.trimmed = np.array([x.trim is not None for x in pieces], dtype=np.bool_)
         self.domains = np.array([x.domain for x in pieces])
-        # The index of each piece in `_loops`, −1 for pieces that are not there, and the sum of both
-        # bounds of u where u is reversed.
+        # The index of each piece in `_loops`, −1 for pieces without loops there; and the sum of the
+        # bounds of u of pieces with u reversed, NaN for others.
         self._place, self._totals = np.full(len(pieces), -1), np.full(len(pieces), np.nan)
         self._loops = list[Loops]()
         for k in np.flatnonzero(self.trimmed).tolist():
@@ -50,7 +50,7 @@ class Trims:
                 self._loops.append(loops)
 
     def contains(self, pieces: Indices, places: Array) -> Flags:
-        """Return which parameters (k, 2) of pieces (k,) are inside their trims."""
+        """Return whether parameters (k, 2) of pieces (k,) are inside the trims of these pieces."""
         inside = np.ones(len(pieces), np.bool_)
         asked = np.flatnonzero(self.trimmed[pieces])
         for first in range(0, len(asked), PLACES_AT_A_TIME):
@@ -79,7 +79,10 @@ class Trims:
         return found
 
     def beside_border(self, piece: int, step: float) -> Array:
-        """Return parameters (k, 2) inside a piece, beside its boundary, at distances `step`."""
+        """Return parameters (k, 2) inside a piece, beside its boundary, about `step` apart.
+
+        The step is relative to the domain.
+        """
         lines = list(self.pieces[piece].border_lines(step))
         steps = np.concatenate([np.empty((0, 2)), *(np.diff(x, axis=0) for x in lines)])
         places = np.concatenate([np.empty((0, 2)), *(x[:-1] for x in lines)]) + steps / 2.0
@@ -90,9 +93,9 @@ class Trims:
     ) -> tuple[Array, Indices, Indices]:
         """Return parameters beside points (k, 2) of boundaries, on each side that is inside.
 
-        Also return the indices of these points, and the side, in this order: 0 for left, 1 for
-        right. The boundaries run along steps (k, 2). If neither side is inside, as in narrow tips,
-        return the point itself, with 2.
+        Also return the indices of these points, and their sides; 0, the left side, comes first,
+        then 1, the right side. The boundary runs along steps (k, 2) at the points. If neither side
+        is inside, as in narrow tips, return the point itself, with the side 2.
         """
         low, high = self.domains[pieces, :, 0], self.domains[pieces, :, 1]
         along = steps / (high - low)
@@ -115,7 +118,7 @@ class Trims:
         )
 
     def _allow(self, pieces: Indices, places: Array) -> Flags:
-        """Return which parameters (k, 2) on loops fulfil all other conditions of the trims."""
+        """Return whether parameters (k, 2) on loops fulfil all other conditions of the trims."""
         allowed = np.ones(len(places), np.bool_)
         others = np.flatnonzero(self._place[pieces] < 0)
         for k, rows in grouped(pieces[others]):
@@ -128,7 +131,7 @@ class Trims:
         return allowed
 
     def _inside_loops(self, pieces: Indices, places: Array) -> Flags:
-        """Return which parameters (k, 2) of pieces (k,) are inside the loops that trim them."""
+        """Return whether parameters (k, 2) of pieces (k,) are inside the loops of these pieces."""
         uv, totals, owners = self.wrapped(pieces, places), self._totals[pieces], self._place[pieces]
         uv[:, 0] = np.where(np.isnan(totals), uv[:, 0], totals - uv[:, 0])
         low, high = self._limits[owners, 0], self._limits[owners, 1]
@@ -172,5 +175,5 @@ class Trims:
 
 
 def _starts(parts: Iterator[Array] | Sequence[Array]) -> Indices:
-    """Return the offsets of arrays in their concatenation, and its length."""
+    """Return the offsets of arrays in their concatenation, followed by its length."""
     return np.cumsum([0, *map(len, parts)], dtype=np.int64)

@@ -20,9 +20,9 @@ AT_ONCE = 1 << 12
 class Voronoi:
     """The sample nearest to each point of a fine grid in the cells of candidates.
 
-    The cells are those of the candidates. The fine points are those of kernels/voronoi.py, linear
-    in the parameters; in cells that a boundary intersects, only the place of the cell counts. For a
-    candidate, the samples (N, 6) within radius/√w are considered, and some others near them.
+    Cell k is that of candidate k. The fine points are those of kernels/voronoi.py, linear in the
+    parameters; in cells that a boundary intersects, only the place of the cell counts. For a
+    candidate, the samples (N, 6) within radius/√w are considered, and some samples near them.
     """
 
     def __init__(
@@ -33,9 +33,10 @@ class Voronoi:
         self._parts = self._each(lambda k: _Part(parts[k], sides, samples, radius), len(parts))
 
     def centres(self, samples: Array, first: int) -> tuple[Indices, Indices, Array]:
-        """Return the samples from index `first` on that move to the centres of their Voronoi cells.
+        """Return the indices (k,) of samples that move to the centres of their Voronoi cells.
 
-        Also return where the centres are: cells (k,) of the candidates, and parameters (k, 2).
+        Samples before index `first` do not move. Also return the positions of the centres: the
+        indices (k,) of cells of candidates, and parameters (k, 2).
         """
         parts, moments = self._parts, np.zeros((len(samples), 4))
         sums = self._each(lambda k: parts[k].moments(samples), len(parts))
@@ -57,10 +58,11 @@ class Voronoi:
         return moved, rows[moved], self._parameters(rows[moved], steps[moved])
 
     def widest(self, samples: Array, bounds: Bounds) -> tuple[Indices, Array, Array]:
-        """Return the cells with a point at least least/√w from all samples, and that point.
+        """Return the indices (k,) of the cells with a point at least least/√w from all samples.
 
-        It is the farthest one of each cell, by its parameters (k, 2). Also return the gaps (k, 2),
-        w and w times the squared distance. `find_widest` says what angles count, and how.
+        Also return the parameters (k, 2) of the farthest point of each of these cells, and the gaps
+        (k, 2): w, and w times the squared distance of this point. `find_widest` explains `bounds`,
+        and where angles replace distances.
         """
         parts = self._parts
         found = self._each(lambda k: parts[k].widest(samples, bounds), len(parts))
@@ -69,7 +71,10 @@ class Voronoi:
         return rows, self._parameters(rows, np.where(numbers[:, None] < 0, 0.0, steps)), gaps
 
     def _parameters(self, rows: Indices, steps: Array) -> Array:
-        """Return the parameters (k, 2) of points in cells, by their coordinates (k, 2)."""
+        """Return the parameters (k, 2) of points in the cells with the indices `rows` (k,).
+
+        `steps` (k, 2) are the coordinates of the points in their cells, from −1/2 to 1/2.
+        """
         cells = self._cells
         boxes, steps = cells.boxes[rows], np.where(cells.whole[rows, None], steps, 0.0)
         return cells.places[rows] + steps * (boxes[:, 2:] - boxes[:, :2])
@@ -102,7 +107,7 @@ class _Part:
         return moments
 
     def widest(self, samples: Array, bounds: Bounds) -> tuple[Indices, Indices, Array]:
-        """Return rows of candidates, indices of fine points, and gaps; see `Voronoi`."""
+        """Return rows of candidates, indices of fine points, and gaps; see `Voronoi.widest`."""
         found, gaps = np.empty(len(self.order), np.int64), np.empty((len(self.order), 2))
         near, room = samples[self.near], self._room
         kernels.find_widest(self.grids, self.lists, near, bounds, room, found, gaps)
