@@ -86,6 +86,16 @@ class Hits:
         kept = kept[rows[place[kept]] == self.exact[kept]]
         return Hits(self.keys[rows], place[kept], self.local[kept], self.developable)
 
+    def merged(self, keys: Indices, local: Array) -> Hits:
+        """Return these hits with others of other normals, which were decided exactly."""
+        order = np.argsort(np.concatenate([self.keys, keys]))
+        place = np.argsort(order)
+        exact = np.concatenate([place[self.exact], place[len(self) :]])
+        in_turn = np.argsort(exact)
+        local = np.concatenate([self.local, local])[in_turn]
+        keys = np.concatenate([self.keys, keys])[order]
+        return Hits(keys, exact[in_turn], local, self.developable)
+
     def whole_normals(self, size: int) -> Iterator[Hits]:
         """Yield groups of at most `size` hits; all hits of a normal are in the same group.
 

@@ -23,7 +23,7 @@ from ...generated.vectors import Vector
 from ..base.aliases import Array, Flags, Indices
 from ..base.formula_calls import patch, python_function, vector
 from ..base.kept import kept
-from ..base.tolerances import DATA_ERROR, FORM_ERROR, SINGULAR_POINT
+from ..base.tolerances import FORM_ERROR, SINGULAR_POINT
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
 from ..spline.tips import tips_of
@@ -39,8 +39,16 @@ from .long_integers import (
     sign,
 )
 
-__all__ = ["decide_in_nets", "edge_signs", "errors_of", "fields_in_nets", "flat_nets"]
+__all__ = [
+    "decide_in_nets",
+    "edge_signs",
+    "errors_of",
+    "fields_in_nets",
+    "flat_nets",
+    "rounding_of",
+]
 
+ALL = slice(None)
 # For each of the edges u = 0, v = 0, w = 0, the permutation of the six control points of a patch
 # after which this edge is the edge v = 0.
 TURNED = tuple(
@@ -57,8 +65,12 @@ NEAR_POLE = 1e-9
 
 def errors_of(spline: NetSpline) -> Array:
     """For each of the T patches, return a bound of the errors of its forms U, V, W."""
-    largest = _largest(spline)
-    return 8.0 * largest * (_rounding(spline) + 2.0 * largest * spline.topology.angles)
+    return rounding_of(spline) + 16.0 * _largest(spline) ** 2 * spline.topology.angles
+
+
+def rounding_of(spline: NetSpline, rows: Indices | slice = ALL) -> Array:
+    """For each of the given patches, return a bound of the rounding of its forms U, V, W."""
+    return 8.0 * _largest(spline, rows) * _rounding(spline, rows)
 
 
 def flat_nets(spline: NetSpline) -> Flags:
@@ -72,14 +84,14 @@ def flat_nets(spline: NetSpline) -> Flags:
     return kept(spline, "developable", flat)
 
 
-def _largest(spline: NetSpline) -> Array:
-    """For each of the T patches, return the largest 1-norm of its vectors a, b, c, d, e."""
-    return np.abs(spline.vectors).sum(axis=2).max(axis=1)
+def _largest(spline: NetSpline, rows: Indices | slice = ALL) -> Array:
+    """For each of the given patches, return the largest 1-norm of its vectors a, b, c, d, e."""
+    return np.abs(spline.vectors[rows]).sum(axis=2).max(axis=1, initial=0.0)
 
 
-def _rounding(spline: NetSpline) -> Array:
-    """For each of the T patches, return a bound of the errors of its linear forms n·a, …, n·e."""
-    return FORM_ERROR * _largest(spline) + DATA_ERROR * spline._largest * spline.scale
+def _rounding(spline: NetSpline, rows: Indices | slice = ALL) -> Array:
+    """For each of the given patches, return a bound of the errors of its forms n·a, …, n·e."""
+    return FORM_ERROR * _largest(spline, rows) + spline.noise
 
 
 def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decision:

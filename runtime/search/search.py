@@ -7,7 +7,7 @@ Sect. 3.2). Exact arithmetic decides the pairs for which rounding leaves a sign 
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import closing
 
 import numpy as np
@@ -26,6 +26,7 @@ from .hits import Hits, fill
 from .in_nets import decide_in_nets, flat_nets
 from .kernels.lists import NUMBER, order_few
 from .kernels.search import PATCHES, Memory, Pairs, search
+from .lines import beside_lines, have_lines, places_at
 from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
 __all__ = ["Hits", "developable_patches", "find", "find_in_turn", "on_border"]
@@ -53,6 +54,17 @@ def find_in_turn(
 
     There is at least one range, also if there are no normals.
     """
+    yield from _in_turn(spline, normals, _with_lines, threads, progress)
+
+
+def _in_turn(
+    spline: AnySpline,
+    normals: Array,
+    decided: Callable[..., Hits],
+    threads: int | None,
+    progress: bool = False,
+) -> Iterator[Hits]:
+    """Yield the hits as `find_in_turn`; those of a range are `decided` by a function."""
     developable = developable_patches(spline, threads)
     tips = tips_of(spline)
     nothing = developable == spline.patches or (tips is not None and tips.collapsed.all())
@@ -66,7 +78,10 @@ def find_in_turn(
         if found is None:
             size = -(-size // 2)
             continue
-        yield _decided(spline, part, *found, first, developable, threads)
+        hits = decided(spline, part, *found, developable, threads)
+        if first:
+            hits.keys[:] += first << 32
+        yield hits
         first += size
 
 
@@ -116,12 +131,9 @@ def _ranges(
 
 def _decided(
     spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
-    bounds: Array, first: int, developable: int, threads: int | None,
+    bounds: Array, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
-    """Return the certain hits and those of the undecided pairs that exact arithmetic confirms.
-
-    `first` is the index of the first of these normals among all normals.
-    """
+    """Return the certain hits and those of the undecided pairs that exact arithmetic confirms."""
     exact, local = np.empty(0, np.int64), np.empty((0, 5))
     if len(undecided) > 0:
         # Sorting by patches is faster: the vectors of a patch are converted to integers only once.
@@ -142,10 +154,30 @@ def _decided(
     if len(exact) > 0:
         order_few(keys)
     exact = np.searchsorted(keys, exact)
-    found = _without_tips(spline, normals, Hits(keys, exact, local, developable))
-    if first:
-        found.keys[:] += first << 32
-    return found
+    return _without_tips(spline, normals, Hits(keys, exact, local, developable))
+
+
+def _with_lines(
+    spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
+    bounds: Array, developable: int, threads: int | None,
+) -> Hits:  # fmt: skip
+    """Return the hits as `_decided`, but displace the normals that lines in nets have."""
+    numbers, lines = undecided >> 32, np.empty(0, np.int64)
+    if isinstance(spline, NetSpline) and len(undecided) > 0:
+        lines = np.unique(numbers[have_lines(spline, undecided & NUMBER, normals[numbers])])
+    if len(lines) == 0:
+        return _decided(spline, normals, certain, undecided, bounds, developable, threads)
+    assert isinstance(spline, NetSpline)
+    keep = ~np.isin(numbers, lines)
+    certain = [x[~np.isin(x >> 32, lines)] for x in certain]
+    found = _decided(spline, normals, certain, undecided[keep], bounds[keep], developable, threads)
+    beside = beside_lines(spline, normals[lines])
+    moved = Hits.joined(list(_in_turn(spline, beside, _decided, threads)))
+    (K,) = fill(spline, beside, moved, threads, ("gaussian_curvature",)).values()
+    numbers = lines[moved.normal_index]
+    uv = places_at(spline, moved.patch_index, normals[numbers], beside[moved.normal_index])
+    local = np.column_stack([uv, np.copysign(1.0, K), uv])
+    return found.merged(numbers << 32 | moved.patch_index, local)
 
 
 def _without_tips(spline: AnySpline, normals: Array, hits: Hits) -> Hits:

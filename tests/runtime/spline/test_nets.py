@@ -190,6 +190,24 @@ def test_normals_of_a_closed_spline(name: str, degree: int) -> None:
     assert (gm.GaussMap(spline).degree(normals) == degree).all()
 
 
+@pytest.mark.parametrize("cells", [(8, 6), (24, 17), (32, 32)])
+@pytest.mark.parametrize("away", [0.0, 1e6])
+def test_normals_of_a_circle(cells: tuple[int, int], away: float) -> None:
+    """The circles on top of a torus have one normal; normals beside it have two points."""
+    c, s = np.cos(0.7), np.sin(0.7)
+    nets, axis = gm.fit("torus", cells).control_nets, np.array([0.0, 0.0, 1.0])
+    for turn in (np.eye(3), np.array([[1.0, 0, 0], [0, c, s], [0, -s, c]])):
+        spline = gm.Spline.from_nets(nets @ turn.T + [away, 0.0, 0.0])
+        known, normals = gm.GaussMap(spline), np.array([turn @ axis, -turn @ axis])
+        samples = known.points(normals)
+        assert samples.normal_index.tolist() == [0, 0, 1, 1]
+        assert samples.patch_index is not None
+        assert known.degree(normals).tolist() == [0, 0]
+        own, _ = spline.normals_in_patches(samples.patch_index, samples.uv)
+        own /= np.linalg.norm(own, axis=1, keepdims=True)
+        assert np.abs(own - samples.normals).max() <= 64.0 * spline.noise
+
+
 def test_the_same_samples_as_the_library_s_own_spline() -> None:
     own = gm.fit("torus", (16, 12))
     nets = gm.Spline.from_nets(own.control_nets, name="torus")
