@@ -25,9 +25,10 @@ Flags = NDArray[np.bool_]
 STEPS_A_CELL = 8
 # The distance from the midpoint of a segment, on both sides, at which the trim is tested.
 ASIDE = 1e-7
-# The boundary of a predicate is searched on a grid with NODES_A_CELL nodes per cell, but FEWEST to
-# MOST along each parameter, and then by bisection. Then, PASSES times, a point of the boundary is
-# inserted near the midpoint of each segment, while a polyline has at most MOST_POINTS points.
+# The boundary of a predicate is searched on a grid with NODES_A_CELL nodes per cell, but at least
+# FEWEST and at most MOST nodes along each parameter, and then by bisection. Then, PASSES times, a
+# point of the boundary is inserted near the midpoint of each segment, while a polyline has at most
+# MOST_POINTS points.
 NODES_A_CELL, FEWEST, MOST, BISECTIONS, PASSES = 4, 64, 1024, 40, 5
 MOST_POINTS = 50_000
 
@@ -53,7 +54,10 @@ def _uv(positions: Array, spline: Spline) -> Array:
 
 
 def _lines(part: TrimPart, spline: Spline) -> list[Array]:
-    """Return the polylines on which one condition of the trim changes, whatever the others are."""
+    """Return the polylines on which one condition of the trim changes.
+
+    The other conditions are ignored.
+    """
     low, high = np.array(spline.domain).T
     if isinstance(part, Loops):
         closed = [np.concatenate([x, x[:1]]) for x in part.polygons]
@@ -67,7 +71,7 @@ def _lines(part: TrimPart, spline: Spline) -> list[Array]:
 
 
 def _dense(line: Array, spline: Spline) -> Array:
-    """Cut the segments of a polyline into short steps."""
+    """Return a polyline with its segments cut into short steps."""
     along = np.diff(line, axis=0)
     reach = (np.abs(along) * spline.cells).max(axis=1, initial=0.0)
     parts = np.maximum(np.ceil(STEPS_A_CELL * reach), 1).astype(np.int64)
@@ -77,7 +81,7 @@ def _dense(line: Array, spline: Spline) -> Array:
 
 
 def _with_crossings(line: Array, boundary: Boundary) -> Array:
-    """Insert the points at which a polyline crosses open sides, exactly on these."""
+    """Insert the points, exactly on open sides of the domain, where a polyline crosses them."""
     for axis, ends in enumerate(boundary):
         if ends[0] in ("periodic", "mirrored"):
             continue
@@ -93,7 +97,11 @@ def _with_crossings(line: Array, boundary: Boundary) -> Array:
 
 
 def _is_border(line: Array, part: TrimPart, others: list[TrimPart], spline: Spline) -> Flags:
-    """Return which segments of a polyline have the surface on one side only, inside the domain."""
+    """Return whether segments of a polyline bound the trimmed surface inside the domain.
+
+    The condition `part` changes across such a segment; the other conditions hold on at least one of
+    its sides.
+    """
     middles, along = (line[1:] + line[:-1]) / 2.0, np.diff(line, axis=0)
     lengths = np.linalg.norm(along, axis=1)
     aside = np.stack([-along[:, 1], along[:, 0]], axis=1)
@@ -162,7 +170,10 @@ def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
 
 
 def _changes(part: TrimPart, spline: Spline) -> Iterator[Segment]:
-    """Yield the lines on which a condition changes, between nodes of a grid, by bisection."""
+    """Yield the polylines on which a condition changes.
+
+    They are contours between nodes of a grid, moved to the change of the condition by bisection.
+    """
     from contourpy import LineType, contour_generator
 
     counts = np.clip(NODES_A_CELL * np.array(spline.cells), FEWEST, MOST)
@@ -202,7 +213,10 @@ def _refined(line: Array, part: TrimPart, spline: Spline) -> Array:
 
 
 def _bisected(low: Array, high: Array, at_low: Flags, part: TrimPart, spline: Spline) -> Array:
-    """Return where a condition changes between positions low and high (k, 2), by bisection."""
+    """Return positions between `low` and `high` (k, 2) at which a condition changes, by bisection.
+
+    `at_low` (k,) are the values of the condition at `low`.
+    """
     low, high = low.copy(), high.copy()
     for _ in range(BISECTIONS):
         middle = (low + high) / 2.0

@@ -16,7 +16,7 @@ __all__ = ["CreasedMesh", "mean_normals", "unit"]
 
 # Normals at a point are equal if they agree to this number of decimals.
 DIGITS = 9
-# These fields have defaults only because fields of `Mesh` have.
+# These fields have defaults only because the last fields of `Mesh` have defaults.
 _GIVEN: Any = None
 
 
@@ -87,7 +87,10 @@ class CreasedMesh(Mesh):
 def mean_normals(
     triangles: NDArray[np.int64], corner_normals: NDArray[np.float64], count: int
 ) -> NDArray[np.float64]:
-    """Return unit means (count, 3) of the normals (T, 3, 3) at each vertex; 0 if they cancel."""
+    """Return the unit mean (count, 3) of the corner normals (T, 3, 3) at each vertex.
+
+    The mean is 0 where the normals cancel.
+    """
     total = np.zeros((count, 3))
     np.add.at(total, triangles, corner_normals)
     return unit(total)

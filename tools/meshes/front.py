@@ -1,4 +1,4 @@
-"""Triangles in front of others, seen against the direction z: as rays along z find them."""
+"""Front triangles: of the triangles above a point of the xy plane, the one with the largest z."""
 
 from __future__ import annotations
 
@@ -19,21 +19,23 @@ if TYPE_CHECKING:
 
 __all__ = ["FreeAlong", "Front", "cross_of", "in_front"]
 
-# The number of pixels along each side for `in_front`, and the number of triangles at a time.
+# The number of pixels along each side for `in_front`, and the number of triangles that it treats at
+# a time.
 PIXELS, AT_ONCE = 400, 4096
-# The number of pairs of a point and a triangle at a time, about.
+# The number of points that `Front` treats at a time.
 POINTS = 1 << 15
-# Edges are divided into this number of steps for a length of the size of the mesh.
+# Edges are divided into steps that are as long as the size of the mesh divided by this number.
 STEPS = 256
-# Triangles that are this far below a point, relative to the size, hide it: they are in contact.
+# Triangles up to this far below a point, relative to the size of the mesh, hide it: they may be
+# those of a solid in contact.
 BELOW = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """Triangles (T, 3, 3) in the squares of a grid over x and y.
+    """Triangles (T, 3, 3), listed by the squares of a grid in the xy plane.
 
-    Square k has the triangles `owners`[starts[k]:starts[k + 1]].
+    The triangles of square k have the indices `owners`[starts[k]:starts[k + 1]].
     """
 
     triangles: Array
@@ -45,7 +47,7 @@ class Front:
 
     @classmethod
     def of(cls, triangles: Array) -> Front:
-        """Return triangles in the squares that their bounding boxes meet."""
+        """List triangles in all squares that their bounding boxes meet."""
         flat, grid = triangles[..., :2], max(1, round(math.sqrt(len(triangles)) / 2))
         low, high = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
         step = np.where(high > low, high - low, 1.0) / grid
@@ -62,7 +64,7 @@ class Front:
         return cls(triangles, low, step, grid, owner[order], starts)
 
     def at(self, places: Array) -> Array:
-        """Return the depth of the front triangle at points (P, 2); −∞ without one."""
+        """Return z of the front triangle at points (P, 2); −∞ for a point without a triangle."""
         found = np.full(len(places), -np.inf)
         for first in range(0, len(places), POINTS):
             found[first : first + POINTS] = self._at(places[first : first + POINTS])
@@ -83,10 +85,11 @@ class Front:
 class FreeAlong:
     """The condition that a ray from infinity against an axis reaches a point of a closed mesh.
 
-    A ray from the point along the axis may not enter the mesh, that is, meet a triangle from
-    outside; `below` are these triangles, in coordinates with the axis as the third of the `rows`
-    (3, 3). Triangles up to `slack` below the point count, as of a solid in contact. Shadows end
-    below the edges of `below`; the tree has points on these edges, `step` apart.
+    It holds if a ray from the point along the axis does not enter the mesh, that is, meets no
+    triangle from outside. `below` are the triangles that rays along the axis meet from outside, in
+    the coordinates of `rows` (3, 3), whose last row is the axis. Triangles up to `slack` below the
+    point count as met, as those of a solid in contact. Shadows end below the boundary edges of
+    `below`; the tree `edges` has points on these edges, `step` apart.
     """
 
     rows: Array
@@ -97,7 +100,7 @@ class FreeAlong:
 
     @classmethod
     def of(cls, mesh: Mesh, axis: Array) -> FreeAlong:
-        """Return the condition for a mesh with outward triangles."""
+        """Return the condition for a closed mesh with outward triangles."""
         across = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
         across = unit_vector(across, "the axis")
         rows = np.stack([across, np.cross(axis, across), axis])
@@ -115,20 +118,23 @@ class FreeAlong:
         return cls(rows, Front.of(turned[chosen]), BELOW * size, tree_of(points), step)
 
     def holds(self, points: Array, normals: Array) -> Flags:
-        """Return which points (k, 3) with normals (k, 3) are reached; none that face away are."""
+        """Return whether points (k, 3) with normals (k, 3) are reached.
+
+        Points whose normals face away from the axis are not reached.
+        """
         seen = points @ self.rows.T
         free = self.below.at(seen[:, :2]) < seen[:, 2] - self.slack
         return free & (normals @ self.rows[2] >= -BELOW)
 
     def may_change(self, points: Array, radii: Array) -> Flags:
-        """Return which balls around points (k, 3) may be partly in a shadow."""
+        """Return whether balls around points (k, 3) may be partly in, partly outside a shadow."""
         seen, most = points @ self.rows[:2].T, float(radii.max(initial=0.0)) + self.step
         near = self.edges.query(seen, distance_upper_bound=most)[0]
         return near <= radii + self.step
 
 
 def in_front(triangles: Array) -> Flags:
-    """Return which triangles (T, 3, 3) are the front ones at the centre of some pixel."""
+    """Return whether triangles (T, 3, 3) are front triangles at the centre of some pixel."""
     flat = triangles[..., :2]
     lowest = flat.min(axis=(0, 1))
     step = (float(np.ptp(flat, axis=(0, 1)).max()) or 1.0) / PIXELS
@@ -153,7 +159,10 @@ def in_front(triangles: Array) -> Flags:
 
 
 def _depths(triangles: Array, places: Array) -> tuple[Flags, Array]:
-    """Return which triangles (k, 3, 3) contain their point (k, 2), and their depths there."""
+    """Return whether triangles (k, 3, 3) contain their points (k, 2), in the xy plane.
+
+    Also return z at the points, for the triangles that contain their point.
+    """
     a, b, c = np.moveaxis(triangles[..., :2] - places[:, None], 1, 0)
     weights = np.stack([cross_of(b, c), cross_of(c, a), cross_of(a, b)], axis=1)
     total = weights.sum(axis=1, keepdims=True)

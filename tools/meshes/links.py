@@ -13,17 +13,19 @@ Indices = NDArray[np.int64]
 def edge_numbers(triangles: Indices, count: int) -> Indices:
     """Return numbers (k, 3) that identify the edges opposite to the corners of triangles.
 
-    They are first · count + second, where the first vertex is the one with the smaller index.
+    The number of an edge is first · count + second, where first is the smaller and second the
+    larger index of its two vertices.
     """
     one, other = triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]
     return np.minimum(one, other) * count + np.maximum(one, other)
 
 
 def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:
-    """Return the triangles (k, 3) opposite to the corners, −1 for none, and whether all exist.
+    """Return the indices (k, 3) of the triangles across the edges opposite to corners, −1 for none.
 
-    All exist if each edge is in two triangles, or in one between two vertices where the surface
-    `may_end`. Triangles at an edge of three or more are not neighbours.
+    Also return whether the triangles are complete: each edge is in two triangles, or in one
+    triangle between two vertices where the surface `may_end`. Triangles at an edge of three or more
+    triangles are not neighbours.
     """
     numbers = edge_numbers(triangles, len(may_end)).ravel()
     order = np.argsort(numbers, kind="stable")

@@ -24,18 +24,19 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-# The largest step in the measurement of a polyline, relative to the spacing, and the largest number
-# of steps.
+# The largest step in the measurement of a polyline, relative to the spacing of samples, and the
+# largest number of steps.
 FINE, MOST_STEPS = 0.125, 200_000
-# The smallest spacing that divides a step, relative to the mean step; the least measure of a step.
+# The smallest spacing by which the length of a step is divided, relative to the mean step; and the
+# least measure of a step.
 SHORTEST, LEAST = 1e-3, 1e-12
 # A polyline has a corner where it turns by more than this within one spacing.
 CORNER = math.radians(30.0)
 # A sample closer to the boundary than this, relative to the spacing there, gets a vertex opposite
 # to it, so that no triangle of a sample and two boundary vertices is flat.
 CLOSE = 0.25
-# The sample must also be closer than this in the domain: in space, another part of the surface may
-# be near.
+# The sample must also be closer than this in the domain, scaled to the unit square: in space,
+# another part of the surface may be near.
 DEEPEST = 0.125
 # Measures that differ by less than this belong to one vertex.
 EQUAL = 1e-6
@@ -45,9 +46,10 @@ EQUAL = 1e-6
 class MeasuredLine:
     """A polyline of the boundary, measured by its length relative to the spacing of samples.
 
-    `measure` (N,) are the relative lengths up to its points (N, 3). It has k vertices of the mesh:
-    `t` (k,) are the measures at these; `fixed` (k,) marks ends, corners, and samples on the line;
-    `sample` (k,) are the indices of the samples at vertices, or −1.
+    `measure` (N,) are the relative lengths from the start of the line to its `points` (N, 3). There
+    are k vertices of the mesh on the line: `t` (k,) are their measures; `fixed` (k,) marks vertices
+    that are ends, corners or samples; `sample` (k,) are the indices of the samples at vertices, or
+    −1.
     """
 
     positions: Array
@@ -61,7 +63,10 @@ class MeasuredLine:
 
     @classmethod
     def of(cls, positions: Array, spline: Spline, tree: KDTree) -> MeasuredLine:
-        """Measure a polyline (k, 2) among the points of samples, and put vertices on it."""
+        """Measure a polyline (k, 2) by the spacing of samples, and put vertices on it.
+
+        The tree holds the points of the samples.
+        """
         points, spacings, steps = _measured(positions, spline, tree)
         finer = math.ceil(float(steps.max(initial=0.0)) / FINE)
         finer = min(finer, MOST_STEPS // len(positions))
@@ -83,11 +88,11 @@ class MeasuredLine:
         lengths: Array,
         on_line: float,
     ) -> None:
-        """Move vertices to the feet of close samples; samples within `on_line` become vertices.
+        """Move vertices opposite to close samples; samples within `on_line` become vertices.
 
-        `samples` are the positions and the indices of the samples in the tree. Feet are
-        perpendicular if the domain is scaled by `lengths` (2,), those of the surface along u and v.
-        `on_line` is relative to the spacing.
+        `samples` are the positions and the indices of the samples in the tree. A vertex moves to
+        the foot of the perpendicular from a sample, in the domain scaled by `lengths` (2,), the
+        lengths of the surface along u and v. `on_line` is relative to the spacing.
         """
         reach = CLOSE * self.spacings
         distance, nearest = tree_of(self.points).query(
@@ -109,7 +114,7 @@ class MeasuredLine:
         self._take(at, numbers[near], distance <= on_line * self.spacings[found[near]])
 
     def _take(self, at: Array, numbers: Indices, is_on: Flags) -> None:
-        """Make samples on the line vertices, in place of other vertices near them."""
+        """Make samples that are on the line vertices; they replace other vertices near them."""
         for t, number in zip(at[is_on].tolist(), numbers[is_on].tolist(), strict=True):
             apart = np.abs(self.t - t)
             ends = np.flatnonzero(self.fixed & (apart <= EQUAL))
@@ -123,9 +128,10 @@ class MeasuredLine:
     def _feet(
         self, points: Array, places: Array, nearest: Indices, lengths: Array
     ) -> tuple[Array, Array]:
-        """Return the measures of the feet of points (k, 3) at positions (k, 2), and distances.
+        """Return the measures (k,) of the feet of perpendiculars from points, and distances (k,).
 
-        `nearest` (k,) are the indices of the points of the polyline nearest to these points.
+        The points (k, 3) are at positions `places` (k, 2). `nearest` (k,) are the indices of the
+        points of the polyline nearest to them.
         """
         at, distance = self.measure[nearest], np.full(len(points), np.inf)
         for begin in (nearest - 1, nearest):
@@ -141,7 +147,7 @@ class MeasuredLine:
         return at, distance
 
     def insert(self, segments: Flags) -> None:
-        """Bisect segments between vertices."""
+        """Insert a vertex in the middle of each chosen segment between vertices."""
         middles = (self.t[1:] + self.t[:-1])[segments] / 2.0
         at = np.flatnonzero(segments) + 1
         self.t, self.fixed = np.insert(self.t, at, middles), np.insert(self.fixed, at, False)
@@ -153,7 +159,10 @@ class MeasuredLine:
 
 
 def _measured(positions: Array, spline: Spline, tree: KDTree) -> tuple[Array, Array, Array]:
-    """Return points and spacings at positions, and the steps in between relative to the spacing."""
+    """Return points and spacings at positions, and the relative lengths of the steps between them.
+
+    The length of a step is relative to the mean spacing at its ends.
+    """
     points = points_at(spline, wrapped(positions, spline.boundary))
     spacings = spacings_at(tree, points)
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
@@ -162,7 +171,7 @@ def _measured(positions: Array, spline: Spline, tree: KDTree) -> tuple[Array, Ar
 
 
 def _divided(points: Array, measure: Array, closed: bool) -> tuple[Array, Flags]:
-    """Return measures spaced by about 1 between corners, and a mask of corners and ends."""
+    """Return the measures of vertices, about 1 apart, and a mask of those at corners and ends."""
     total = float(measure[-1])
     corners = _corners(points, measure, closed)
     ends = np.unique(np.concatenate([[0.0], corners, [total]]))

@@ -47,8 +47,8 @@ class Mesh(Methods):
     name : str
         Label of the surface.
     sides : (T, 3) int64 array
-        1, or −1 where the normals at a corner and at the first corner are on opposite sides: on a
-        one-sided surface normals change sides somewhere. By default 1.
+        For each corner 1, or −1 if its normal and the normal at the first corner are on opposite
+        sides of the triangle: on a one-sided surface normals change sides somewhere. By default 1.
     left_out : int
         The number of samples that are no vertices: too close to others or, with an `angle`, in no
         remaining triangle.
@@ -257,7 +257,7 @@ class Mesh(Methods):
         return line + self._quality()
 
     def _quality(self) -> str:
-        """Return the end of a summary: the angles of triangles, and those between normals."""
+        """Return the end of a summary: angles of triangles, and their deviations from normals."""
         return (
             f"; 95 % have angles of at least {np.quantile(self.smallest_angles, 0.05):.1f}°; they "
             f"deviate from the normals by {self.angles.mean():.2f}° (mean), "
@@ -271,7 +271,7 @@ def cosines_of(
     triangles: NDArray[np.int64],
     sides: NDArray[np.int64],
 ) -> NDArray[np.float64]:
-    """Return the smallest cosine (T,) between each triangle and the normals at its corners."""
+    """Return the smallest cosine (T,) between each triangle's normal and those at its corners."""
     cosines = np.empty(len(triangles))
     if len(triangles):
         smallest_cosines(scaled(points), normals, triangles, sides, cosines)

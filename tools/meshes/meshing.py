@@ -47,9 +47,10 @@ def mesh_of(samples: Samples, spline: Spline, angle: float | None, prefer: str) 
 
 
 def _check_folds(samples: Samples, mesh: Triangulated) -> None:
-    """Raise InputError if an offset is trimmed, or its samples or edges were turned around.
+    """Raise InputError for a trimmed offset, and for an offset that turned samples or edges around.
 
-    Principal curvatures κ before it are κ' = κ / (1 + d κ) after it, and 1 − d κ' = 1 / (1 + d κ).
+    An offset by d changes a principal curvature κ to κ' = κ / (1 + d κ). Therefore 1 + d κ has the
+    sign of 1 − d κ' = 1 / (1 + d κ), which is known after the offset.
     """
     base = samples.offset_of
     if base is None:
@@ -76,7 +77,11 @@ def _check_folds(samples: Samples, mesh: Triangulated) -> None:
 
 
 def finished(mesh: Triangulated, samples: int, prefer: Prefer, largest: float) -> Mesh:
-    """Return the mesh with better triangles, which deviate from normals by less than an angle."""
+    """Return the mesh with improved triangles.
+
+    Triangles that deviate from normals by more than `largest` degrees are left out. `samples` is
+    the number of samples.
+    """
     if largest < WHOLE:
         flip_edges(mesh, "normals")
         mesh = mesh.within(largest)
@@ -87,7 +92,10 @@ def finished(mesh: Triangulated, samples: int, prefer: Prefer, largest: float) -
 
 
 def checked_angle(angle: object) -> float:
-    """Return the largest angle of triangles with normals, 180° for None."""
+    """Return the checked argument `angle`, in degrees: the largest deviation from normals.
+
+    It is 180 for None.
+    """
     if angle is None:
         return WHOLE
     if isinstance(angle, bool) or not isinstance(angle, int | float | np.number):
@@ -125,7 +133,7 @@ def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -
 
 
 def _with_points_as_poles(spline: Spline, boundary: Boundary) -> Boundary:
-    """Return the boundary conditions, with every side that is one point as a pole."""
+    """Return the boundary conditions, in which every collapsed side becomes a pole."""
     ends: list[list[BoundaryCondition]] = [[*kinds] for kinds in boundary]
     for axis, place in collapsed_sides(spline):
         ends[axis][place] = "pole"
@@ -154,7 +162,7 @@ def _triangles(
 
 
 def _characteristic(triangles: Indices, adjacent: Indices) -> int:
-    """Return the Euler characteristic of triangles with their neighbours."""
+    """Return the Euler characteristic of a mesh, from its triangles and their neighbours."""
     edges = (adjacent.size + int(np.count_nonzero(adjacent < 0))) // 2
     used = int(np.count_nonzero(np.bincount(triangles.ravel())))
     return used - edges + len(triangles)
@@ -203,7 +211,10 @@ def _on_surface(vertices: Vertices, samples: Samples, spline: Spline) -> tuple[A
 
 
 def _apexes(vertices: Vertices, spline: Spline) -> Iterator[Indices]:
-    """Yield the vertices on each side that is an apex, where the surface has no normal."""
+    """Yield the indices of the vertices on each side of the domain that collapses to an apex.
+
+    At an apex the surface has no normal.
+    """
     for axis, place in collapsed_sides(spline):
         yield np.flatnonzero(vertices.positions[:, axis] == place)
 
@@ -211,7 +222,7 @@ def _apexes(vertices: Vertices, spline: Spline) -> Iterator[Indices]:
 def _at_apexes(
     vertices: Vertices, spline: Spline, triangles: Indices, sides: Indices, adjacent: Indices
 ) -> tuple[Indices, Indices, Indices]:
-    """Return triangles, sides and neighbours with a single vertex at each apex."""
+    """Return triangles, sides and neighbours, with the vertices at each apex merged."""
     number = np.arange(len(vertices.sample))
     for apex in _apexes(vertices, spline):
         number[apex] = number[apex[:1]]
@@ -225,7 +236,7 @@ def _at_apexes(
 def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:
     """Set missing normals of vertices, as at poles, to the mean of the normals around them.
 
-    It is 0 if these normals are missing, too.
+    The mean is 0 if the normals around a vertex are missing, too.
     """
     missing = np.asarray(~np.isfinite(normals).all(axis=1))
     normals[missing] = 0.0

@@ -1,4 +1,4 @@
-"""Meshes of splines of nets: the patches as triangles, or in equal parts."""
+"""Meshes of splines of nets: each patch is one triangle, or is divided into equal triangles."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ __all__ = ["mesh"]
 
 
 class Parts(NamedTuple):
-    """A triangle in n² equal parts: the parameters u, v of their L corners are `places` (L, 2).
+    """A division of a triangle into n² equal triangles, whose L corners are at `places` (L, 2).
 
-    The corners (3,) and the points on edges (3, n + 1) of the triangle, and the triangles (n², 3),
-    are indices of places, counterclockwise; edges are ordered as in `runtime.spline.joints`.
+    Places are parameter pairs. The `corners` (3,) of the whole triangle, the points on its `edges`
+    (3, n + 1), and the `triangles` (n², 3) are indices of places, counterclockwise. Edges are
+    ordered as in `runtime.spline.joints`.
     """
 
     places: Array
@@ -32,7 +33,7 @@ class Parts(NamedTuple):
 
     @classmethod
     def of(cls, n: int) -> Parts:
-        """Return the triangle (0, 0), (1, 0), (0, 1) in n² parts."""
+        """Divide the triangle (0, 0), (1, 0), (0, 1) into n² equal triangles."""
         i, j = np.nonzero(np.add.outer(np.arange(n + 1), np.arange(n + 1)) <= n)
         number = np.full((n + 1, n + 1), -1)
         number[i, j] = np.arange(len(i))
@@ -66,7 +67,7 @@ def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
     CreasedMesh
         The vertices, triangles, and normals: `normals` at vertices, `corner_normals` at corners of
         triangles, which differ at creases. `face_index` are the patches of triangles. Triangles
-        with equal corners, at an edge of a patch that is one point, are left out.
+        with equal corners, at a collapsed edge of a patch, are left out.
 
     Raises
     ------
@@ -94,7 +95,7 @@ def mesh(self: NetSpline, parts: int = 1) -> CreasedMesh:
     uv = np.tile(inside.places, (self.patches, 1))
     normals = _normals(self, patches, uv, smooth)
     rows = (inside.triangles + size * np.arange(self.patches)[:, None, None]).reshape(-1, 3)
-    a, b, c = vertex[rows].T  # next to an edge that is one point, two corners may be one vertex
+    a, b, c = vertex[rows].T  # at a collapsed edge, two corners may be one vertex
     proper = (a != b) & (b != c) & (c != a)
     rows = rows[proper]
     return CreasedMesh(
@@ -119,7 +120,10 @@ def _links(spline: NetSpline, inside: Parts) -> tuple[Links, Links]:
     point = edges[topology.is_point]
 
     def across(pairs: Indices) -> Indices:
-        """Pair the points of edges (J, 2) in opposite directions; and those of collapsed edges."""
+        """Pair the points of two edges with opposite directions, for J pairs of edges (J, 2).
+
+        Also pair consecutive points of each collapsed edge.
+        """
         along = np.stack([edges[pairs[:, 0]], edges[pairs[:, 1], ::-1]]).reshape(2, -1)
         return np.concatenate([along, np.stack([point[:, 1:], point[:, :-1]]).reshape(2, -1)], 1)
 
@@ -132,9 +136,10 @@ def _links(spline: NetSpline, inside: Parts) -> tuple[Links, Links]:
 
 
 def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> Array:
-    """Return the unit normals (L T, 3) of patches at parameters; linked points share one.
+    """Return the unit normals (L T, 3) of patches at parameters; linked points share a normal.
 
-    If all patches around a point are singular, they share a normal only if their normals agree.
+    If all patches around a point are singular there, they share a normal only if their normals
+    agree.
     """
     N, singular = spline.normals_in_patches(patches, uv)
     own = unit(N)
@@ -150,5 +155,5 @@ def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> A
 
 
 def _any(count: int, group: Indices, flags: Flags) -> Flags:
-    """Return for each group (count,) whether any of its members has a flag."""
+    """Return for each group (count,) whether any of its members is flagged."""
     return np.bincount(group[flags], minlength=count) > 0

@@ -28,8 +28,9 @@ __all__ = ["mesh"]
 # Longitudes and latitudes of normals.
 DOMAIN = (-np.pi, np.pi), (-np.pi / 2.0, np.pi / 2.0)
 BOUNDARY: Boundary = ("periodic", "periodic"), ("pole", "pole")
-# A sum may be this far outside of the tangent plane of another one, relative to the size of the
-# body: normals and points carry rounding errors, and the patches of a spline meet up to these.
+# A sum may be this far outside of the tangent plane of another sum, relative to the size of the
+# body: normals and points carry rounding errors, and the patches of a spline meet up to rounding
+# errors.
 OUTSIDE = 1e-9
 
 
@@ -43,9 +44,9 @@ def mesh(
     """Return the boundary of the Minkowski sum of two convex bodies as a triangle mesh.
 
     It is the convex hull of the sums, with edges flipped. Each sum has to be on the hull, and the
-    hull on one side of its tangent plane: surfaces that fold, such as a torus, have no mesh. Of
-    selected sums, the hull closes all gaps: those that are farthest along their normals are on the
-    sum of the convex hulls of the two surfaces.
+    hull on one side of its tangent plane: surfaces that fold, such as a torus, have no mesh. If
+    sums are selected, the hull closes all gaps: sums that are farthest along their normals are on
+    the Minkowski sum of the convex hulls of the two surfaces.
 
     Parameters
     ----------
@@ -88,7 +89,7 @@ def mesh(
 
 
 def _hull(sums: Convolution) -> Triangulated:
-    """Return the convex hull of sums; InputError if some are not on it, with their normals."""
+    """Return the convex hull of sums; InputError unless all their tangent planes support it."""
     from scipy.spatial import QhullError
 
     points, normals, name = sums.points, sums.normals, sums.report.surface
@@ -118,9 +119,10 @@ def _hull(sums: Convolution) -> Triangulated:
 
 
 def _supported(points: Array, outwards: Array, triangles: Indices) -> Flags:
-    """Return which points (n,) are on a hull whose neighbouring vertices are inside their planes.
+    """Return whether points (n,) are on a hull and their tangent planes support it.
 
-    If all neighbours of a vertex are on one side of a plane through it, so is the whole hull.
+    Tangent planes are compared with neighbouring vertices only: if all neighbours of a vertex are
+    on one side of a plane through it, so is the whole hull.
     """
     tolerance = OUTSIDE * float(np.linalg.norm(np.ptp(points, axis=0)))
     vertices = np.unique(triangles)

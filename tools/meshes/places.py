@@ -1,4 +1,4 @@
-"""Positions in the parameter domain, scaled to the unit square: across its seams, and in space."""
+"""Positions: parameter pairs scaled to the unit square, their shifts across seams, their points."""
 
 from __future__ import annotations
 
@@ -71,13 +71,19 @@ def spacings_at(tree: KDTree, points: Array) -> Array:
 
 
 def on_side(axis: int, place: float, t: Array) -> Array:
-    """Return positions (k, 2) with u (axis 0) or v (axis 1) at `place` and the other at t (k,)."""
+    """Return positions (k, 2) on the line u = `place` (axis 0) or v = `place` (axis 1).
+
+    The other coordinate is t (k,).
+    """
     fixed = np.full_like(t, place)
     return np.stack([fixed, t] if axis == 0 else [t, fixed], axis=1)
 
 
 def boundary_of(spline: Spline) -> Boundary:
-    """Return the boundary conditions of a spline; a side that closes around a point is a pole."""
+    """Return the boundary conditions of a spline, with poles.
+
+    A collapsed side is a pole if the parameter along it is periodic.
+    """
     found: list[BoundaryPair] = []
     for axis, ends in enumerate(spline.boundary):
         closes = spline.boundary[1 - axis][0] == "periodic"

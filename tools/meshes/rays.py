@@ -20,7 +20,8 @@ PURPOSE = "a test with rays"
 # contact.
 BELOW = 1e-9
 RAYS = 4096  # rays that are traced at once
-# Rays to an eye begin this many times as far from the surface as its points are from the mesh.
+# Rays to an eye begin at this multiple of the largest distance between points of the surface and
+# its mesh.
 TIMES_AWAY = 2.0
 
 
@@ -31,10 +32,11 @@ def check_rays() -> None:
 
 
 def unobstructed(points: Array, normals: Array, distance: float, obstacle: object) -> Flags:
-    """Return a mask (N,) of rays of this length that do not enter the obstacle, a closed mesh.
+    """Return a mask (N,) of the points whose rays do not enter the obstacle, a closed mesh.
 
-    A ray may leave the obstacle through the surface on which it begins, since chords of the mesh
-    lie on either side of the surface.
+    The rays run along the normals (N, 3) for the given distance. A ray may leave the obstacle
+    through the surface on which it begins, since chords of the mesh lie on either side of the
+    surface.
     """
     solid, middle, scale = _solid(obstacle, closed=True)
     points, distance = (points - middle) * scale, distance * scale
@@ -48,7 +50,7 @@ def unobstructed(points: Array, normals: Array, distance: float, obstacle: objec
 
 
 def visible(points: Array, normals: Array, to_eye: Array, surface: Mesh) -> Flags:
-    """Return a mask (N,) of points of a silhouette that are seen, by a mesh of the surface.
+    """Return a mask (N,) of the points of a silhouette that a mesh of the surface does not hide.
 
     `to_eye` (N, 3) are vectors to the eye, at least long enough to leave the mesh. Rays begin on
     both sides of the surface, farther from it than the mesh is. A point is seen if one of its rays
@@ -70,7 +72,10 @@ def visible(points: Array, normals: Array, to_eye: Array, surface: Mesh) -> Flag
 
 
 def _hits(solid: Any, begins: Array, along: Array) -> Iterator[tuple[Indices, Indices, Array]]:  # noqa: ANN401
-    """Yield where rays meet a mesh: rays (k,), triangles (k,), and distances (k,)."""
+    """Yield intersections of rays and a mesh: rays (k,), triangles (k,), and distances (k,).
+
+    Rays and triangles are given by their indices, distances are measured along the rays.
+    """
     for first in range(0, len(begins), RAYS):
         part = slice(first, first + RAYS)
         triangles, rays, places = solid.ray.intersects_id(

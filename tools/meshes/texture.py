@@ -17,10 +17,10 @@ Indices = NDArray[np.int64]
 
 
 class Texture(NamedTuple):
-    """Texture coordinates (K, 2), and their indices (T, 3) at corners of triangles.
+    """Texture coordinates (K, 2), and for each corner of the triangles their index (T, 3).
 
-    The first rows are those of all vertices. Further rows are for triangles that cross a seam, or
-    have a corner at a pole.
+    The first rows of the coordinates are those of all vertices. Further rows are for triangles that
+    cross a seam, or have a corner at a pole.
     """
 
     places: Array
@@ -32,8 +32,8 @@ def corner_places(
 ) -> Array:
     """Return texture coordinates (T, 3, 2) of corners: parameters, with the domain scaled to 1 × 1.
 
-    Across a seam they continue beyond 1. A pole gets the mean coordinate of the two other corners.
-    Without a domain they are the parameters.
+    Across a seam they continue beyond 1. A corner at a pole gets the mean coordinate of the two
+    other corners. Without a domain they are the parameters.
     """
     if domain is None or boundary is None:
         return uv[triangles]

@@ -43,8 +43,8 @@ LARGEST_DEVIATION = 30.0
 # at most the share PART of all triangles has an angle below ENOUGH.
 SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
-# A bound is given up if more than this share of the samples would be left out: where the spacing of
-# samples doubles from one to the next, no triangles are better, and collapses would go on.
+# A bound is given up if more than this share of the samples would be left out: where the spacing
+# doubles from one sample to the next, no triangles are better, and collapses would go on.
 MOST_LOST = 0.1
 # The arrays that flips and collapses change.
 CHANGED = ("triangles", "sides", "neighbours")
@@ -77,7 +77,7 @@ class Triangulated:
     boundary: Boundary
 
     def cosines(self) -> Array:
-        """Return the smallest cosine of each triangle with the normals at its corners."""
+        """Return the smallest cosine (T,) between a triangle's normal and those at its corners."""
         return cosines_of(self.points, self.normals, self.triangles, self.sides)
 
     def tangents(self) -> Array:
@@ -106,7 +106,7 @@ class Triangulated:
         return replace(self, triangles=triangles, sides=self.sides[chosen], neighbours=adjacent)
 
     def chosen(self, which: NDArray[np.bool_]) -> Triangulated:
-        """Return the chosen triangles; the others no longer count as neighbours."""
+        """Return the mesh of the chosen triangles; the removed ones are no longer neighbours."""
         number = np.cumsum(which) - 1
         adjacent = self.neighbours[which]
         adjacent = np.where(adjacent >= 0, number[adjacent], -1)

@@ -1,8 +1,8 @@
 """Delaunay triangulations of points in the parameter domain, across its seams.
 
 Qhull triangulates points of a surface without seams. A domain that is periodic in one parameter is
-mapped to a sphere, a pole to one point and an open end to a circle of latitude; the convex hull is
-the Delaunay triangulation of the sphere, without its plane faces inside these circles. A Möbius
+mapped to a sphere, a pole to one point and an open side to a circle of latitude; the convex hull,
+without its plane faces inside these circles, is a Delaunay triangulation on the sphere. A Möbius
 band is half of a band that is symmetric about the centre. A domain that is periodic in both
 parameters is continued periodically in the plane, and one copy of each triangle is taken. An open
 domain is a rectangle.
@@ -30,7 +30,7 @@ Indices = NDArray[np.int64]
 # Triangles (k, 3), and for their corners (k, 3) 1, or −1 where the corner is a mirrored copy.
 Triangulation = tuple[Indices, Indices]
 
-# The latitudes of an open end: the lowest, that of an end opposite to a pole, and the highest.
+# The latitudes of an open side: the lowest, that of a side opposite to a pole, and the highest.
 LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
 # Random displacements of points, relative to their mean distance; the second is for a second
 # attempt. Without them, four or more points of a lattice that lie on one circle might be
@@ -54,9 +54,9 @@ def triangulations(
     """Yield triangulations of positions (k, 2) in the unit square; use the next if one fails.
 
     Positions that are not free lie on an open side or at a pole, and are not displaced. `boundary`
-    are the boundary conditions, `lengths` those of the surface along u and v. Triangles run
-    counterclockwise where their corner of the smallest index is no copy. A position that coincides
-    with another one may belong to no triangle.
+    are the boundary conditions, `lengths` (2,) the lengths of the surface along u and v. A triangle
+    runs counterclockwise in the unit square at its corner of the smallest index; its other corners
+    may be copies. A position that coincides with another one may belong to no triangle.
     """
     from scipy.spatial import QhullError
 
@@ -117,7 +117,10 @@ def _turned(triangles: NDArray[Any], which: NDArray[np.bool_]) -> Indices:
 
 
 def convex_hull(points: Array) -> Indices:
-    """Return the triangles (k, 3) of the convex hull of points (n, 3), counterclockwise outside."""
+    """Return the triangles (k, 3) of the convex hull of points (n, 3).
+
+    They run counterclockwise as seen from outside.
+    """
     from scipy.spatial import ConvexHull
 
     hull = ConvexHull(points)
@@ -159,7 +162,7 @@ def _on_sphere(positions: Array, boundary: Boundary, lengths: Array, axis: int) 
 def _one_of_each(
     triangles: Indices, original: Indices, count: int, is_mirrored: NDArray[np.bool_]
 ) -> Triangulation:
-    """Return one copy of each triangle: the one whose corner of the smallest index is no copy.
+    """Return each triangle once: the copy whose corner of the smallest index is no copy.
 
     Point k is a copy of `original[k]`; the first `count` points are no copies. A triangle with two
     copies of one point is left out.

@@ -28,12 +28,12 @@ Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Triangulate = Callable[[Vertices], tuple[Indices, Indices, Indices]]
 
-# A sample closer to the boundary than this, relative to the spacing, lies on it: the chords of the
-# boundary are about as close to its curves.
+# A sample closer to the boundary than this, relative to the spacing of samples, lies on it: the
+# chords of the boundary are about as close to its curves.
 ON_LINE = 5e-3
-# Outside, there are about as many points as vertices, but FEWEST to MOST. They keep the distance
-# AWAY from the boundary, relative to the gaps between its vertices; added vertices on open sides
-# keep ASIDE.
+# About as many points fill the outside as there are vertices, but at least FEWEST and at most MOST.
+# Their distance from the boundary is at least AWAY, relative to the gaps between its vertices; the
+# distance of added vertices on open sides is at least ASIDE.
 FEWEST, MOST, AWAY, ASIDE = 400, 4000, 0.7, 0.3
 # The largest number of times that points are added to the boundary.
 ROUNDS = 8
@@ -42,11 +42,11 @@ ROUNDS = 8
 def trimmed_triangles(
     vertices: Vertices, points: Array, spline: Spline, lengths: Array, triangulate: Triangulate
 ) -> tuple[Vertices, Indices, Indices, Indices, bool]:
-    """Return vertices and triangles inside the trim, sides, neighbours, and if they are complete.
+    """Return the vertices of a mesh, its triangles inside the trim, and their sides and neighbours.
 
-    They are complete if the triangles end only at the boundary of the surface. `vertices` cover the
-    whole domain, `points` are those of the samples, `lengths` (2,) those of the surface along u and
-    v; `triangulate` is like `_triangles` of `meshing.py`.
+    Also return whether the triangles are complete: they end only at the boundary of the surface.
+    `vertices` cover the whole domain, `points` are those of the samples, `lengths` (2,) those of
+    the surface along u and v; `triangulate` is like `_triangles` of `meshing.py`.
     """
     own = vertices.chosen(vertices.sample >= 0)
     tree = tree_of(points[own.sample] * spline.scale)
@@ -81,9 +81,10 @@ class _Trim:
     lines: list[MeasuredLine]
 
     def cut(self, given: Vertices) -> tuple[Vertices, Vertices]:
-        """Return the given vertices that are inside but not on the boundary, and vertices outside.
+        """Return vertices inside the trim, and vertices outside, none of them on its boundary.
 
-        Those outside are on open sides, or fill the domain, away from the boundary.
+        The vertices inside are vertices of `given`. The vertices outside are vertices of `given` on
+        open sides, and new points that fill the domain, away from the boundary.
         """
         is_added = given.sample < 0
         inside = ~is_added | self._contains(given.positions)
@@ -103,7 +104,7 @@ class _Trim:
         return inner, Vertices.joined([outside, filling])
 
     def border(self) -> Vertices:
-        """Return the vertices of all lines, in order; vertices on open sides are not displaced."""
+        """Return the vertices of all lines, in order; vertices on open sides are not free."""
         ends = [len(x.t) - x.closed for x in self.lines]
         found = [x.at_vertices()[:end] for x, end in zip(self.lines, ends, strict=True)]
         sample = [x.sample[:end] for x, end in zip(self.lines, ends, strict=True)]
@@ -135,7 +136,7 @@ class _Trim:
     def is_inside(self, whole: Vertices, triangles: Indices, possible: Flags, sure: Flags) -> Flags:
         """Return a mask of the triangles inside; all their vertices must be `possible`.
 
-        Triangles with a `sure` vertex are inside, the others if their centroids are.
+        A triangle with a `sure` vertex is inside; any other triangle is inside if its centroid is.
         """
         kept = np.asarray(possible[triangles].all(axis=1))
         unsure = np.flatnonzero(kept & ~sure[triangles].any(axis=1))
@@ -145,7 +146,10 @@ class _Trim:
         return kept
 
     def _is_away(self, positions: Array, gaps: float) -> Flags:
-        """Return which positions are more than `gaps` steps away from the vertices of lines."""
+        """Return whether positions are more than `gaps` gaps away from the boundary vertices.
+
+        The gap is the longer step from the nearest boundary vertex to the next ones.
+        """
         if not self.lines:
             return np.ones(len(positions), dtype=bool)
         places, around = [], []

@@ -91,7 +91,7 @@ class Vertices:
         return Vertices(self.positions[kept], self.sample[kept], self.is_free[kept])
 
     def apart(self, boundary: Boundary) -> Vertices:
-        """Return these vertices without the free ones that nearly coincide with others."""
+        """Return these vertices without free vertices that nearly coincide with another vertex."""
         periods = np.array([float(kinds[0] == "periodic") for kinds in boundary])
         places = _unique(self.positions, boundary)
         places = np.where(periods, places % 1.0, places)
@@ -113,8 +113,8 @@ class Vertices:
 def check_fields(samples: Samples) -> None:
     """Raise MissingFieldError unless samples have the fields that a mesh needs.
 
-    Samples on a graded grid also need its lines: its cells may be long, so that samples close to
-    others in one direction are needed.
+    Samples on a graded grid also need the indices of grid lines: the cells of the grid may be long,
+    and samples that are close to others in one direction are not left out.
     """
     needed = NEEDED + (GRID_NAMES if samples.report.density == "aligned" else ())
     if lacking := [name for name in needed if name not in samples.fields]:
@@ -139,7 +139,7 @@ def _unique(positions: Array, boundary: Boundary) -> Array:
 
 
 def _poles(inner: Vertices, tree: KDTree, spline: Spline, boundary: Boundary) -> Iterator[Vertices]:
-    """Yield the poles: a sample at the pole, or a new vertex if no sample is close."""
+    """Yield a vertex for each pole: a sample at the pole, or a new vertex if no sample is close."""
     for axis, kinds in enumerate(boundary):
         for place, end in enumerate(kinds):
             if end == "pole":

@@ -37,7 +37,7 @@ def area_weights(samples: Samples, angle: float | None) -> Array:
 
 
 def _areas(mesh: Mesh) -> Array:
-    """Return the areas (T, 3) over triangles, divided among their corners."""
+    """Return the areas (T, 3) of the surface over triangles, divided among their corners."""
     points, scale = centred(mesh.vertices)
     areas = corner_areas(points * scale, mesh.normals, mesh.triangles, mesh.sides)
     limits = np.finfo(np.float64)
@@ -56,7 +56,7 @@ def _areas(mesh: Mesh) -> Array:
 def corner_areas(
     points: Array, normals: Array, triangles: NDArray[np.int64], sides: NDArray[np.int64]
 ) -> Array:
-    """Return the areas (k, 3) over triangles (k, 3), divided among their corners.
+    """Return the areas (k, 3) of a surface over triangles (k, 3), divided among their corners.
 
     The surface is a quadratic Bézier triangle, as perpendicular to the normals at the corners as
     possible; its area is divided by barycentric coordinates. If two normals are more than 90
