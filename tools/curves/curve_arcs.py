@@ -31,19 +31,20 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 FIRST_ARCS, MOST_ARCS = 64, 1 << 14
-# An interval is not halved if the normal turns by less than this (radians) in it, or if it is
-# shorter than this, relative to the domain, where the curve is singular.
+# An interval is not halved if the normal turns by less than SMALLEST_TURN in it (radians), or if
+# the interval is shorter than SHORTEST, relative to the domain.
 SMALLEST_TURN, SHORTEST = 1e-12, 2.0**-36
-# The number of steps of Newton's method and of bisection: more than a float has digits.
+# The largest number of steps of Newton's method and of bisection: more than a float has digits.
 STEPS = 80
 CERTAIN, UNCERTAIN, SINGULAR = range(3)
 
 
 @dataclass(frozen=True, eq=False)
 class CurveArcs(Turning):
-    """The arcs of a curve: P + 1 parameters of joints, and the kinds (P,) of arcs.
+    """A curve in P arcs: the parameters `joints` (P + 1,), and the `kinds` (P,) of the arcs.
 
-    The attributes that the search needs are named as in `CurveSpline`.
+    A kind is CERTAIN, UNCERTAIN or SINGULAR. The attributes that the search needs are named as in
+    `CurveSpline`.
     """
 
     curve: Curve
@@ -69,12 +70,12 @@ class CurveArcs(Turning):
 
     @property
     def straight(self) -> Flags:
-        """A mask of arcs (P,) that are straight or singular: the sense of turning is uncertain."""
+        """A mask (P,) of arcs that may be straight or singular: the sense of turning is unknown."""
         return self.kinds != CERTAIN
 
     @property
     def reversing(self) -> Flags:
-        """A mask of the arcs (P,) that reverse, at a cusp."""
+        """A mask (P,) of the arcs with a cusp, where the curve reverses its direction."""
         before, after = self.joint_normals[:-1], self.joint_normals[1:]
         return (self.kinds == SINGULAR) & (np.einsum("kx,kx->k", before, after) <= 0.0)
 
@@ -93,7 +94,10 @@ class CurveArcs(Turning):
 
     @cached_property
     def inflections(self) -> Array:
-        """The parameters (k,) between certain arcs on which the normal turns in opposite senses."""
+        """The parameters (k,) of inflections.
+
+        An inflection is between two certain arcs on which the normal turns in opposite senses.
+        """
         certain = np.flatnonzero(self.kinds == CERTAIN)
         following = np.roll(certain, -1)
         if not self.periodic:
@@ -118,7 +122,7 @@ class CurveArcs(Turning):
         return jets[:, 0], jets[:, 1], jets[:, 3]
 
     def undecided(self, normals: Array) -> Flags:
-        """Return a mask of unit normals (S, 2) that may have points other than those found.
+        """Return a mask of the unit normals (S, 2) that may have points which were not found.
 
         These are the normals of uncertain arcs, or all if the curve is singular somewhere.
         """
@@ -131,7 +135,10 @@ class CurveArcs(Turning):
         return found
 
     def parameters(self, arcs: NDArray[np.int64], normals: Array) -> Array:
-        """Return the parameters (k,) at which arcs have unit normals, safeguarded by bisection."""
+        """Return the parameters (k,) at which arcs, given by indices, have unit normals (k, 2).
+
+        Newton's method is safeguarded by bisection.
+        """
         low, high = self.joints[arcs].copy(), self.joints[arcs + 1].copy()
         at_low = np.einsum("kx,kx->k", normals, self.jets(low)[1])
         t = 0.5 * (low + high)
@@ -151,7 +158,7 @@ class CurveArcs(Turning):
         return t
 
     def at(self, t: Array, normals: Array) -> tuple[Array, Array]:
-        """Return points (k, 2) and curvatures (k,) where the curve has unit normals."""
+        """Return points (k, 2) and curvatures (k,) at parameters (k,) with unit normals (k, 2)."""
         x, first, second = self.jets(t)
         A = np.einsum("kx,kx->k", normals, second)
         with np.errstate(all="ignore"):  # at cusps
@@ -159,7 +166,10 @@ class CurveArcs(Turning):
 
 
 def arcs_of(curve: Curve) -> CurveArcs | None:
-    """Return the arcs of a curve, cached with it; None if its derivatives cannot be bounded."""
+    """Return the arcs of a curve; None if its derivatives cannot be bounded.
+
+    The arcs are cached with the curve.
+    """
     return kept(curve, CurveArcs, lambda: _arcs_of(curve))
 
 

@@ -16,12 +16,13 @@ from .curve_spline import CurveSpline
 __all__ = ["checked_points", "spline_of_points", "spline_of_values"]
 
 Array = NDArray[np.float64]
-# A last point closer to the first than this, relative to the first step, repeats it.
+# A last point closer to the first point than this, relative to the first step, counts as a
+# repetition of the first point.
 REPEATED = 1e-3
 
 
 def spline_of_values(values: Array, domain: Interval, closed: bool, name: str) -> CurveSpline:
-    """Return the spline of values (2 P + 1, 2) at joints and midpoints of pieces, alternating."""
+    """Return the spline of values (2 P + 1, 2), alternately at joints and midpoints of P pieces."""
     inner = python_function(edge_formulas.edge_point)(values[1::2], values[:-1:2], values[2::2])
     return CurveSpline(_with_ends(inner, values[[0, -1]], closed), domain, closed, name)
 
@@ -47,7 +48,10 @@ def _is_repeated(points: Array) -> bool:
 
 
 def _with_ends(inner: Array, ends: Array, closed: bool) -> Array:
-    """Return the coefficients (P + 2, 2): ghosts are copies, or follow from the end points."""
+    """Return the coefficients (P + 2, 2), with a ghost coefficient at each end.
+
+    The ghosts of a closed curve are copies; the ghosts of an open curve follow from its end points.
+    """
     if closed:
         return np.concatenate([inner[-1:], inner, inner[:1]])
     before, after = python_function(formulas.beyond_end)(ends, inner[[0, -1]])

@@ -75,8 +75,8 @@ class CurveReport:
         The number of prescribed normals for which all points are proved to be found; None on
         splines.
     undecided : tuple of int
-        Rows of the other normals: normals of inflections and straight parts, up to rounding, or all
-        if the curve has singular points.
+        Rows of the normals that are not proved: normals of inflections and straight parts, up to
+        rounding, or all normals if the curve has singular points.
 
     Examples
     --------
@@ -211,7 +211,10 @@ class CurveSamples:
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """Pairs of an arc and one of its normals, along the curve, with the sign of κ."""
+    """Pairs of indices, of an arc and of one of its normals, in order along the curve.
+
+    `signs` are the signs of κ on the arcs.
+    """
 
     piece_index: NDArray[np.int64]
     normal_index: NDArray[np.int64]
@@ -319,7 +322,7 @@ def _searched(
 
 
 def find(spline: CurveSpline | CurveArcs, normals: Array) -> Hits:
-    """Return all pairs of an arc of a spline and one of the unit normals (S, 2) that it has."""
+    """Return all pairs of an arc and one of the unit normals (S, 2) that the arc has."""
     angles = angles_of(normals)
     order = np.argsort(angles, kind="stable")
     places = _places(spline, angles[order])
@@ -336,10 +339,10 @@ def find(spline: CurveSpline | CurveArcs, normals: Array) -> Hits:
 
 
 def _places(spline: CurveSpline | CurveArcs, angles: Array) -> NDArray[np.int64]:
-    """Return the number of sorted angles before each joint, counting full turns.
+    """Return for each joint the number of sorted angles below that of its normal.
 
-    Along straight arcs the normal is constant. The ends of an open curve belong to it: their angles
-    are moved outwards by the rounding of the normal.
+    Full turns are counted. Along straight arcs the normal is constant. The ends of an open curve
+    belong to the curve: the angles there are moved outwards by the rounding error of the normal.
     """
     ends, turns = spline.angles[0].copy(), spline.angles[1].copy()
     curved = np.flatnonzero(~spline.straight)
@@ -358,10 +361,11 @@ def _places(spline: CurveSpline | CurveArcs, angles: Array) -> NDArray[np.int64]
 
 
 def _merge_joints(angles: Array, turns: NDArray[np.int64], errors: Array, start: int) -> None:
-    """Give neighbouring joints one normal if their normals differ only by rounding.
+    """Give neighbouring joints the same normal if their normals differ only by rounding.
 
-    angles + 2π turns (P + 1,) are the angles at joints, errors (P + 1,) their rounding. On a closed
-    curve the joints are visited from the joint `start` > 0 on; on an open curve, `start` is 0.
+    angles + 2π turns (P + 1,) are the angles at joints, errors (P + 1,) their rounding errors. On a
+    closed curve the joints are visited from the joint `start` > 0 on; on an open curve, `start` is
+    0.
     """
     pieces = len(angles) - 1
     whole = turns[pieces] - turns[0]
@@ -403,7 +407,7 @@ def _by_count(spline: CurveSpline | CurveArcs, count: int) -> tuple[Array, Hits]
 
 
 def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
-    """Return the samples at hits of unit normals (S, 2)."""
+    """Return the samples on a spline at hits of unit normals (S, 2)."""
     mine, piece = normals[hits.normal_index], hits.piece_index
     n, arcs = plane_vector(mine), spline._arcs(piece)
     A = mine[:, 0] * arcs.a.x + mine[:, 1] * arcs.a.y

@@ -203,9 +203,10 @@ class CurveSpline(Turning):
 
     @cached_property
     def joint_normals(self) -> Array:
-        """(P + 1, 2) float64 array: normals at the joints, of any length, in units of 1/`scale`.
+        """(P + 1, 2) float64 array: normals at the joints, multiplied by `scale`.
 
-        Both arcs at a joint share this one vector, and so do both ends of a closed curve.
+        They are not unit vectors. Both arcs at a joint share its normal, and so do both ends of a
+        closed curve.
         """
         tangents = self.scale * np.diff(self.coefficients, axis=0)
         zero = PlaneVector(0.0, 0.0)
@@ -220,14 +221,17 @@ class CurveSpline(Turning):
 
     @cached_property
     def straight(self) -> NDArray[np.bool_]:
-        """(P,) bool array: arcs that are straight, up to the rounding of their coordinates."""
+        """(P,) bool array: whether arcs are straight, up to the rounding of their coordinates."""
         before, after = self.joint_normals[:-1], self.joint_normals[1:]
         area = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
         return np.abs(area) <= self.noise * (_lengths(before) + _lengths(after))
 
     @property
     def reversing(self) -> NDArray[np.bool_]:
-        """(P,) bool array: straight arcs that reverse or stop, at a singular point."""
+        """(P,) bool array: whether arcs are straight and have a singular point.
+
+        There the curve reverses its direction or stops.
+        """
         before, after = self.joint_normals[:-1], self.joint_normals[1:]
         return self.straight & (np.einsum("kx,kx->k", before, after) <= 0.0)
 
@@ -270,14 +274,20 @@ class CurveSpline(Turning):
         )
 
     def _arcs(self, piece: NDArray[np.int64]) -> Arc:
-        """Return the arcs of pieces (k,), relative to their coefficients and times `scale`."""
+        """Return the arcs of the pieces with the indices (k,), multiplied by `scale`.
+
+        They are relative to the coefficients of the pieces.
+        """
         steps = self.scale * np.diff(self.coefficients, axis=0)
         return python_function(formulas.arc)(
             plane_vector(-steps[piece]), plane_vector(steps[piece + 1])
         )
 
     def _places(self, t: Array) -> Array:
-        """Return the piece of each parameter plus the fraction in it; InputError if outside."""
+        """Return for each parameter the index of its piece plus the fraction within the piece.
+
+        Raises InputError for a parameter outside the domain.
+        """
         places = (t - self.domain[0]) / self.step
         if self.periodic:
             with np.errstate(invalid="ignore"):

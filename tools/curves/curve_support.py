@@ -156,7 +156,7 @@ class SupportFunction(ABC):
         Returns
         -------
         CurveBranches
-            One row for each branch, by normal.
+            One row for each branch, sorted by normal.
 
         Raises
         ------
@@ -176,7 +176,7 @@ class SupportFunction(ABC):
 
     @abstractmethod
     def _at(self, normals: Array) -> CurveBranches:
-        """Return all branches at unit normals (S, 2), by normal."""
+        """Return all branches at unit normals (S, 2), sorted by normal."""
 
     def __add__(self, other: SupportFunction) -> SupportFunction:
         """Return the convolution of two curves: all sums of two points with the same normal."""
@@ -349,7 +349,7 @@ class OfSpline(SupportFunction):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sum(SupportFunction):
-    """h₁ + h₂: points and radii of curvature add, for all pairs of branches of a normal."""
+    """h₁ + h₂: points and radii of curvature add, for each pair of branches with one normal."""
 
     first: SupportFunction
     second: SupportFunction
@@ -372,9 +372,10 @@ class Sum(SupportFunction):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Moved(SupportFunction):
-    """The support function of the points M x + t + d n, whose normals are those of x after `turn`.
+    """The support function of the points M x + t + d n; n is `turn` times the normal of x.
 
-    Radii of curvature are multiplied by `growth`, then d is added.
+    M is `motion`, t is `shift`, and d is `distance`. Radii of curvature are multiplied by `growth`,
+    then d is added.
     """
 
     of: SupportFunction

@@ -18,8 +18,8 @@ PAIRS_AT_A_TIME = 1 << 18
 def polygon_distance(points: ArrayLike, polygon: ArrayLike) -> NDArray[np.float64]:
     """Return the distances of points from a polygon.
 
-    The largest distance of many points of a curve is the (one-sided) Hausdorff distance between
-    curve and polygon.
+    The largest distance of many points of a curve approximates the one-sided Hausdorff distance of
+    the curve from the polygon.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ class Turning:
 
     @cached_property
     def joint_normals(self) -> Array:
-        """Normals (P + 1, 2) at the joints of arcs, of any length."""
+        """Normals (P + 1, 2) at the joints of arcs; they need not be unit vectors."""
         raise NotImplementedError
 
     @cached_property
@@ -52,5 +52,5 @@ class Turning:
 
 
 def angles_of(vectors: Array) -> Array:
-    """Return the angles of vectors (k, 2) in −π … π, where −0.0 is 0.0."""
+    """Return the angles of vectors (k, 2), from −π to π; components −0.0 count as 0.0."""
     return np.arctan2(vectors[:, 1] + 0.0, vectors[:, 0] + 0.0)
