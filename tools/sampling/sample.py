@@ -79,7 +79,7 @@ def sample(
         and that of the sample nearest in normal. Not with ``density="gauss"``.
     coverage : float, optional
         The largest distance, in the unit L of the surface, from any point of it to the nearest
-        sample on its side (see Notes). It is given alone, or together with one of the others.
+        sample on its side (see Notes). It is given alone, or together with one of the other three.
     density : {"gauss", "balanced", "aligned", "uniform"} or float, optional
         The target density. "gauss", the default with `normals` alone, is |K|: samples are only at
         prescribed normals. "balanced", the default otherwise, also fills the gaps between these.
@@ -181,13 +181,13 @@ def sample(
     number, or "gauss" with `normals`; `cells` and `on` are not allowed.
 
     **Edges.** Samples on edges have the `kind` "edge" and the normals of both faces, `normals` and
-    `other_normals`. They are on both faces exactly, or, if the faces of the file do not meet, on
-    the first face and as close to the other as the file has it. Each edge has samples at both ends
-    and at least one in between, however small the count. Between neighbours on an edge the normals
-    of each face differ by about as much as between neighbours elsewhere, or less. Gaps are no wider
-    than in flat regions. A corner has one sample, with the normals of the edge that is sharpest
-    there. Boundaries of open shells have only one face, and are not edges. `Samples.weights` are 0
-    on edges.
+    `other_normals`. They are on both faces exactly. If the faces of the file do not meet, they are
+    on the first face, and as close to the other face as the file allows. Each edge has samples at
+    both ends and at least one in between, however small the count. Between neighbours on an edge
+    the normals of each face differ by about as much as between neighbours elsewhere, or less. Gaps
+    are no wider than in flat regions. A corner has one sample, with the normals of the edge that is
+    sharpest there. Boundaries of open shells have only one face, and are not edges.
+    `Samples.weights` are 0 on edges.
 
     For every normal of every closed surface, the samples of its spline at that normal, those at
     poles included, have Σ sign K = χ/2; χ is the Euler characteristic.
@@ -322,7 +322,7 @@ def _at_normals(
 def _pieces(
     surface: Surface | AnySpline, given: Arguments
 ) -> tuple[list[OnPatches], tuple[str, ...]]:
-    """Return the pieces of a surface that is sampled with a density, and the checked fields."""
+    """Return the pieces of a surface, as geometries to be sampled, and the checked fields."""
     request, on_surface = given.request, place_of_samples(surface, given.on) == "surface"
     fields = checked_fields(given.fields, on_surface, grid=request.density == "aligned")
     if request.count is not None:

@@ -52,7 +52,7 @@ def sample_stream(
     """Return the samples of a surface in chunks, in bounded memory.
 
     The samples are those of `sample` with ``density="gauss"``. 10⁹ samples that are reduced on the
-    fly take less than 1 GiB; with `count`, even the normals are made in blocks.
+    fly take less than 1 GiB of memory; with `count`, even the normals are made in blocks.
 
     Parameters
     ----------
@@ -168,9 +168,10 @@ class _Stream:
 
 
 def _chunk(found: Samples, start: int, total: int, listed: bool) -> Samples:
-    """Return samples at a block of the `total` normals, whose indices begin at `start`.
+    """Return samples at a block of normals, with indices among all `total` normals.
 
-    Undecided normals are `listed` if they were prescribed.
+    The indices of the block begin at `start`. The report has undecided normals if they are
+    `listed`: if the normals were prescribed.
     """
     arrays: dict[str, Any] = found.arrays()
     if start and "normal_index" in arrays:
