@@ -48,7 +48,7 @@ class Convolution(Samples):
     """The k sums of two points with the same normal, sorted by normal, then by branch of the first.
 
     They are `Samples` of the convolution surface, without `uv` and `patch_index`: each sum has two
-    of these. Selected rows are a `Convolution`; offsets, and parts joined by
+    of each. Selected rows are a `Convolution`; offsets, and parts joined by
     ``Samples.concatenate``, are `Samples`.
 
     Attributes

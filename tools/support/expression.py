@@ -64,7 +64,7 @@ class ExpressionSource:
         return cls(expression, condition, source)
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
-        """Return the branch of each normal in the domain where h and its gradient are finite."""
+        """Return one branch for each normal in the domain where h and its gradient are finite."""
         count = len(normals)
         inside = np.empty(count, dtype=np.bool_)
         points, hessian = np.empty((count, 3)), np.empty((count, 3, 3))
@@ -93,7 +93,7 @@ class ExpressionSource:
         return self.condition
 
     def splines(self) -> list[Any]:
-        """Return none: the expression is exact."""
+        """Return an empty list: the expression is exact."""
         return []
 
     def __str__(self) -> str:
@@ -120,14 +120,14 @@ def _names(normal: Sequence[Any]) -> list[str]:
 
 
 def _symbols(names: Sequence[str]) -> dict[str, Any]:
-    """Return real symbols for the names in a text."""
+    """Return real symbols, by their names."""
     import sympy as sp
 
     return {name: sp.Symbol(name, real=True) for name in names}
 
 
 def _in_normal(expression: Any, names: Sequence[str], what: str) -> Any:  # noqa: ANN401
-    """Write an expression in the real symbols n_x, n_y, n_z; InputError if there are others."""
+    """Write an expression in the real symbols n_x, n_y, n_z; InputError for other symbols."""
     import sympy as sp
 
     if unknown := sorted({x.name for x in expression.free_symbols} - set(names)):

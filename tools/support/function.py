@@ -67,8 +67,8 @@ class SupportFunction:
     ) -> SupportFunction:
         """Return the support function of a spline, with the branches of all its patches.
 
-        Every point with a given normal is one branch, exactly once. Flat and developable patches
-        have no support function, and so no branch.
+        Each point with a given normal gives exactly one branch. Flat and developable patches have
+        no support function, and so no branch.
 
         Parameters
         ----------
@@ -309,7 +309,10 @@ class SupportFunction:
         return sheets.branches(directions), counts.astype(np.int64)
 
     def _single_valued(self, normals: ArrayLike, field: str) -> NDArray[np.float64]:
-        """Return a field of the branches, NaN without one; InputError if a normal has several."""
+        """Return a field of the branch at each normal; InputError if a normal has several branches.
+
+        The field is NaN at a normal without a branch.
+        """
         branches, counts = self._counted(normals)
         if counts.max() > 1:
             worst = int(np.argmax(counts > 1))
@@ -327,7 +330,7 @@ class SupportFunction:
         """Return the convolution of two surfaces: all sums of two points with the same normal.
 
         Each normal gets every pair of branches. `patch_index` and `uv` are those of the summand
-        that has patches, or −1 and NaN if both have.
+        that has patches, or −1 and NaN if both summands have patches.
         """
         if not isinstance(other, SupportFunction):
             return NotImplemented
@@ -492,8 +495,8 @@ class SupportFunction:
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
         """The domain as a SymPy condition on n_x, n_y, n_z; None for splines (see `contains`).
 
-        Where an expression is not finite it has no branch either, which the condition does not
-        state.
+        Where an expression is not finite there is no branch either; the condition does not state
+        this.
         """
         return self._source.domain()
 

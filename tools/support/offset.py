@@ -27,7 +27,7 @@ from ..sampling.sample import sample
 
 __all__ = ["folded", "offset", "size_of_terms"]
 
-# The fields from which those of an offset are computed.
+# For fields of an offset, the other fields of the samples from which they are computed.
 NEEDED = {
     "points": ("normals",),
     "gaussian_curvature": ("mean_curvature",),
@@ -35,9 +35,9 @@ NEEDED = {
 }
 
 
-# The least number of samples of a surface from which distances are measured; their number relative
-# to the square of its size over the distance, so that gaps are about .2 times the distance; and the
-# least distance relative to the size.
+# Distances from a surface are measured to samples of it. Their number is at least LEAST, and
+# PER_SQUARE times the square of the size of the surface over the distance, so that gaps are about
+# 0.2 times the distance. SHORTEST is the least distance, relative to the size.
 LEAST, PER_SQUARE, SHORTEST = 20_000, 15.0, 1.0 / 180.0
 ROUNDING = 64.0  # of distances, in units of the last place of coordinates
 
@@ -74,9 +74,10 @@ def offset(samples: Samples, distance: float, trimmed: bool) -> Samples:
 
 
 def _nearer(samples: Samples, d: float, base: OffsetOf) -> Flags:
-    """Return which samples, if moved by d, are nearer to their surface than they were moved.
+    """Return whether samples, moved by d, are nearer to their surface than the whole offset.
 
-    Distances are measured from samples of the surface, so that none is too small.
+    The whole offset is the sum of d and of earlier offsets. Distances are measured to samples of
+    the surface, so that none is too small.
     """
     surface = base.spline if base.surface is None else base.surface
     if surface is None:
@@ -99,7 +100,7 @@ def _nearer(samples: Samples, d: float, base: OffsetOf) -> Flags:
 
 
 def _points_of(surface: Surface | AnySpline | Whole, distance: float) -> Array:
-    """Return points of a surface whose gaps are small relative to a distance."""
+    """Return points of a surface, with gaps between them that are small relative to a distance."""
     count, edges = LEAST, isinstance(surface, Whole)
     while True:
         found = sample(surface, count, density="uniform", edges=edges, fields=("points",))
@@ -135,13 +136,13 @@ def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
 
 
 def folded(samples: Samples, distance: float) -> Flags:
-    """Return at which samples an offset folds; at singular ones, if a curvature is infinite."""
+    """Return whether an offset folds at samples, or the samples are singular: K is infinite."""
     with np.errstate(all="ignore"):
         return _growth(samples, distance)[1] | np.isinf(samples.gaussian_curvature)
 
 
 def _growth(samples: Samples, d: float) -> tuple[Flags, Flags]:
-    """Return where a radius becomes 0 by an offset, and where it does, or changes its sign."""
+    """Return two masks of samples: a radius becomes 0; a radius becomes 0 or changes its sign."""
     K = samples.gaussian_curvature.astype(np.float64)
     H = samples.mean_curvature.astype(np.float64)
     s, m = python_function(formulas.offset_growth)(K, H, d)

@@ -41,7 +41,7 @@ class Sum:
     second: Source
 
     def sheets(self, normals: Vector) -> Sheets:
-        """Return all pairs of branches of each normal; by (7) points and Hessians add."""
+        """Return a branch for each pair of branches of a normal; by (7) points and Hessians add."""
         one, two = self.first.sheets(normals), self.second.sheets(normals)
         i, j = pairs(one.normal_index, two.normal_index, len(normals))
         rows, hessian = one.normal_index[i], one.hessian[i] + two.hessian[j]
@@ -59,14 +59,14 @@ class Sum:
         return None if first is None or second is None else first + second  # pyright: ignore
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the condition under which both are defined."""
+        """Return the condition under which both support functions are defined."""
         import sympy as sp
 
         first, second = self.first.domain(), self.second.domain()
         return None if first is None or second is None else sp.And(first, second)
 
     def splines(self) -> list[tuple[float, AnySpline]]:
-        """Return the splines of both."""
+        """Return the splines of both summands."""
         return self.first.splines() + self.second.splines()
 
     def __str__(self) -> str:
@@ -77,7 +77,8 @@ class Sum:
 class Moved:
     """The support function of the points s R x + t + d n: h becomes s h(Rᵀn) + n·t + d |n|.
 
-    If the side is −1, normals are reversed first: h is then −h(−n). `text` describes the operation.
+    If `side` is −1, normals are reversed first: h(n) is then replaced by −h(−n). `text` describes
+    the operation.
     """
 
     of: Source
@@ -117,7 +118,7 @@ class Moved:
         return None if given is None else self._at(given)
 
     def _at(self, given: Any) -> Any:  # noqa: ANN401
-        """Return an expression in normals of the surface, rewritten in those of the result."""
+        """Rewrite an expression in normals of the surface in normals of the moved surface."""
         n, rows = normal_components(), self.side * np.eye(3)
         if self.rotation is not None:
             rows = rows @ self.rotation.T
@@ -156,7 +157,7 @@ def _grown(sheets: Sheets, normals: Vector, d: float) -> Sheets:
 def pairs(
     first: NDArray[np.int64], second: NDArray[np.int64], count: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the rows i, j of all pairs with first[i] == second[j]; both are ascending."""
+    """Return the rows i, j of all pairs with first[i] == second[j]; both arrays are ascending."""
     partners = np.bincount(second, minlength=count)
     starts = np.cumsum(partners) - partners
     i, number = repeated(partners[first])

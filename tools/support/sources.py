@@ -39,7 +39,7 @@ class Source(Protocol):
     """A support function that can be evaluated, and may have a symbolic expression."""
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
-        """Return all branches at unit normals (S, 3), by normal."""
+        """Return all branches at unit normals (S, 3), sorted by normal."""
         ...
 
     def expression(self) -> sympy.Expr | None:
@@ -47,11 +47,11 @@ class Source(Protocol):
         ...
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the condition on n_x, n_y, n_z for a branch; None if there is no single one."""
+        """Return the condition on n_x, n_y, n_z for a branch; None without a single condition."""
         ...
 
     def splines(self) -> list[tuple[float, AnySpline]]:
-        """Return the splines on which branches lie, and the factors by which these are scaled."""
+        """Return pairs of a factor and a spline: branches lie on the spline times the factor."""
         ...
 
 
@@ -73,7 +73,7 @@ class SurfaceSource:
         self.on_surface: NDArray[np.bool_]
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
-        """Return all points with these normals, by normal."""
+        """Return the branches at all points with these normals, sorted by normal."""
         found = self.map._with_fit(self.map.points(normals))  # the warning uses its report
         assert found.on_surface is not None
         self.report, self.on_surface = found.report, found.on_surface
@@ -94,7 +94,7 @@ class SurfaceSource:
         """Return None: the branches have no common domain."""
 
     def splines(self) -> list[tuple[float, AnySpline]]:
-        """Return none."""
+        """Return an empty list."""
         return []
 
     def __str__(self) -> str:
@@ -108,7 +108,7 @@ class SplineSource:
     spline: AnySpline
 
     def sheets(self, normals: NDArray[np.float64]) -> Sheets:
-        """Return all branches, by normal and then by patch."""
+        """Return all branches, sorted by normal, then by patch."""
         hits = find(self.spline, normals)
         fields = fill(self.spline, normals, hits)
         known = np.full((len(hits), 2), np.nan)
@@ -149,7 +149,7 @@ class SplineSource:
 class PatchSource:
     """The support function of one quadratic Bézier triangle (10) with `control_points` (6, 3).
 
-    A normal belongs to it if the closed triangle has a regular point with that oriented normal.
+    A normal has a branch if the closed triangle has a regular point with that oriented normal.
     Signs that rounding leaves open are decided in exact arithmetic.
     """
 
@@ -188,7 +188,10 @@ class PatchSource:
         return self._symbolic.support_function
 
     def domain(self) -> Any:  # noqa: ANN401 - a Boolean of SymPy
-        """Return the closed Gaussian image: U, V, W of one sign, without singular points."""
+        """Return the closed Gaussian image as a condition, without singular points.
+
+        There the forms U, V, W of the patch have one sign.
+        """
         import sympy as sp
 
         D, U, V, W = self._symbolic.forms.values()
@@ -197,7 +200,7 @@ class PatchSource:
         return sp.And(sp.Or(*inside), unequal(D, 0), sp.Gt(self._symbolic.orientation, 0))
 
     def splines(self) -> list[tuple[float, AnySpline]]:
-        """Return none: the patch is the surface."""
+        """Return an empty list: the patch is the surface."""
         return []
 
     def __str__(self) -> str:
@@ -270,7 +273,10 @@ def _hessian_at_pole(
 
 
 def _matrices(A: Any, B: Any, C: Any, D: Any, p_u: Any, p_v: Any) -> NDArray[np.float64]:  # noqa: ANN401
-    """Return the Hessians (k, 3, 3) from second fundamental forms and tangents."""
+    """Return the Hessians (k, 3, 3) from second fundamental forms A, B, C and tangents.
+
+    D are the determinants A C − B².
+    """
     H = python_function(formulas.hessian)(A, B, C, D, p_u, p_v)
     rows = [[H.H_xx, H.H_xy, H.H_xz], [H.H_xy, H.H_yy, H.H_yz], [H.H_xz, H.H_yz, H.H_zz]]
     return np.moveaxis(np.array(rows), 2, 0)
