@@ -6,6 +6,7 @@ import warnings
 
 import gaussmap as gm
 import numpy as np
+import shapely
 import sympy as sp
 from gaussmap.docs.drawing import HALO, Floats, panels
 from gaussmap.docs.markdown import listed
@@ -132,13 +133,12 @@ def figure_5() -> tuple[Figure, str]:
 
 def measured(places: Floats) -> str:
     """Return how far the polygon through points is from the curve, and how it is turned."""
-    dense = np.linspace(places[0], places[-1], DENSE)
+    dense, vertices = np.linspace(places[0], places[-1], DENSE), derivatives(places)[0]
     point, tangent, _ = derivatives(dense)
-    vertices = derivatives(places)[0]
     edge = np.clip(np.searchsorted(places, dense) - 1, 0, len(places) - 2)
     (a, b), (x, y) = np.diff(vertices, axis=0)[edge].T, tangent.T
     angle = np.degrees(np.abs(np.arctan2(a * y - b * x, a * x + b * y))).max()
-    distance = gm.curves.polygon_distance(point, vertices).max()
+    distance = shapely.distance(shapely.LineString(vertices), shapely.points(point)).max()
     return f"distance {distance:#.3g}, angle {angle:#.3g}°"
 
 

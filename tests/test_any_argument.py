@@ -231,7 +231,6 @@ SPECIAL: dict[str, list[dict[str, Any]]] = {
     "curves.SupportFunction.branches": [{"normals": PLANE_NORMALS}],
     "curves.SupportFunction.translated": [{"shift": (1.0, 2.0)}],
     "curves.fit": [{"pieces": 16}],
-    "curves.polygon_distance": [{"points": np.eye(2), "polygon": parabola(np.arange(6.0))}],
     "curves.sample": [{"count": 10, "pieces": 16}, {"normals": PLANE_NORMALS, "count": None}],
     "fit": [{"surface": Of("torus"), "cells": (8, 8)}],
     "formulas[…]": [{"name": "envelope"}],

@@ -18,8 +18,7 @@ NAMES = (
     "gauss_map surfaces formulas symbolic"
 )
 NAMESPACES = {
-    "curves": "Curve CurveBranches CurveReport CurveSamples CurveSpline SupportFunction fit "
-    "polygon_distance sample",
+    "curves": "Curve CurveBranches CurveReport CurveSamples CurveSpline SupportFunction fit sample",
     "directions": "cap circle covering_radius fibonacci healpix icosphere polygon random",
     "errors": "FileError GaussmapError GaussmapWarning InputError MissingExtraError "
     "MissingFieldError SurfaceError UnknownNameError",

@@ -1,11 +1,10 @@
-"""Planar curves (paper, Sect. 4.1): fitting, sampling by normals, polygons, support functions."""
+"""Planar curves (paper, Sect. 4.1): fitting, sampling by normals, support functions."""
 
 from .curve import Curve
 from .curve_sampling import CurveReport, CurveSamples, sample
 from .curve_spline import CurveSpline
 from .curve_support import CurveBranches, SupportFunction
 from .fitting import fit
-from .polygon import polygon_distance
 
 __all__ = [
     "Curve",
@@ -15,7 +14,6 @@ __all__ = [
     "CurveSpline",
     "SupportFunction",
     "fit",
-    "polygon_distance",
     "sample",
 ]
 

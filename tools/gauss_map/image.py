@@ -15,8 +15,6 @@ from ...runtime.base.checks import real_array
 from ...runtime.base.errors import InputError, shown
 from ...runtime.directions.unit import as_normals
 from ...runtime.fitting.fit import patches_of
-from ...runtime.search.hits import fill
-from ...runtime.search.search import find
 from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface
 from .area import measures_of
@@ -322,49 +320,6 @@ class GaussianImages:
     def areas(self) -> Array:
         """(patches,) float64 array: the areas of the images in steradians, integrals of |K|."""
         return self._measures[1]
-
-    def sheets(
-        self, normals: ArrayLike, sign: int = 0, threads: int | None = None
-    ) -> NDArray[np.int64]:
-        """Return the number of points of the spline with each of the directions as normal.
-
-        Parameters
-        ----------
-        normals : (S, 3) array_like
-            Directions of any length but 0.
-        sign : {0, 1, -1}, default 0
-            1 counts elliptic points only, −1 hyperbolic points only.
-        threads : int, optional
-            The number of threads; by default all cores.
-
-        Returns
-        -------
-        (S,) int64 array
-            The numbers.
-
-        Raises
-        ------
-        InputError
-            For unusable normals (see `sample`) or another sign.
-
-        Examples
-        --------
-        >>> import gaussmap as gm
-        >>> images = gm.gauss_map.GaussianImages.of_spline("torus", (16, 16))
-        >>> images.sheets([[1, 0, 0], [0, 1, 1]]), images.sheets([[1, 0, 0]], sign=-1)
-        (array([2, 2]), array([1]))
-
-        """
-        is_whole = isinstance(sign, int | np.integer) and not isinstance(sign, bool)
-        if not is_whole or sign not in (-1, 0, 1):
-            raise InputError(f"sign must be 1, -1 or 0 (both), not {shown(sign)}.")
-        directions = as_normals(normals)
-        hits = find(self.spline, directions, threads)
-        which = hits.normal_index
-        if sign:
-            curvature = fill(self.spline, directions, hits, threads)["gaussian_curvature"]
-            which = which[np.signbit(curvature) == (sign < 0)]
-        return np.bincount(which, minlength=len(directions)).astype(np.int64)
 
     @cached_property
     def _measures(self) -> tuple[Array, Array]:

@@ -117,9 +117,7 @@ def test_everything_that_searches_leaves_tips_out(shape: str) -> None:
         assert len(found) > 0
         assert not collapsed(spline)[found.patch_index].any()
         assert at_tips(found.points, shape, np.eye(3)) == 0
-    sheets = gm.gauss_map.GaussianImages.of_spline(spline).sheets(n)
     numbers = np.bincount(streamed.normal_index, minlength=len(n))
-    np.testing.assert_array_equal(sheets, numbers)
     np.testing.assert_array_equal(np.bincount(sum_.normal_index, minlength=len(n)), numbers)
     classes = gm.gauss_map.classify_patches(spline)[collapsed(spline)]
     assert set(classes.tolist()) <= {gm.gauss_map.PatchClass.DEVELOPABLE}
