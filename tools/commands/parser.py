@@ -162,7 +162,7 @@ def parser() -> click.Group:
     program = Program(PROGRAM, help=text, epilog=EXAMPLES, context_settings=SETTINGS)
     click.version_option(__version__, message=f"{PROGRAM} %(version)s")(program)
     sampling = _sample, _mesh, _plot, _view, _batch
-    for make in (*sampling, _support, _surfaces, _faces, _formulas, _warm, _completion):
+    for make in (*sampling, _support, _surfaces, _faces, _formulas, _completion):
         program.add_command(make())
     return program
 
@@ -339,16 +339,6 @@ def _formulas() -> Command:
         "List the formulas that the program computes with, or show the formula NAME.",
         click.Argument(["name"], required=False, shell_complete=formula_names),
         Option("--latex", "Show LaTeX (of all without a NAME)."),
-    )
-
-
-def _warm() -> Command:
-    return _command(
-        "warm",
-        "Compile the kernels that the installation lacks: they are kept on disk, so that neither "
-        "other commands nor Python programs wait for the compiler on this computer. It takes a "
-        "minute or two; an installation has the kernels of usual calls.",
-        _quiet(),
     )
 
 

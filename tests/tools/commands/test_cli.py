@@ -565,7 +565,7 @@ def test_exit_codes() -> None:
 
 
 COMMANDS = [
-    "sample", "mesh", "plot", "view", "batch", "support", "surfaces", "faces", "formulas", "warm",
+    "sample", "mesh", "plot", "view", "batch", "support", "surfaces", "faces", "formulas",
     "completion",
 ]  # fmt: skip
 
