@@ -99,9 +99,10 @@ def caption_4(samples: gm.curves.CurveSamples) -> str:
     counts = listed(f"{(points == k).sum()} belong to {k}" for k in np.unique(points))
     return (
         f"Uniform normals on the circle (left) are mapped to points of a curve (right) that are "
-        f"dense where |κ| is large; equal numbers belong together. Blue points have a positive "
-        f"curvature, orange ones a negative one. Of the {NORMALS} normals {counts} points; "
-        f"as the curve turns round once, each has one blue point more than orange ones. The curve "
+        f"dense where |κ| is large; a normal and its points have the same number. Blue points "
+        f"have a positive curvature, orange points a negative one. Of the {NORMALS} normals "
+        f"{counts} points; as the curve turns round once, each has one blue point more than orange "
+        f"ones. The curve "
         f"has {samples.report.inflections} inflections; in polar coordinates it is "
         f"$`r = {latex_of(RADIUS)}`$."
     )
@@ -123,9 +124,9 @@ def figure_5() -> tuple[Figure, str]:
     return figure, (
         f"Two polygons with {len(normal) - 1} vertices on the curve of Fig. 4 (thin). Left: "
         f"through points that are uniform in the parameter, the polar angle. Right: through points "
-        f"with uniform normals. Measured are the largest distance of the curve from the polygon "
-        f"and the largest angle between them: {measured(parameter)} on the left, "
-        f"{measured(normal)} on the right. Points that are uniform in arc length would give "
+        f"with uniform normals. The numbers are the largest distance of the curve from the "
+        f"polygon and the largest angle between curve and polygon: {measured(parameter)} on the "
+        f"left, {measured(normal)} on the right. Points that are uniform in arc length would give "
         f"{measured(by_length(len(normal) - 1))}. On other curves uniform normals need not "
         f"give the smaller distance: see [curves](guides/more.md#planar-curves)."
     )

@@ -124,8 +124,8 @@ def figure_2() -> tuple[Figure, str]:
     return figure, (
         "A quadratic triangular Bézier patch with its control net; $`\\mathbf b_{ijk}`$ belongs to "
         "$`u^i v^j w^k`$, and the edges are u = 0 (black; white on dark pages), v = 0 (green) and "
-        "w = 0 (purple). The control points are those that formula (12) belongs to; the printed "
-        "(11) has another support function ([errata](errata.md))."
+        "w = 0 (purple). These control points have the support function (12); the printed control "
+        "points (11) have another one ([errata](errata.md))."
     )
 
 
@@ -166,14 +166,14 @@ def caption_3(
     hyperbolic = (bow_tie.area - bow_tie.solid_angle) / 2
     return (
         f"Patches (left) and the domains of their support functions (right), the Gaussian images, "
-        f"each pair seen from the same side. Edges and the arcs that they are mapped to have one "
-        f"colour; thin are the rest of the conics that the arcs belong to, cut out of the sphere "
-        f"by three quadratic cones, and their opposites. Top: the patch of Fig. 2 fills a triangle "
-        f"of {triangle.area:.3f} sr. Middle: all points of the edge v = 0 have the same normal, so "
-        f"that one side shrinks to a point and leaves a biangle of {biangle.area:.3f} sr. Bottom: "
-        f"the parabolic line of the same surface cuts this patch into an elliptic and a hyperbolic "
-        f"part, which fill the two wings of a bow tie, {elliptic:.3f} sr and "
-        f"{hyperbolic:.3f} sr."
+        f"each pair seen from the same side. An edge and the arc to which it is mapped have the "
+        f"same colour. Thin lines are the spherical conics on which the arcs lie, where three "
+        f"quadratic cones intersect the sphere, and their opposites. Top: the patch of Fig. 2 "
+        f"fills a triangle of {triangle.area:.3f} sr. Middle: all points of the edge v = 0 have "
+        f"the same normal, so that one side shrinks to a point and leaves a biangle of "
+        f"{biangle.area:.3f} sr. Bottom: the parabolic line of the same surface cuts this patch "
+        f"into an elliptic and a hyperbolic part, which fill the two wings of a bow tie, "
+        f"{elliptic:.3f} sr and {hyperbolic:.3f} sr."
     )
 
 

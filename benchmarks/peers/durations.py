@@ -53,10 +53,11 @@ the fit of the spline included; more than {stream:,} points come in chunks (`gm.
 A new process takes {warm} s for its first 10⁴ points, with imports and loading of machine code
 ([details](install.md#compiled-kernels)).
 
-A grid of parameters is faster, if there is a closed form: {ratio} times at {largest:,} points. Come
-here for what it does not have: the points that have given normals, each exactly once; density that
-follows curvature, and guarantees for gaps and angles; surfaces without a closed form (functions,
-data, NURBS, CAD files); offsets, silhouettes and meshes of the same samples.
+A grid of parameters is faster, if there is a closed form: {ratio} times at {largest:,} points. Use
+gaussmap for what a grid of parameters does not have: the points that have given normals, each
+exactly once; density that follows curvature, and guarantees for gaps and angles; surfaces without a
+closed form (functions, data, NURBS, CAD files); offsets, silhouettes and meshes of the same
+samples.
 
 """
 

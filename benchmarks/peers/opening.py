@@ -18,15 +18,17 @@ the points that have them.
 
 - **gaussmap is faster**, for 10⁶ points, than {faster} of {all} others, by up to {most}.
 - **It is slower**, or not always faster, than {slower}.
-- **Normals are represented well**: G, the largest angle between a normal of the surface and that
-  of the nearest sample in normal space, is larger in {best} of {compared} comparisons.
+- **Normals are represented well**: G is the largest angle between a normal of the surface and that
+  of the nearest sample in normal space. gaussmap has the smaller G in {best} of {compared}
+  comparisons.
 - **Places are not**, with points at given normals alone: these are rare where the surface is nearly
-  flat. E, the largest angle between the normals of a point and of its nearest sample in space, is
-  larger in {nearest} of {compared} comparisons only. The default, `density="balanced"`, fills
-  these gaps, at less speed ([measured](quality.md)).
+  flat. E is the largest angle between the normals of a point and of its nearest sample in space.
+  gaussmap has the smaller E in only {nearest} of {compared} comparisons. The default,
+  `density="balanced"`, fills the gaps between these points, at less speed ([measured](quality.md)).
 
-The table has the range of the speed of gaussmap, for 10⁶ points, relative to others, and on how
-many surfaces gaussmap has the smaller errors. What is compared is explained below it.
+The table has the range of the speed of gaussmap relative to each of the other packages, for 10⁶
+points, and the number of surfaces on which gaussmap has the smaller error. The columns are
+explained below the table.
 """
 
 

@@ -44,13 +44,13 @@ HEAD = """\
 Points **with normals**, as NumPy arrays, of three surfaces. Columns:
 
 - **points/s**: for the number of points in the table, the median of several runs;
-- **preparation**: seconds that points/s leaves out, for work that more points of the same surface
-  do not repeat: the mesh of 205,000 triangles (trimesh, Open3D, PyMeshLab), the curvature on a grid
-  of 512 × 512 (Splipy, |K|), the model, and the search for the setting that gives this count
-  (Gmsh, Open CASCADE, PyMeshLab);
+- **preparation**: seconds that points/s does not include, of work that is done once for a surface:
+  the mesh of 205,000 triangles (trimesh, Open3D, PyMeshLab), the curvature on a grid of 512 × 512
+  (Splipy, |K|), the model, and the search for the setting that gives this count (Gmsh, Open
+  CASCADE, PyMeshLab);
 - **gaussmap, same count** and **10⁶**: the speed of `gm.sample(surface, normals=normals)` relative
-  to that of the row, timed in turns, for the same count and for 10⁶ points, including the fit of
-  64 × 64 cells to values of the surface;
+  to the speed in the row, both timed in turns, for the same count and for 10⁶ points, including the
+  fit of 64 × 64 cells to values of the surface;
 - **E** and **G**, in degrees: the largest angles between the normals of {places:,} points of the
   surface, uniform by area, and the normals of about {judged:,} samples. For E the sample is the
   nearest one in space; for G it is the nearest one in normal, among those with the same sign of K
@@ -60,11 +60,11 @@ Splipy and geomdl use a cubic B-spline that interpolates the surface at {net} ×
 their rows gaussmap samples the same B-spline, by `gm.Surface.from_nurbs`. Gmsh and Open CASCADE
 mesh this B-spline, too, except for the torus, which is one of their primitives. NumPy's grid
 computes trigonometric functions along its two sides only. Meshes have exact normals at their
-vertices, and their samples have interpolated ones. gaussmap is given the normals of a Fibonacci
-lattice, which are not timed; with `count=…, density="gauss"` it computes them, and finds the number
-that is needed. The recipes draw points at random; samples of gaussmap also have curvatures and
-parameters, and so have those of NumPy's recipe. Each package uses its default number of threads;
-that of gaussmap is one for each core.
+vertices; samples on meshes have interpolated normals. gaussmap is given the normals of a Fibonacci
+lattice, whose computation is not timed; with `count=…, density="gauss"` it computes these normals,
+and finds the number of normals that is needed. The recipes draw points at random. Samples of
+gaussmap and of NumPy's recipe also have curvatures and parameters. Each package uses its default
+number of threads; the default of gaussmap is one for each core.
 """
 
 SCALE = """\

@@ -31,12 +31,12 @@ SMALL = 1e-300  # instead of 0, in quotients
 WORDS = """\
 On each of {surfaces} surfaces, two densities of gaussmap are compared with the best of all other
 tools, at about 10,000 points: **balanced**, the default, and **aligned**, which is for parameters
-along lines of curvature. A quotient is their error relative to the smallest one of the others:
-below 1, gaussmap is better.
+along lines of curvature. The quotient is the error of gaussmap divided by the smallest error of the
+other tools: below 1, gaussmap is better.
 
 - **Take gaussmap where normals count**: for E, G and the worst angle of meshes **balanced** is
-  better than all others in {balanced} comparisons, **aligned** in {aligned}. Where neither is, the
-  others are those of the last column.
+  better than all others in {balanced} comparisons, **aligned** in {aligned}. The last column names
+  the tools that are best where neither density is.
 - **Take another tool where distances count**: for the largest gap in space **balanced** is best in
   {gaps} comparisons, **aligned** in {gaps_aligned}. Farthest points and Poisson disks are more
   even, triangles of Gmsh have a better shape, and Open CASCADE meshes solids made of planes,
@@ -46,11 +46,11 @@ below 1, gaussmap is better.
 """
 
 BESIDE_GMSH = """\
-The densities of gaussmap beside Gmsh with a size by curvature, at about 10,000 points: E and G in
-degrees. Where parameters run along lines of curvature, **aligned** wins: its E is {aligned} that of
-Gmsh on {wins} of {surfaces} surfaces. E of **balanced**, the default, is {balanced} % larger than
-that of Gmsh on {first}; over all surfaces it is {all} that of Gmsh. **gauss** has the smallest G on
-{gauss} of {surfaces} surfaces, and a large E where K ≈ 0.
+The table compares E and G, in degrees, of the densities of gaussmap and of Gmsh with a size by
+curvature, at about 10,000 points. Where parameters run along lines of curvature, **aligned** wins:
+its E is {aligned} that of Gmsh on {wins} of {surfaces} surfaces. E of **balanced**, the default, is
+{balanced} % larger than that of Gmsh on {first}; over all surfaces it is {all} that of Gmsh.
+**gauss** has the smallest G on {gauss} of {surfaces} surfaces, and a large E where K ≈ 0.
 """
 GMSH, GAUSS = "Gmsh, curvature size", "**gauss**"
 FIRST = 3  # surfaces that the README compares

@@ -32,34 +32,34 @@ COLUMNS = """\
 
 **balanced**, the default, makes distances the same in all directions; **aligned** puts samples in
 rows along parameter lines, which is best where these are lines of curvature
-([why](mathematics/densities.md)). **gauss** has the samples at given normals only, and nothing in
-planes and cylinders; **uniform** ignores curvature.
+([why](mathematics/densities.md)). **gauss** has samples at given normals only, and none in planes
+and cylinders; **uniform** ignores curvature.
 
 - **E** and **G**, in degrees: the largest angles between the normals of {places:,} points of the
   surface, uniform by area, and the normals of samples. For E the sample is the nearest one in
   space; for G it is the nearest one in normal, among those with the same sign of K. A plane has one
   normal, so that neither E nor G shows whether it is sampled ([glossary](glossary.md)). **mean E**
   is the mean angle to the nearest sample in space;
-- **gap**: the largest distance from these points to the nearest sample, and **plane**: to its
-  tangent plane, in the unit of the surface. Point-to-plane registration measures the latter;
+- **gap**: the largest distance from these points to the nearest sample, and **plane**: the largest
+  distance from these points to the tangent plane of the nearest sample, both in the unit of the
+  surface. Point-to-plane registration measures distances from tangent planes;
 - **worst** and **mean angle**: between the normals of the surface and of a mesh of about {last:,}
   vertices, and **Hausdorff distance**: the larger one of the distances from the surface to the mesh
   and back. 95 % of the triangles have angles of at least **shape** degrees;
-- **points/s**: the median of {clouds} runs (one run of what takes long);
-- **balanced**: the speed of `gm.sample(surface, count=…)` for the same count, relative to that of
-  the row: the median of ratios of two times that were taken right after each other, as the speed of
-  a shared machine drifts.
+- **points/s**: the median of {clouds} runs (a single run if it takes long);
+- **balanced**: the speed of `gm.sample(surface, count=…)` for the same count, relative to the speed
+  in the row: the median of ratios of two times that were taken right after each other, as the speed
+  of a shared machine drifts.
 
 The bold rows are `gm.sample(surface, count=…, density=…)`, each call with the fit of a spline to
 the surface. *The paper's method, exact* uses the same normals as **gauss**, and the inverse Gauss
 map in closed form instead of a spline; the row below it uses the normals of a refined icosahedron,
-as in the paper.
-The times of others leave out meshes, models and the search for the setting that gives a count.
-Poisson disks are random: errors are the medians of {clouds} samplings. The
-B-splines, meshes and normals of other packages are those of [performance.md](performance.md); in
-Gmsh and Open CASCADE the boss is a solid of revolution with five faces, and the torus is the same
-whatever its parameters are. Constants of gaussmap were chosen on the first three surfaces and on
-the boss; nothing was chosen on `bent_pipe` and `hills`.
+as in the paper. The times of other tools do not include making meshes and models, or the search for
+the setting that gives a count. Poisson disks are random: errors are the medians of {clouds}
+samplings. The B-splines, meshes and normals of other packages are those of
+[performance.md](performance.md); in Gmsh and Open CASCADE the boss is a solid of revolution with
+five faces, and the torus is the same whatever its parameters are. Constants of gaussmap were chosen
+on the first three surfaces and on the boss; nothing was chosen on `bent_pipe` and `hills`.
 """
 
 
