@@ -13,9 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.checks import as_float, known_name, text, whole_number
-from ..base.errors import GaussmapWarning, InputError, shown
-from ..base.georeference import checked_origin
+from ..base.errors import GaussmapWarning
 from ..directions.regions import Reach
 from ..spline.developable import CellMeasure
 from ..spline.nets import AnySpline
@@ -39,44 +37,8 @@ WORTH_A_WARNING = 0.01
 # A requested count is missed if the number of samples differs from it by more than this share of it
 # plus FEW: on a symmetric surface several samples appear or vanish together.
 COUNT_TOLERANCE, FEW = 0.02, 5
-# A share is a quotient of sums: rounding may carry it this far beyond 0 or 1.
-ROUNDING = 1e-9
-MOST_COUNT = 2**63 - 1
 # The surfaces on which samples may lie.
 PLACES = ("surface", "spline")
-DENSITIES = ("aligned", "gauss", "uniform", "power")
-COUNTS = (
-    "normals", "patches", "developable_patches", "infinite_curvatures", "unrefined", "apexes",
-    "proved", "index", "faces", "empty_faces", "estimated_faces", "edge_samples",
-)  # fmt: skip
-DISTANCES = ("coverage", "angle", "fit_distance", "fit_rms", "fit_angle")
-
-
-def _count(value: object, name: str) -> int:
-    return whole_number(value, name, least=0, most=MOST_COUNT)
-
-
-def _number(value: Any, name: str, most: float = math.inf) -> float:  # noqa: ANN401
-    """Return a number from 0 to `most`, up to rounding, as a plain float."""
-    try:
-        number = as_float(value)
-    except TypeError:
-        number = math.nan
-    if not -ROUNDING <= number <= most + ROUNDING:
-        limit = "of at least 0" if math.isinf(most) else f"from 0 to {most:g}"
-        raise InputError(f"{name} must be a number {limit}, not {shown(value)}.")
-    return min(max(number, 0.0), most)
-
-
-def _reach(values: Any) -> tuple[float, ...]:  # noqa: ANN401
-    """Return the unit vectors of axes, and an angle after each, as plain floats."""
-    try:
-        return Reach._of([float(value) for value in values])._numbers
-    except Exception:  # iteration may raise anything
-        raise InputError(
-            f"reach must be an axis and an angle, four numbers, or some of these, not "
-            f"{shown(values)}."
-        ) from None
 
 
 class UndecidedNormal(NamedTuple):
@@ -123,23 +85,25 @@ class UndecidedNormal(NamedTuple):
     @classmethod
     def of(cls, values: Sequence[Any]) -> UndecidedNormal:
         """Return an undecided normal from plain values, such as those of a file."""
-        normal, (u0, u1, v0, v1), kind, border, *rest = values
+        normal, (u0, u1, v0, v1), kind, border, *known = values
         box = float(u0), float(u1), float(v0), float(v1)
-        face, degree = (None if x is None else int(x) for x in (*rest, None, None)[:2])
+        face, degree = (None if x is None else int(x) for x in known)
         return cls(int(normal), box, str(kind), bool(border), face, degree)
 
 
-# Functions that convert the entries to plain values, and refuse invalid ones. All entries may be
-# None, except those in KNOWN.
-KNOWN = ("surface", "samples")
-CHECKS: dict[str, Callable[[Any, str], Any]] = {
-    **dict.fromkeys(("surface", "crs", "unit"), text),
-    **dict.fromkeys(("samples", *COUNTS), _count),
-    **dict.fromkeys(DISTANCES, _number),
-    "developable_share": lambda share, name: _number(share, name, 1.0),
-    "origin": lambda origin, _: checked_origin(origin),
-    "reach": lambda reach, _: _reach(reach),
-    "undecided": lambda places, _: tuple(UndecidedNormal.of(x) for x in places),
+def _floats(values: Iterable[Any]) -> tuple[float, ...]:
+    return tuple(float(x) for x in values)
+
+
+# Entries become plain values of these types, by their annotations: numbers of NumPy, lists of JSON.
+PLAIN: dict[str, Callable[[Any], Any]] = {
+    "str": str,
+    "int": int,
+    "float": float,
+    "bool": bool,
+    "tuple[float, ...]": _floats,
+    "tuple[float, float, float]": _floats,
+    "tuple[UndecidedNormal, ...]": lambda places: tuple(UndecidedNormal.of(x) for x in places),
 }
 
 
@@ -225,12 +189,6 @@ class SamplingReport:
     origin : (float, float, float) or None
         For a `terrain`: the origin that was subtracted from the coordinates of the points.
 
-    Raises
-    ------
-    InputError
-        If a count is not an integer or is negative, the share is outside [0, 1], or the label is
-        not a string.
-
     Examples
     --------
     >>> import gaussmap as gm
@@ -291,14 +249,12 @@ class SamplingReport:
     origin: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
-        if self.on is not None:
-            known_name(self.on, PLACES, "place of samples")
-        if self.density is not None:
-            known_name(self.density, DENSITIES, "density")
-        for name, check in CHECKS.items():
-            value = getattr(self, name)
-            if (value is not None or name in KNOWN) and (plain := check(value, name)) is not value:
-                object.__setattr__(self, name, plain)
+        for x in fields(self):
+            if (value := getattr(self, x.name)) is not None:
+                plain = PLAIN[str(x.type).removesuffix(" | None")]
+                object.__setattr__(self, x.name, plain(value))
+        if self.developable_share is not None:  # a quotient of sums, which are rounded
+            object.__setattr__(self, "developable_share", min(self.developable_share, 1.0))
 
     @property
     def _in_reach(self) -> Reach | None:

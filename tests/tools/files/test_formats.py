@@ -346,7 +346,7 @@ VERTICES, X = b"element vertex 12", b"property double x"
         (b" ny\n", b" else\n", "file.ply' lacks the columns ny;"),
         (b"comment w", b"comment \xff", ""),
         (b"report {", b"report [", ""),
-        (b'"samples": 12', b'"samples": -2', ""),
+        (b'"samples": 12', b'"samples": []', ""),
         (b'"samples"', b'"simples"', ""),
         (b"ply\n", b"plywood\n", ""),
     ],
