@@ -100,34 +100,15 @@ def free_memory() -> float:
 
 
 def _limits() -> Iterator[tuple[float, float]]:
-    """Yield the limits of memory that apply, with the use of each, in bytes."""
+    """Yield the limits of the machine and of control groups, with the use of each, in bytes."""
     yield float("inf"), 0.0
     with suppress(AttributeError, OSError, ValueError):  # Windows has no sysconf
-        page = float(os.sysconf("SC_PAGE_SIZE"))
-        total = os.sysconf("SC_PHYS_PAGES") * page
+        total = os.sysconf("SC_PHYS_PAGES") * float(os.sysconf("SC_PAGE_SIZE"))
         yield total, total - _line(PROC / "meminfo", "MemAvailable:", total / 1024.0) * 1024.0
-        yield from _limits_of_process(page)
     with suppress(OSError):  # a system without control groups
         for line in (PROC / "self" / "cgroup").read_text(encoding="utf-8").splitlines():
-            _, controllers, path = line.split(":", 2)
-            if not controllers:  # of version 2
-                yield from _limits_of_group(path)
-
-
-def _limits_of_process(page: float) -> Iterator[tuple[float, float]]:
-    """Yield the limits set by ulimit."""
-    with suppress(ImportError, OSError, ValueError):
-        import resource
-
-        # The columns of statm: address space and data, in pages.
-        for kind, column in ((resource.RLIMIT_AS, 0), (resource.RLIMIT_DATA, 5)):
-            soft, _ = resource.getrlimit(kind)
-            if soft != resource.RLIM_INFINITY:
-                used = 0.0
-                with suppress(OSError):
-                    pages = (PROC / "self" / "statm").read_text(encoding="ascii").split()
-                    used = page * float(pages[column])
-                yield float(soft), used
+            if line.startswith("0::"):
+                yield from _limits_of_group(line.removeprefix("0::"))
 
 
 def _limits_of_group(path: str) -> Iterator[tuple[float, float]]:

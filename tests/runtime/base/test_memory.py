@@ -247,19 +247,6 @@ def test_control_groups(inside: bool, tmp_path: Path, monkeypatch: pytest.Monkey
     assert memory.free_memory() == 700_000 * 1024.0
 
 
-def test_limits_of_the_shell(monkeypatch: pytest.MonkeyPatch) -> None:
-    resource = pytest.importorskip("resource")
-    everything = memory.free_memory()
-    used = memory.GIB * 64.0
-    monkeypatch.setattr(resource, "getrlimit", lambda kind: (int(used), resource.RLIM_INFINITY))
-    assert memory.memory_limit() <= used
-    assert memory.free_memory() <= everything
-    monkeypatch.setattr(resource, "getrlimit", lambda kind: (2**24, resource.RLIM_INFINITY))
-    assert memory.memory_limit() == 2.0**24
-    assert memory.free_memory() < 0.0  # all of it and more is used
-    refused(r"; 0\.0 GiB are free", gm.fibonacci, 10**6)
-
-
 def test_no_memory_is_an_error() -> None:
     @errors.in_memory
     def hungry() -> None:
