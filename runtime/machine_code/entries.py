@@ -37,7 +37,6 @@ __all__ = [
 
 CHECKSUM = 32  # bytes of SHA-256
 WORD = 8  # bytes of the size of a head
-BINARY = getattr(os, "O_BINARY", 0)  # of Windows
 
 
 def key_of(function: Callable[..., Any], signature: Any) -> str:
@@ -122,12 +121,11 @@ def opened(content: bytes) -> bytes | None:
     return data if hashlib.sha256(data).digest() == checksum else None
 
 
-def replace_file(path: Path, content: bytes, mode: int = 0o644) -> None:
-    """Write a file atomically; its permissions are at most `mode`."""
+def replace_file(path: Path, content: bytes) -> None:
+    """Write a file atomically."""
     part = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
     try:
-        with open(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY | BINARY, mode), "wb") as file:
-            file.write(content)
+        part.write_bytes(content)
         os.replace(part, path)
     finally:
         part.unlink(missing_ok=True)
