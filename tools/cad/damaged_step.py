@@ -1,4 +1,4 @@
-"""STEP files with damaged faces: finding these faces, and the file without them.
+"""Damaged faces of STEP files: finding them, and removing them from the file.
 
 A face that refers to a missing entity, or to numbers that are not finite, would become an infinite
 plane, or make Open CASCADE hang. The other faces can be read.
@@ -39,10 +39,10 @@ def numbers_of_entities(content: bytes) -> list[int]:
 def without_damaged_faces(
     content: bytes, damaged: Mapping[int, str]
 ) -> tuple[bytes, tuple[LostFace, ...]]:
-    """Return a STEP file without its damaged faces, and these faces.
+    """Return the content of a STEP file without its damaged faces, and a list of these faces.
 
-    `damaged` maps numbers of entities that Open CASCADE cannot read to reasons. Raises
-    UnusableError for numbers that are not finite and belong to no face.
+    `damaged` gives the reason for each entity that Open CASCADE cannot read, by its number in the
+    file. Raises UnusableError for infinite or NaN coordinates that belong to no face.
     """
     content = COMMENT.sub(b"", content)
     bodies = {int(number): body for number, body in ENTITY.findall(content)}
@@ -95,7 +95,11 @@ def _not_finite(bodies: Mapping[int, bytes]) -> dict[int, str]:
 def _faces_above(
     roots: Iterable[int], bodies: Mapping[int, bytes], references: Mapping[int, list[int]]
 ) -> dict[int, set[int]]:
-    """Return for each root the faces that refer to it, directly or through other entities."""
+    """Return, for each damaged entity (root), the set of faces that refer to it.
+
+    A face may refer to it directly or through other entities. Roots and faces are given by their
+    entity numbers.
+    """
     users: dict[int, list[int]] = {}
     for k, every in references.items():
         for x in every:

@@ -19,12 +19,12 @@ Dimensions = dict[str, Any]
 def dimensions_of(
     geometry: Geometry, domain: Sequence[Sequence[float]], is_reversed: bool
 ) -> Dimensions:
-    """Return the value of `Face.dimensions`, from the numbers that `saving` describes."""
+    """Return the value of `Face.dimensions`. The module `saving` describes `geometry.numbers`."""
     if geometry.kind not in ("plane", "cylinder", "cone", "sphere", "torus"):
         return {}
     origin, x, y, z = geometry.numbers[:12].reshape(4, 3).copy()
     sizes = geometry.numbers[12:].tolist()
-    # With a right-handed frame, x_u × x_v points outward, or along z on a plane.
+    # If the frame is right-handed, x_u × x_v points outward; on a plane, it points along z.
     outward = is_reversed == bool(np.cross(x, y) @ z < 0.0)
     if geometry.kind == "plane":
         return {"point": origin, "normal": z if outward else -z}
@@ -41,7 +41,11 @@ def dimensions_of(
 
 
 def _cone(origin: Array, z: Array, sizes: Sequence[float], v: float) -> Dimensions:
-    """Return the dimensions of a cone, v in the middle of its domain; none if its angle is zero."""
+    """Return the dimensions of a cone; an empty dict if its angle is zero.
+
+    `v` is the middle of the domain along v. It tells which nappe of the cone is the face: the axis
+    points from the apex to this nappe.
+    """
     radius, angle = sizes
     if angle == 0.0:
         return {}

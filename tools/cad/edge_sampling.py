@@ -20,14 +20,14 @@ from .results import PartSpace
 
 __all__ = ["step_of", "with_edges"]
 
-# The spacing is measured between at least this many positions on an edge.
+# The sizing function along an edge is measured in at least this many steps.
 PLACES = 32
-# The least number of steps between two ends: near corners, an edge may lose samples to its
-# neighbours.
+# The least number of steps between two ends. With 2 steps, an edge has a sample of its own even if
+# other edges provide the samples at both of its corners.
 FEWEST = 2
-# Ends of edges within this distance, relative to the size of the part, are one corner.
+# Ends of edges within this distance, relative to the size of the part, count as one corner.
 SAME_CORNER = 1e-5
-# A remainder of less than this part of a step gets no sample of its own.
+# A remainder shorter than this fraction of a step adds no further step.
 SLACK = 1e-6
 
 
@@ -38,7 +38,7 @@ def with_edges(
     fields: Sequence[str],
     dtype: DTypeLike,
 ) -> dict[str, NDArray[Any]]:
-    """Return fields of `count` samples of a part, followed by those on its sharp edges.
+    """Append the samples on sharp edges of a part to its `count` other samples; return all fields.
 
     Samples on edges come in the order of the edges. Each corner, where edges end, has one sample.
     """
@@ -74,7 +74,10 @@ def _on_edges(space: PartSpace, count: int) -> dict[str, NDArray[Any]]:
 
 
 def step_of(space: Space, count: int) -> float:
-    """Return the distance between neighbours among `count` samples where the density is 1."""
+    """Return the distance between neighbouring samples where the target density is 1.
+
+    The space has `count` samples in all.
+    """
     integral = space.integral
     if not (count and integral > 0.0):
         return math.inf
@@ -82,10 +85,10 @@ def step_of(space: Space, count: int) -> float:
 
 
 def _spaced(edges: Edges, step: float, most: int) -> tuple[Indices, Array, Flags]:
-    """Return the edges (M,) and positions (M,) of samples, and a mask of those at ends.
+    """Return edge indices (M,) and positions (M,) of samples, and a mask (M,) of the end points.
 
-    Ends are the ends of edges and the positions where edges become sharp. An edge has at most
-    `most` steps between two ends.
+    End points are the ends of edges, and positions between which an edge is sharp. An edge has at
+    most `most` steps between two end points.
     """
     owner, places = _many_places(edges)
     sides = sides_at(edges.space, edges.pieces[owner], edges.at(owner, places))
@@ -103,7 +106,7 @@ def _spaced(edges: Edges, step: float, most: int) -> tuple[Indices, Array, Flags
 
 
 def _many_places(edges: Edges) -> tuple[Indices, Array]:
-    """Return edges (M,) and positions (M,) that divide each edge into at least `PLACES` steps."""
+    """Return edge indices (M,) and positions (M,) that cut edges into at least `PLACES` steps."""
     steps = np.diff(edges.starts) - 1
     parts = -(-PLACES // np.maximum(steps, 1))
     counts = steps * parts + 1
@@ -112,9 +115,10 @@ def _many_places(edges: Edges) -> tuple[Indices, Array]:
 
 
 def _costs(space: PartSpace, sides: Sides) -> Array:
-    """Return the distances (M − 1,) of neighbouring positions, in units of the sizing function.
+    """Return the distances (M − 1,) of neighbouring positions, divided by the sizing function.
 
-    If the target density follows the curvature, a distance is at least the angle of the normals.
+    If the target density depends on the curvature, a distance is at least the change of the unit
+    normal, on each of the two faces.
     """
     target = space.target
     lengths = np.linalg.norm(np.diff(sides.points[:, 0], axis=0), axis=1) * space.unit
@@ -131,9 +135,10 @@ def _costs(space: PartSpace, sides: Sides) -> Array:
 
 
 def _divided(places: Array, costs: Array, most: int) -> Array:
-    """Return positions from the first to the last one, with equal costs of at most 1 in between.
+    """Return positions from the first to the last of `places`, with the same cost for each step.
 
-    There are at least FEWEST steps, and at most `most`, with larger costs if needed.
+    `costs` are those of the steps between `places`. The new steps cost at most 1 each; they cost
+    more if this would take more than `most` steps. There are at least FEWEST steps.
     """
     if not len(costs):
         return places
@@ -147,9 +152,10 @@ def _divided(places: Array, costs: Array, most: int) -> Array:
 
 
 def _one_a_corner(sides: Sides, solids: Indices, ends: Flags, tolerance: float) -> Indices:
-    """Return the indices of the samples to keep: one at each corner, with the largest angle.
+    """Return the indices of the samples to keep.
 
-    Corners of two touching solids are two corners.
+    Of the samples at a corner, only the one with the largest angle between its normals is kept.
+    Coincident corners of different solids count as different corners.
     """
     rows = np.flatnonzero(ends)
     dropped = np.zeros(len(sides), dtype=np.bool_)
@@ -165,7 +171,7 @@ def _one_a_corner(sides: Sides, solids: Indices, ends: Flags, tolerance: float) 
 
 
 def _arrays(space: PartSpace, sides: Sides) -> dict[str, NDArray[Any]]:
-    """Return all fields of samples."""
+    """Return all fields of samples on edges, by name."""
     count, points, normals = len(sides), sides.points[:, 0], sides.normals[:, 0]
     faces = np.array([x.face.index for x in space.pieces])[sides.pieces]
     solids = np.array([x.face.solid_index for x in space.pieces])[sides.pieces[:, 0]]

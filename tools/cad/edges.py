@@ -29,16 +29,16 @@ __all__ = [
 # Edges are sharp where the normals of the two faces differ by more than this, in degrees.
 SHARP = 1.0
 # Newton's method stops when the points on both faces are closer than SAME, relative to the size of
-# the part. It has succeeded if they are closer than FOUND times that.
+# the part, or after MOST_ROUNDS rounds. It has succeeded if they are closer than FOUND × SAME.
 SAME, FOUND, MOST_ROUNDS = 1e-14, 1e3, 12
-# Newton's method may move a point by at most this factor times the distance of the faces over the
-# sine of their angle.
+# Newton's method may move a point by at most TIMES_APART d / sin φ, where d is the distance between
+# the two faces and φ the angle between their normals.
 TIMES_APART = 3.0
-# Points of a file where the faces are farther apart than this, relative to the size, are on no
-# edge.
+# If the two faces are farther apart than this at a point of the file, relative to the size of the
+# part, then the point is on no edge.
 APART = 1e-4
-# A surface collapses where one of |x_u|, |x_v| is this many times the other. Parameters outside the
-# domain by less than this part of it are moved to its end.
+# A surface counts as collapsed where one of |x_u|, |x_v| is COLLAPSED times the other. Parameters
+# outside the domain by less than the fraction BEYOND of its size are moved to its boundary.
 COLLAPSED, BEYOND = 1e10, 1e-12
 
 
@@ -46,8 +46,9 @@ COLLAPSED, BEYOND = 1e10, 1e-12
 class Edges:
     """E edges of a part, each between two faces, as polylines of parameters.
 
-    The points of edge i are `points` (k, 4) from `starts`[i] to `starts`[i + 1]: u, v on the
-    surfaces of the two `pieces` (E, 2) of a space.
+    `pieces` (E, 2) are the indices of the two pieces of the space beside each edge. The points of
+    edge i are the rows `starts`[i] to `starts`[i + 1] of `points` (k, 4): u, v on the surface of
+    its first piece, and u, v on the surface of its second piece.
     """
 
     space: PartSpace
@@ -59,9 +60,9 @@ class Edges:
         return len(self.pieces)
 
     def at(self, edges: Indices, places: Array) -> Array:
-        """Return parameters (M, 4) at positions (M,): position k is the k-th point of an edge.
+        """Return parameters (M, 4) at positions `places` (M,) on edges with indices `edges` (M,).
 
-        Between two points, parameters are interpolated linearly.
+        Position k is point k of an edge; between two points, parameters are interpolated linearly.
         """
         last = np.diff(self.starts)[edges] - 1
         before = np.minimum(np.floor(places).astype(np.int64), last - 1)
@@ -71,7 +72,10 @@ class Edges:
 
 
 def edges_of(space: PartSpace, *, seams: bool = False) -> Edges:
-    """Return the edges between two pieces of a space; with `seams`, also seams of one piece."""
+    """Return the edges between two different pieces of a space.
+
+    With `seams`, return also the seams, which have the same piece on both sides.
+    """
     part = space.pieces[0].face.part
     known = np.full(len(part), -1)
     known[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))
@@ -87,12 +91,10 @@ def edges_of(space: PartSpace, *, seams: bool = False) -> Edges:
 
 
 def between_two(part: Part, *, seams: bool = False) -> tuple[Indices, Array, Indices]:
-    """Return the edges between two faces: the faces (E, 2), the points, and their starts.
+    """Return the edges between two faces: face indices (E, 2), points (k, 4) and starts (E + 1,).
 
-    With `seams`, both faces may be the same.
-
-    The points (k, 4) of edge i, from starts[i] to starts[i + 1], are u, v on the first and on the
-    second face.
+    The points of edge i are the rows starts[i] to starts[i + 1]: u, v on the first face, and u, v
+    on the second face. With `seams`, both faces may be the same.
     """
     arrays = part.arrays
     first, faces = arrays["edge_side_starts"], arrays["side_faces"]
@@ -114,7 +116,10 @@ def between_two(part: Part, *, seams: bool = False) -> tuple[Indices, Array, Ind
 
 
 def _of_surfaces(space: PartSpace, pieces: Indices, points: Array) -> Array:
-    """Return parameters (k, 4) on the surfaces of pieces (k, 2), from those of the file."""
+    """Convert the parameters of the file (k, 4) to parameters on the surfaces of pieces (k, 2).
+
+    They differ on reversed faces.
+    """
     found = points.copy()
     for side in (0, 1):
         columns = slice(2 * side, 2 * side + 2)
@@ -130,11 +135,12 @@ def _of_surfaces(space: PartSpace, pieces: Indices, points: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """Both faces at M positions: `pieces` (M, 2), and u, v (M, 4) on their surfaces.
+    """Both faces of edges at M positions: `pieces` (M, 2), and u, v (M, 4) on their surfaces.
 
     For both faces: points (M, 2, 3) in L, tangents x_u, x_v (M, 2, 2, 3), unit normals (M, 2, 3), 0
     where undefined, and the curvatures K, H (M, 2, 2). `collapsed` (M, 2) marks positions on a side
-    of the domain that is one point, such as a pole; of these, only poles of spheres have normals.
+    of the domain that is collapsed to a point, such as a pole; a normal is defined there only on a
+    sphere.
     """
 
     pieces: Indices
@@ -154,7 +160,7 @@ class Sides:
 
     @property
     def chords(self) -> Array:
-        """The chords (M,) of the angles between the normals, 0 where one is undefined."""
+        """The chords (M,) of the angles between both normals, 0 where a normal is undefined."""
         chords = np.linalg.norm(self.normals[:, 0] - self.normals[:, 1], axis=1)
         return np.where(np.all(np.any(self.normals, axis=2), axis=1), chords, 0.0)
 
@@ -170,7 +176,10 @@ class Sides:
 
 
 def sides_at(space: PartSpace, pieces: Indices, uv: Array) -> Sides:
-    """Return points, tangents, normals and curvatures of both faces at positions (M,)."""
+    """Evaluate both faces of edges at M positions.
+
+    `pieces` (M, 2) are the indices of the faces' pieces, and `uv` (M, 4) the parameters on both.
+    """
     found = at_places(space, pieces.ravel(), uv.reshape(-1, 2))
     return Sides(
         pieces,
@@ -194,7 +203,7 @@ class Places(NamedTuple):
 
 
 def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
-    """Return the fields of `Places` for pieces (M,), at u, v (M, 2) of their surfaces."""
+    """Evaluate the surfaces of the pieces with indices `owner` (M,) at parameters `uv` (M, 2)."""
     places, scales = _inside(space, owner, uv), np.array([space.unit, 1.0, 1.0])
     vectors, normals = np.empty((len(owner), 3, 3)), np.empty((len(owner), 3))
     curvatures = np.empty((len(owner), 2))
@@ -213,7 +222,7 @@ def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
 
 
 def _inside(space: PartSpace, owner: Indices, places: Array) -> Array:
-    """Return parameters (k, 2), moved to the end of the domain if they exceed it by rounding."""
+    """Return parameters (k, 2); those outside the domain by rounding are moved to its boundary."""
     low, high = np.array([x.surface.domain for x in space.pieces])[owner].transpose(2, 0, 1)
     slack = BEYOND * (high - low)
     places = np.where((places < low) & (places >= low - slack), low, places)
@@ -224,11 +233,13 @@ def _inside(space: PartSpace, owner: Indices, places: Array) -> Array:
 
 
 def exact_places(edges: Edges, owner: Indices, places: Array) -> tuple[Sides, Indices]:
-    """Return both sides at sharp positions of edges (M,), and the indices of these positions.
+    """Return both faces at the positions where edges are sharp, and the indices of these positions.
+
+    `places` (M,) are positions on the edges with indices `owner` (M,), as in `Edges.at`.
 
     Newton's method finds the intersection of the faces, in the plane across the edge. If the faces
-    meet within a tolerance only, and do not intersect, a nearby point of the file is taken. Where
-    they are farther apart than `APART`, there is no position.
+    do not intersect, but meet within a tolerance, the nearest point of the edge in the file is
+    taken. Positions where the faces are farther apart than `APART` are left out.
     """
     space, pieces = edges.space, edges.pieces[owner]
     starts = sides_at(space, pieces, edges.at(owner, places))
@@ -277,7 +288,10 @@ def _intersections(space: PartSpace, starts: Sides) -> tuple[Array, Flags]:
 
 
 def _step(sides: Sides, along: Array, ahead: Array) -> Array:
-    """Return Newton steps (M, 4) that make both points coincide, in planes across `along`."""
+    """Return steps (M, 4) of Newton's method, to be subtracted from the parameters u, v, u, v.
+
+    To first order, both points then coincide in the plane perpendicular to `along`.
+    """
     one, other = sides.tangents[:, 0], sides.tangents[:, 1]
     matrices = np.zeros((len(sides), 4, 4))
     matrices[:, :3, :2] = one.transpose(0, 2, 1)

@@ -1,4 +1,4 @@
-"""A part that needs no CAD file, for examples and tests."""
+"""Parts that need no CAD file, for examples and tests."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def box_faces(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> li
 def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> list[EdgeRecord]:
     """Return the twelve sharp edges between the faces of `box_faces`.
 
-    Bit k of the index of a vertex says at which end of axis k it is.
+    The vertices have the indices 0 to 7. Bit k of an index is 1 at the upper end of axis k.
     """
     size, found = np.array([width, depth, height]), []
     for first, second in itertools.combinations(range(3), 2):
@@ -82,7 +82,7 @@ def box_edges(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> li
 
 
 def all_kinds() -> Part:
-    """Return a part with a face of each kind, trimmed by a circle in the parameters.
+    """Return a part with faces of all kinds, each trimmed by a circle in its parameters.
 
     Examples
     --------

@@ -15,7 +15,7 @@ __all__ = ["face_columns"]
 def face_columns(part: Part) -> list[FaceColumn]:
     """Return the face number in the file, the name, the kind and the radius of all faces.
 
-    The radius is that of a cylinder or a sphere, or the smaller one of a torus.
+    Only cylinders, spheres and tori have a radius; for a torus, it is the minor radius.
     """
     sizes = (x.dimensions for x in part.faces)
     radii = [x.get("radius", x.get("minor_radius")) for x in sizes]

@@ -1,4 +1,4 @@
-"""Indices that find all points of faces with given normals, by a proof or in closed form."""
+"""Search indices of faces: they find all points with given normals, proved or in closed form."""
 
 from __future__ import annotations
 
@@ -28,25 +28,26 @@ __all__ = ["GAP", "face_index"]
 
 Array = NDArray[np.float64]
 
-# The cells of an index before bisection: faces are simple and numerous.
+# The numbers of cells of an index along u and v before bisection. They are small, since faces are
+# simple and numerous.
 CELLS = (4, 4)
-# A side of the domain may be one point if the distance of its ends is below this part of the
-# largest such distance.
+# A side of the domain may be collapsed to a point if its length, or the distance between its ends,
+# is below this fraction of the largest one.
 CLOSE = 1e-3
-# A side is measured at this number of places.
+# The length of a side is measured at this number of points.
 PLACES = 5
 OPEN_BOX = KINDS.index("open")
-# Where faces of a file meet smoothly, rounded numbers leave a small gap between their normals. So
-# their surfaces are searched beyond open sides and trims, by this part of the domain.
+# Where faces of a file meet smoothly, rounded numbers leave a small gap between their normals.
+# Therefore surfaces are searched beyond their open sides and trims, by this fraction of the domain.
 GAP = 1e-9
-# The indices of Taylor coefficients in bounds.
+# The indices of the Taylor coefficients of order 1 and 2 in arrays of bounds.
 U1, V1, U2, U1V1, V2 = range(1, 6)
 
 
 def face_index(
     geometry: Geometry, surface: Surface, domain: Domain, *, is_reversed: bool
 ) -> FaceIndex | None:
-    """Return the index of the surface of a face over a domain; None if no proof is possible."""
+    """Return the search index of a face over a domain; None if no proof is possible."""
     simple = simplest(geometry, domain)
     if simple.kind in ROUND:
         return RoundFace.of(simple, surface.domain, is_reversed=is_reversed)
@@ -62,15 +63,16 @@ def face_index(
 
 @dataclass(frozen=True, eq=False)
 class SmoothPieces:
-    """The indices of the smooth pieces of a surface."""
+    """The smooth pieces of a surface, each with its search index."""
 
     pieces: Sequence[tuple[ProvedIndex, Surface]]
 
     @classmethod
     def of(cls, surface: Surface, gap: float) -> SmoothPieces | None:
-        """Return the indices of a surface; None if one of its pieces has none.
+        """Return the pieces of a surface with their search indices; None if a piece has no index.
 
-        The search extends beyond open sides by the part `gap` of the domain, except at points.
+        The search extends beyond open sides by `gap` times the domain, except at sides that are
+        collapsed to a point.
         """
         found = []
         for piece in surface.pieces():
@@ -89,10 +91,10 @@ class SmoothPieces:
 
 @dataclass(frozen=True, eq=False)
 class Offset:
-    """The index of an offset of a surface, by the index of that surface (the basis).
+    """The search index of an offset of a surface, the basis; it queries the index of the basis.
 
-    Both have the same parameters. Their normals are opposite where the offset has passed exactly
-    one centre of principal curvature: there (1 + d κ₁) (1 + d κ₂) is negative.
+    Both surfaces have the same parameters. Their normals are opposite where the offset has passed
+    exactly one centre of principal curvature: (1 + d κ₁)(1 + d κ₂) is negative for the distance d.
     """
 
     basis: FaceIndex
@@ -107,7 +109,7 @@ class Offset:
         ])  # fmt: skip
 
     def _turned(self, found: FacePlaces, normals: Array, sign: float) -> FacePlaces:
-        """Return the points of the basis at which the normal of the offset is `sign` times its own.
+        """Return the found points at which the offset has `sign` times the normal of the basis.
 
         Points and components become undecided if the sign may change inside their boxes.
         """
@@ -133,10 +135,10 @@ class Offset:
         )
 
     def _sides(self, uv: Array, radius: Array, normals: Array) -> Ball:
-        """Return enclosures (k,) of numbers with the sign of the dot product of both normals.
+        """Return enclosures (k,) of numbers with the sign of (normal of basis)·(normal of offset).
 
-        Somewhere within the radii (k, 2), the normal of the basis is exactly that of normals
-        (k, 3).
+        Enclosure i holds at the one point in the box uv[i] ± radius[i] where the normal of the
+        basis is exactly normals[i].
         """
         bounds = bounds_over_boxes(self.tape, uv, radius)
         factors = zip((U2, U1V1, V2, U1, V1), (2.0, 1.0, 2.0, 1.0, 1.0), strict=True)
@@ -149,7 +151,10 @@ class Offset:
 
 
 def _wider(surface: Surface, gap: float) -> Surface:
-    """Return a surface over a domain that is larger at open sides, unless they are points."""
+    """Return a surface without its trim, extended beyond open sides by `gap` times the domain.
+
+    Sides that are collapsed to a point stay.
+    """
     sides = list(np.ndindex(2, 2)) if gap > 0.0 else []
     sizes = [np.ptp(_on_side(surface, *x), axis=0).max() for x in sides]
     domain = [list(x) for x in surface.domain]
@@ -161,16 +166,16 @@ def _wider(surface: Surface, gap: float) -> Surface:
 
 
 def _on_side(surface: Surface, axis: int, end: int) -> Array:
-    """Return some points (PLACES, 3) on a side."""
+    """Return equally spaced points (PLACES, 3) of the surface on a side of its domain."""
     low, high = surface.domain[1 - axis]
     places = np.full(PLACES, surface.domain[axis][end]), np.linspace(low, high, PLACES)
     return surface.jets(*(places if axis == 0 else places[::-1]))[:, 0]
 
 
 def _inside(found: ProvedPlaces, piece: Surface) -> FacePlaces:
-    """Return points and boxes moved into the domain of a piece, at its open sides.
+    """Move points and undecided boxes from beyond open sides into the domain of a piece.
 
-    The radius of a point grows by the distance that it moved. Boxes outside are left out.
+    The radius of a point grows by the distance that it moved. Boxes entirely outside are left out.
     """
     is_open = np.array(piece.boundary) == "open"
     low, high = np.where(is_open, piece.domain, [-np.inf, np.inf]).T
@@ -186,7 +191,7 @@ def _inside(found: ProvedPlaces, piece: Surface) -> FacePlaces:
 
 
 def _has_corners_that_meet(surface: Surface) -> bool:
-    """Return whether a side of the domain may be one point: two corners are close together."""
+    """Return whether a side of the domain may be collapsed: its two corners are close together."""
     (u0, u1), (v0, v1) = surface.domain
     places = np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)]).T.copy()
     points = surface.jets(*places)[:, 0]

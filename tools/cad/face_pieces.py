@@ -45,29 +45,29 @@ __all__ = ["FacePiece", "pieces_of"]
 Array, Indices = NDArray[np.float64], NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-# Angles are divided into parts of at most this, in radians.
+# A parameter that is an angle is divided into parts of at most this size, in radians.
 ANGLE = 0.25
-# The least number of parts between two knots, since polynomials of higher degrees may turn there,
-# unless a parameter would have more than MOST_PARTS parts.
+# A span between two knots is divided into at least PARTS_OF_SPAN parts, since polynomials of higher
+# degrees may turn in it, but into fewer parts if a parameter would have more than MOST_PARTS parts.
 PARTS_OF_SPAN, MOST_PARTS = 2, 64
-# Lines closer to one another than this part of the domain are one line.
+# Dividing lines closer to one another than this fraction of the domain count as one line.
 SAME_LINE = 1e-9
 # The number of parts along each parameter of a surface with an unknown function.
 PARTS_OF_SURFACE = 16
 # Curvatures at a pole are taken at this distance from it, relative to the domain.
 BESIDE = 1e-6
 CURVATURES = ("gaussian_curvature", "mean_curvature")
-# Parameters are in the gap between two faces if a step in one of these directions leads into the
-# trim; steps are at most FAR times the domain.
+# A parameter pair outside the trim is in the gap between two faces if a step in one of the
+# directions CORNERS leads into the trim. Steps are at most FAR times the domain.
 FAR = 1e-5
 CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 # Without a proof, and for normals of lattices, points are searched on a spline. It has CELLS_A_PART
-# cells for each part of a span, but FEWEST to MOST along each parameter: near the boundary, points
-# are lost because of the error of the spline.
+# cells for each part between dividing lines, but at least FEWEST and at most MOST cells along each
+# parameter. Fewer cells would lose points near the boundary, because of the error of the spline.
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
-# Measurements on a raster of a face use about this number of positions, squared.
+# A raster of a face has about RASTER² positions.
 RASTER = 64
-# The parameters that are angles, for each kind of face.
+# For each kind of face, whether u is an angle, and whether v is an angle.
 ANGLES = {
     "cylinder": (True, False),
     "cone": (True, False),
@@ -102,12 +102,12 @@ class FacePiece(Piece):
 
     @property
     def area(self) -> float:
-        """The area of the part in the reach, in L²."""
+        """The area of the face inside the reach, in L²."""
         return self.face.area * self._share
 
     @cached_property
     def _share(self) -> float:
-        """The fraction of the area in the reach, measured on a raster."""
+        """The fraction of the area of the face that is inside the reach, measured on a raster."""
         if self.reach is None:
             return 1.0
         jets = self.on_raster()
@@ -155,12 +155,15 @@ class FacePiece(Piece):
         return self.surface.unchecked_jets(*np.array([u, v]))  # many faces, few points
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
-        """Return the geometries to search for points; GaussmapError if there is no spline."""
+        """Return the splines on which points are searched; GaussmapError if there is no spline."""
         found = kept(self.surface, FacePiece, self._geometries)
         return [x.used(np.float64, threads).within(self.reach) for x in found]
 
     def proved_at(self, normals: Array, threads: int | None) -> list[Samples] | None:
-        """Return all points with unit normals (S, 3), proved; None if no proof is possible."""
+        """Return samples at all points with unit normals (S, 3), which are proved to be all.
+
+        Return None if no proof is possible.
+        """
         index = kept(self.surface, face_index, self._index)
         if index is None:
             return None
@@ -170,7 +173,7 @@ class FacePiece(Piece):
 
     @property
     def tips(self) -> Sequence[Tip | Pinch]:
-        """The tips at open sides of the domain that are one point."""
+        """The tips of the face: points to which open sides of its domain are collapsed."""
         if not any(self.surface.assumed_open):
             return ()
 
@@ -182,9 +185,10 @@ class FacePiece(Piece):
         return kept(self.surface, Tipped, found)
 
     def component_degrees(self, normals: Array) -> Indices:
-        """Return for each normal the sum of the degrees of its components that have a sample.
+        """Return, for each normal, the sum of the degrees of its components.
 
-        Regular points do not count.
+        The degrees are those of the Gauss map. Regular points, and components without a sample, do
+        not count.
         """
         index, degrees = kept(self.surface, face_index, self._index), np.zeros(len(normals))
         for tip in self.tips:
@@ -195,7 +199,10 @@ class FacePiece(Piece):
         return degrees.astype(np.int64)
 
     def _samples(self, normals: Array, found: FacePlaces) -> Samples:
-        """Return the points with normals (S, 3) that are inside the trim."""
+        """Return samples at those of the points `found` that are inside the trim, and at tips.
+
+        `normals` (S, 3) are the normals of the search.
+        """
         inside = self._owns(found.uv)
         places = np.column_stack([found.uv, found.radius, found.sign, 0.0 * found.sign])[inside]
         components, open_ = components_in(self.trim, found.undecided, normals, self.jets)
@@ -236,9 +243,10 @@ class FacePiece(Piece):
         return Samples(**arrays, report=report)
 
     def _owns(self, uv: Array) -> Flags:
-        """Return which parameters (k, 2) are inside the trim; on faces of files, up to the gap.
+        """Return a mask (k,) of the parameter pairs (k, 2) that belong to the face.
 
-        These are moved by up to `GAP` times the domain, and until the normal has changed by `GAP`.
+        They are inside its trim or, on faces of files, in the gap beside it: the pair enters the
+        trim if it moves until the normal has changed by `GAP`, and then by `GAP` times the domain.
         """
         trim, inside = self.surface.trim, self.contains(uv)
         if trim is None or self.face.geometry.surface is not None or inside.all():
@@ -270,7 +278,7 @@ class FacePiece(Piece):
             return on_grids([geometry_of(x, self._cells(x.domain), "surface") for x in pieces])
 
     def _cells(self, domain: Domain) -> tuple[int, int]:
-        """Return the numbers of cells of a spline over a domain, by the parts between lines.
+        """Return the numbers of cells of a spline over a domain, from the number of `lines` in it.
 
         A choice by `fit`, which compares splines, would take longer than everything else.
         """
@@ -283,7 +291,7 @@ class FacePiece(Piece):
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> dict[str, NDArray[Any]]:
-        """Return fields of samples at parameters (k, 2)."""
+        """Return the requested fields of samples at parameters (k, 2)."""
         jets, count = self.jets(*uv.T.copy()), len(uv)
         normals, K, H = np.empty((count, 3)), np.empty(count), np.empty(count)
         scales = np.array([scale_to_one(self.size), *self.sizes])
@@ -304,7 +312,7 @@ class FacePiece(Piece):
 
 
 def _any_inside(trim: Trim, places: Array) -> Flags:
-    """Return whether any of k parameter pairs (n, k, 2) is inside a trim, (n,)."""
+    """Return a mask (n,) of the rows of parameter pairs (n, k, 2) with a pair inside a trim."""
     inside = trim.contains(places.reshape(-1, 2), 1)
     return np.any(inside.reshape(places.shape[:2]), axis=1)
 
@@ -312,9 +320,9 @@ def _any_inside(trim: Trim, places: Array) -> Flags:
 def pieces_of(
     faces: tuple[Face, ...], reach: Reach | None = None
 ) -> tuple[list[FacePiece], dict[int, str]]:
-    """Return the faces that can be sampled, and for each other face the reason, by its index.
+    """Return the pieces of all faces that can be sampled, and the reasons why others cannot be.
 
-    Faces without points in a `reach` are in neither.
+    The reasons are a dict by face index. Faces without points in the `reach` are in neither.
     """
     pieces, reasons = [], {}
     for face in faces:
@@ -333,7 +341,10 @@ def pieces_of(
 
 
 def _lines(face: Face, geometry: Geometry, axis: int, ends: tuple[float, float]) -> Array:
-    """Return the values that divide the domain along an axis: at knots, and between them."""
+    """Return the values of a parameter that divide the domain, from one end to the other.
+
+    They are knots, and further values between knots. `axis` is 0 for u, 1 for v.
+    """
     knots, degree = _knots(geometry, axis)
     while geometry.basis is not None:
         geometry = geometry.basis
@@ -355,7 +366,7 @@ def _lines(face: Face, geometry: Geometry, axis: int, ends: tuple[float, float])
 
 
 def _between(knots: Array, ends: tuple[float, float], period: float) -> Array:
-    """Return the ends, and the knots of all periods between them."""
+    """Return both ends of an interval, and the knots between them, repeated with the period."""
     if period > 0.0:
         turns = np.arange(-2, 3) * period
         knots = np.unique(knots + turns[:, None])
@@ -366,7 +377,7 @@ def _between(knots: Array, ends: tuple[float, float], period: float) -> Array:
 
 
 def _knots(geometry: Geometry, axis: int) -> tuple[Array, int]:
-    """Return the knots of a surface along an axis, and the degree between them; 0 without knots."""
+    """Return the knots in u (axis 0) or v (axis 1), and the degree; 0 if there are no knots."""
     if geometry.basis is not None:
         return _knots(geometry.basis, axis)
     net, of_curve = geometry.net, {"revolution": 1, "extrusion": 0}.get(geometry.kind)

@@ -48,7 +48,7 @@ class FaceIndex(Protocol):
 
 
 def undecided(numbers: Indices, boxes: Array, kind: int, border: bool) -> Undecided:
-    """Return boxes (k, 4) of one kind as undecided, for the normals with indices (k,)."""
+    """Return undecided boxes (k, 4) of one kind, for the normals with indices `numbers` (k,)."""
     count = len(numbers)
     return Undecided(
         numbers, boxes, np.full(count, kind), np.full(count, border), np.full(count, np.nan),
@@ -64,7 +64,7 @@ NOTHING = FacePlaces(
 
 
 def joined(parts: Sequence[FacePlaces]) -> FacePlaces:
-    """Return the points of several parts of a face, in the order of their normals."""
+    """Return the points of several pieces of a face, sorted by the indices of their normals."""
     parts = [x for x in parts if len(x.numbers) or len(x.undecided.numbers)]
     if len(parts) < 2:
         return parts[0] if parts else NOTHING

@@ -46,7 +46,7 @@ ON_BORDER = 1e-9
 class Shape:
     """A surface without its trim: its function in its own frame, and its boundary conditions.
 
-    `collapses` says whether sides of the domain may be one point, and have to be tested.
+    If `collapses`, sides of the domain may be collapsed to a point, and have to be tested.
     """
 
     function: Differentiable
@@ -90,7 +90,10 @@ def face_surface(
 
 
 def own_parameters(surface: Surface, uv: Array, *, is_reversed: bool) -> Array:
-    """Return the parameters (k, 2) of the file from those of the surface of a face, or back."""
+    """Convert parameters (k, 2) of the surface of a face to those of the file, or back.
+
+    If the face is reversed, u is reversed.
+    """
     if not is_reversed:
         return uv
     total = sum(surface.domain[0])
@@ -98,7 +101,7 @@ def own_parameters(surface: Surface, uv: Array, *, is_reversed: bool) -> Array:
 
 
 def _is_whole(loops: Sequence[Array], domain: Domain) -> bool:
-    """Return whether there is a single loop, the boundary of the whole domain."""
+    """Return whether the only loop is the boundary of the whole domain."""
     if len(loops) != 1:
         return False
     (loop,) = loops
@@ -219,7 +222,10 @@ def _frame(axis: Array) -> Array:
 
 
 def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:
-    """Return an interval of an angle, exactly one turn if it nearly is one, and its conditions."""
+    """Return the interval of an angle and its boundary conditions.
+
+    An interval of nearly one turn is periodic, and becomes exactly one turn.
+    """
     low, high = interval
     if abs(high - low - TURN) <= SAME_END * TURN:
         return (low, low + TURN), PERIODIC
@@ -230,7 +236,10 @@ def _around(interval: Interval) -> tuple[Interval, BoundaryPair]:
 
 
 def _offset(geometry: Geometry, domain: Domain) -> Shape:
-    """Return an offset; offsets of planes, cylinders, cones, spheres and tori keep their kind."""
+    """Return an offset surface.
+
+    Offsets of planes, cylinders, cones, spheres and most tori are surfaces of the same kind.
+    """
     simple = simplest(geometry, domain)
     if simple.kind != "offset":
         return _shape(simple, domain)
@@ -244,7 +253,11 @@ def _offset(geometry: Geometry, domain: Domain) -> Shape:
 
 
 def simplest(geometry: Geometry, domain: Domain) -> Geometry:
-    """Return a geometry without offsets of planes, cylinders, cones, spheres and most tori."""
+    """Replace an offset of a plane, cylinder, cone, sphere or torus by a surface of that kind.
+
+    Other geometries are returned with the simplest basis. An offset of a torus that has passed the
+    axis is such another geometry.
+    """
     if geometry.kind != "offset" or geometry.basis is None:
         return geometry
     basis = simplest(geometry.basis, domain)
@@ -255,10 +268,10 @@ def simplest(geometry: Geometry, domain: Domain) -> Geometry:
 
 
 def _moved_numbers(basis: Geometry, distance: float, domain: Domain) -> Array | None:
-    """Return the numbers of a surface of the same kind at a distance; None if there is none.
+    """Return the numbers of an offset as a surface of the same kind as its basis, or None.
 
-    The distance is along x_u × x_v, which points away from the axis if the frame is right-handed
-    and the radius positive.
+    None means that the offset is not of that kind. The distance is along x_u × x_v, which points
+    away from the axis if the frame is right-handed and the radius positive.
     """
     if basis.kind not in ("plane", "cylinder", "cone", "sphere", "torus"):
         return None

@@ -62,9 +62,9 @@ def part_of_surfaces(
 
 
 def _checked(surfaces: object) -> list[Surface]:
-    """Return the surfaces; those given by points become splines.
+    """Return the surfaces; surfaces that are given by a grid of points become their splines.
 
-    Raises InputError for an empty list, and for other entries.
+    Raises InputError for an empty list, and for entries that are no surfaces.
     """
     given = None if isinstance(surfaces, Surface) else listed(surfaces)
     if not given:
@@ -177,7 +177,7 @@ def _part(
 
 
 def _warnings(faces: Sequence[FaceRecord], found: Sewn) -> Iterator[str]:
-    """Yield warnings: the flipped surfaces, and the positions where surfaces do not fit."""
+    """Yield warnings about flipped surfaces, edges of more than two faces, and narrow gaps."""
     flipped = [k for k, face in enumerate(faces) if face.reversed]
     if len(flipped) == 1:
         yield f"surface {flipped[0]} ({faces[flipped[0]].name!r}) is flipped."

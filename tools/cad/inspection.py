@@ -33,7 +33,7 @@ BREP = (b"DBRep_DrawableShape", b"CASCADE Topology V")
 TOO_LARGE = rb"e\+?0*(?:30[89]|3[1-9]\d|[4-9]\d\d|\d{4,})"
 SUSPICIOUS = re.compile(rb"nan|inf|" + TOO_LARGE)
 NUMBER = rb"[-+]?(?:nan|inf(?:inity)?|\d*\.?\d*" + TOO_LARGE + rb")"
-# A number that is not finite, in the aggregates of STEP, the lists of IGES and the lines of BREP.
+# Patterns of numbers that are not finite: in aggregates of STEP, lists of IGES and lines of BREP.
 NOT_FINITE = {
     "STEP": re.compile(rb"[(,]\s*" + NUMBER + rb"\s*(?=[,)])", re.IGNORECASE),
     "IGES": re.compile(rb"[,;]\s*" + NUMBER + rb"\s*(?=[,;])", re.IGNORECASE),
@@ -92,14 +92,17 @@ def format_of(head: bytes) -> str | None:
 
 
 def _letters(lines: list[bytes]) -> str:
-    """Return the letters of the sections of lines of IGES, "?" for lines without one."""
+    """Return, for each line of an IGES file, the letter of its section, or "?" if it has none."""
     found = (x[72:73] for x in lines)
     letters = (x.decode() if x in (b"S", b"G", b"D", b"P", b"T") else "?" for x in found)
     return "".join(letters)
 
 
 def _check_iges(content: bytes) -> None:
-    """Raise UnusableError unless sections have as many lines as the last line says."""
+    """Raise UnusableError unless the sections of an IGES file have as many lines as it states.
+
+    The last line of the file states them.
+    """
     lines = [x for x in content.splitlines() if x.strip()]
     letters = _letters(lines)
     end = letters.find("T")
@@ -116,7 +119,7 @@ def _check_iges(content: bytes) -> None:
 
 
 def _check_brep(content: bytes) -> None:
-    """Raise UnusableError unless each shape ends with a star, and the last line exists."""
+    """Raise UnusableError unless a BREP file has its last line, and each shape ends with a star."""
     start = SHAPES.search(content)
     whole = start is not None and WHOLE.search(content[-HEAD:])
     if start is None or not whole or content.count(b"*", start.end()) != int(start[1]):
@@ -138,7 +141,9 @@ def _directory(content: bytes) -> list[bytes]:
 
 
 def is_part_file(source: str | None) -> bool:
-    """Return whether a text names a file of a part, by its suffix, beginning or arrays.
+    """Return whether a text is the path of a file that holds a part.
+
+    The suffix of the path, the first bytes of the file or the names of its arrays decide.
 
     `read_cad` goes by the content of files, and takes any suffix.
     """

@@ -54,7 +54,7 @@ def volume_of(part: Part) -> float:
 
 
 def _closed_faces(part: Part) -> Flags:
-    """Return which faces belong to closed solids: all, if the part is oriented."""
+    """Return a mask of the faces that belong to closed solids; all do if the part is oriented."""
     solids = part.arrays["solid_index"]
     if part.oriented:
         return np.ones(len(part), np.bool_)
@@ -66,17 +66,17 @@ def _closed_faces(part: Part) -> Flags:
 
 
 def _mean_height(piece: FacePiece, centre: Array) -> float:
-    """Return the mean of (x − c)·n over a face.
+    """Return the mean of (x − c)·n over a face, where c is `centre`.
 
-    The area comes from the CAD library, so that the area of the boundary polygons need not be
-    exact.
+    The volume is a sum of means times areas of the CAD library. So the area inside the boundary
+    polygons need not be exact.
     """
     heights, area = integrals_of(piece, centre)
     return heights / area
 
 
 def integrals_of(piece: FacePiece, centre: Array) -> tuple[float, float]:
-    """Return the integral of (x − c)·n over a face, in L³, and its area, in L².
+    """Return the integral of (x − c)·n over a face, in L³, and its area, in L²; c is `centre`.
 
     By Green's theorem, ∫∫ g du dv over the face is ∮ G dv around it, where G is the integral of g
     along u.
@@ -94,7 +94,10 @@ def integrals_of(piece: FacePiece, centre: Array) -> tuple[float, float]:
 
 
 def _along_u(piece: FacePiece, ends: Array, lines: Array, centre: Array) -> Array:
-    """Return the integrals (k, 2) of (x − c)·N and |N| along u, from the first line to `ends`."""
+    """Return the integrals (k, 2) of (x − c)·N and |N| along u, for N = x_u × x_v and c = `centre`.
+
+    They run from the first of the values `lines` of u to each of the parameter pairs `ends` (k, 2).
+    """
     found = np.zeros((len(ends), 2))
     for low, high in itertools.pairwise(lines):
         rows = np.flatnonzero(ends[:, 0] > low)
@@ -127,7 +130,11 @@ def signs_of(piece: FacePiece) -> Array:
 
 
 def _divided(polygon: Array, lines: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Return points (k, 2) that divide a polygon at lines, and steps (k, 2) to the next ones."""
+    """Divide a polygon at lines u = const and v = const.
+
+    Return its vertices and crossings with the lines in order (k, 2), and the steps (k, 2) from each
+    to the next.
+    """
     steps = np.roll(polygon, -1, axis=0) - polygon
     owners, shares = [np.arange(len(polygon))], [np.zeros(len(polygon))]
     for axis in (0, 1):
@@ -149,7 +156,7 @@ def _divided(polygon: Array, lines: tuple[Array, Array]) -> tuple[Array, Array]:
 
 
 def boundaries_of(part: Part) -> list[Segments]:
-    """Return the boundary polygons of all faces, cut at lines between which faces are smooth."""
+    """Return the boundary polygons of all faces, divided at the lines between smooth patches."""
     return [
         Segments(piece, *_divided(polygon, (piece.lines(0), piece.lines(1))), piece.face.index)
         for piece in space_of(part, None).pieces
@@ -161,7 +168,7 @@ def boundaries_of(part: Part) -> list[Segments]:
 
 
 def gap_of(part: Part) -> float:
-    """Return the largest distance between both sides of an edge, in L."""
+    """Return the largest distance between the two faces of an edge, in L."""
     edges = edges_of(space_of(part, None), seams=True)
     owner = np.repeat(np.arange(len(edges)), np.diff(edges.starts))
     sides = sides_at(edges.space, edges.pieces[owner], edges.points)

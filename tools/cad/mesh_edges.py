@@ -18,21 +18,22 @@ from .results import PartSpace
 
 __all__ = ["MeshEdges", "SampledEdges"]
 
-# The spacing along an edge is measured at this many steps of equal parameters.
+# The spacing along an edge is measured in this many steps of equal length in its parameter.
 PLACES = 64
 # The least number of steps of a closed edge.
 CLOSED = 3
-# Ends of an edge without vertices are one point if closer than this, relative to the size.
+# The ends of an edge without vertices in the file count as one point if they are closer than this,
+# relative to the size of the part.
 SAME = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class SampledEdges:
-    """Vertices on edges: their `points` (M, 3), in the unit L of the part.
+    """The vertices of a mesh on edges of a part: `points` (M, 3), in the unit L of the part.
 
-    For each edge, `numbers` are the indices of its vertices, and `shares` their positions in
-    [0, 1]. For each side of an edge, `uv` are the parameters of these vertices on the surface of
-    its piece, in the direction of the edge, and `edges` is the index of the edge.
+    By index of an edge: `numbers`, the indices of its vertices, and `shares`, their positions in
+    [0, 1]. By index of a side of an edge: `uv`, the parameters (k, 2) of the same vertices on the
+    surface beside it, in the direction of the edge, and `edges`, the index of the edge.
     """
 
     points: Array
@@ -46,8 +47,9 @@ class SampledEdges:
 class MeshEdges:
     """All edges around the pieces of a space, and their division into steps.
 
-    `sides` (S,) are indices of sides of edges of the part, `owner` (S,) their edges and `pieces`
-    (S,) their pieces. `more` are the shares of additional vertices, by edge.
+    `sides` (S,) are indices of sides of edges in the part, `owner` (S,) the indices of their edges,
+    and `pieces` (S,) the indices of their pieces. `more` are the positions in [0, 1] of additional
+    vertices, by index of the edge.
     """
 
     spacing: Spacing
@@ -94,7 +96,7 @@ class MeshEdges:
 
     @property
     def least(self) -> int:
-        """The least number of vertices on edges."""
+        """The least number of vertices on edges that a mesh can have."""
         return self._count(self._steps(math.inf))
 
     def _count(self, steps: Indices) -> int:
@@ -108,10 +110,11 @@ class MeshEdges:
         return self.used & (self.arrays["edge_degenerate"] == 0)
 
     def _steps_for(self, count: int) -> Indices:
-        """Return the steps (E,) of edges in a mesh of `count` vertices, at least `least`.
+        """Return the numbers of steps (E,) of edges in a mesh of `count` ≥ `least` vertices.
 
-        The step is the smallest one that leaves enough vertices for the interior of faces. If no
-        face needs interior vertices, all vertices are on edges, and the longest steps are divided.
+        The step length is the smallest one that leaves enough vertices for the interior of faces.
+        If no face needs interior vertices, all vertices are on edges: edges with the longest steps
+        get further steps.
         """
         costs = self._costs[:, -1]
         low = max(self.spacing.smallest_step, costs.sum() / (count + len(costs)))
@@ -130,7 +133,10 @@ class MeshEdges:
         return steps
 
     def _total(self, steps: Indices, step: float) -> float:
-        """Return the number of vertices: on edges with `steps` (E,), and inside for `step`."""
+        """Return the number of all vertices, on edges and inside faces.
+
+        Edges are divided into `steps` (E,) steps; vertices inside faces are spaced by `step`.
+        """
         around = np.bincount(self.pieces, steps[self.owner], len(self.space.pieces))
         return self._count(steps) + self.spacing.inside(step, around)
 
@@ -141,7 +147,7 @@ class MeshEdges:
 
     @cached_property
     def around(self) -> Indices:
-        """The number of sides (E,) of each edge that are on pieces of the space."""
+        """For each edge, the number of its sides that are on pieces of the space, (E,)."""
         return np.bincount(self.owner, minlength=len(self.arrays["edge_vertices"]))
 
     def _steps(self, step: float) -> Indices:
@@ -153,7 +159,7 @@ class MeshEdges:
 
     @cached_property
     def _vertices(self) -> tuple[Array, Indices]:
-        """The vertices (V, 3) in use, and the indices (E, 2) of those at the ends of edges."""
+        """The points (V, 3) at the ends of edges, and their indices (E, 2) for each edge."""
         points, ends = list(self.arrays["vertices"]), self.arrays["edge_vertices"].copy()
         for row in np.flatnonzero(self.used & (ends < 0).any(axis=1)).tolist():
             side = int(np.flatnonzero(self.owner == row)[0])
@@ -179,9 +185,9 @@ class MeshEdges:
 
     @cached_property
     def _costs(self) -> Array:
-        """The cumulative lengths (E, PLACES + 1) along edges, measured by the spacing.
+        """The cumulative lengths (E, PLACES + 1) along edges, relative to the spacing of vertices.
 
-        If the lengths on the faces of an edge differ, the largest one counts.
+        If the lengths on the faces of an edge differ, the largest length counts.
         """
         shares = np.linspace(0.0, 1.0, PLACES + 1)
         sides = np.repeat(np.arange(len(self.sides)), len(shares))
@@ -193,9 +199,10 @@ class MeshEdges:
         return np.pad(np.cumsum(found, axis=1), ((0, 0), (1, 0)))
 
     def _uv(self, sides: Indices, shares: Array) -> Array:
-        """Return u, v (M, 2) on the surfaces of sides (M,), at shares (M,) of their edges.
+        """Return parameters (M, 2) on sides of edges, at positions `shares` (M,) in [0, 1].
 
-        Interpolation between points of the part, which have derivatives, is cubic.
+        `sides` (M,) are indices in `self.sides`. Between the points of the part, which have
+        derivatives, interpolation is cubic.
         """
         starts, points = self.arrays["side_point_starts"], self.arrays["side_points"]
         first, last = (starts[self.sides[sides] + k] for k in (0, 1))
@@ -213,9 +220,10 @@ class MeshEdges:
         return found
 
     def sampled(self, count: int) -> SampledEdges:
-        """Return the vertices on edges in a mesh of `count` vertices, at least `least`.
+        """Return the vertices on edges in a mesh of `count` ≥ `least` vertices.
 
-        Edges are coarser than the interior of faces if equally fine edges would take too many.
+        Edges are coarser than the interior of faces if equally fine edges would take too many
+        vertices.
         """
         points, ends = self._vertices
         steps, first = self._steps_for(count), len(points)
@@ -238,7 +246,10 @@ class MeshEdges:
     def _points(
         self, vertices: Array, count: int, numbers: dict[int, Indices], uv: dict[int, Array]
     ) -> Array:
-        """Return the points of vertices; those between ends lie on the first face of their edge."""
+        """Return the points (count, 3) of the vertices on edges; `vertices` are those at ends.
+
+        Vertices between the ends of an edge lie on its first face.
+        """
         found = np.concatenate([vertices, np.empty((count - len(vertices), 3))])
         firsts = np.sort(np.unique(self.owner, return_index=True)[1])
         rows = [numbers[int(self.owner[k])][1:-1] for k in firsts]

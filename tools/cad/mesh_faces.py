@@ -21,16 +21,20 @@ SAME = 1e-11
 
 
 class Crossing(Exception):  # noqa: N818 - a finding, not an error
-    """The boundary of a face crosses itself, or encloses nothing; `face` is its index if known."""
+    """The boundary of a face crosses itself, or encloses nothing.
+
+    `face` is the index of the face, −1 if it is not known.
+    """
 
     face = -1
 
 
 @dataclass(frozen=True, eq=False)
 class FaceBorder:
-    """The boundary of a face: positions (k, 2), their vertex indices (k,), and segments (k, 2).
+    """The boundary of a face: positions `uv` (k, 2), and their vertex indices `numbers` (k,).
 
-    Segments join two positions, by index; `edges` (k,) are the edges of the part on which they lie.
+    `segments` (k, 2) are pairs of indices of positions, and `edges` (k,) the indices of the edges
+    of the part that contain the segments.
     """
 
     uv: Array
@@ -59,10 +63,11 @@ class FaceBorder:
 
 
 def triangles_of(border: FaceBorder, places: Array) -> tuple[Indices, Indices]:
-    """Return triangles (k, 3) of positions (n, 2) in a plane; the boundary has the first positions.
+    """Return triangles (k, 3), as indices of positions (n, 2) in a plane, inside a boundary.
 
-    Triangles run counterclockwise. Also return the constrained segments (m, 2). Of equal positions,
-    only the first is a vertex. Raises Crossing if the boundary crosses itself.
+    The first positions are those of the boundary. Triangles run counterclockwise. Also return the
+    constrained segments (m, 2). Of equal positions, only the first is a vertex. Raises Crossing if
+    the boundary crosses itself.
     """
     cdt = from_extra(*EXTRA)
     low = places.min(axis=0)

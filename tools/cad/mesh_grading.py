@@ -1,7 +1,7 @@
-"""Sizes that grow slowly from the edges of a part into its faces, for well-shaped triangles.
+"""Sizes of triangles that grow slowly from the edges of a part into its faces.
 
-An edge is as fine as the finest adjacent face requires. A plane beside a fillet would have long
-triangles at their common edge if its vertices followed its own curvature only.
+An edge is as fine as the finest adjacent face requires. So, without grading, a plane beside a
+fillet would have badly shaped, long triangles at their common edge.
 """
 
 from __future__ import annotations
@@ -19,14 +19,15 @@ __all__ = ["graded"]
 
 # The size grows by at most this much per unit of distance from an edge.
 GROWTH = 0.55
-# Cells are halved until sizes within a cell differ by about this fraction of the smallest one.
+# Cells are halved until the sizes in a cell differ by about this fraction of its smallest size.
 UNEVEN = 0.5
 
 
 def graded(edges: MeshEdges, count: int) -> PartSpace:
-    """Return the space of edges, with sizes that grow slowly from their steps in a mesh.
+    """Return the space of `edges` with sizes that grow slowly from the edges into the faces.
 
-    Steps hardly smaller than the largest size on a face do not change the sizes there.
+    At an edge, the size is the length of its segments in a mesh of `count` vertices. Segments that
+    are hardly shorter than the largest size on a face do not change the sizes on that face.
     """
     space, sampled = edges.space, edges.sampled(count)
     step, points = step_of(space, count), space.scaled_points(sampled.points)
@@ -50,7 +51,7 @@ def graded(edges: MeshEdges, count: int) -> PartSpace:
 
 
 def _halved(space: PartSpace, cells: Cells) -> Cells:
-    """Return the graded first cells of a space, halved until sizes are even in each."""
+    """Return the graded first cells of a space, halved until sizes vary little inside each cell."""
     done, bare = list[Cells](), space.between(0.0)
     growth = np.zeros(len(space.pieces))
     for k, sources in space.sources.items():

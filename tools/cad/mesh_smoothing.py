@@ -23,10 +23,10 @@ EVEN = math.sqrt(0.75)
 def smoothed(
     space: PartSpace, pieces: Indices, known: Places, triangles: Indices, points: Array, free: Flags
 ) -> tuple[Places, Array]:
-    """Return the fields of vertices (C,), some of the `free` ones moved, and the points (C, 3).
+    """Move some of the `free` vertices; return the fields (C,) and points (C, 3) of all vertices.
 
-    The smallest angle around a moved vertex grows. No triangle there turns away from the normals by
-    more than `LARGEST_DEVIATION` degrees, unless it already did.
+    The smallest angle around a moved vertex grows. No triangle at a moved vertex deviates from the
+    normals at its corners by more than `LARGEST_DEVIATION` degrees, unless it did so before.
     """
     known, points = Places._make(x.copy() for x in known), points.copy()
     for _ in range(ROUNDS):
@@ -34,12 +34,13 @@ def smoothed(
         thin[triangles[tangents < math.tan(math.radians(SMALL))]] = True
         chosen = np.flatnonzero(thin & free)
         rows, corners = np.nonzero((thin & free)[triangles])
-        # The triangles around the chosen vertices, rotated so that these are first corners.
+        # The triangles at each chosen vertex, their corners permuted cyclically so that this vertex
+        # comes first.
         around = triangles[rows[:, None], (corners[:, None] + np.arange(3)) % 3]
         owner = np.searchsorted(chosen, around[:, 0])
         steps = _steps(points[around], tangents[rows], owner, len(chosen))
         moved = _moved(space, pieces[chosen], known, chosen, steps)
-        # At the ends of its domain a surface may be undefined.
+        # At the boundary of its domain, a surface may be undefined.
         lost = ~np.isfinite(moved.vectors[:, 0]).all(axis=1)
         for mine, others in zip(moved, known, strict=True):
             mine[lost] = others[chosen[lost]]
@@ -59,10 +60,10 @@ def smoothed(
 
 
 def _steps(corners: Array, tangents: Array, owner: Indices, count: int) -> Array:
-    """Return displacements (count, 3) of the first corners of triangles (k, 3, 3).
+    """Return displacements (count, 3) of vertices; triangle i has vertex owner[i] as first corner.
 
-    The target is a mean of the tips of equilateral triangles on the opposite sides; thin triangles
-    have larger weights.
+    A vertex moves to a weighted mean of the tips of equilateral triangles, each on the opposite
+    side of one of its triangles `corners` (k, 3, 3). Thin triangles have larger weights.
     """
     tip, one, other = corners.transpose(1, 0, 2)
     side, up = other - one, tip - (one + other) / 2.0
@@ -93,9 +94,10 @@ def _moved(
 
 
 def _tangents(corners: Array, normals: Array, least: Array) -> Array:
-    """Return the tangents of the smallest angles of triangles (k, 3, 3).
+    """Return tan(smallest angle) of each triangle (k, 3, 3), or −1 if it deviates from its normals.
 
-    A tangent is −1 where the cosine with one of the normals at the corners is below `least` (k,).
+    It deviates if the cosine of the angle between the triangle and the normal at one of its corners
+    is below `least` (k,).
     """
     own = np.arange(3 * len(corners)).reshape(-1, 3)
     points, normals = corners.reshape(-1, 3), normals.reshape(-1, 3)
@@ -110,9 +112,9 @@ def _least(values: Array, owner: Indices, count: int) -> Array:
 
 
 def _first(chosen: Indices, better: Flags, now: Array, around: Indices, count: int) -> Indices:
-    """Return indices in `chosen` (k,) of vertices that become better, and move together.
+    """Return the vertices that move in this round, as indices in `chosen`.
 
-    Of two neighbours, only the one with the smaller angle moves.
+    All of them become better. Of two neighbours, only the vertex with the smaller angle moves.
     """
     rank = np.full(count, len(chosen))
     rank[chosen[better]] = np.argsort(np.argsort(now[better]))

@@ -1,9 +1,9 @@
 """The spacing of vertices in a mesh of a part, and the planes in which faces are triangulated.
 
 For well-shaped triangles, the vertices follow the target density of the space, proportional to κ.
-For triangles close to the normals, each parameter of a face is replaced by the angle that the
-normal turns along it: vertices are evenly spaced in the plane of these two angles. So rulings, and
-the interior of planes, need no vertices.
+For triangles close to the normals of the part, each parameter of a face is replaced by the angle
+through which the normal turns along it, and vertices are evenly spaced in the plane of these two
+angles. So rulings, and the interior of planes, need no vertices.
 """
 
 from __future__ import annotations
@@ -31,12 +31,13 @@ __all__ = ["ByNormals", "Spacing", "TurnedPiece", "least_enough"]
 
 # Normals are compared at this number of values of each parameter, and at all knots.
 PLACES = 33
-# A face whose normals turn by less than this along a parameter, in radians, is ruled; a straight
-# edge of the length of the part counts as this angle.
+# A face counts as ruled if its normals turn by less than this along a parameter, in radians. A
+# straight edge as long as the part takes as many vertices as a turn of normals by this angle.
 RULED = 1e-6
-# The least weight of one parameter relative to the other.
+# Along each parameter, the normal counts as turning at least as fast as if it turned evenly, by
+# LEAST times the larger total angle.
 LEAST = 1e-3
-# The weight of the turning of an edge relative to that of normals.
+# The weight of the turning angle of an edge, relative to the angles of normals.
 CURVED = 0.5
 # The largest step, relative to the mean step.
 LONGEST = 3.0
@@ -48,7 +49,7 @@ APART = 100.0
 class Spacing:
     """Spacing of `count` vertices by the target density of a space.
 
-    The plane of a face is that of its parameters, scaled by lengths.
+    Faces are triangulated in the plane of their parameters, scaled by mean lengths of x_u and x_v.
     """
 
     space: PartSpace
@@ -70,13 +71,17 @@ class Spacing:
         return step_of(self.space, self.count)
 
     def inside(self, step: float, around: Indices) -> float:
-        """Return the number of vertices kept for the interior; `around` (P,) are boundary steps."""
+        """Return the number of vertices to reserve for the interior of faces, spaced by `step`.
+
+        `around` (P,) are the numbers of steps on the boundaries of the pieces.
+        """
         return 0.0
 
     def costs(self, pieces: Indices, uv: Array) -> Array:
-        """Return the lengths (S, n − 1) between positions (S, n, 2) on sides of edges.
+        """Return the lengths (S, n − 1) between consecutive positions (S, n, 2) on sides of edges.
 
-        They are relative to the sizing function 1/√w, with the target density w.
+        They are relative to the sizing function 1/√w, with the target density w. `pieces` (S,) are
+        the indices of the pieces that the sides bound.
         """
         owner = np.repeat(pieces, uv.shape[1])
         rows = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows
@@ -86,27 +91,30 @@ class Spacing:
         return np.maximum(rates[:, 1:], rates[:, :-1]) * lengths
 
     def plane(self, piece: int, uv: Array, tangents: Array) -> Array:
-        """Return planar coordinates (k, 2) on a piece; `tangents` (k, 2, 3) are x_u and x_v."""
+        """Return planar coordinates (k, 2) of parameters on a piece.
+
+        `tangents` (k, 2, 3) are x_u and x_v.
+        """
         lengths = np.sqrt((tangents**2).sum(axis=2).mean(axis=0))
         return uv * np.where(lengths > 0.0, lengths, 1.0)
 
 
 class ByNormals(Spacing):
-    """Spacing by the angle through which normals turn, along each parameter of a face."""
+    """Spacing by the angles through which the normal of a face turns along u and along v."""
 
     by_shape: ClassVar[bool] = False
     exponent: ClassVar[float] = 1.0
 
     @cached_property
     def pieces(self) -> list[TurnedPiece]:
-        """The planes of all pieces, disjoint, in units of steps."""
+        """The planes of all pieces, in units of their steps; they do not overlap."""
         planes = [TurnedPiece.of(x, k) for k, x in enumerate(self.space.pieces)]
         steps = _best_steps(planes, self.count).tolist()
         return [x.in_steps(y) for x, y in zip(planes, steps, strict=True)]
 
     @cached_property
     def covered(self) -> tuple[Space, Indices]:
-        """The planes of faces that are not ruled."""
+        """The space of the planes of faces that are not ruled, and the indices of these pieces."""
         numbers = [k for k, x in enumerate(self.pieces) if not x.is_ruled]
         pieces = tuple(self.pieces[k] for k in numbers)
         space = Space(self.space.label, pieces, TargetDensity(floor=1.0), self.space.threads)
@@ -114,11 +122,11 @@ class ByNormals(Spacing):
 
     @property
     def smallest_step(self) -> float:
-        """0: all vertices may be on edges."""
+        """The smallest step along edges is 0: all vertices may be on edges."""
         return 0.0
 
     def inside(self, step: float, around: Indices) -> float:
-        """Return the number of interior vertices, counting boundary vertices by one half."""
+        """Return the number of interior vertices: area over step², less half the boundary steps."""
         space, numbers = self.covered
         if not len(numbers):
             return 0.0
@@ -126,7 +134,11 @@ class ByNormals(Spacing):
         return max(samples - around[numbers].sum() / 2.0, 0.0)
 
     def costs(self, pieces: Indices, uv: Array) -> Array:
-        """Return turns (S, n − 1) of normals and edges between positions (S, n, 2), in steps."""
+        """Return distances (S, n − 1) between consecutive positions (S, n, 2), in steps.
+
+        A distance is the angle by which the normal turns or, if this is larger, `CURVED` times the
+        angle by which the edge turns.
+        """
         owner = np.repeat(pieces, uv.shape[1])
         points = self.space.at(owner, uv.reshape(-1, 2), keep=True).rows[:, :3]
         lengths, turns = _lengths_and_turns(points.reshape(*uv.shape[:2], 3))
@@ -137,18 +149,19 @@ class ByNormals(Spacing):
         return np.maximum(costs, np.maximum(CURVED * turns, straight) / steps[:, None])
 
     def plane(self, piece: int, uv: Array, tangents: Array) -> Array:
-        """Return planar coordinates (k, 2) on a piece; plane faces keep their own."""
+        """Return planar coordinates (k, 2) of parameters; for plane faces, those of `Spacing`."""
         turned = self.pieces[piece]
         return turned.turned(uv) if turned.turns else super().plane(piece, uv, tangents)
 
 
 def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
-    """Return the steps (P,) in planes that minimize the mean angle for `count` vertices.
+    """Return the steps in the planes of faces that minimize the mean angle for `count` vertices.
 
-    Angles are proportional to steps s. A face with perimeter P and area F in the plane has P/s
-    vertices on its boundary and F/s² inside. At the minimum, the area of a face times the
-    derivative of its mean angle by s is the derivative of its number of vertices, up to a factor
-    that all faces share. No step exceeds `LONGEST` times the mean.
+    The angle between triangles and normals is proportional to the step s. A face with perimeter p
+    and area F in its plane has p/s vertices on its boundary and F/s² inside. At the minimum, the
+    area of a face in space times the derivative of its mean angle by s is the derivative of its
+    number of vertices by s, up to a factor that all faces share. No step exceeds `LONGEST` times
+    the mean step.
     """
     areas = np.array([x.piece.size**2 for x in planes])
     around = np.array([x.perimeter if x.turns else 0.0 for x in planes])
@@ -185,7 +198,10 @@ def least_enough(is_enough: Callable[[float], bool], low: float, high: float) ->
 
 
 def _lengths_and_turns(points: Array) -> tuple[Array, Array]:
-    """Return lengths (S, n − 1) between points (S, n, 3), and turning angles of the polygons."""
+    """Return lengths (S, n − 1) and turning angles (S, n − 1) of segments of polylines (S, n, 3).
+
+    The turning angle at a vertex is divided equally between the two segments there.
+    """
     steps = np.diff(points, axis=1)
     lengths = np.linalg.norm(steps, axis=2)
     along = steps / np.where(lengths > 0.0, lengths, 1.0)[..., None]
@@ -195,11 +211,12 @@ def _lengths_and_turns(points: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TurnedPiece(Piece):
-    """A face as a plane whose coordinates are the angles of the normal along u and along v.
+    """A face mapped to a plane: the coordinates are angles of the normal along u and along v.
 
-    `knots` are values of u and v; `lengths` are the coordinates there, cumulative sums of the
-    largest angles on all parameter lines; `turns` is the larger of both totals. A sphere stays a
-    sphere, of radius 1.
+    `knots` are values of u and of v, and `lengths` the coordinates of these values. The difference
+    of two successive coordinates is the largest angle, over all parameter lines, between the
+    normals at the two values. `turns` is the larger one of the total angles along u and along v. A
+    sphere is not mapped to a plane, but to a sphere of radius 1.
     """
 
     piece: FacePiece
@@ -234,7 +251,7 @@ class TurnedPiece(Piece):
         )  # fmt: skip
 
     def in_steps(self, step: float) -> TurnedPiece:
-        """Return the same plane, in units of a step."""
+        """Return this plane in units of a step."""
         return replace(
             self, lengths=(self.lengths[0] / step, self.lengths[1] / step),
             area=self.area / step**2, step=step,
@@ -247,7 +264,7 @@ class TurnedPiece(Piece):
         return float(sum(np.linalg.norm(np.diff(x, axis=0), axis=1).sum() for x in around))
 
     def turned(self, uv: Array) -> Array:
-        """Return planar coordinates (k, 2)."""
+        """Return planar coordinates (k, 2) of parameters (k, 2)."""
         return np.stack(
             [np.interp(uv[:, k], self.knots[k], self.lengths[k]) for k in (0, 1)], axis=1
         )
@@ -290,7 +307,7 @@ class TurnedPiece(Piece):
         return self.piece.boxes
 
     def geometries(self, threads: int | None) -> list[OnSpline]:
-        """Return the geometries of the face."""
+        """Return the splines on which points of the face are searched."""
         return self.piece.geometries(threads)
 
     def fields_at(
@@ -301,14 +318,15 @@ class TurnedPiece(Piece):
 
 
 def _places(piece: FacePiece, axis: int) -> Array:
-    """Return values of a parameter: equally spaced ones, and the ends of smooth parts."""
+    """Return values of u (axis 0) or v (axis 1): equally spaced, and at bounds of smooth parts."""
     return np.unique(np.concatenate([np.linspace(*piece.domain[axis], PLACES), piece.lines(axis)]))
 
 
 def _angles(normals: Array, inside: Flags, axis: int) -> Array:
-    """Return the largest angles (k − 1,) between normals (k, l, 3) of neighbours along an axis.
+    """Return, for each step along an axis of a grid, the largest angle between normals, (k − 1,).
 
-    Neighbours count if one of them is inside.
+    `normals` (k, l, 3) are those at the points of the grid. A pair of neighbours along the axis
+    counts if one of them is inside the trim.
     """
     n = np.moveaxis(normals, axis, 0)
     here = np.moveaxis(inside if inside.any() else np.ones_like(inside), axis, 0)
@@ -319,7 +337,7 @@ def _angles(normals: Array, inside: Flags, axis: int) -> Array:
 
 
 def _area(piece: FacePiece, knots: Sequence[Array], lengths: Sequence[Array]) -> float:
-    """Return the area in the plane, as a sum over midpoints between knots inside the trim."""
+    """Return the area of a face in its plane: the sum over cells with midpoints inside the trim."""
     middles = np.meshgrid(*((x[1:] + x[:-1]) / 2.0 for x in knots), indexing="ij")
     inside = piece.contains(np.stack(middles, axis=-1).reshape(-1, 2))
     areas = np.outer(np.diff(lengths[0]), np.diff(lengths[1])).ravel()

@@ -106,7 +106,7 @@ def _at_knot(knots: Array, end: float, slack: float) -> float:
 
 
 def _continued(nurbs: Nurbs, axis: int, interval: Interval) -> Nurbs:
-    """Return copies of a NURBS, shifted by its period, that cover an interval.
+    """Return one NURBS over an interval, joined from copies of a NURBS shifted by its period.
 
     A NURBS whose ends along the axis do not meet is returned unchanged.
     """

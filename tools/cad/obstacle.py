@@ -1,4 +1,4 @@
-"""The mesh of a part that rays are tested against."""
+"""The mesh of a part as an obstacle: rays are tested for intersections with it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ VERTICES = 20_000
 def obstacle_of(part: Part) -> PartMesh:
     """Return the mesh of a part, cached with the part; raises InputError and warns as meshes do.
 
-    Faces that were selected in this session have the mesh of the part that they are from.
+    If the part was selected from another part in this session, the mesh is that of the whole part.
     """
     whole = whole_part(part)
     return kept(whole, obstacle_of, lambda: _made(whole))

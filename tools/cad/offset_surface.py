@@ -64,7 +64,7 @@ class Turned(Differentiable):
         return jets
 
     def tape(self) -> Tape | None:
-        """Return the operations of the curve, and those of the rotation."""
+        """Return the tape: the operations of the curve, then those of the rotation."""
         return turned_tape(self.curve)
 
     def restricted(self, domain: Domain) -> Turned:
@@ -104,13 +104,16 @@ class OffsetSurface(Differentiable):
         return replace(self, basis=self.basis.restricted(domain), domain=domain)
 
     def _at_distance(self, jets: Array, thirds: Array) -> Array:
-        """Return positions and derivatives (k, 6, 3), from jets and third derivatives (k, 4, 3)."""
+        """Return 2-jets (k, 6, 3) of the offset, from those of the basis and its third derivatives.
+
+        `thirds` (k, 4, 3) are x_uuu, x_uuv, x_uvv, x_vvv of the basis.
+        """
         out = np.empty_like(jets)
         kernels.offset(self.distance, jets, thirds, out)
         return out
 
     def _points(self, u: Array, v: Array) -> Array:
-        """Return points (k, 3)."""
+        """Return points (k, 3) of the offset; NaN where the basis is singular."""
         return self._at_distance(self.basis.jets(u, v), np.zeros((len(u), 4, 3)))[:, 0]
 
     def _differences(self, axis: int, u: Array, v: Array) -> Array:
@@ -128,7 +131,10 @@ class OffsetSurface(Differentiable):
         return np.stack(by, axis=1) / step[:, None, None]
 
     def _span(self, axis: int, values: Array) -> tuple[Array, Array]:
-        """Return the ends of the knot spans of parameters (k,), inside the domain."""
+        """Return the lower and the upper end (k,) of the knot span that contains each parameter.
+
+        Spans are cut at the ends of the domain.
+        """
         (first, last), knots = self.domain[axis], _knots_of(self.basis, axis)
         inner = np.unique(knots[(knots > first) & (knots < last)])
         lines = np.concatenate([[first], inner, [last]])
@@ -136,7 +142,7 @@ class OffsetSurface(Differentiable):
         return lines[place], lines[place + 1]
 
     def _beside(self, u: Array, v: Array) -> Array:
-        """Return points (k, 3) where the basis has no normal."""
+        """Return points (k, 3) of the offset where the basis has no normal, by a normal nearby."""
         (u0, u1), (v0, v1) = self.domain
         u_in, v_in = u + BESIDE * ((u0 + u1) / 2 - u), v + BESIDE * ((v0 + v1) / 2 - v)
         moved = self._points(u_in, v_in) - self.basis.jets(u_in, v_in)[:, 0]
@@ -144,7 +150,7 @@ class OffsetSurface(Differentiable):
 
 
 def _knots_of(function: Differentiable, axis: int) -> Array:
-    """Return the knots of the function of a face in u (axis 0) or v (axis 1), not reversed."""
+    """Return the knots of a function in u (axis 0) or v (axis 1), before a face reverses u."""
     if isinstance(function, Moved):
         function = cast(Differentiable, function.surface.function)
     if isinstance(function, Nurbs):

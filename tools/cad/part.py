@@ -134,7 +134,7 @@ class Part(Methods, Whole):
         about: dict[str, Any],
         surfaces: Mapping[int, Surface] | None = None,
     ) -> Part:
-        """Return a part of arrays, and of surfaces that are not in them."""
+        """Return a part from its arrays, and from the surfaces that arrays cannot hold."""
         part = cls.__new__(cls)
         vars(part).update(arrays=arrays, about=about, surfaces=dict(surfaces or {}))
         return part
@@ -149,12 +149,12 @@ class Part(Methods, Whole):
 
     @property
     def name(self) -> str:
-        """The name of the part: that of its file, or the one given."""
+        """The name of the part: the name of its file, or the given name."""
         return str(self.about.get("name", "part"))
 
     @property
     def unit(self) -> str:
-        """The unit L of all lengths, as "mm" or "in"; empty if it is not known."""
+        """The unit L of all lengths, such as "mm" or "in"; "" if it is not known."""
         return str(self.about.get("unit", ""))
 
     @property
@@ -211,8 +211,9 @@ class Part(Methods, Whole):
         parts that `read_cad` reads, the relative error of the volume of a cylinder with a slanted
         end is 3e-5. Where solids overlap, both count.
 
-        Raises SurfaceError unless all faces enclose solids (`oriented`) and none has failed: open
-        shells have no volume.
+        Raises SurfaceError if no faces enclose a solid, if a face of a closed solid has failed, and
+        for parts made by `select`. Faces of open shells do not count; if there are any, the volume
+        comes with a warning.
 
         Examples
         --------
@@ -362,7 +363,10 @@ class Face:
 
     @property
     def area(self) -> float:
-        """The area inside the trim, in L², to about 1e-6; in files, by Open CASCADE."""
+        """The area inside the trim, in L², to about 1e-6.
+
+        For a part from a file, Open CASCADE computes it.
+        """
         return float(self._row("area"))
 
     @property
@@ -462,10 +466,10 @@ class Face:
 
     @cached_property
     def surface(self) -> Surface:
-        """The surface with its trim. Its parameters are those of the file.
+        """The surface with its trim.
 
-        Its normals point outward: if the face is reversed, u is, too. Raises SurfaceError for a
-        face that failed.
+        Its parameters are those of the file, except that u is reversed if the face is `reversed`,
+        so that normals point outward. Raises SurfaceError for a face that failed.
         """
         if self.reason:
             raise SurfaceError(f"{self.label} cannot be used: {self.reason}.")
@@ -521,7 +525,7 @@ class Solid:
 
 
 def part_of(record: PartRecord) -> Part:
-    """Return the part of records in memory, without checks."""
+    """Return the part that a record in memory describes, without checks."""
     from .saving import about_of
 
     arrays = packed(record)

@@ -18,7 +18,7 @@ from .records import KINDS, FaceRecord, Geometry, Net, PartRecord
 __all__ = ["FORMAT", "VERSION", "geometry_of", "packed"]
 
 FORMAT = "gaussmap part"
-# To be raised when the arrays change such that older versions of gaussmap would misread them.
+# To be increased when the arrays change such that older versions of gaussmap would misread them.
 VERSION = 2
 
 Arrays = dict[str, NDArray[Any]]
@@ -71,7 +71,7 @@ def _net_of(arrays: Mapping[str, NDArray[Any]], k: int) -> Net:
 
 
 def _about(part: PartRecord) -> dict[str, Any]:
-    """Return the entries that are no arrays."""
+    """Return the entries of a part that are not arrays."""
     names = {k: x.name for k, x in enumerate(part.faces) if x.name}
     reasons = {k: x.reason for k, x in enumerate(part.faces) if x.reason}
     return {
@@ -104,7 +104,7 @@ def _table(faces: Sequence[FaceRecord]) -> Arrays:
 
 
 def _basis(geometries: list[Geometry]) -> list[int]:
-    """Append the surfaces of which others are offsets; return the index of each basis, or −1."""
+    """Append the bases of offsets to `geometries`; return the index of each basis, −1 for none."""
     places: list[int] = []
     for geometry in geometries:  # the list grows, and the loop also visits what is appended
         if geometry.basis is None:
@@ -116,7 +116,7 @@ def _basis(geometries: list[Geometry]) -> list[int]:
 
 
 def _nets(nets: Sequence[Net]) -> Arrays:
-    """Return all NURBS; a curve has degree 0 and one column of control points along v."""
+    """Return the arrays of all NURBS; along v, a curve has degree 0 and one control point."""
     points = []
     for net in nets:
         weights = np.ones(net.points.shape[:-1]) if net.weights is None else net.weights
@@ -176,7 +176,7 @@ def _wires(part: PartRecord) -> Arrays:
 
 
 def _rows(name: str, parts: Iterable[NDArray[Any]], shape: tuple[int, ...]) -> Arrays:
-    """Return arrays concatenated, and the start of each, with the total length last."""
+    """Return concatenated arrays, and the index of the first row of each, with the length last."""
     rows = [np.empty((0, *shape)), *(np.asarray(x, np.float64).reshape(-1, *shape) for x in parts)]
     starts = np.cumsum([len(x) for x in rows], dtype=np.int64)
     return {f"{name}s": np.concatenate(rows), f"{name}_starts": starts}

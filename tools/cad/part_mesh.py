@@ -25,9 +25,10 @@ class PartMesh(CreasedMesh):
     Attributes
     ----------
     lines : tuple of int64 arrays
-        The vertices along each edge of the part, in its direction; empty for an edge not meshed.
+        For each edge of the part, the indices of the vertices along it, in its direction; empty if
+        the edge is not meshed.
     failed : dict of int to str
-        The missing faces, with reasons.
+        The reasons why faces are missing, by face index.
 
     Examples
     --------

@@ -53,11 +53,11 @@ INSIDE = 1e-6
 # around faces are replaced at most REFILLS times.
 ROUNDS, REFILLS = 15, 8
 # If a mesh has faults, larger counts are tried: each MORE times the one before, up to MANY times
-# the least count of the edges. The error names the first count whose mesh has none.
+# the least count of the edges. The error names the first count whose mesh has no faults.
 MORE, MANY = 1.2, 16
 # The largest number of solids that an error names.
 MOST_NAMED = 3
-# The densities of samples that meshes follow.
+# The target densities of samples that the vertices of a mesh can follow.
 DENSITIES = ("balanced", "uniform")
 SPACINGS = {"shape": Spacing, "normals": ByNormals}
 
@@ -90,7 +90,8 @@ def mesh_of_part(
 ) -> PartMesh:
     """Return a mesh of a part with `count` vertices.
 
-    With `refuse`, raise InputError if the mesh has faults and a larger count gives one without.
+    With `refuse`, raise InputError if the mesh has faults, and a larger count gives a mesh without
+    faults.
     """
     check_extra(*EXTRA)
     check_memory("mesh", count)
@@ -201,16 +202,17 @@ def _check_larger(
 
 
 def request_of(count: int, density: str) -> Request:
-    """Return the request for a count of samples of a density."""
+    """Return the request for a number of samples with a target density."""
     return checked_request(None, count, None, None, density, None)
 
 
 @dataclass(frozen=True, eq=False)
 class Corners:
-    """Triangles (T, 3) of all faces between corners (C,), each of which is on one face.
+    """The triangles (T, 3) of all faces, as indices of corners; each corner (C,) is on one face.
 
-    `pieces` (C,) are the faces of the corners, `numbers` (C,) their vertices, and `known` their
-    parameters and fields. `fixed` (m, 2) are segments between corners that must stay.
+    `pieces` (C,) are the indices of the pieces of the corners, `numbers` (C,) the indices of their
+    vertices, and `known` their parameters and fields. `fixed` (m, 2) are pairs of corners: segments
+    that edge flips must not remove.
     """
 
     pieces: Indices
@@ -222,11 +224,12 @@ class Corners:
     def improved(
         self, space: PartSpace, points: Array, first: int, by_shape: bool
     ) -> tuple[Corners, Array]:
-        """Return the corners with triangles improved by edge flips, and their points (C, 3).
+        """Improve the triangles by edge flips; return the corners, and their points (C, 3).
 
-        The triangles become closer to the normals. With `by_shape`, they first become better
-        shaped, also by moves of vertices from index `first` on, and then closer to the normals
-        where no angle becomes small. Triangles at corners without a normal, as at apexes, stay.
+        Flips bring the triangles closer to the normals. With `by_shape`, the shape of triangles is
+        improved first, by flips and by moves of the vertices with indices from `first` on; then
+        flips bring triangles closer to the normals where no angle becomes small. Triangles at
+        corners without a normal, as at apexes, stay.
         """
         count, normals = len(self.pieces), self.known.normals
         triangles = self.triangles.copy()
@@ -254,9 +257,9 @@ class Corners:
     def normals(self, space: PartSpace, triangles: Indices) -> Array:
         """Return unit normals (T, 3, 3) at the corners of triangles.
 
-        If the face has no normal at a corner, because a parameter line is a point, the normal is
-        taken inside the triangle: half-way along that parameter, and close to the corner along the
-        other.
+        If the face has no normal at a corner, because a parameter line is collapsed to a point, the
+        normal is taken inside the triangle: half-way along the parameter of that line, and close to
+        the corner along the other parameter.
         """
         uv, found = self.known.uv, self.known.normals[triangles]
         rows, corner = np.nonzero(~found.any(axis=2))
@@ -288,7 +291,7 @@ class Meshing:
         failed: dict[int, str],
         spaced: type[Spacing],
     ) -> Meshing:
-        """Return the start of a mesh: the pieces of a space that have not failed."""
+        """Return the start of a mesh of those pieces of a space that have not failed."""
         pieces = tuple(x for x in whole.pieces if x.face.index not in failed)
         if not pieces:
             reason = next(iter(failed.values()))
@@ -308,7 +311,10 @@ class Meshing:
         return cls(part, made, edges, count, failed)
 
     def refine(self) -> dict[int, str]:
-        """Divide edges until no boundary crosses itself; return the faces where one still does."""
+        """Divide edges until the boundary of no face crosses itself.
+
+        Return the faces whose boundaries still cross themselves: a text for each, by face index.
+        """
         crossing = self._crossing()
         while crossing:
             sampled = self._sampled()
@@ -322,7 +328,7 @@ class Meshing:
         return {k: text for k, _, text in crossing}
 
     def _crossing(self) -> list[tuple[int, FaceBorder, str]]:
-        """Return the faces whose boundaries cross themselves, the boundaries, and the errors."""
+        """Return index, boundary and error text of each face whose boundary crosses itself."""
         found = []
         for k, border in enumerate(self._borders(self._sampled())):
             piece, even = self.space.pieces[k], np.ones((len(border.uv), 2, 3))
@@ -333,9 +339,10 @@ class Meshing:
         return found
 
     def mesh(self) -> tuple[PartMesh, dict[int, str]]:
-        """Return the mesh, and the faces at edges that have too few or too many triangles.
+        """Return the mesh, and the reasons why faces have failed, by face index.
 
-        Such edges, and edges near triangles that point inward, are divided as long as that helps.
+        A face fails at edges with too few or too many triangles. Such edges, and edges near
+        triangles that point inward, are divided as long as that helps.
         Raises Crossing if the boundary of a face crosses itself.
         """
         best, least, wrong_of_best = None, (0, 0), np.empty((0, 2), dtype=np.int64)
@@ -358,7 +365,10 @@ class Meshing:
         return _without_unused(best), self._faces_at(best, wrong_of_best)
 
     def _faces_at(self, mesh: PartMesh, wrong: Indices) -> dict[int, str]:
-        """Return the faces of triangles with edges (k, 2), and why they fail."""
+        """Return the faces that have a triangle with one of the `wrong` edges (k, 2).
+
+        The result is a dict of reasons by face index.
+        """
         count = len(mesh.vertices)
         at = np.isin(edge_numbers(mesh.triangles, count), np.sort(wrong, axis=1) @ [count, 1])
         faces = np.unique(mesh.face_index[at.any(axis=1)]).tolist()
@@ -390,10 +400,10 @@ class Meshing:
         return [FaceBorder.of(x, sampled) for x in self.space.pieces]
 
     def _made(self, sampled: SampledEdges) -> PartMesh:
-        """Return a mesh whose edges may still be wrong; edge vertices are numbered as in `sampled`.
+        """Return a mesh whose edges may still have a wrong number of triangles.
 
-        Interior vertices are replaced if they are outside of the polygons, or in a triangle that
-        points inward.
+        The vertices on edges come first, as in `sampled`. Interior vertices are replaced if they
+        are outside the boundary polygons, or in a triangle that points inward.
         """
         borders = self._borders(sampled)
         cover = self._cover(sampled, borders)
@@ -416,7 +426,7 @@ class Meshing:
         return mesh
 
     def _cover(self, sampled: SampledEdges, borders: list[FaceBorder]) -> Cover | None:
-        """Return the cover of faces: the vertices on edges as given samples, and interior samples.
+        """Return the cover of faces by vertices: those on edges are given, interior ones are added.
 
         Returns None if all faces are ruled, and have no interior samples.
         """
@@ -436,7 +446,10 @@ class Meshing:
         return cover
 
     def _corners(self, borders: list[FaceBorder], added: Cells, names: Indices) -> Corners:
-        """Return the triangles between edge vertices and interior vertices, numbered by `names`."""
+        """Return the triangles between vertices on edges and interior vertices.
+
+        `names` are the vertex indices of the interior vertices `added`.
+        """
         order = np.argsort(added.pieces, kind="stable")
         cells, spacing = added[order], self.edges.spacing
         cells = replace(cells, pieces=spacing.covered[1][cells.pieces]) if len(cells) else cells
@@ -500,7 +513,7 @@ class Meshing:
 
 
 def wrong_edges(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indices:
-    """Return the edges (k, 2) of a mesh with a wrong number of triangles.
+    """Return the edges of a mesh that have a wrong number of triangles, as vertex pairs (k, 2).
 
     The right number is two or, along an edge of the part, the number of its adjacent faces.
     """
@@ -524,10 +537,10 @@ def wrong_edges(sampled: SampledEdges, mesh: PartMesh, edges: MeshEdges) -> Indi
 
 
 def inverted_triangles(mesh: PartMesh) -> Indices:
-    """Return the triangles (k,) that point away from the mean normal of their corners.
+    """Return the indices (k,) of triangles that point away from the mean normal of their corners.
 
     Triangles that point away from the normal of a single corner are allowed: a face of a file may
-    fold over at its end.
+    fold over at its boundary.
     """
     a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
@@ -535,7 +548,10 @@ def inverted_triangles(mesh: PartMesh) -> Indices:
 
 
 def _between(pairs: Indices, sampled: SampledEdges) -> dict[int, Flags]:
-    """Return masks of the segments of edges of a part between pairs (k, 2) of vertices."""
+    """Find the segments of edges of the part between the two vertices of each of the pairs (k, 2).
+
+    Return masks of the segments, by index of the edge.
+    """
     at: dict[int, dict[int, list[int]]] = {x: {} for x in np.unique(pairs).tolist()}
     for edge, line in sampled.numbers.items():
         for place in np.flatnonzero(np.isin(line, pairs)).tolist():

@@ -1,6 +1,7 @@
-"""The methods of `Part` defined in modules above it; `part_methods.pyi` declares them.
+"""The methods of `Part` that are defined in modules which import `Part`.
 
-Each is loaded on first access. Nothing here imports modules that build on parts.
+Each method is loaded on first access, so that this module imports none of them. They are declared
+in `part_methods.pyi`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The methods of `Part` that modules above it define; `part_methods.py` loads them."""
+"""The methods of `Part` defined in modules that import `Part`; `part_methods.py` loads them."""
 
 class Methods:
     from ..pictures.plot import plot_part as plot

@@ -1,4 +1,4 @@
-"""The space of a part in reach of a probe: off edges, unobstructed; the weights of samples."""
+"""The space of those points of a part that a probe can reach, and the weights of samples."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ from .results import PartSpace, space_of
 
 __all__ = ["borders_of", "reached", "weights_of"]
 
-# The number of cells per sample; cells give their areas to the samples.
+# The number of cells per sample. Each cell gives its area to the nearest sample.
 CELLS_A_SAMPLE = 16
-# The error of cubics is at most about this part of that of cubics with half as many points, with a
-# factor 2 for safety.
+# With twice as many points, the error of cubic interpolation is about 1/16 as large; a factor 2 is
+# for safety.
 OF_COARSER = 1.0 / 8.0
 
 
@@ -64,10 +64,10 @@ def _conditions(part: Part, reach: Reach) -> list[Condition]:
 
 
 def borders_of(part: Part) -> list[Segments]:
-    """Return all edges and boundaries of faces, but for smooth seams of a face.
+    """Return all edges and boundaries of faces, except smooth seams of a face.
 
-    Of the two sides of an edge, that with the smaller error is taken. Faces of files without wires
-    have their polygons.
+    If an edge has two sides, the curve of the side with the smaller error is taken. Faces without
+    wires contribute their boundary polygons.
     """
     space, best = space_of(part, None), dict[int, tuple[float, Segments]]()
     for edge, side in _sides(space):
@@ -79,7 +79,10 @@ def borders_of(part: Part) -> list[Segments]:
 
 
 def _sides(space: PartSpace) -> Iterator[tuple[int, Segments]]:
-    """Yield the sides of edges that are known, and no smooth seams; the edge, and its curve."""
+    """Yield the index of the edge and the curve of each side with known parameters.
+
+    Smooth seams and degenerate edges are left out.
+    """
     part = space.pieces[0].face.part
     arrays, number = part.arrays, {x.face.index: k for k, x in enumerate(space.pieces)}
     places = np.split(arrays["side_points"], arrays["side_point_starts"][1:-1])
@@ -99,7 +102,10 @@ def _sides(space: PartSpace) -> Iterator[tuple[int, Segments]]:
 
 
 def _cubics(piece: FacePiece, points: Array) -> Segments:
-    """Return the curve of a side of an edge: cubics between points (k, 4), u, v and derivatives."""
+    """Return the curve of a side of an edge, as cubics between points.
+
+    `points` (k, 4) are u, v and their derivatives by a parameter of the edge from 0 to 1.
+    """
     uv, slopes = points[:, :2], points[:, 2:] / (len(points) - 1)
     if piece.face.reversed:
         uv, slopes = own_parameters(piece.surface, uv, is_reversed=True), slopes * [-1.0, 1.0]
@@ -115,10 +121,11 @@ def _cubics(piece: FacePiece, points: Array) -> Segments:
 
 
 def weights_of(part: Part, samples: Samples) -> Array:
-    """Return the weights of samples (N,): the area on their own face that is nearest to each.
+    """Return the weights (N,) of samples: areas of the points to which a sample is the nearest one.
 
-    They add up to the area of each face, or of its part in the reach of the samples. Faces without
-    samples do not count. Samples on edges, or not regular, have weight 0.
+    Only points of the sample's own face count. On each face with samples, the weights add up to its
+    area, or to the area of its part in the reach of the samples. Samples on edges, and samples that
+    are not regular, have weight 0.
     """
     found, faces = np.zeros(len(samples)), samples.face_index
     if faces is None:

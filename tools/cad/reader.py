@@ -47,9 +47,9 @@ def read_cad(
     """Read a part from a STEP, IGES or BREP file.
 
     Open CASCADE reads it, in a separate process. `Part.save` stores the result, so that each file
-    is read only once. Faces of solids, shells and loose faces are read, those of assemblies with
-    their placements. Loose faces are sewn; normals of faces that enclose a solid point out of it. A
-    face that cannot be used is listed in `failed`, and the others are read.
+    is read only once. Faces of solids, faces of shells and loose faces are read, with their
+    placements in assemblies. Loose faces are sewn; normals of faces that enclose a solid point out
+    of it. A face that cannot be used is listed in `failed`, and the other faces are read.
 
     Parameters
     ----------
@@ -192,7 +192,10 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 
 
 def _environment() -> dict[str, str]:
-    """Return an environment with the same module path, and without threads that need memory."""
+    """Return an environment with the same module path; OpenBLAS and OpenMP get one thread each.
+
+    Further threads would need memory.
+    """
     paths = [os.path.abspath(x) for x in sys.path if isinstance(x, str)]
     return {
         **os.environ,

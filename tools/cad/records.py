@@ -21,12 +21,12 @@ Array = NDArray[np.float64]
 # The edges along a loop, in order: (edge, index among its sides, whether traversed backwards).
 Wire = list[tuple[int, int, bool]]
 
-# The reason why faces without an area fail: volumes and meshes need none of them.
+# The reason of failure for faces without area. Volumes and meshes do not need these faces.
 NO_AREA = "its area is zero"
 
-# The kinds of faces, with the lengths of their numbers (see `saving`). Append only, since files
-# store indices into this list. "unknown" is for failed faces of unknown kind, "surface" for faces
-# that have a `Surface` in memory, which no file has.
+# The kinds of faces, and how many numbers each has (see `saving`). Append only, since files store
+# indices into this list. "unknown" is for failed faces of unknown kind, "surface" for faces that
+# have a `Surface` in memory, which files cannot hold.
 KINDS: dict[str, int] = {
     "plane": 12,
     "cylinder": 13,
@@ -44,10 +44,10 @@ KINDS: dict[str, int] = {
 
 @dataclass(frozen=True, eq=False)
 class Net:
-    """A NURBS surface, or a NURBS curve, whose degrees, knots and shape have one entry.
+    """A NURBS surface or curve; for a curve, `degrees` and `knots` have one entry.
 
-    Control points are (m, n, 3) or (m, 3), not multiplied by their weights (m, n) or (m,), which
-    are None if all are 1.
+    The control points `points` (m, n, 3) or (m, 3) are not multiplied by the `weights` (m, n) or
+    (m,). `weights` is None if all weights are 1.
     """
 
     degrees: tuple[int, ...]
@@ -75,11 +75,11 @@ class Geometry:
 class FaceRecord:
     """A face; `reason` says why it failed, and is empty if it did not.
 
-    `domain` is ((u0, u1), (v0, v1)), the bounding box of the loops; `periods` are those of the
-    surface in u and v, 0 where not periodic. `loops` are closed polygons (k, 2), the first point
-    not repeated. `wires` are the edges along each loop, in order: (edge, index among its sides,
-    whether traversed from its end to its beginning). The face lies to their left where x_u × x_v
-    points up.
+    `domain` is ((u0, u1), (v0, v1)), the bounding box of the loops; `periods` are the periods of
+    the surface in u and v, 0 where not periodic. `loops` are closed polygons (k, 2), the first
+    point not repeated. `wires` are the edges along each loop, in order: (edge, index among its
+    sides, whether traversed from its end to its beginning). The face lies to the left of a wire,
+    seen from where x_u × x_v points.
     """
 
     geometry: Geometry
@@ -99,11 +99,12 @@ class FaceRecord:
 class EdgeRecord:
     """An edge: its parameters on the adjacent faces, and its end vertices.
 
-    `faces` are those of its m sides: usually two, one on a boundary, the same one twice at a seam.
-    `parameters` (k, 2 m) are u and v on each of them, at equal steps of a parameter of the edge
-    from 0 to 1, NaN where unknown. `slopes` (k, 2 m) are the derivatives of u and v by that
-    parameter, by default finite differences. `vertices` are the indices of the first and the last
-    vertex of the edge; −1 if unknown. An edge that is a point, as at a pole, is `degenerate`.
+    `faces` are the indices of the faces on its m sides: usually two, one at a boundary, and the
+    same face twice at a seam. `parameters` (k, 2 m) are u and v on each of these faces, at equal
+    steps of a parameter of the edge from 0 to 1, NaN where unknown. `slopes` (k, 2 m) are the
+    derivatives of u and v by that parameter, by default finite differences. `vertices` are the
+    indices of the first and the last vertex of the edge; −1 if unknown. An edge that is collapsed
+    to a point, as at a pole, is `degenerate`.
     """
 
     faces: tuple[int, ...]

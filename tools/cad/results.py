@@ -23,7 +23,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class PartSpace(Space):
-    """The faces of a part that can be sampled; `failed` has the reasons of the others, by index."""
+    """The faces of a part that can be sampled; `failed` has the reasons why others cannot be.
+
+    The reasons are given by face index.
+    """
 
     pieces: tuple[FacePiece, ...]
     failed: Mapping[int, str] = field(default_factory=dict)
@@ -34,9 +37,9 @@ def space_of(
 ) -> PartSpace:
     """Return the space of a part, or of its points in a `reach`; SurfaceError if it is empty.
 
-    For whole parts, the first cells are cached, except for powers of K, of which there are many; so
-    are the attributes of pieces, except rasters of their boundaries, which are large. `reach` knows
-    its conditions on points of the part; see `reached`.
+    For whole parts, the pieces are cached, but without rasters of their boundaries, which are
+    large. The first cells are cached for each target density, except for powers of K, which may be
+    many. `reach` knows its conditions on points of the part; see `reached`.
     """
     target = target or TargetDensity(floor=1.0)
     if reach is None:

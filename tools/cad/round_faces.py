@@ -1,10 +1,10 @@
 """All points with given normals on planes, cylinders, cones, spheres and tori, in closed form.
 
-In the frame of a face mapped by x → M x + p, the normal n is m = Mᵀ n, up to its length, for any M.
-There, x_u × x_v is q (cos u cos w, sin u cos w, sin w), with w = v on spheres and tori, and w =
-minus the half angle on cylinders and cones; q is given by the formulas `torus_normal` and
-`cone_normal`. So u and w are the longitude and the latitude of m where q > 0, and of −m where q <
-0, computed by `arctan2`.
+A face is mapped from its own frame to space by x → M x + p. A normal n in space is m = Mᵀ n in its
+own frame, up to the length, for any invertible M. In its own frame, x_u × x_v is q (cos u cos w,
+sin u cos w, sin w). Here w is v on spheres and tori, and minus the half angle on cylinders and
+cones; the formulas `torus_normal` and `cone_normal` give the factor q. So u and w are the longitude
+and the latitude of m where q > 0, and of −m where q < 0, computed by `arctan2`.
 """
 
 from __future__ import annotations
@@ -35,13 +35,14 @@ EPS = 2.0**-52
 # The error of angles of Mᵀ n is at most this times the condition number of M: products of three
 # terms, roots and inverse functions of the C library have a few roundings each.
 ANGLE_ERROR = 16.0 * EPS
-# Normals farther than this from those of a plane, a cylinder or a cone are rejected first.
+# Normals n are rejected first, before angles are computed, if they are far from those of a plane
+# with normal p, n·p ≤ 1 − NEAR, or from those of a cylinder with axis a, |n·a| > NEAR.
 NEAR = 1e-6
 CURVE, OPEN_BOX = KINDS.index("curve"), KINDS.index("open")
 
 
 class Angles(NamedTuple):
-    """Parameters u, v (k,) for the normals with indices (k,), and bounds (k,) of their errors."""
+    """Parameters u, v (k,) for the normals with indices `numbers` (k,), and bounds of errors."""
 
     numbers: Indices
     u: Array
@@ -68,7 +69,7 @@ class Angles(NamedTuple):
 
     @classmethod
     def on_lines(cls, numbers: Indices, domain: Domain) -> Angles:
-        """Return the whole domain for each of the normals with the given indices."""
+        """Return one row for each index of a normal: the middle of the domain, ± half its size."""
         (u, of_u), (v, of_v) = (whole(x, len(numbers)) for x in domain)
         return cls(numbers, u, v, of_u, of_v)
 
@@ -78,7 +79,7 @@ class Angles(NamedTuple):
         return FacePlaces(self.numbers, uv, radius, np.full(len(uv), sign), NOTHING.undecided)
 
     def boxes(self, kind: int, domain: Domain) -> FacePlaces:
-        """Return the rows as undecided boxes in a domain."""
+        """Return the rows as undecided boxes, cut at the bounds of a domain."""
         (u0, u1), (v0, v1) = domain
         sides = self.u - self.of_u, self.u + self.of_u, self.v - self.of_v, self.v + self.of_v
         ends = np.array([u0, u0, v0, v0]), np.array([u1, u1, v1, v1])
@@ -96,7 +97,9 @@ def whole(interval: Interval, count: int) -> tuple[Array, Array]:
 class RoundFace:
     """A plane, cylinder, cone, sphere or torus over a domain; with `is_reversed`, u is reversed.
 
-    `frame` is M, or −M if normals are opposite to M⁻ᵀ m; `error` is the error of angles of Mᵀ n.
+    `sizes` are the radius and the half angle of a cylinder or cone, or both radii of a torus.
+    `frame` is M, or −M if normals are opposite to M⁻ᵀ m, and `error` bounds the error of the angles
+    of Mᵀ n; see the module for M and m.
     """
 
     kind: str
@@ -128,7 +131,7 @@ class RoundFace:
         return found.reversed_in(sum(self.domain[0])) if self.is_reversed else found
 
     def _on_plane(self, normals: Array) -> FacePlaces:
-        """Return the whole domain, as an undecided box, for normals equal to that of a plane."""
+        """Return the whole domain as an undecided box, for each normal that the plane has."""
         normal = np.cross(self.frame[:, 0], self.frame[:, 1])
         normal *= math.copysign(1.0, normal @ self.frame[:, 2]) / math.sqrt(normal @ normal)
         (near,) = np.nonzero(normals @ normal > 1.0 - NEAR)
@@ -139,7 +142,10 @@ class RoundFace:
         return Angles.on_lines(near, self.domain).boxes(CURVE, self.domain)
 
     def _on_rulings(self, normals: Array) -> FacePlaces:
-        """Return the rulings of a cylinder or cone with normals (S, 3), also beyond an apex."""
+        """Return undecided boxes around the rulings with normals (S, 3) of a cylinder or cone.
+
+        The rulings on both sides of an apex are found.
+        """
         radius, angle = self.sizes
         quotient, found = python_function(cone_normal), [NOTHING]
         first, last = quotient(radius, math.sin(angle), np.array(self.domain[1])).tolist()
@@ -164,7 +170,7 @@ class RoundFace:
         return joined(found)
 
     def _on_circles(self, normals: Array) -> FacePlaces:
-        """Return the points of a torus, or of a sphere: a torus with the first radius 0."""
+        """Return the points of a torus, or of a sphere, which is a torus with first radius 0."""
         (major, minor), own, found = self.sizes, normals @ self.frame, list[FacePlaces]()
         if self.kind == "sphere":
             return self._at_angles(own, 1.0).places(1.0)
@@ -185,9 +191,10 @@ class RoundFace:
         return joined(found)
 
     def _at_angles(self, own: Array, sign: float) -> Angles:
-        """Return the parameters of normals (k, 3) in the frame of the face, where cos v has a sign.
+        """Return the parameters with normals `own` (k, 3) at which cos v has the given sign.
 
-        Near the axis u is unknown, and its error bound is a whole turn.
+        The normals are given in the frame of the face. For a normal near the axis, u is unknown,
+        and its error bound is a whole turn.
         """
         across = np.hypot(own[:, 0], own[:, 1])
         u, v = np.arctan2(sign * own[:, 1], sign * own[:, 0]), np.arctan2(own[:, 2], sign * across)

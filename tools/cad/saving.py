@@ -28,7 +28,7 @@ loop_points (k, 2), loop_point_starts (L + 1,) int64, face_loops (F + 1,) int64
     any turn; loops run along seams, so that u and v are not taken modulo the periods.
 vertices (V, 3), edge_vertices (E, 2) int64, edge_degenerate (E,) bool
     The points at the ends of edges; for each edge, the indices of its first and last vertex, −1 if
-    unknown; whether it is a point, as a pole is.
+    unknown; whether the edge is collapsed to a point, as at a pole.
 edge_side_starts (E + 1,) int64, side_faces (U,) int64, side_points (k, 4), side_point_starts
     (U + 1,) int64. The sides of edge i are edge_side_starts[i] to edge_side_starts[i + 1] − 1: one
     on a boundary, two between faces and at seams, which are twice on the same face. For each side,
@@ -37,7 +37,7 @@ edge_side_starts (E + 1,) int64, side_faces (U,) int64, side_points (k, 4), side
 wire_sides (k,) int64, wire_reversed (k,) bool, wire_side_starts (W + 1,) int64, face_wires (F + 1,)
     The wires of face i are face_wires[i] to face_wires[i + 1] − 1 (int64): the sides of edges along
     each of its loops, in order, and whether they are traversed from the end of the edge to its
-    beginning. The face lies to their left where x_u × x_v points up.
+    beginning. The face lies to the left of its wires, seen from where x_u × x_v points.
 
 A placement is the origin o and three orthonormal axes X, Y, Z, 12 numbers; Y may be −Z × X. With
 c = cos u X + sin u Y the surfaces are, as in Open CASCADE and STEP,
@@ -129,12 +129,12 @@ ABOUT: dict[str, tuple[type, type | tuple[type, ...]]] = {
     "warnings": (list, str),
     "source_indices": (list, int),
 }
-# The reasons of faces that are not usable, while the others of the part are.
+# The reasons why single faces are unusable, while the other faces of the part are used.
 NOT_FINITE = "its numbers are not finite"
 WRONG_AREA, FAR_AWAY = "its area is out of range", "its boundary is outside of its domain"
 # Squares of areas must neither overflow nor underflow.
 LEAST_AREA, MOST_AREA = 1e-150, 1e150
-# Loops may exceed the domain by this part of it.
+# Loops may exceed the domain by this fraction of its size.
 SLACK = 1e-6
 
 
@@ -181,7 +181,7 @@ def about_of(arrays: Arrays) -> dict[str, Any]:
 
 
 def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
-    """Return arrays and `about`; UnusableError unless they are those of a part.
+    """Return the arrays of a part, checked, and the contents of `about`; UnusableError if invalid.
 
     A face whose numbers are not finite has failed, and gets a reason; the other faces are kept.
     """
@@ -219,7 +219,7 @@ def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
 
 
 def _check_about(about: dict[str, Any], faces: int) -> None:
-    """Check the entries of `about` that are there."""
+    """Check the entries that `about` has; none of them is required."""
     for name in ABOUT.keys() & about.keys():
         (whole, kind), value = ABOUT[name], about[name]
         _require(isinstance(value, whole), "about")
@@ -287,7 +287,7 @@ def _check_nets(arrays: Arrays) -> None:
 
 
 def _check_edges(arrays: Arrays) -> None:
-    """Check that sides of edges are on faces, and wires consist of sides on their face."""
+    """Check that each side of an edge is on a face, and the sides of a wire on the wire's face."""
     faces, sides = len(arrays["area"]), arrays["side_faces"]
     _require(_within(sides, 0, faces), "side_faces")
     _require(_within(arrays["edge_vertices"], -1, len(arrays["vertices"])), "edge_vertices")
@@ -301,7 +301,7 @@ def _check_edges(arrays: Arrays) -> None:
 
 
 def _not_finite(arrays: Arrays) -> dict[str, str]:
-    """Return the faces that have numbers that are not finite, with the reason."""
+    """Return a reason for each face with numbers that are not finite, by its index."""
     faces, surfaces = len(arrays["area"]), len(arrays["kind"])
     bad = np.zeros(surfaces, dtype=np.bool_)
     bad |= _holds_bad(arrays["numbers"], arrays["number_starts"])
@@ -318,7 +318,7 @@ def _not_finite(arrays: Arrays) -> dict[str, str]:
 
 
 def _out_of_range(arrays: Arrays) -> dict[str, str]:
-    """Return the faces with impossible areas or loops, with the reason."""
+    """Return a reason for each face with an impossible area or loop, by its index."""
     area, domain = arrays["area"], arrays["domain"]
     wrong = ~((area >= LEAST_AREA) & (area <= MOST_AREA))
     counts = np.diff(arrays["loop_point_starts"])
@@ -343,7 +343,7 @@ def _bad_rows(rows: NDArray[Any]) -> NDArray[np.bool_]:
 
 
 def _any_between(flags: NDArray[np.bool_], starts: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Return for each run starts[i]:starts[i + 1] whether any of its flags is set."""
+    """Return a mask of the runs starts[i]:starts[i + 1] in which any flag is set."""
     counts = np.concatenate([[0], np.cumsum(flags)])
     return counts[starts[1:]] > counts[starts[:-1]]
 

@@ -70,7 +70,7 @@ def select(
     Raises
     ------
     InputError, UnknownNameError
-        If no face satisfies all conditions, or one of these is invalid.
+        If no face satisfies all conditions, or a condition is invalid.
 
     Examples
     --------
@@ -134,7 +134,7 @@ def _colour(color: str | ArrayLike) -> Array:
 
 
 def _at(index: ArrayLike, count: int) -> Flags:
-    """Return a mask of `count` faces at some indices; InputError for invalid indices."""
+    """Return a mask (count,) of the faces with the given indices; InputError if one is invalid."""
     places = np.atleast_1d(real_values(index, "index"))
     chosen = np.zeros(count, dtype=np.bool_)
     if places.dtype.kind not in "iu" or places.ndim != 1:
@@ -147,7 +147,10 @@ def _at(index: ArrayLike, count: int) -> Flags:
 
 
 def _facing(part: Part, normal: Axis, asked: Flags) -> Flags:
-    """Return a mask of the requested faces whose normals are all within an angle of an axis."""
+    """Return a mask of the faces whose normals are all within an angle of an axis.
+
+    Only the faces in the mask `asked` are tested.
+    """
     pair = listed(normal)
     if pair is None or len(pair) != 2:
         raise InputError(f"normal must be (direction, angle in degrees), not {shown(normal)}.")
@@ -160,7 +163,7 @@ def _facing(part: Part, normal: Axis, asked: Flags) -> Flags:
 
 
 def _normals(piece: FacePiece) -> Array:
-    """Return unit normals (k, 3) of a face: in its boxes and on its boundary."""
+    """Return unit normals (k, 3) of a face: in its boxes, at their corners, and on its loops."""
     u0, v0, u1, v1 = piece.boxes.T
     middle = np.stack([u0 + u1, v0 + v1], axis=1) / 2.0
     corners = [np.stack(x, axis=1) for x in ((u0, v0), (u1, v0), (u0, v1), (u1, v1))]
@@ -178,7 +181,7 @@ def _normals(piece: FacePiece) -> Array:
 
 
 def _part(part: Part, chosen: list[int]) -> Part:
-    """Return the part of the chosen faces, in this order."""
+    """Return a part that consists of the faces with the indices `chosen`, in this order."""
     faces = [part.faces[k] for k in chosen]
     solids = sorted({x.solid_index for x in faces} - {-1})
     new = {old: k for k, old in enumerate(solids)}
@@ -202,7 +205,7 @@ def _part(part: Part, chosen: list[int]) -> Part:
 
 
 def whole_part(part: Part) -> Part:
-    """Return the part that faces were selected from; the part itself if that is not known."""
+    """Return the part from which `part` was selected in this session, otherwise `part` itself."""
     return kept(part, whole_part, lambda: part)
 
 
@@ -216,7 +219,10 @@ def _record(face: Face, solid: int, places: dict[int, tuple[int, int]]) -> FaceR
 
 
 def _edges(part: Part, chosen: list[int]) -> tuple[list[EdgeRecord], dict[int, tuple[int, int]]]:
-    """Return the edges of the chosen faces, renumbered, and the new index of each side."""
+    """Return the edges of the chosen faces, with the new indices of faces.
+
+    Also return, by old index of a side, its new edge and its index among the sides of that edge.
+    """
     new = np.full(len(part), -1)
     new[chosen] = np.arange(len(chosen))
     arrays, found, places = part.arrays, list[EdgeRecord](), dict[int, tuple[int, int]]()

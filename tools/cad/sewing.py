@@ -1,7 +1,8 @@
-"""Boundaries of surfaces that coincide, wholly or partly, as shared edges.
+"""Sewing: boundaries of surfaces become shared edges where they coincide, wholly or partly.
 
-Boundaries are split at their corners, and where corners of other boundaries lie on them. Parts
-between the same two vertices are one edge if their distance is nowhere larger than a tolerance.
+Boundaries are split at their corners, and where corners of other boundaries lie on them. Two pieces
+of boundaries between the same two vertices become one edge if their distance is nowhere larger than
+a tolerance.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ __all__ = ["Border", "Sewn", "sewn"]
 # A boundary has a corner where it turns by more than this, in degrees.
 CORNER = 30.0
 # The points of a side are tabulated at the ends of STEPS steps. Newton's method for the nearest
-# point of a side starts at the nearest tabulated ones, and takes at most ROUNDS iterations.
+# point of a side starts at the nearest tabulated points, and takes at most ROUNDS iterations.
 STEPS, ROUNDS = 64, 8
 # Edges nearly coincide if their distance is below this, relative to their length.
 NEARLY = 0.01
 # The parameters of an edge are tabulated at STEPS_OF_EDGE steps. The number is doubled, at most to
-# MOST_STEPS, until cubics in between have at most the error EXACT, relative to the length.
+# MOST_STEPS, until cubic interpolation has at most the error EXACT, relative to the length.
 STEPS_OF_EDGE, MOST_STEPS, EXACT = 32, 512, 1e-6
 
 
@@ -39,8 +40,8 @@ STEPS_OF_EDGE, MOST_STEPS, EXACT = 32, 512, 1e-6
 class Border:
     """A closed polygon (k, 2) in the domain of the surface of a face, with the face on its left.
 
-    The first point is not repeated. The corners are all points, for a rectangle, or the points
-    where the polygon turns on the surface.
+    The first point is not repeated. If `is_rectangle`, all points are corners; otherwise, corners
+    are the points where the polygon turns by more than `CORNER` on the surface.
     """
 
     face: int
@@ -75,7 +76,7 @@ class Border:
 
 @dataclass(frozen=True, eq=False)
 class Side:
-    """A part of a boundary without corners: a polyline (k, 2) of parameters, at t from 0 to 1."""
+    """A part of a boundary between corners: a polyline `uv` (k, 2) with a parameter t in [0, 1]."""
 
     face: int
     surface: Surface
@@ -83,7 +84,7 @@ class Side:
 
     @cached_property
     def t(self) -> Array:
-        """The values (k,) of t at the points: shares of the length in the scaled domain."""
+        """The values (k,) of t at the points: arc lengths in the scaled domain, over the total."""
         low, high = np.array(self.surface.domain).T
         lengths = np.hypot(*(np.diff(self.uv, axis=0) / (high - low)).T)
         found = np.concatenate([[0.0], np.cumsum(lengths) / lengths.sum()])
@@ -119,7 +120,8 @@ class Side:
         starts = np.concatenate([even[inside], [low, high]])
         places = np.concatenate([self.known[inside], self.points(np.array([low, high]))[0]])
         squares = ((points[:, None] - places) ** 2).sum(axis=2)
-        # Two starts: if both ends are the same point, Newton's method goes only one way from it.
+        # Newton's method has two starts: if both ends of the side are the same point, it would
+        # search in one direction only from a single start there.
         t = starts[np.argsort(squares, axis=1)[:, :2]].T.ravel()
         points = np.concatenate([points, points])
         best, least = t, np.full(len(points), np.inf)
@@ -141,7 +143,10 @@ class Side:
 
 @dataclass(frozen=True, eq=False)
 class Span:
-    """A side from t = `low` to `high`, between two vertices; it may be a point."""
+    """The part of a side from t = `low` to t = `high`, between two vertices, given by index.
+
+    If `is_point`, the span is collapsed to a point.
+    """
 
     side: Side
     low: float
@@ -159,7 +164,7 @@ class Span:
         return self.side.points(self.t(steps)[1:-1])[0]
 
     def same(self, other: Span, tolerance: float) -> bool | None:
-        """Return whether `other` runs backwards on the same line; None if it is another line."""
+        """Return whether `other` runs in the opposite direction; None if the spans differ."""
         t, apart = self.side.nearest(other.inner(STEPS_OF_EDGE), self.low, self.high)
         if apart.max() > tolerance:
             return None
@@ -167,9 +172,9 @@ class Span:
         return None if back.max() > tolerance else bool(t[0] > t[-1])
 
     def along(self, leader: Span, steps: int, backwards: bool) -> Array:
-        """Return the values (steps + 1,) of t nearest to the ends of equal steps of `leader`.
+        """Return the values (steps + 1,) of t of the points nearest to those of another span.
 
-        Both spans are on the same line.
+        The other span is `leader`, with points at the ends of equal steps. Both spans coincide.
         """
         if self is leader:
             return self.t(steps)
@@ -182,10 +187,10 @@ class Span:
 
 @dataclass(frozen=True, eq=False)
 class Sewn:
-    """Edges between vertices (V, 3), and the wire along each boundary, as in `PartRecord`.
+    """Edges between vertices (V, 3), and the wire along each boundary; see `EdgeRecord` and `Wire`.
 
-    `apart` is the largest distance between edges with one face that nearly coincide, see `NEARLY`;
-    None if there are none.
+    `apart` is the largest distance between two edges of one face each that nearly coincide, see
+    `NEARLY`; None if there are no such edges.
     """
 
     vertices: Array
@@ -197,7 +202,7 @@ class Sewn:
 def sewn(borders: Sequence[Border], tolerance: float) -> Sewn:
     """Return the edges of boundaries, shared where they coincide within a tolerance.
 
-    Raises SurfaceError if all sides of a boundary are points, within the tolerance.
+    Raises SurfaceError if a boundary has no side that is larger than the tolerance.
     """
     vertices, spans = _spans([x.sides for x in borders], tolerance)
     for border, own in zip(borders, spans, strict=True):
@@ -270,10 +275,10 @@ def _cut(
 
 
 def _lines(spans: Sequence[Span], tolerance: float) -> list[dict[Span, bool]]:
-    """Return groups of spans on one line; a value is True if the span runs against the first."""
+    """Group spans that coincide: the value of a span is True if it runs against the first one."""
     lines, between = list[dict[Span, bool]](), defaultdict[Any, list[dict[Span, bool]]](list)
     for span in spans:
-        # Spans that are points only share vertices.
+        # Spans that are collapsed to points share only vertices.
         known = [] if span.is_point else between[frozenset((span.first, span.last))]
         for line in known:
             backwards = span.same(next(iter(line)), tolerance)
@@ -304,7 +309,7 @@ def _apart(spans: Sequence[Span]) -> float | None:
 
 
 def _exact_edge(spans: dict[Span, bool]) -> EdgeRecord:
-    """Return the edge along spans, with as many steps as accuracy needs."""
+    """Return the edge along coincident spans, with as many steps as accuracy needs."""
     steps = STEPS_OF_EDGE
     while True:
         edge, error = _edge(spans, steps)
@@ -314,9 +319,10 @@ def _exact_edge(spans: dict[Span, bool]) -> EdgeRecord:
 
 
 def _edge(spans: dict[Span, bool], steps: int) -> tuple[EdgeRecord, float]:
-    """Return the edge along spans, and the error of cubic interpolation midway in steps.
+    """Return the edge along coincident spans, and its error of cubic interpolation.
 
-    The error is relative to the length, without the distance between spans at the ends of steps.
+    The error is measured midway in steps, relative to the length of the edge; the distance between
+    the spans at the ends of steps is subtracted.
     """
     leader, parameters, slopes, errors = next(iter(spans)), [], [], []
     points, along = leader.side.points(leader.t(steps))

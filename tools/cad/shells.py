@@ -1,4 +1,4 @@
-"""Connected faces with consistent normals, pointing out of solids and into cavities."""
+"""Shells: connected faces whose normals are consistent, and point out of solids into cavities."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Shell", "shells_of"]
 
-# A shell is inside another one if at least the share INSIDE of about PROBES of its points is.
+# A shell counts as inside another shell if at least the fraction INSIDE of its points is, of about
+# PROBES points that are tested.
 PROBES, INSIDE = 100, 0.9
 
 
@@ -97,7 +98,10 @@ class _Points:
         return tree_of(self.points)
 
     def hold(self, other: _Points) -> bool:
-        """Return whether another shell is inside: behind the nearest points of this shell."""
+        """Return whether another shell is inside this one.
+
+        It is if most of its points are behind the nearest points of this shell.
+        """
         probes = other.points[:: 1 + len(other.points) // PROBES]
         if not len(probes) or not len(self.points):
             return False
@@ -135,7 +139,7 @@ def _connected(pieces: Sequence[FacePiece], found: Sewn, borders: Sequence[Borde
 def _signs(
     pieces: Sequence[FacePiece], start: int, links: dict[int, list[tuple[int, int]]]
 ) -> dict[int, int]:
-    """Return the faces connected to `start`, and the signs of their normals."""
+    """Return the signs of the normals of all faces connected to the face `start`, by face index."""
     signs, waiting = {start: 1}, [start]
     for face in waiting:  # the list grows in the loop
         for other, sign in links.get(face, ()):

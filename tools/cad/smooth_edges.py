@@ -1,7 +1,8 @@
-"""Points with given normals on edges where faces meet smoothly: one face keeps each point.
+"""Points with given normals on edges where faces meet smoothly: only one face keeps each point.
 
-The owner is the face of lowest index. It also owns curves and regions of points with one normal
-that run over such edges, and points of other faces at their ends.
+This is the face of lowest index. Likewise, only one face keeps a component, a curve or region of
+points with one normal, that extends over several faces; points of other faces at the ends of the
+component are left out.
 """
 
 from __future__ import annotations
@@ -22,26 +23,28 @@ from .results import PartSpace
 
 __all__ = ["each_once"]
 
-# Points with the same normal on connected faces are one point if closer than SAME, relative to the
-# size of the part, or than the distance over which normals change by twice the gap between faces,
-# at most FAR. Near a smooth edge no two points have the same normal and the same sign of K.
+# Points with the same normal on connected faces count as one point if they are closer than SAME,
+# relative to the size of the part, or closer than the distance over which normals change by twice
+# the gap between faces, at most FAR. This is right since, near a smooth edge, no two points have
+# the same normal and the same sign of K.
 SAME, FAR = 1e-8, 1e-5
-# Points are sorted by coordinates along this direction; on symmetric parts, few are equal.
+# Points are sorted by their coordinates along this direction. Few of these are equal, even on
+# symmetric parts.
 DIRECTION = np.array([0.52, 0.47, 0.71])
-# The point of an edge where a face has a normal is searched ROUNDS times among PLACES points, each
-# time in an interval that is smaller by ZOOM. A face has the normal if its own differs by NEAR at
-# most.
+# The point of an edge where a face has a given normal is searched ROUNDS times among PLACES points,
+# each time in an interval that is shorter by the factor ZOOM. The face has the normal if its normal
+# at the point found differs by at most NEAR.
 PLACES, ZOOM, ROUNDS, NEAR = 33, 4.0, 12, 1e-6
-# The point is on a component if the box of the component contains it, up to this part of the
-# domain.
+# The point of the edge counts as a point of a component if the box of the component contains it, up
+# to this fraction of the domain.
 SAME_PLACE = 1e-6
 
 
 def each_once(space: PartSpace, given: Given) -> Given:
-    """Return points at normals without those that a face of lower index also has.
+    """Return the points at normals, without the points that a face of lower index has as well.
 
-    Where K changes its sign at the edge both points are kept: nearby normals have two points or
-    none.
+    Where K changes its sign at the edge, the points of both faces are kept: nearby normals have two
+    points or none.
     """
     part = space.pieces[0].face.part
     if len(space.pieces) < 2 or len(given) < 2 or not given.same_normals:
@@ -80,9 +83,10 @@ def each_once(space: PartSpace, given: Given) -> Given:
 
 
 def _first_of_curves(space: PartSpace, given: Given, keep: Flags) -> Flags:
-    """Return which points at normals to keep, so that each component has one.
+    """Return a mask of the points at normals to keep: one point for each component.
 
-    Curves and regions that meet at edges, and points that meet them there, are one component.
+    Curves and regions on several faces that meet at edges, and points on edges that meet them, are
+    one component.
     """
     component, normals = given.array("component", np.float64), given.array("normal_index", np.int64)
     curves = np.flatnonzero(keep & (component == Component.CURVE))
@@ -90,7 +94,8 @@ def _first_of_curves(space: PartSpace, given: Given, keep: Flags) -> Flags:
         return keep
     rows = np.flatnonzero(keep & np.isin(normals, normals[curves]))
     edges, first = edges_of(space), np.ones(len(keep), np.bool_)
-    # Pairs of an edge and a normal that both of its faces have, one of them on a curve.
+    # Pairs of an edge and a normal that both faces of the edge have, at least one of them on a
+    # curve.
     has, of_curves = np.zeros((2, len(space.pieces), len(given.normals)), np.bool_)
     has[given.pieces[rows], normals[rows]] = True
     of_curves[given.pieces[curves], normals[curves]] = True
@@ -117,9 +122,10 @@ def _first_of_curves(space: PartSpace, given: Given, keep: Flags) -> Flags:
 
 
 def _places_with(edges: Edges, owner: Indices, normals: Array) -> tuple[Array, Array]:
-    """Return where on edges (k,) the normals of both faces are closest to `normals` (k, 3).
+    """Find the positions on edges (k,) where the normals of both faces are closest to given ones.
 
-    Return parameters (k, 2, 2) of both faces, and lengths (k, 2) of differences of normals.
+    Return the parameters (k, 2, 2) on both faces, and the lengths (k, 2) of the differences of
+    their normals from `normals` (k, 3).
     """
     half = np.tile((np.diff(edges.starts) - 1.0)[owner, None, None] / 2.0, (1, 2, 1))
     middle, last, steps = half, 2.0 * half, np.linspace(-1.0, 1.0, PLACES)
@@ -132,9 +138,10 @@ def _places_with(edges: Edges, owner: Indices, normals: Array) -> tuple[Array, A
 
 
 def _compared(edges: Edges, owner: Indices, normals: Array, at: Array) -> tuple[Array, Array]:
-    """Return parameters (k, 2, m, 2) on both faces, and lengths (k, 2, m) of normal differences.
+    """Compare the normals of both faces of edges (k,) with `normals` (k, 3).
 
-    Each face has its own positions (k, 2, m) on the edges.
+    Each face has its own positions `at` (k, 2, m) on the edge. Return the parameters (k, 2, m, 2)
+    there, and the lengths (k, 2, m) of the differences of normals.
     """
     count, _, m = at.shape
     both = edges.at(np.repeat(owner, 2 * m), at.ravel()).reshape(count, 2, m, 2, 2)
@@ -145,7 +152,7 @@ def _compared(edges: Edges, owner: Indices, normals: Array, at: Array) -> tuple[
 
 
 def _connected(part: Part) -> Indices:
-    """Return numbers (F,) that are equal for connected faces."""
+    """Return the index of the connected component of each face, (F,)."""
     arrays = part.arrays
     starts, faces = arrays["edge_side_starts"], arrays["side_faces"]
     first = faces[np.repeat(starts[:-1], np.diff(starts))]

@@ -28,7 +28,7 @@ ASSIGNED = b"APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT"
 STEP_SUFFIXES = (".step", ".stp", ".p21")
 TEXT = re.compile(rb"'((?:[^']|'')*)'")
 REFERENCE = re.compile(rb"#(\d+)")
-# Characters in texts of STEP (ISO 10303-21, 6.4.3).
+# Escape sequences of characters in STEP strings (ISO 10303-21, 6.4.3).
 ESCAPED = re.compile(r"\\X2\\((?:[0-9A-F]{4})+)\\X0\\|\\X\\([0-9A-F]{2})|\\\\|''", re.IGNORECASE)
 # The largest number of unreadable part files that a sentence names.
 MOST_NAMED = 3
@@ -38,8 +38,9 @@ MOST_NAMED = 3
 class PartFiles:
     """The part files of an assembly, at all levels, copied to a folder.
 
-    `unreadable` maps their names to reasons; `lost` are the faces that were left out, `faces` the
-    number of the others.
+    `copies` are the names of the copies, by path, and `unreadable` the reasons why files are not
+    readable, by name. `lost` are the faces that were left out of the copies, and `faces` is the
+    number of faces in the copies.
     """
 
     folder: Path
@@ -49,7 +50,7 @@ class PartFiles:
     faces: int = 0
 
     def renamed(self, content: bytes, path: Path, above: tuple[str, ...] = ()) -> bytes:
-        """Return a STEP file that refers to copies; the part files that it names are copied."""
+        """Copy the part files that a STEP file names; return the STEP file with the new names."""
         entities = _references(content)
         if not entities:
             return content
@@ -66,7 +67,7 @@ class PartFiles:
         return ENTITY.sub(rewritten, COMMENT.sub(b"", content))
 
     def _copied(self, name: str, parent: Path, above: tuple[str, ...]) -> str:
-        """Return the name of the copy of a part file; if this cannot be read, there is no copy."""
+        """Copy a part file, and return the name of the copy; unreadable files are not copied."""
         folders = parent.parent, Path(os.path.realpath(parent)).parent
         path = next((x / name for x in folders if (x / name).exists()), folders[0] / name)
         real = os.path.realpath(path)
@@ -116,9 +117,9 @@ class Source:
     parts: PartFiles | None = None
 
     def without(self, damaged: Mapping[int, str]) -> Source | None:
-        """Return a STEP file without its damaged faces, or None if it has none.
+        """Return the STEP file without its damaged faces; None if no face is damaged.
 
-        `damaged` maps numbers of unreadable entities to reasons.
+        `damaged` has the reason for each unreadable entity, by its number.
         """
         content, lost = without_damaged_faces(self.content, damaged)
         return replace(self._with(content), lost=self.lost + lost) if lost else None
@@ -135,7 +136,10 @@ class Source:
 
 
 def prepared(path: Path, folder: Path) -> Source:
-    """Return the readable content of a file; UnusableError with the reason if there is none."""
+    """Check a file, copy its part files, and return what Open CASCADE can read of it.
+
+    Raises UnusableError with the reason if the file is unusable.
+    """
     content = path.read_bytes()
     form, finite = checked_format(content)
     source = Source(path, folder, form, content)
@@ -146,7 +150,7 @@ def prepared(path: Path, folder: Path) -> Source:
 
 
 def _checked_part(path: Path) -> tuple[bytes, tuple[LostFace, ...]]:
-    """Return a part file without its damaged faces, and these."""
+    """Return the content of a part file without its damaged faces, and a list of these faces."""
     with regular_file(path) as file:
         content = file.read()
     if checked_format(content)[0] != "STEP":
@@ -155,7 +159,7 @@ def _checked_part(path: Path) -> tuple[bytes, tuple[LostFace, ...]]:
 
 
 def _references(content: bytes) -> dict[int, str]:
-    """Return the names of part files, by the numbers of the entities that have them."""
+    """Return the names of part files, by the number of the entity that contains the name."""
     if DOCUMENT not in content:
         return {}
     bodies = {int(k): body for k, body in ENTITY.findall(COMMENT.sub(b"", content))}
@@ -170,7 +174,7 @@ def _references(content: bytes) -> dict[int, str]:
 
 
 def _text(body: bytes) -> str:
-    """Return the first text of an entity, decoded."""
+    """Return the first string of an entity, decoded."""
     found = TEXT.search(body)
     text = found[1].decode("utf-8", "surrogateescape") if found else ""
 

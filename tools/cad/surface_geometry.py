@@ -21,15 +21,16 @@ from .records import Geometry, Net
 
 __all__ = ["geometry_of_surface"]
 
-# Axes are perpendicular, and scales equal, up to this; otherwise circles become ellipses.
+# Axes must be perpendicular, and scales equal, up to this error; otherwise circles become ellipses.
 SAME = 1e-9
 
 
 def geometry_of_surface(surface: Surface) -> tuple[Geometry, Array]:
-    """Return the geometry of a face, of its kind in CAD files; "surface" if there is none.
+    """Return a surface as the geometry of a face, and a matrix (2, 2) for its parameters.
 
-    The matrix (2, 2) maps the parameters of the surface to those of the geometry, some of
-    which are lengths. Both have the same normals.
+    The kind of the geometry is a kind of CAD files if possible, otherwise "surface". The matrix
+    maps the parameters of the surface to those of the geometry, some of which are lengths. Both
+    have the same normals.
     """
     moved = Moved.of(surface)
     function = moved.surface.function
@@ -52,7 +53,7 @@ def _net(nurbs: Nurbs, moved: Moved) -> Net:
 
 
 def _plane(slopes: Sequence[float], moved: Moved) -> tuple[Geometry, Array]:
-    """Return the plane z = slopes · (u, v) after its motion."""
+    """Return the plane z = slopes · (u, v) after its motion, and the matrix for its parameters."""
     along_u, along_v = moved.map.directions(np.column_stack([np.eye(2), slopes]))
     origin = moved.map.shift
     if moved.turned:
@@ -65,9 +66,10 @@ def _plane(slopes: Sequence[float], moved: Moved) -> tuple[Geometry, Array]:
 
 
 def _profile(function: object) -> tuple[str, tuple[float, ...]] | None:
-    """Return the kind and sizes of a profile turned about the z axis; None for other functions.
+    """Return the kind and sizes of the profile of a surface of revolution about the z axis.
 
-    The sizes of a "line" are r, dr/dv, z and dz/dv at v = 0, those of a "circle" its two radii.
+    The sizes of a "line" are r, dr/dv, z and dz/dv at v = 0. The sizes of a "circle" are the
+    distance of its centre from the axis, and its radius. None is returned for other functions.
     """
     match function:
         case CatalogueFunction("cylinder", (radius, height)):
@@ -90,7 +92,10 @@ def _profile(function: object) -> tuple[str, tuple[float, ...]] | None:
 
 
 def _round(kind: str, sizes: Sequence[float], moved: Moved) -> tuple[Geometry, Array] | None:
-    """Return a cylinder, cone, sphere or torus after its motion; None if it is no longer one."""
+    """Return a cylinder, cone, sphere or torus after its motion, and the matrix for parameters.
+
+    None means that the motion makes it another surface.
+    """
     map_ = moved.map
     if moved.turned:  # u is mapped to the sum of the ends of its interval, minus u
         cosine, sine = math.cos(sum(moved.ends)), math.sin(sum(moved.ends))

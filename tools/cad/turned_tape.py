@@ -21,7 +21,11 @@ ALL_ANGLES = np.array([-64.0, 64.0])
 
 
 def turned_tape(curve: Nurbs) -> Tape | None:
-    """Return the tape of the curve v = 0 of a NURBS, whose u is v here, turned about z by u."""
+    """Return the tape of a surface of revolution: a curve, turned about the z axis by u.
+
+    The curve is the line v = 0 of a NURBS; u of the NURBS is v of the surface. None means that the
+    NURBS has no tape.
+    """
     along = replace(
         curve,
         degrees=(0, curve.degrees[0]),

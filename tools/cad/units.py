@@ -11,7 +11,7 @@ from .records import FaceRecord, Geometry
 
 __all__ = ["scaled_parameters", "with_unit"]
 
-# The indices of the numbers of each kind that are lengths, and whether u and v are lengths.
+# For each kind of face: the indices of its numbers that are lengths; whether u and v are lengths.
 LENGTHS: dict[str, tuple[tuple[int, ...], tuple[bool, bool]]] = {
     "plane": ((0, 1, 2), (True, True)),
     "cylinder": ((0, 1, 2, 12), (False, True)),
@@ -27,7 +27,7 @@ LENGTHS: dict[str, tuple[tuple[int, ...], tuple[bool, bool]]] = {
 
 
 def with_unit(face: FaceRecord, factor: float) -> FaceRecord:
-    """Return a face with all lengths multiplied, including parameters that are lengths."""
+    """Return a face with all lengths multiplied by `factor`, also parameters that are lengths."""
     if factor == 1.0:
         return face
     scale = scaled_parameters(face.geometry, factor)
@@ -42,7 +42,7 @@ def with_unit(face: FaceRecord, factor: float) -> FaceRecord:
 
 
 def scaled_parameters(geometry: Geometry, factor: float) -> NDArray[np.float64]:
-    """Return the factors of u and v of a surface if lengths are multiplied by a factor."""
+    """Return the factors (2,) by which u and v change if lengths are multiplied by `factor`."""
     while geometry.basis is not None:
         geometry = geometry.basis
     return np.where(LENGTHS[geometry.kind][1], factor, 1.0)

@@ -35,7 +35,10 @@ class UnusableError(Exception):
 
 
 def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
-    """Return a curve as NURBS: a periodic curve as a whole, others at least over a domain."""
+    """Return a curve as NURBS.
+
+    A periodic curve is returned as a whole, any other curve at least over a domain.
+    """
     period = float(curve.Period()) if curve.IsPeriodic() else 0.0
     trimmed = curve
     while direct_class(curve) == "Geom_TrimmedCurve":
@@ -62,7 +65,10 @@ def curve_net(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
 
 
 def start_of_period(domain: Sequence[float], first: float, period: float) -> float:
-    """Return the start of a period that contains a domain: `first`, or the start of the domain."""
+    """Return the start of a period that contains a domain.
+
+    It is `first` if possible, otherwise the start of the domain.
+    """
     slack = SAME * period
     inside = first - slack <= domain[0] and domain[1] <= first + period + slack
     return first if inside else float(domain[0])
@@ -85,10 +91,10 @@ def _of_spline(curve: Any, domain: Sequence[float]) -> Net:  # noqa: ANN401
 
 
 def opened(calls: Sequence[Callable[..., Any]], domain: Sequence[float], period: float) -> float:
-    """Open a periodic spline over a period that contains a domain; return the shift of its knots.
+    """Cut a periodic spline open such that a domain is in one period; return the shift of knots.
 
-    The domain of a face turned about its axis starts anywhere. `calls` return knots and their
-    number, insert a knot, set the first one, and end the period.
+    A face may start anywhere in the period. `calls` are methods of the spline: they return knot k,
+    return the number of knots, insert a knot, choose the first knot, and make it non-periodic.
     """
     knot, count, insert, begin, end = calls
     first = float(knot(1))
@@ -149,7 +155,7 @@ def _misfit(curve: Any, ends: Array, points: Array) -> float:  # noqa: ANN401
 
 
 def _bernstein(places: Array) -> Array:
-    """Return the Bernstein polynomials of `DEGREE`: a row for each of the places in [0, 1]."""
+    """Return the values of the Bernstein polynomials of `DEGREE`, a row for each parameter."""
     k = np.arange(DEGREE + 1)
     binomials = np.array([comb(DEGREE, int(x)) for x in k], dtype=np.float64)
     return binomials * places[:, None] ** k * (1.0 - places[:, None]) ** (DEGREE - k)

@@ -33,7 +33,7 @@ DIGITS = 6  # of colours
 
 @dataclass(frozen=True)
 class Style:
-    """A name, or "", and a colour, or None."""
+    """The name of a shape, "" if it has none, and its colour, None if it has none."""
 
     name: str = ""
     color: Color | None = None
@@ -41,7 +41,7 @@ class Style:
 
 @dataclass(frozen=True)
 class PlacedShape:
-    """A placed shape, the names of the assemblies that contain it, and its colour."""
+    """A placed shape, its name after those of the assemblies that contain it, and its colour."""
 
     shape: Any
     name: str = ""
@@ -50,7 +50,7 @@ class PlacedShape:
 
 @dataclass
 class Document:
-    """The shapes of a file; `styles` are the styles of their subshapes, in all placements."""
+    """The shapes of a file; `styles` are names and colours of subshapes, for all placements."""
 
     pieces: list[PlacedShape]
     styles: dict[Key, Style] = field(default_factory=dict)
@@ -83,7 +83,7 @@ def _walked(
     color: Color | None,
     styles: dict[Key, Style],
 ) -> Iterator[PlacedShape]:
-    """Yield the shapes of a label: its own, or those of its components."""
+    """Yield the shape of a label or, if the label is an assembly, the shapes of its components."""
     own_color = _color(label)
     if XCAFDoc_ShapeTool.IsReference_s(label):
         referred = TDF_Label()

@@ -31,8 +31,9 @@ __all__ = ["Topology", "topology_of"]
 Array = NDArray[np.float64]
 Wires = list[Wire]
 
-# A p-curve that is not straight has one point per ANGLE on circles, POINTS_A_PIECE points per piece
-# on other curves, and LEAST to MOST points in all.
+# P-curves are the curves of edges in the parameter planes of faces. A p-curve that is not straight
+# has one point per ANGLE, in radians, if it is a circle, and POINTS_A_PIECE points per piece
+# otherwise; it has LEAST to MOST points in all.
 ANGLE, POINTS_A_PIECE, LEAST, MOST = 0.15, 4, 9, 1025
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
 EDGE = TopAbs_ShapeEnum.TopAbs_EDGE
@@ -49,7 +50,7 @@ class Topology:
 
 @dataclass
 class Known:
-    """An edge: the adjacent faces, and the p-curves on them."""
+    """An edge, the indices of its adjacent faces, and its p-curve on each of these faces."""
 
     edge: Any
     faces: list[int] = field(default_factory=list)
@@ -98,7 +99,7 @@ def _ordered(face: Any, reader: FaceReader) -> EdgeCurves:  # noqa: ANN401
 
 
 def _record(known: Known, scales: list[Array], vertices: _Vertices) -> EdgeRecord:
-    """Return an edge; parameters of a side are NaN if it has no p-curve."""
+    """Return the record of an edge; parameters are NaN on faces where it has no p-curve."""
     shares = _shares(max((_points(x) for x in known.curves if x), default=2))
     sides = np.full((len(shares), len(known.faces), 4), np.nan)
     for k, (face, curve) in enumerate(zip(known.faces, known.curves, strict=True)):
@@ -141,7 +142,7 @@ def _shares(number: int) -> Array:
 
 
 def _points(curve: PCurve) -> int:
-    """Return the number of points for a curve."""
+    """Return the number of points that represent a p-curve."""
     if not curve.pieces:
         return 2
     if curve.radius:
@@ -152,7 +153,7 @@ def _points(curve: PCurve) -> int:
 
 
 def _uv(curve: PCurve, shares: Array) -> Array:
-    """Return u, v and their derivatives (k, 4) at shares (k,) of the range of a curve, 0 to 1."""
+    """Return u, v and their derivatives (k, 4) at positions `shares` (k,) on a p-curve, 0 to 1."""
     first, last = curve.ends[0], curve.ends[-1]
     if curve.pieces:
         found = curve.evaluate(first + (last - first) * shares)

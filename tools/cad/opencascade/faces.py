@@ -36,7 +36,8 @@ PRECISION = 1e-10
 class FaceReader:
     """Converts faces to records; trim and area of copies of a face are computed once.
 
-    `gaps` are the gaps between consecutive edges of faces, in mm, if they are wider than `CLOSE`.
+    `gaps` are the largest gaps between consecutive edges of faces, in mm: one for each face with a
+    gap wider than `CLOSE`.
     """
 
     def __init__(self) -> None:
@@ -45,7 +46,7 @@ class FaceReader:
         self._wires: dict[Key, EdgeCurves] = {}
 
     def wires(self, face: Any) -> EdgeCurves:  # noqa: ANN401
-        """Return the edges of each wire of a face, oriented forward, with p-curves."""
+        """Return the edges of each wire of a face, in order, with their p-curves."""
         key = Key(face)
         if key not in self._wires:
             self._wires[key] = wires_of(_forward(face))
@@ -102,7 +103,7 @@ def _forward(face: Any) -> Any:  # noqa: ANN401
 
 
 def area_of(face: Any) -> float:  # noqa: ANN401
-    """Return the area of a face, to about 1e-6."""
+    """Return the area of a face, in mm², with a relative error of about 1e-6."""
     properties = GProp_GProps()
     BRepGProp.SurfaceProperties_s(face, properties, PRECISION, False)
     return float(properties.Mass())

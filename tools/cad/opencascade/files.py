@@ -24,7 +24,7 @@ from .shapes import sequence
 
 __all__ = ["read_file"]
 
-# The texts in Open CASCADE's checks, in lower case, that make an entity unusable.
+# An entity is unusable if a message of Open CASCADE's checks contains one of these texts.
 UNRESOLVED = "unresolved"
 DAMAGE = ("not a real", UNRESOLVED)
 
@@ -58,7 +58,10 @@ def _read_step(path: Path) -> Any:  # noqa: ANN401
 
 
 def _read_by(reader: Any, path: Path) -> Any:  # noqa: ANN401
-    """Return the reader, with names and colours of the file; UnusableError if it cannot read it."""
+    """Read a file into `reader`, with names and colours, and return `reader`.
+
+    Raises UnusableError if Open CASCADE cannot read the file.
+    """
     reader.SetNameMode(True)
     reader.SetColorMode(True)
     reader.SetLayerMode(False)
@@ -68,7 +71,10 @@ def _read_by(reader: Any, path: Path) -> Any:  # noqa: ANN401
 
 
 def _damaged(reader: Any, content: bytes) -> Mapping[int, str] | None:  # noqa: ANN401
-    """Return the entities that Open CASCADE calls damaged, with reasons; None if there are none."""
+    """Return the reasons why Open CASCADE calls entities damaged, by entity number.
+
+    None means that it calls no entity damaged.
+    """
     found: dict[int, str] = {}
     checks = reader.ChangeReader().WS().ModelCheckList()
     if checks.IsEmpty(True):

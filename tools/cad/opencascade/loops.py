@@ -25,8 +25,9 @@ Array = NDArray[np.float64]
 # The edges of each wire of a face with their p-curves, in order.
 EdgeCurves = list[list[tuple[Any, PCurve]]]
 
-# Polygons deviate from the curves by at most the part OF_BOX of the (u, v) box of the face, and the
-# part OF_WIDTH of the mean width of the face; but the part LEAST of the box is always allowed.
+# Polygons deviate from the p-curves by at most OF_BOX times the bounding box of the face in u and
+# v, and by at most OF_WIDTH times the mean width of the face. A deviation of LEAST times the
+# bounding box is always allowed.
 OF_BOX, OF_WIDTH, LEAST = 1e-4, 1e-3, 1e-7
 # Wider gaps between consecutive curves, relative to the box, are errors unless the tolerances of
 # the edges allow them.
@@ -79,9 +80,10 @@ def _polygons(wires: list[list[PCurve]], size: Array, tolerance: float) -> list[
 
 
 def _gap_of(surface: Any, wires: EdgeCurves, size: Array) -> float:  # noqa: ANN401
-    """Return the largest distance between consecutive curves of wires on a surface.
+    """Return the largest gap between consecutive p-curves of wires, as a distance in space.
 
-    Raises UnusableError if one is more than their edges allow, and large relative to the box.
+    Raises UnusableError if a gap is wider than the tolerances of its edges allow, and large
+    relative to the bounding box.
     """
     gap = 0.0
     for wire in wires:
@@ -99,7 +101,7 @@ def _gap_of(surface: Any, wires: EdgeCurves, size: Array) -> float:  # noqa: ANN
 
 
 def _mean_width(loops: list[Array], size: Array) -> float:
-    """Return the area of polygons over half their length, in units of the box."""
+    """Return the area of polygons divided by half their perimeter, in units of the bounding box."""
     area = length = 0.0
     for loop in loops:
         scaled = (loop - loop[0]) / size
@@ -110,7 +112,10 @@ def _mean_width(loops: list[Array], size: Array) -> float:
 
 
 def wires_of(face: Any) -> EdgeCurves:  # noqa: ANN401
-    """Return the edges of each wire of a face, oriented forward, with their p-curves."""
+    """Return the edges of each wire of a face, in order, with their p-curves.
+
+    The face is oriented forward.
+    """
     return [_edges_of(TopoDS.Wire(x), face) for x in parts_of(face, WIRE)]
 
 
@@ -132,7 +137,7 @@ def _edges_of(wire: Any, face: Any) -> list[tuple[Any, PCurve]]:  # noqa: ANN401
 
 
 def _chained(curves: list[PCurve]) -> list[int]:
-    """Return an order of curves in which each begins close to the end of the one before."""
+    """Return the indices of curves in an order: each begins close to the end of the one before."""
     ends = [x.evaluate(np.array(x.ends))[:, :2] for x in curves]
     ends = [x[::-1] if curve.reversed else x for x, curve in zip(ends, curves, strict=True)]
     order, left = [0], set(range(1, len(curves)))

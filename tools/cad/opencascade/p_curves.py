@@ -1,4 +1,4 @@
-"""The curve of an edge in the parameters of a face."""
+"""P-curves: the curves of edges in the parameter planes of faces."""
 
 # pyright: reportMissingImports=false
 
@@ -25,18 +25,19 @@ __all__ = ["CONFUSION", "PCurve", "curve_of"]
 
 Array = NDArray[np.float64]
 
-# The precision of Open CASCADE.
+# The distance up to which Open CASCADE considers points equal, in mm.
 CONFUSION = 1e-7
 FIRST_PIECES, PIECES_A_SPAN, MOST_PIECES = 4, 2, 256
 
 
 @dataclass(frozen=True)
 class PCurve:
-    """A p-curve: points and derivatives (k, 4) at parameters, and its direction in the wire.
+    """A p-curve: `evaluate` returns points and derivatives (k, 4) at parameters (k,).
 
-    `ends` are its ends and the parameters of possible corners between them; a polyline initially
-    has `pieces` pieces in each interval between these, 0 for a straight line. `radius` is that of a
-    circle, or 0.
+    `reversed` says whether the wire runs against the direction of the parameter. `ends` are the
+    parameters of both ends, and of possible corners between them. A polyline initially has `pieces`
+    pieces between any two successive `ends`; 0 means a straight line. `radius` is the radius of a
+    circle, 0 for other curves.
     """
 
     evaluate: Callable[[Array], Array]
@@ -51,7 +52,10 @@ class PCurve:
         return self.evaluate(np.array([self.ends[0], self.ends[-1]]))[:, :2]
 
     def polyline(self, tolerance: Array) -> Array:
-        """Return points (k, 2) in the direction of the wire, with the kept side on the left."""
+        """Return points (k, 2) of a polyline in the direction of the wire.
+
+        The polyline deviates from the curve only to the left, where the face lies.
+        """
         if self.pieces == 0:
             points = self.chord
         else:
@@ -73,7 +77,7 @@ class PCurve:
 
 
 def curve_of(edge: Any, face: Any) -> PCurve:  # noqa: ANN401
-    """Return the curve of an oriented edge on a face that is oriented forward."""
+    """Return the p-curve of an oriented edge on a face that is oriented forward."""
     curve = _adaptor(edge, face)
     backwards = edge.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
     ends = float(curve.FirstParameter()), float(curve.LastParameter())
@@ -99,7 +103,7 @@ def _adaptor(edge: Any, face: Any) -> Any:  # noqa: ANN401
 
 
 def _corners(spline: Any, ends: tuple[float, float]) -> tuple[tuple[float, ...], int]:  # noqa: ANN401
-    """Return the ends, the knots with corners between them, and the number of all spans."""
+    """Return the ends and the knots between them where corners may be, and the number of spans."""
     inside = [k for k in range(1, spline.NbKnots() + 1) if ends[0] < spline.Knot(k) < ends[1]]
     multiple = [k for k in inside if spline.Multiplicity(k) >= spline.Degree()]
     return (ends[0], *(spline.Knot(k) for k in multiple), ends[1]), len(inside) + 1

@@ -32,7 +32,10 @@ MOST_NAMED = 5
 
 
 def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
-    """Return the part in a file, in a given unit or its own; UnusableError with a reason if not."""
+    """Return the record of the part in a file, in the given unit or in the unit of the file.
+
+    Raises UnusableError with the reason if the file cannot be used.
+    """
     document, lost = read_file(source)
     found = gathered(document)
     said = source.faces_said()
@@ -81,7 +84,7 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
 
 
 def _invalid(document: Document, faces: list[PlacedFace]) -> Iterator[str]:
-    """Yield a sentence with the faces of shapes that Open CASCADE calls invalid, if any."""
+    """Yield a sentence about the faces, or their joins, that Open CASCADE calls invalid, if any."""
     if all(BRepCheck_Analyzer(x.shape).IsValid() for x in document.pieces):
         return
     bad = [k for k, x in enumerate(faces) if not BRepCheck_Analyzer(x.shape).IsValid()]
@@ -94,14 +97,17 @@ def _invalid(document: Document, faces: list[PlacedFace]) -> Iterator[str]:
 
 
 def _warn_of_part_files(document: Document, source: Source) -> None:
-    """Warn of part files without content: Open CASCADE makes empty shapes of references to them."""
+    """Warn of part files that cannot be read.
+
+    Open CASCADE makes an empty shape of each reference to such a file.
+    """
     if source.parts is not None and (which := source.parts.said()):
         empty = plural(sum(x.shape.NbChildren() == 0 for x in document.pieces), "reference")
         document.warnings.append(f"{which}; left out: {empty} to them.")
 
 
 def _others(document: Document) -> str:
-    """Return the contents of a file without faces: edges, and points on no edge."""
+    """Return a text about a file without faces: its numbers of edges, and of points on no edge."""
     every = [x.shape for x in document.pieces]
     edges = {Key(x) for y in every for x in parts_of(y, Kinds.TopAbs_EDGE)}
     points = {Key(x) for y in every for x in parts_of(y, Kinds.TopAbs_VERTEX, Kinds.TopAbs_EDGE)}
@@ -116,7 +122,7 @@ def _face(face: PlacedFace, reader: FaceReader) -> FaceRecord:
 
 
 def _different(faces: list[PlacedFace]) -> int:
-    """Return the number of faces, where copies in other placements count once."""
+    """Return the number of different faces: copies in several placements count as one face."""
     return len({Key(x.shape, placed=False) for x in faces})
 
 

@@ -14,11 +14,12 @@ Array = NDArray[np.float64]
 Evaluator = Callable[[Array], Array]
 
 MOST_ROUNDS, MOST_PARTS = 14, 32
-# A piece that deviates from its chord by less than this fraction of the tolerance is straight.
+# A piece counts as straight if it deviates from its chord by less than this fraction of the
+# tolerance.
 STRAIGHT = 1e-3
 # Tangents at the ends are taken this far inside, relative to the length: an end may be a corner.
 INSIDE = 1e-9
-# The curve must turn by less than 60° from the ends of a piece to its chord.
+# The tangents at both ends of a piece must form angles of less than 60° with its chord.
 LEAST_COSINE = 0.5
 
 
@@ -70,7 +71,11 @@ def one_sided(
 def _divided(
     ends: Array, parts: NDArray[np.int64]
 ) -> tuple[Array, NDArray[np.bool_], NDArray[np.int64]]:
-    """Return the ends of parts of intervals, a mask of new ends, and the start of each interval."""
+    """Divide intervals into equal parts.
+
+    Return the ends of all parts in order, a mask of the new ends, and the index of the first end in
+    each interval.
+    """
     counts = parts + 1
     first_ones = np.cumsum(counts) - counts
     owner = np.repeat(np.arange(len(parts)), counts)
@@ -82,9 +87,9 @@ def _divided(
 def _judged(
     left: Array, right: Array, side: float
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], Array]:
-    """Return the number of parts of each piece, a mask of pieces with a corner, and their tips.
+    """Return into how many parts each piece is to be divided, a mask of corners, and the tips.
 
-    Such a piece is replaced by the tangents at its ends, which meet at its tip.
+    A piece with a corner is replaced by the tangents at its ends, which meet at its tip.
     """
     along, start, end = right[:, :2] - left[:, :2], left[:, 2:], right[:, 2:]
     chord = np.hypot(along[:, 0], along[:, 1])

@@ -28,7 +28,10 @@ def parts_of(shape: Any, kind: Any, avoided: Any = None) -> Iterator[Any]:  # no
 
 
 class Key:
-    """A shape as a dictionary key, equal for its reverse; `placed` distinguishes placements."""
+    """A shape as a dictionary key, which is equal for the reversed shape.
+
+    Unless `placed`, it is also equal for copies of the shape in other placements.
+    """
 
     __slots__ = ("_shape",)
 
@@ -43,7 +46,7 @@ class Key:
 
 
 def sequence(old: str, new: str) -> Any:  # noqa: ANN401
-    """Return an empty collection, whose class is `module.name` in version 7.9 and `new` in 8.0."""
+    """Return an empty collection of the class `old` ("module.name") in 7.9, or `new` in 8.0."""
     return _collection(old, new)()
 
 

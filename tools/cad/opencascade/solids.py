@@ -44,7 +44,7 @@ class PlacedFace:
 
 @dataclass
 class Gathered:
-    """All faces; `closed` says whether they enclose solids."""
+    """All faces; `closed` says whether each of them belongs to a closed solid."""
 
     faces: list[PlacedFace] = field(default_factory=list)
     solid_names: list[str] = field(default_factory=list)
@@ -52,7 +52,7 @@ class Gathered:
 
 
 def gathered(document: Document) -> Gathered:
-    """Return the faces of a document, solids first."""
+    """Return all faces of a document: faces of solids first, then loose faces."""
     found, loose = Gathered(), []
     for piece in document.pieces:
         for solid in parts_of(piece.shape, Kinds.TopAbs_SOLID):
@@ -116,7 +116,7 @@ def _add_loose(found: Gathered, loose: list[tuple[Any, Style]]) -> None:
 
 
 def _sewn(faces: list[Any]) -> Any:  # noqa: ANN401
-    """Return the sewing of faces, with a wider tolerance if the narrow one leaves holes."""
+    """Return the sewing of faces, with a wider tolerance if the narrow tolerance leaves holes."""
     compound, builder = TopoDS_Compound(), BRep_Builder()
     builder.MakeCompound(compound)
     for face in faces:
@@ -139,7 +139,7 @@ def _size(shape: Any) -> float:  # noqa: ANN401
 
 
 def _closed_solids(sewn: Any) -> list[Any]:  # noqa: ANN401
-    """Return the closed shells as solids, oriented such that their normals point outward."""
+    """Return the closed shells as solids whose normals point outward, but into cavities."""
     shells = [TopoDS.Shell(x) for x in parts_of(sewn, Kinds.TopAbs_SHELL)]
     solids = []
     for shell in shells:

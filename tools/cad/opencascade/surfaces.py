@@ -20,7 +20,7 @@ __all__ = ["basis_of", "geometry_of", "periods_of"]
 
 Array = NDArray[np.float64]
 
-# The radii and angles of the elementary kinds.
+# For each elementary class: the kind of face, and the methods that return its radii and angles.
 ELEMENTARY: dict[str, tuple[str, tuple[str, ...]]] = {
     "Geom_Plane": ("plane", ()),
     "Geom_CylindricalSurface": ("cylinder", ("Radius",)),
@@ -29,9 +29,9 @@ ELEMENTARY: dict[str, tuple[str, tuple[str, ...]]] = {
     "Geom_ToroidalSurface": ("torus", ("MajorRadius", "MinorRadius")),
 }
 
-# The header that Open CASCADE writes for a surface, before the control points: the title, its kind,
-# whether it is rational and, if it may be, periodic; its degrees, and numbers of control points and
-# of knots.
+# The number of bytes that Open CASCADE writes for a surface before the control points: a title; the
+# kind of surface; flags, whether it is rational and, for a B-spline, whether it is periodic; the
+# degrees; the numbers of control points and of knots of a B-spline.
 TITLE = len(b"Surfaces 1\n")
 BEFORE_POLES = {
     "Geom_BezierSurface": TITLE + 1 + 2 + 2 * 2,
@@ -40,7 +40,7 @@ BEFORE_POLES = {
 
 
 def basis_of(surface: Any) -> Any:  # noqa: ANN401
-    """Return the untrimmed surface: the trim of the face replaces its own."""
+    """Return a surface without its own trim, which the trim of the face replaces."""
     while direct_class(surface) == "Geom_RectangularTrimmedSurface":
         surface = surface.BasisSurface()
     return surface
@@ -53,9 +53,10 @@ def periods_of(surface: Any) -> tuple[float, float]:  # noqa: ANN401
 
 
 def geometry_of(surface: Any, domain: Sequence[Sequence[float]]) -> Geometry:  # noqa: ANN401
-    """Return a surface as arrays, with the same parameters; UnusableError with the reason if not.
+    """Return a surface as arrays, with the same parameters.
 
-    Lines and other unbounded curves are restricted to the domain.
+    Lines and other unbounded curves are restricted to the domain. Raises UnusableError with the
+    reason if the surface cannot be converted.
     """
     surface = basis_of(surface)
     name = direct_class(surface)
@@ -108,8 +109,8 @@ def _net(surface: Any) -> tuple[Array, Array | None]:  # noqa: ANN401
     m, n = surface.NbUPoles(), surface.NbVPoles()
     rational = surface.IsURational() or surface.IsVRational()
     numbers = 4 if rational else 3
-    # Calls for each control point would take longer than everything else: writing returns all at
-    # once.
+    # Calls for each control point would take longer than everything else. Writing the surface to a
+    # buffer returns all of them at once.
     written, buffer = BinTools_SurfaceSet(), io.BytesIO()
     written.Add(surface)
     written.Write(buffer)
