@@ -47,7 +47,10 @@ def measures_of(patches: Patches, classes: NDArray[np.int8]) -> tuple[Array, Arr
 
 
 def _fans_of(patch: Patches) -> list[Array]:
-    """Return the polar forms (m, 3, 3, 3) of the triangles of each piece of one patch."""
+    """Cut each piece of one patch into triangles; return the polar forms (m, 3, 3, 3) of N on them.
+
+    The list has one array for each piece.
+    """
     fans = []
     border, others = _on_sides(patch, TRIANGLE), list(singular_points(patch))
     for piece in pieces_of(patch):
@@ -64,7 +67,7 @@ def _fans_of(patch: Patches) -> list[Array]:
 def _on_sides(patch: Patches, polygon: Array) -> list[Array]:
     """Return the parameter pairs of the singular points on the sides of a polygon.
 
-    A double parabolic line may have singular points on which no other line lies.
+    A double parabolic line may have singular points through which no other line passes.
     """
     places = []
     corners = _barycentric(polygon)
@@ -77,7 +80,7 @@ def _on_sides(patch: Patches, polygon: Array) -> list[Array]:
 
 
 def _different(places: list[Array]) -> list[Array]:
-    """Return parameter pairs without those that nearly repeat an earlier one."""
+    """Return parameter pairs without the pairs that nearly repeat an earlier pair."""
     result: list[Array] = []
     for place in places:
         if all(np.abs(place - other).max() > DOUBLE_ROOT for other in result):
@@ -86,7 +89,10 @@ def _different(places: list[Array]) -> list[Array]:
 
 
 def _snapped(polygon: Array, places: list[Array]) -> Array:
-    """Move corners near singular points onto these: corners on multiple lines are less accurate."""
+    """Move the corners of a polygon that are near singular points onto these points.
+
+    Corners on multiple parabolic lines are less accurate than the singular points.
+    """
     polygon = polygon.copy()
     for place in places:
         polygon[np.abs(polygon - place).max(axis=1) <= DOUBLE_ROOT] = place
@@ -94,7 +100,7 @@ def _snapped(polygon: Array, places: list[Array]) -> Array:
 
 
 def _barycentric(places: Array) -> Array:
-    """Return u, v, w of parameter pairs u, v along the last axis."""
+    """Return the barycentric coordinates u, v, w (..., 3) of parameter pairs u, v (..., 2)."""
     return np.concatenate([places, 1.0 - places.sum(axis=-1, keepdims=True)], axis=-1)
 
 

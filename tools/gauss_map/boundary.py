@@ -27,10 +27,10 @@ class BoundaryArc:
     Attributes
     ----------
     control_normals : (3, 3) float64 array
-        The control points, not of unit length; those of an edge are three of the control normals of
-        the patch.
+        The control points, not of unit length; for an edge of a patch, they are three of the
+        control normals of the patch.
     noise : float
-        A bound of their error due to the rounding of the coordinates.
+        A bound of the error of the control normals due to the rounding of the coordinates.
 
     Examples
     --------
@@ -58,9 +58,9 @@ class BoundaryArc:
         Returns
         -------
         (count, 3) float64 array
-            The normals. At a singular end, where N vanishes, the limit is returned. NaN if the
-            whole arc has no normals, and at a singular point inside, which has no normal: the
-            `parts` end there.
+            The normals. At a singular end, where N vanishes, the limit of the normals is returned.
+            The result is NaN if the whole arc has no normals, and at a singular point inside the
+            arc, where its `parts` end.
 
         Raises
         ------
@@ -137,7 +137,7 @@ class BoundaryArc:
     def is_great_circle(self) -> bool:
         """Whether the arc lies on a great circle, up to rounding: its normals are coplanar.
 
-        Its cone is then a pair of planes, as for an edge in a plane of symmetry.
+        The cone through the arc is then a pair of planes, as for an edge in a plane of symmetry.
         """
         longest = float(np.linalg.norm(self.control_normals, axis=1).max())
         volume = abs(float(np.linalg.det(self.control_normals)))
@@ -172,7 +172,10 @@ def edge_arcs(normals: Array, noise: float) -> tuple[BoundaryArc, BoundaryArc, B
 
 
 def boundary_arcs(normals: Array, noise: float) -> tuple[BoundaryArc, ...]:
-    """Return the arcs around a Gaussian image, without points; see `GaussianImage.boundary`."""
+    """Return the arcs around a Gaussian image that are not single points, in order.
+
+    See `GaussianImage.boundary`.
+    """
     arcs: list[BoundaryArc] = []
     places: list[tuple[Array, Array, Array]] = []  # the end of each arc; steps to two corners
     for edge, (i, j, k) in zip(edge_arcs(normals, noise), (*EDGES[1:], EDGES[0]), strict=True):
@@ -193,9 +196,9 @@ def _turn(
 ) -> BoundaryArc:
     """Return the arc of the limits of the normals at a singular point, from one arc to the next.
 
-    It is an arc of a great circle, half of the circle between opposite normals, or one point if the
-    surface is regular there. `where` holds the point and two directions from it, backwards and
-    inwards.
+    It is an arc of a great circle: half of the circle if it joins opposite normals, a single point
+    if the surface is regular there. `where` holds the point and two directions from it, in
+    barycentric coordinates: back along the edge, and into the triangle.
     """
     start, end = first_directions(np.stack([arc.control_normals[::-1], after.control_normals]))
     middle = 0.5 * (start + end)
@@ -212,10 +215,11 @@ def _inner_limit(
 ) -> Array:
     """Return a unit vector orthogonal to `start`, in the half-plane of the limits of the normals.
 
-    Returns zero if there is none: N is parallel to `start` up to the third order. In polar form,
+    Returns zero if N is parallel to `start` up to the third order. In polar form,
     N(place + x) = 2 N(place, x) + N(x, x). If the first term is parallel to `start` for all x, the
-    second one decides, in the inward direction x along which the first one vanishes; or else the
-    third order, on the curve tangent to x along which the component of N along `start` vanishes.
+    second term decides, for the inward direction x in which the first term vanishes. If the second
+    term is parallel to `start` as well, the third order decides, on the curve tangent to x along
+    which the component of N along `start` vanishes.
     """
 
     def polar(x: Array, y: Array) -> Array:

@@ -18,8 +18,9 @@ Segment = tuple[Hashable, Hashable, Array]
 def chained(pieces: Sequence[Ends]) -> list[tuple[list[tuple[int, bool]], bool]]:
     """Chain pieces, given by the nodes at their ends, into curves.
 
-    A curve continues through a node at which exactly two pieces end. It is returned as a list of
-    the indices of its pieces, each with a flag for reversal, and a flag whether it is closed.
+    A curve continues through a node at which exactly two pieces end. For each curve, return a list
+    of pairs, the index of a piece and whether the piece is reversed, and whether the curve is
+    closed.
     """
     at_node: dict[Hashable, list[int]] = {}
     for number, ends in enumerate(pieces):

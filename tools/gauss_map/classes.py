@@ -14,8 +14,8 @@ from .patches import Patches, checked_nets
 __all__ = ["PatchClass", "classes_of", "classify_patches"]
 
 
-# The cubic is sampled on a lattice of this size inside the triangle: a patch with both signs is
-# MIXED, and its parabolic lines need not be computed.
+# The cubic whose sign is that of K is sampled on a lattice of this size inside the triangle. If it
+# has both signs there, the patch is MIXED, and its parabolic lines need not be computed.
 LATTICE = 8
 INSIDE = cubic_bernstein(
     np.array([(i, j) for i in range(1, LATTICE) for j in range(1, LATTICE - i)]) / LATTICE
@@ -84,9 +84,9 @@ def classify_patches(patches: AnySpline | ArrayLike) -> NDArray[np.int8]:
 
     Notes
     -----
-    The signs of the ten Bézier coefficients of the cubic `parabolic_cubic` decide where they agree,
-    otherwise the parabolic lines; numbers that are zero up to the rounding of the coordinates count
-    as zero.
+    If the ten Bézier coefficients of the cubic `parabolic_cubic` have the same sign, this sign
+    decides; otherwise, the parabolic lines decide. Numbers that are zero up to the rounding of the
+    coordinates count as zero.
 
     Examples
     --------

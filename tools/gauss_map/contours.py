@@ -3,8 +3,8 @@
 d is a direction, or the ray x − p from a viewpoint p. The signs of N·d on a grid locate the curves,
 which are closed or end at open sides. Zero counts as positive, so that a curve may follow sides of
 the grid, and cross a pole; along an open side, a zero gets the sign opposite to the inside. Samples
-are sorted along these curves by their feet in the parameter plane. A curve is cut where it leaves
-the trim of the spline.
+are sorted along these curves by their feet, the nearest points of the curves in the parameter
+plane. A curve is cut where it leaves the trim of the spline.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ CANDIDATES = 8
 
 
 class View(NamedTuple):
-    """The position of an eye: the point `at`, or, if it is `far`, the direction of view `at`."""
+    """An eye: `at` is its position or, if it is `far`, the direction in which it looks."""
 
     at: Array
     far: bool
@@ -46,9 +46,9 @@ class View(NamedTuple):
 
 
 def places_along(spline: Spline, view: View, count: int) -> tuple[Array, tuple[Indices, ...]]:
-    """Return about `count` parameters (k, 2) at equal steps along the contour generator in space.
+    """Return the parameters (k, 2) of about `count` points along the contour generator.
 
-    Also return polylines, as `polylines_of` does.
+    The points are equally spaced in space. Also return polylines, as `polylines_of` does.
     """
     ends, section, closed, outside = _segments(spline, view)
     ends, section = ends[~outside], section[~outside]
@@ -71,7 +71,7 @@ def places_along(spline: Spline, view: View, count: int) -> tuple[Array, tuple[I
 
 
 def _wrapped(spline: Spline, cells: Array) -> Array:
-    """Return the parameters (k, 2) at positions in cells; those beyond seams are wrapped."""
+    """Convert positions (k, 2), in cells, to parameters; positions beyond a seam are wrapped."""
     u, v = (spline.frame[:2] + cells * spline.frame[2:]).T
     return np.stack(brought_inside(u, v, spline.domain, spline.boundary), axis=1)
 
@@ -99,10 +99,10 @@ def polylines_of(spline: Spline, view: View, uv: Array) -> tuple[Indices, ...]:
 
 
 def _segments(spline: Spline, view: View) -> tuple[Array, Indices, list[bool], Flags]:
-    """Return segments (k, 2, 2), in cells, in the order of curves, and their sections (k,).
+    """Return the segments (k, 2, 2) of all curves, in cells and in order, and their sections (k,).
 
-    A curve is one section; where it leaves the trim another one begins. Also returns which sections
-    are closed, and which segments are outside of the trim.
+    A curve is one section; where it leaves the trim, another section begins. Also return, for each
+    section, whether it is closed, and a mask (k,) of the segments outside of the trim.
     """
     ends, sections, closed = [np.empty((0, 2, 2))], [np.empty(0, dtype=np.int64)], list[bool]()
     left = [np.empty(0, dtype=np.bool_)]
@@ -121,7 +121,7 @@ def _segments(spline: Spline, view: View) -> tuple[Array, Indices, list[bool], F
 
 
 def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
-    """Return the nearest segment to each position (k, 2), and its foot on it (0 … 1)."""
+    """Return the index of the nearest segment of each position (k, 2), and its foot, 0 to 1."""
     number = min(CANDIDATES, len(ends))
     near = tree_of(ends.mean(axis=1)).query(places, k=number)[1].reshape(len(places), number)
     start, step = ends[near, 0], ends[near, 1] - ends[near, 0]
@@ -135,7 +135,10 @@ def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
 
 
 def _lines(spline: Spline, view: View) -> list[tuple[list[Array], bool]]:
-    """Return the contour generator: parts (k, 2) in cells of curves, and whether each is closed."""
+    """Return the curves of the contour generator.
+
+    For each curve, return its parts (k, 2), in cells, and whether it is closed.
+    """
     parts = next((x for x in PARTS if x * x * np.prod(spline.cells) <= MOST_CELLS), PARTS[-1])
     counts = np.array(spline.cells) * parts
     nodes = np.stack(np.meshgrid(*map(np.arange, counts + 1), indexing="ij"), axis=-1)
@@ -161,7 +164,10 @@ def _lines(spline: Spline, view: View) -> list[tuple[list[Array], bool]]:
 
 
 def _with_copies(spline: Spline, ends: Array) -> tuple[Array, Indices]:
-    """Add copies of segments next to seams, shifted beyond them; also return their originals."""
+    """Add copies of the segments next to seams, shifted beyond the seams.
+
+    Also return the index of the original of each segment.
+    """
     which = np.arange(len(ends))
     for axis, (kind, _) in enumerate(spline.boundary):
         if kind not in ("periodic", "mirrored"):

@@ -1,4 +1,4 @@
-"""Critical points of K where it is zero: curves K = 0 cross there, or K touches zero."""
+"""Critical points of K at which K is zero: curves K = 0 cross there, or K touches zero."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ __all__ = ["CriticalZeros", "critical_zeros"]
 # The number of steps of Newton's method, which converges slowly where K is of order four, and the
 # length of a final step, relative to the domain.
 NEWTON_STEPS, ARRIVED = 40, 1e-10
-# K is zero at a critical point if it has a zero within this distance, relative to the domain, as
-# estimated there.
+# K counts as zero at a critical point if its second derivatives there predict a zero within this
+# distance, relative to the domain.
 TOUCHING = 1e-7
 # The largest distance of a critical point from its nearest node, in cells: as found by Newton's
 # method, and as estimated by differences between nodes.
 FARTHEST, FARTHEST_BY_NODES = 2.0, 1.5
-# Critical points closer than this, in cells, are one point.
+# Critical points closer than this, in cells, count as one point.
 SAME = 1e-2
-# K is constant in one principal direction of its Hessian if its growth in that direction is less
-# than this factor of its growth in the other. The second number is for differences between nodes,
-# which are not close to the zeros.
+# K counts as constant in one principal direction of its Hessian if its growth in that direction is
+# less than this fraction of its growth in the other direction. The second number is for differences
+# between nodes, which are not close to the zeros.
 CONSTANT, CONSTANT_BY_NODES = 1e-5, 1e-2
 
 
@@ -86,7 +86,10 @@ def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
 
 
 def _may_be_critical(grid: SignGrid) -> Flags:
-    """Return nodes near which a critical point with K near zero may lie, by differences."""
+    """Return a mask of the nodes near which there may be a critical point with K near zero.
+
+    The derivatives of K are estimated by differences between nodes.
+    """
     from scipy.ndimage import minimum_filter
 
     K = np.where(grid.zero, 0.0, grid.values)
@@ -105,7 +108,7 @@ def _may_be_critical(grid: SignGrid) -> Flags:
 
 
 def _wrapped(grid: SignGrid, places: Array) -> Array:
-    """Return parameter pairs shifted by whole periods to between the first and the last node."""
+    """Shift parameter pairs by whole periods, to between the first and the last node."""
     first = np.array([line[0] for line in grid.lines])
     return first + np.mod(places - first, grid.curvature.extent)
 
@@ -116,9 +119,9 @@ def _eigenvalues(hessian: Array) -> Array:
 
 
 def _half_distance_is_less(size: float | Array, K: Array, hessian: Array) -> Flags:
-    """Return for which critical points half the distance of the curves K = 0 is below `size`.
+    """Return a mask of the critical points where the curves K = 0 are closer than 2 `size`.
 
-    At a saddle the curves are the branches of the hyperbola 2 K − λ x² + μ y² = 0.
+    At a saddle, the curves are the branches of the hyperbola 2 K − λ x² + μ y² = 0.
     """
     low, high = _eigenvalues(hessian * np.multiply.outer(size, size))
     return 2.0 * np.abs(K) <= np.where(K > 0.0, -low, high)
@@ -131,7 +134,7 @@ def _newton_step(gradient: Array, hessian: Array, constant: float = CONSTANT) ->
 
 
 def _different(places: Array, same: Array) -> Array:
-    """Return parameter pairs without those that nearly repeat an earlier one."""
+    """Return parameter pairs without the pairs that nearly repeat an earlier pair."""
     kept = np.empty((0, 2))
     for place in places:
         if not (np.abs(kept - place) <= same).all(axis=1).any():

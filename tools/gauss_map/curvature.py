@@ -28,8 +28,8 @@ SURE = 4.0
 AT_A_TIME = 1 << 14
 # Steps for derivatives of K, and for its slope in Newton's method, relative to the domain.
 STEP, SLOPE_STEP = 1 / 1024, 1e-6
-# The number of steps of Newton's method, the length of its final step, relative to the domain, and
-# of its largest step.
+# The number of steps of Newton's method; the lengths of its final and of its largest step, relative
+# to the domain.
 NEWTON_STEPS, ARRIVED, FARTHEST = 5, 1e-13, 0.1
 # The size of a surface is measured on a grid with this number of points along u and along v.
 SIZES = 17
@@ -47,7 +47,7 @@ class Known(NamedTuple):
 
 
 class Curvature:
-    """K of a surface at parameters (k, 2), which may lie beyond a periodic end.
+    """K of a surface at parameters (k, 2), which may exceed the domain in periodic directions.
 
     Derivatives of the surface come from its formulas; for a callable, from its tape of NumPy
     operations, or else from differences, whose error is estimated by steps twice as long.
@@ -137,7 +137,7 @@ class Curvature:
         return Known(K, SURE * error, np.stack(np.broadcast_arrays(*form), axis=1))
 
     def _thrice(self, u: Array, v: Array) -> Array:
-        """Return K in three columns, as differences of points require."""
+        """Return K (k, 3) in three equal columns, since `differences` is made for points."""
         return np.repeat(self.at(np.stack([u, v], axis=1)).K[:, None], 3, axis=1)
 
     def _inside(self, places: Array) -> tuple[Array, Array]:

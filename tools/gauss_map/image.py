@@ -126,7 +126,7 @@ class GaussianImage:
 
     @cached_property
     def cones(self) -> Array:
-        """The symmetric matrices M (3, 3, 3) of the cones nᵀ M n = 0 on which the sides lie.
+        """The three symmetric matrices M (3, 3, 3) of the cones nᵀ M n = 0 through the `arcs`.
 
         They are the matrices of the quadratic forms U, V, W, up to a common positive factor; the
         edges are u = 0, v = 0 and w = 1 − u − v = 0. The three forms have the same sign at the
@@ -140,7 +140,7 @@ class GaussianImage:
         """The normals along the edges u = 0, v = 0 and w = 0, counter-clockwise in (u, v).
 
         They run from v = 1 to w = 1, from w = 1 to u = 1 and from u = 1 to v = 1. An edge that is
-        a point gets the limit of the normals nearby.
+        collapsed to a point gets the limit of the normals nearby.
         """
         return edge_arcs(self._patch.normals[0], self._noise)
 
@@ -159,7 +159,7 @@ class GaussianImage:
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """The pieces of one sign of the Gaussian curvature, see `split_patch`."""
+        """The pieces of the patch, on each of which K has one sign, see `split_patch`."""
         return pieces_of(self._patch)
 
     @cached_property
@@ -173,7 +173,7 @@ class GaussianImage:
         return float(self._measures[1][0])
 
     def contains(self, normals: ArrayLike) -> NDArray[np.bool_]:
-        """Return which directions are oriented normals of the patch.
+        """Return a mask of the directions that are oriented normals of the patch.
 
         The boundary belongs to the image. The result is exact for the given control points and
         directions: signs that rounding leaves open are decided with integers. So an image without

@@ -1,4 +1,4 @@
-"""Curves on a surface, and their images, where the number of points with a normal changes."""
+"""Curves whose Gaussian images separate normals with different numbers of points."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ PLACES, ROUNDS = 9, 5
 
 @dataclass(frozen=True, eq=False)
 class ImageCurve:
-    """A curve on a surface; at its image the number of points with a normal changes.
+    """A curve on a surface; across its image, the number of points with a normal changes.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class ImageCurve:
 
 @dataclass(frozen=True, eq=False)
 class Traced:
-    """A curve, and the functions `of` of the surface or spline on which it lies."""
+    """A curve, and the functions (`of`) of the surface or spline on which it lies."""
 
     curve: ImageCurve
     of: Curves
@@ -86,7 +86,7 @@ class Traced:
         return replace(self, curve=curve)
 
     def angles(self, normals: Array) -> Array:
-        """Return the angles (S,), in radians, from normals to the image."""
+        """Return the angles (S,), in radians, from unit normals to the image of the curve."""
         from scipy.spatial import KDTree
 
         uv, last = self.curve.uv, len(self.curve.uv) - 1
@@ -113,14 +113,14 @@ class Curves:
     """The functions that evaluate and refine curves on a surface or a spline.
 
     Here the curves are polylines of the parameter plane; a subclass for other curves overrides
-    `onto`. `jets` returns 2-jets (k, 6, 3) at parameters (k, 2); `size` is that of the surface.
+    `onto`. `jets` returns 2-jets (k, 6, 3) at parameters (k, 2); `size` is the size of the surface.
     """
 
     jets: OfPlaces
     size: float
 
     def onto(self, uv: Array) -> Array:
-        """Move parameters (k, 2) near the curves onto them."""
+        """Move parameters (k, 2) near the curves onto the curves."""
         return uv
 
     def with_cusps(self, uv: Array) -> tuple[Array, Indices]:
@@ -128,7 +128,7 @@ class Curves:
         return uv, np.empty(0, dtype=np.int64)
 
     def traced(self, uv: Array, tolerance: float) -> Traced:
-        """Insert vertices into a polyline (k, 2) until it and its image are close to a curve.
+        """Insert vertices into a polyline (k, 2) until it and its image follow the curve closely.
 
         The tolerance is a distance in space, relative to the size of the surface, and also an angle
         in radians on the sphere.

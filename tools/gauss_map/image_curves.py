@@ -55,8 +55,8 @@ def folds(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve, ...]:
 
     See Also
     --------
-    gaussmap.gauss_map.parabolic_points : the same for a whole surface, with points where K touches
-        zero, and flat regions.
+    gaussmap.gauss_map.parabolic_points : the parabolic curves of a surface without its trim, with
+        points where K touches zero, and flat regions.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def border_image(self: GaussMap, *, tolerance: float = 1e-4) -> tuple[ImageCurve
 
 
 def margin(self: GaussMap, normals: ArrayLike) -> Array:
-    """Return the angles from normals to the nearest change of the number of their points.
+    """Return the angles from normals to the nearest normals at which the number of points changes.
 
     Parameters
     ----------
@@ -111,7 +111,8 @@ def margin(self: GaussMap, normals: ArrayLike) -> Array:
     Returns
     -------
     (S,) float64 array
-        Angles, in degrees, to the nearest image of a fold or a boundary; infinite without any.
+        Angles, in degrees, to the nearest image of a fold or a boundary; infinite if the surface
+        has neither.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The normals of a single patch: membership in floating point, and exactly where undecided."""
+"""Membership in the Gaussian image of one patch: in floating point, and exactly where undecided."""
 
 from __future__ import annotations
 
@@ -43,7 +43,10 @@ class Members:
 
 @dataclass(frozen=True, eq=False)
 class PatchNormals:
-    """The oriented normals of one quadratic patch (6, 3), with its boundary, decided exactly."""
+    """The set of the oriented normals of one quadratic patch; membership is decided exactly.
+
+    `control_points` are (6, 3). The boundary of the patch belongs to it.
+    """
 
     control_points: Array
 
@@ -82,14 +85,17 @@ class PatchNormals:
 
     @cached_property
     def vectors(self) -> Patch:
-        """The vectors of eq. (8), times the scale; p is relative to the control point b002."""
+        """The vectors a, b, c, d, e, p of eq. (8) of the paper, times the scale.
+
+        p is relative to the control point b002.
+        """
         net = self.scale * (self.control_points - self.control_points[2])
         found = python_function(formulas.power_form)(*map(vector, net))
         return Patch(*(Vector(*map(float, x)) for x in found))
 
     @cached_property
     def exact_vectors(self) -> Patch:
-        """The vectors of eq. (8) as integers, up to a common power of two."""
+        """The vectors of eq. (8) of the paper as integers, up to a common power of two."""
         net, _ = integers(self.control_points)
         return python_function(formulas.power_form)(*map(vector, net))
 
@@ -101,17 +107,17 @@ class PatchNormals:
 
     @cached_property
     def _bound(self) -> float:
-        """A bound of the rounding error of U, V, W, as for the patches of a spline.
+        """A bound of the rounding errors of the forms U, V, W, as for the patches of a spline.
 
-        The errors come from differences of control points, which are of size 1; a, b, c may be much
-        smaller.
+        It does not vanish with the vectors a, b, c: they are differences of control points, which
+        are scaled to about 1 and have rounding errors of that size.
         """
         error = FORM_ERROR * (sum(self._sizes) + FORM_ERROR)
         return 32.0 * LONGEST_SQUARED * error
 
     @cached_property
     def _shortest(self) -> float:
-        """The least length of N, as a sum of moduli, at which its direction is certain."""
+        """The least sum of the moduli of the components of N for which its direction is certain."""
         return NEAR_SINGULAR_POINT * (2.0 * self._sizes[0] + self._sizes[1]) ** 2
 
     def _decide(self, members: Members, rows: NDArray[np.intp], normals: Array) -> None:
@@ -133,7 +139,10 @@ class PatchNormals:
 
 
 def _on_line(patch: Patch, n: Vector) -> bool:
-    """Return whether n with U = V = D = 0 is the normal along a line, or of the whole patch."""
+    """Return whether n is the normal along a parabolic line, or of the whole patch.
+
+    The forms U, V and D vanish at n.
+    """
     line = python_function(lines.parabolic_line)
     rows = [line(patch, n, s, t) for s, t in ((1, 0), (0, 1))]
     row = next((row for row in rows if row[0] or row[1]), None)
@@ -165,7 +174,7 @@ def _has_direction(
     first: Place,
     last: Place,
 ) -> bool:
-    """Return whether N·n is positive somewhere between two points of the parameter plane."""
+    """Return whether N·n is positive somewhere on the segment between two parameter pairs."""
 
     def towards(u: Fraction, v: Fraction) -> Fraction:
         _, _, field = python_function(formulas.tangents)(patch, u, v)

@@ -178,7 +178,7 @@ def parabolic_points(
 
 
 def traced_curves(surface: Surface | Spline, tolerance: float) -> list[Traced]:
-    """Return the curves of `parabolic_points`, in a form that can be refined."""
+    """Return the curves of `parabolic_points` with the functions that can refine them."""
     return _zeros_of(surface, tolerance, (CELLS, CELLS)).curves(tolerance)
 
 

@@ -41,7 +41,8 @@ class ParabolicLine:
     s, t, rho : float
         The coefficients of the line in the barycentric parameters u, v of the patch.
     normal : (3,) float64 array
-        The unit normal, oriented as in the middle of the part nearest to the triangle.
+        The unit normal, oriented as in the middle of `segment` or, if this is None, at the point
+        of the line nearest to the middle of the triangle.
     multiplicity : int
         1 where the curvature changes its sign across the line, 2 where it touches zero, 3 where all
         three lines coincide.
@@ -169,7 +170,7 @@ def lines_of(patch: Patches) -> tuple[ParabolicLine, ...]:
 
 
 def pieces_of(patch: Patches) -> tuple[Piece, ...]:
-    """Return the pieces of one sign of the triangle of one patch."""
+    """Return the pieces of the parameter triangle of one patch in which K has one sign."""
     polygons = [TRIANGLE]
     for line in lines_of(patch):
         if line.segment is not None:
@@ -185,7 +186,10 @@ def pieces_of(patch: Patches) -> tuple[Piece, ...]:
 
 
 def clipped(polygon: Array, line: Array) -> Array | None:
-    """Return the part of a convex polygon (k, 2) where line · (u, v, 1) ≥ 0; None if it is thin."""
+    """Return the part of a convex polygon (k, 2) where line · (u, v, 1) ≥ 0.
+
+    Return None if this part has no interior.
+    """
     heights = _heights(polygon, line)
     if heights.max() <= 0.0:
         return None
@@ -200,7 +204,7 @@ def clipped(polygon: Array, line: Array) -> Array | None:
 
 
 def _heights(places: Array, line: Array) -> Array:
-    """Return line · (u, v, 1) at points (k, 2), zero where it is so up to rounding."""
+    """Return line · (u, v, 1) at points (k, 2), and 0 where it is zero up to rounding."""
     heights = places @ line[:2] + line[2]
     return np.where(np.abs(heights) <= PARAMETER_ERROR * (1.0 + abs(line[2])), 0.0, heights)
 
@@ -247,17 +251,17 @@ def _normal_at(patch: Patches, place: Array) -> Array:
 
 
 def _directions(patch: Patches) -> list[tuple[float, float, int]]:
-    """Return the real directions (s, t), of unit length, with their multiplicities."""
+    """Return s, t, of unit length, and the multiplicity of all real parabolic lines."""
     angle, roots = _roots(patch)
     angles = [math.atan2(1.0, float(x.real)) + angle for x in roots if abs(x.imag) <= DOUBLE_ROOT]
     return [(math.cos(x), math.sin(x), count) for x, count in _merged(sorted(angles))]
 
 
 def _roots(patch: Patches) -> tuple[float, NDArray[np.complex128]]:
-    """Return an angle, and the roots x of the binary cubic: (s, t) is (x, 1) rotated by the angle.
+    """Return an angle, and the roots x of the binary cubic of the directions (s, t).
 
-    The angle is chosen such that no root is near infinity. There are no roots if the cubic
-    vanishes.
+    A direction is (x, 1), rotated by the angle, which is chosen such that no root is near infinity.
+    There are no roots if the cubic vanishes.
     """
     coefficients = np.array([float(x[0]) for x in patch.apply(formulas.parabolic_directions)])
     error = (
@@ -283,7 +287,7 @@ def _turned(coefficients: Array, angle: float) -> Array:
 
 
 def _merged(angles: list[float]) -> list[tuple[float, int]]:
-    """Merge directions (as angles, modulo π) that are nearly equal."""
+    """Merge directions that are nearly equal, given as angles; return means and numbers."""
     groups: list[list[float]] = []
     for angle in angles:
         if groups and angle - groups[-1][-1] <= DOUBLE_ROOT:
@@ -307,7 +311,7 @@ def _row(patch: Patches, s: complex, t: complex) -> tuple[NDArray[Any], NDArray[
 
 
 def _line(patch: Patches, s: float, t: float) -> tuple[float, Array] | None:
-    """Return ρ and the normal of the line with a direction; None for a line at infinity."""
+    """Return ρ and the normal of the line s u + t v + ρ = 0; None for a line at infinity."""
     row, normal, length = _row(patch, s, t)
     slope = float(row[:2] @ [s, t])
     if length <= patch.normal_noise[0] or abs(slope) <= VANISHING * patch.tangent[0]:
@@ -329,7 +333,7 @@ def _segment(s: float, t: float, rho: float) -> Array | None:
 def _oriented(
     patch: Patches, s: float, t: float, rho: float, normal: Array, segment: Array | None
 ) -> Array:
-    """Return the normal with the sign of N(u,v) on the line."""
+    """Return the normal of a line with the orientation of N(u,v) on the line."""
     centre = TRIANGLE.mean(axis=0)
     place = centre - (s * centre[0] + t * centre[1] + rho) * np.array([s, t])
     place = place if segment is None else segment.mean(axis=0)
@@ -344,7 +348,10 @@ def _sign_in(patch: Patches, polygon: Array) -> int:
 
 
 def cubic_bernstein(places: Array) -> Array:
-    """Return the weights (…, 10) of the coefficients D300, D210, … at points u, v (…, 2)."""
+    """Return the ten cubic Bernstein polynomials (…, 10) at points u, v (…, 2).
+
+    They are the weights of the coefficients D300, D210, ….
+    """
     u, v = places[..., 0], places[..., 1]
     w = 1.0 - u - v
     indices = [(i, j, 3 - i - j) for i in range(3, -1, -1) for j in range(3 - i, -1, -1)]

@@ -22,7 +22,7 @@ __all__ = ["ZerosOfSpline"]
 
 # The parameters u, v of the corners of a patch.
 CORNERS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
-# A point of an edge within this distance of a corner, in cells, is the corner.
+# A point of an edge within this distance of a corner, in cells, counts as the corner.
 AT_CORNER = 1e-9
 # The distance from a segment, in cells, at which the sign of K is taken on both sides.
 ASIDE = 1e-7
@@ -76,13 +76,13 @@ class ZerosOfSpline(Zeros):
         return cell[:, None] + 0.5 + local @ grid.CORNERS[patches % 4]
 
     def _edges(self, lines: list[tuple[int, Array]]) -> Array:
-        """Return the edges of patches (k, 2, 2), each once, and cut where a line ends on it.
+        """Return the edges of patches (k, 2, 2), each once, cut where parabolic lines end on them.
 
         `lines` are the parabolic lines of patches: the index of a patch, and two ends, in cells.
         """
         corners = self._places(np.arange(self.spline.patches), CORNERS)
         ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2, 2)
-        # Both patches have the edge, starting from the same end.
+        # Each inner edge occurs in both of its patches: both give it the same direction.
         turned = np.diff(ends, axis=1)[:, 0] @ [2.0, 1.0] < 0.0
         ends[turned] = ends[turned, ::-1]
         period = np.where(self.periodic, 4 * np.array(self.spline.cells), np.iinfo(np.int64).max)

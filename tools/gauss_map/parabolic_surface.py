@@ -17,12 +17,13 @@ from .zero_curves import zero_curves
 
 __all__ = ["CELLS", "MOST_CELLS", "ZerosOfSurface"]
 
-# The numbers of cells of the grid along u and v. The grid is refined where curves are closer to
-# each other than a cell, or smaller, and where more than this share of its cells contains curves.
+# The grid has at least CELLS cells along u and along v, and at most MOST_CELLS. It is refined if
+# curves are closer to each other than a cell, or smaller than a cell, and if more than the fraction
+# CROWDED of its cells contains curves.
 CELLS, MOST_CELLS, CROWDED = 128, 512, 1 / 8
 # A larger share of the domain without a known curvature causes a warning.
 WORTH_A_WARNING = 1e-4
-# Isolated zeros of K whose cells are this close are one zero.
+# Isolated zeros of K whose cells are this close, in cells, count as one zero.
 TOGETHER = 4
 # Derivatives of K below this bound count as zero. The derivative in the direction in which the
 # normal is constant is relative to the gradient of K; it vanishes all along a curve with a single
@@ -34,8 +35,8 @@ NO_CHANGE = 1e-6
 class ZerosOfSurface(Zeros):
     """The zeros of K of a surface.
 
-    Branches closer to each other than `size`, relative to the domain, count as crossing curves, or
-    as one point if they form a closed curve.
+    Branches of curves K = 0 closer to each other than `size`, relative to the domain, count as
+    crossing curves, or as one point if they form a closed curve.
     """
 
     def __init__(self, surface: Surface, cells: tuple[int, int], size: float) -> None:
@@ -56,7 +57,7 @@ class ZerosOfSurface(Zeros):
         return zero_curves(self.grid, self.critical.saddles)
 
     def onto(self, uv: Array) -> Array:
-        """Move parameters near the curves onto them."""
+        """Move parameters (k, 2) near the curves onto the curves."""
         return self.curvature.onto_zeros(uv)
 
     def warn(self, stacklevel: int) -> None:

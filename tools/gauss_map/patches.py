@@ -74,7 +74,7 @@ class Patches:
         return Patches(self.vectors[rows], self.noise[rows])
 
     def apply(self, formula: Callable[..., Any], *more: ArrayLike | Vector) -> Any:  # noqa: ANN401
-        """Return the outputs of a formula for patches, where each number is an array (k,)."""
+        """Return the outputs of a formula for all patches: arrays (k,) in place of numbers."""
         return python_function(formula)(patch(self.vectors), *more)
 
     @cached_property
@@ -107,12 +107,12 @@ class Patches:
 
     @cached_property
     def normal_noise(self) -> Array:
-        """The error (k,) of a control normal."""
+        """A bound (k,) of the errors of the control normals."""
         return 8.0 * self.tangent * (self.noise + np.spacing(self.tangent))
 
     @cached_property
     def cubic_rounding(self) -> Array:
-        """The rounding error (k,) of a coefficient of the cubic."""
+        """A bound (k,) of the rounding errors of the coefficients of the cubic."""
         return CUBIC_ERROR * self.second**2 * self.tangent**4
 
     @cached_property
@@ -145,7 +145,7 @@ def checked_nets(nets: ArrayLike) -> Array:
 
 
 def _computable(array: Array, name: str) -> Array:
-    """Return an array of usable numbers; InputError with the row of the first unusable one."""
+    """Return the array itself; InputError if it holds NaN, infinity or numbers too large."""
     rows = np.abs(array).reshape(len(array), -1)
     if not np.isfinite(rows).all():
         row = int(np.argmin(np.isfinite(rows).all(axis=1)))
@@ -156,6 +156,6 @@ def _computable(array: Array, name: str) -> Array:
 
 
 def _stacked(vectors: Iterable[Vector], count: int) -> Array:
-    """Return vectors whose components are numbers or arrays as an array (count, m, 3)."""
+    """Stack m vectors, whose components are numbers or arrays (count,), as (count, m, 3)."""
     rows = [np.broadcast_to(x, count) for vector in vectors for x in vector]
     return np.stack(rows, axis=1).reshape(count, -1, 3).copy()

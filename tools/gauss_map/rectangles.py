@@ -12,7 +12,7 @@ __all__ = ["merged"]
 
 
 def merged(cells: Flags, lines: Sequence[Array]) -> Array:
-    """Return the cells of a grid that are True, merged first along v and then along u.
+    """Return the cells of a grid that are True as rectangles, merged along v and then along u.
 
     `lines` are the parameters u and v of the nodes.
     """

@@ -13,7 +13,7 @@ __all__ = ["sign_changes", "with_borders"]
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-# Values grow from a boundary if, next to it, they exceed their error by this factor.
+# Values count as growing from a boundary if, next to it, they exceed their error by this factor.
 CLEAR = 100.0
 TINY = float(np.finfo(float).tiny)
 
@@ -43,7 +43,7 @@ def sign_changes(
     last = 2 * np.array(values.shape) - 2
 
     def name(code: Integers) -> Hashable:
-        """Return a key of a side, the same on both sides of a seam."""
+        """Return a key for a side of a cell; sides that a seam identifies have the same key."""
         for axis, kind in enumerate(kinds):
             if kind in ("periodic", "mirrored") and code[axis] == last[axis]:
                 code = np.where(np.arange(2) == axis, 0, code)
@@ -63,8 +63,8 @@ def sign_changes(
 def with_borders(values: Array, noise: Array, kinds: tuple[str, str]) -> Array:
     """Return values whose sign changes at those open boundaries on which they are zero.
 
-    So the boundary is a line between values ≥ 0 and < 0. Values are zero up to `noise`, and must
-    grow linearly from the boundary: otherwise they only touch zero.
+    So the boundary is a line between values ≥ 0 and < 0. Values count as zero up to `noise`. They
+    must grow linearly from the boundary: otherwise they only touch zero.
     """
     result = values.copy()
     for axis, kind in enumerate(kinds):

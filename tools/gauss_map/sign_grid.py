@@ -24,11 +24,12 @@ TINY = float(np.finfo(float).tiny)
 class SignGrid:
     """K at the nodes of a grid, and the changes of its sign.
 
-    `values` are those of K, with the sign of a neighbour where they are zero up to their error or
-    unknown, and NaN without such a neighbour. So a curve through nodes is crossed once or not at
-    all, whatever the signs of rounding errors. K is zero, up to its error, at all corners of the
-    cells in `flat`, and unknown at corners of those in `unknown`; `near_curves` are the cells next
-    to a change of sign, or to unknown cells. `areas` are the areas of cells, relative to the
+    `values` are values of K. Where K is zero up to its error, or unknown, the value has the sign of
+    a neighbour, or is NaN if no neighbour has a sign. So a curve through nodes is crossed once or
+    not at all, whatever the signs of rounding errors. `flat` are the cells at whose corners K is
+    zero up to its error, or unknown, but not unknown at all of them. `unknown` are the other cells
+    with NaN at a corner, `crossed` the cells with both signs, and `near_curves` the neighbours of
+    cells with both signs or with NaN at a corner. `areas` are the areas of cells, relative to the
     domain.
     """
 
@@ -75,7 +76,7 @@ class SignGrid:
         self.near_curves: Flags = near.astype(bool)
 
     def cells_at(self, places: Array) -> tuple[Indices, Indices]:
-        """Return the cells (i, j) that contain parameter pairs (k, 2) of the domain."""
+        """Return the indices i, j (k,) of the cells that contain parameter pairs (k, 2)."""
         i, j = (
             np.clip(np.searchsorted(line, x, side="right") - 1, 0, len(line) - 2)
             for line, x in zip(self.lines, places.T, strict=True)
@@ -93,7 +94,7 @@ def of_corners(x: NDArray[Any]) -> NDArray[Any]:
 
 
 def _line(low: float, high: float, count: int, wraps: bool) -> Array:
-    """Return count + 1 nodes; in a periodic direction, one period that begins inside the domain."""
+    """Return count + 1 nodes; in a periodic direction, they begin inside the domain."""
     shares = (np.arange(count + 1) + OFFSET) / count
     if not wraps:
         shares[0], shares[-1] = 0.0, 1.0

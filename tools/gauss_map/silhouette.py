@@ -62,7 +62,7 @@ class Silhouette(Samples):
     Attributes
     ----------
     polylines : tuple of (k,) int64 arrays
-        The rows along each curve; a closed one repeats its first row at its end.
+        The indices of the rows along each curve; a closed curve repeats its first row at its end.
     eye : View or None
         The direction or the viewpoint.
 
@@ -221,9 +221,10 @@ def _view(direction: ArrayLike | None, viewpoint: ArrayLike | None) -> View:
 def _move_others(
     geometry: OnSpline, view: View, places: Array, arrays: dict[str, NDArray[Any]]
 ) -> int | None:
-    """Move samples that are not on the surface to its contour generator; return how many remain.
+    """Move samples that are not on the surface to its contour generator.
 
-    The samples, which were found at parameters (N, 2) of the spline, are overwritten.
+    The samples, which were found at parameters (N, 2) of the spline, are overwritten. Return how
+    many are still not on the surface; None if `arrays` does not say which samples are on it.
     """
     if FLAG_NAMES[0] not in arrays:
         return None
@@ -237,10 +238,10 @@ def _move_others(
 def _move_to_contour(
     geometry: OnSpline, view: View, places: Array, arrays: dict[str, NDArray[Any]], rows: Indices
 ) -> Flags:
-    """Move samples (k,) to the contour generator, overwriting them; return which ones moved.
+    """Move the samples in `rows` (k,) to the contour generator; return a mask (k,) of successes.
 
-    Newton's method for N·d = 0, along the gradient from the parameters (N, 2), also converges at
-    parabolic points.
+    The moved samples are overwritten. Newton's method for N·d = 0, along the gradient from the
+    parameters (N, 2), also converges at parabolic points.
     """
     steps, start = geometry.spline.frame[2:], places[rows]
     uv, near = start.copy(), np.zeros(len(rows), dtype=bool)
@@ -268,7 +269,7 @@ def _move_to_contour(
 
 
 def _of_rows(lines: Sequence[Indices], rows: Flags) -> tuple[Indices, ...]:
-    """Return polylines without the rows that a mask drops, as indices of the rows it keeps."""
+    """Return polylines without the rows that a mask drops, renumbered for the remaining rows."""
     number, found = np.cumsum(rows) - 1, list[Indices]()
     for line in lines:
         is_closed = len(line) > 1 and line[0] == line[-1]
@@ -304,7 +305,7 @@ def great_circle(axis: NDArray[np.float64], count: int) -> NDArray[np.float64]:
 def _by_count(
     geometry: OnSpline, axis: NDArray[np.float64], count: int, progress: bool
 ) -> tuple[NDArray[np.float64], Hits]:
-    """Return normals with about `count` samples, and their hits."""
+    """Return normals on a great circle that have about `count` samples, and their hits."""
     size, best, nearest = count, None, math.inf
     for _ in range(TRIES):
         normals = great_circle(axis, size)

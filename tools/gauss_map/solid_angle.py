@@ -27,16 +27,16 @@ Array = NDArray[np.float64]
 NARROW = 0.5
 # A sum of unit normals shorter than this has no direction.
 SMALL = 1e-9
-# Around a singular point inside, wide triangles remain at any depth. Those that remain after DEPTH
-# subdivisions are omitted, a solid angle of about 2^-26 (deeper, rounding errors are larger). Along
-# a curve of singular points their number soon exceeds MOST_WIDE, and about 2^-12 is omitted. No
-# more than LEFT_OUT is added by the integral along the boundary.
+# Around a singular point inside a triangle, wide triangles remain at any depth. Triangles that are
+# wide after DEPTH subdivisions are omitted: a solid angle of about 2^-26 (deeper, rounding errors
+# are larger). Along a curve of singular points, the number of wide triangles soon exceeds
+# MOST_WIDE, and about 2^-12 is omitted. The integral along the boundary adds at most LEFT_OUT.
 DEPTH = 26
 MOST_WIDE = 20_000
 LEFT_OUT = 2.0**-6
 # Gauss-Legendre quadrature on an arc and on its halves must agree to AGREEMENT, or the halves are
-# cut again. So are arcs with an end shorter than the rest by the factor SHORT, where the direction
-# may turn too fast for both quadratures.
+# cut again. They are also cut if the control normal at an end of the arc is shorter than the
+# longest one by the factor SHORT: its direction may turn too fast there for both quadratures.
 SHORT = 1.0 / 16.0
 NODES = 16
 AGREEMENT = 1e-15
@@ -47,7 +47,7 @@ MOST_PARTS = 1_000_000
 POLES = np.array([x for x in product((-1.0, 0.0, 1.0), repeat=3) if any(x)])
 POLES /= np.linalg.norm(POLES, axis=1, keepdims=True)
 SAMPLES = 9
-# The edges of a triangle, counter-clockwise in (u, v): their corners, and the opposite one.
+# The edges of a triangle, counter-clockwise in (u, v): both corners, and the opposite corner.
 EDGES = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 
 
@@ -69,11 +69,12 @@ def solid_angles(normals: Array) -> Array:
 
 
 def by_boundary(normals: Array, about: float) -> float:
-    """Return the solid angle of one triangle (3, 3, 3, 3) by the integral along its boundary alone.
+    """Return the solid angle of one triangle (3, 3, 3) by the integral along its boundary alone.
 
-    The integral is known up to whole spheres, which `about` decides. It is also accurate at a
-    singular corner, where subdivision has to omit something. Returns `about` if the integral
-    differs from it by more than LEFT_OUT, as where the boundary is not closed.
+    The integral is known up to multiples of 4π, which the approximate value `about` decides. It is
+    also accurate at a singular corner, where subdivision has to omit a part of the triangle. Return
+    `about` if the integral differs from `about` by more than LEFT_OUT, as for a boundary that is
+    not closed.
     """
     arcs = np.concatenate(boundary_of(normals[None]))
     columns = map(vector, np.moveaxis(arcs[..., None, :], 1, 0))
@@ -88,21 +89,25 @@ def by_boundary(normals: Array, about: float) -> float:
 
 
 def is_wide(normals: Array) -> NDArray[np.bool_]:
-    """Return which triangles (k,) have normals far from their mean."""
+    """Return a mask of the triangles (k,) that have normals far from their mean."""
     return ~_near_mean(normals)[1] & normals.any(axis=(1, 2, 3))
 
 
 def triangle_of(normals: Array, corners: Array) -> Array:
-    """Return the polar forms (k, 3, 3, 3) of triangles with barycentric corners (k, 3, 3)."""
+    """Return the polar forms (k, 3, 3, 3) on parts of triangles.
+
+    `corners` (k, 3, 3) are the barycentric coordinates of the corners of each part.
+    """
     return np.einsum("kia,kjb,kabx->kijx", corners, corners, normals, optimize=True)
 
 
 def boundary_of(normals: Array) -> list[Array]:
     """Return the arcs (k, 3, 3) that bound the images of k triangles, counter-clockwise.
 
-    Three belong to the edges, from u = 1 on. An edge without normals has their limit, a part of a
-    great circle. Three more close the boundary at singular corners: the limits of the normals
-    there, which lie on a great circle; at regular corners they are points.
+    Three arcs belong to the edges, from u = 1 on. An edge without normals has the arc of the limits
+    of normals, a part of a great circle. Three more arcs close the boundary at singular corners:
+    the limits of the normals there, which lie on a great circle. At regular corners, these arcs are
+    single points.
     """
     edges = []
     for i, j, k in EDGES:
@@ -170,7 +175,7 @@ QUARTERS = 0.5 * np.array(
 
 
 def _narrow(normals: Array) -> tuple[NDArray[np.intp], Array, Array]:
-    """Subdivide triangles until each has its normals near a pole.
+    """Subdivide triangles until all normals of each triangle are near a direction, its pole.
 
     Returns the index of the original triangle of each part, the poles (m, 3) and the polar forms
     (m, 3, 3, 3). Parts without normals are omitted.
@@ -190,7 +195,10 @@ def _narrow(normals: Array) -> tuple[NDArray[np.intp], Array, Array]:
 
 
 def _near_mean(normals: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Return the mean directions (k, 3) of control normals, and whether all are near their mean."""
+    """Return the mean directions (k, 3) of the control normals of triangles, and a mask (k,).
+
+    The mask says whether all control normals of a triangle are near their mean.
+    """
     net = normals.reshape(-1, 9, 3)
     lengths = np.linalg.norm(net, axis=2, keepdims=True)
     directions = np.divide(net, lengths, out=np.zeros_like(net), where=lengths > 0.0)
@@ -205,8 +213,9 @@ def _near_mean(normals: Array) -> tuple[Array, NDArray[np.bool_]]:
 def _cut(normals: Array) -> tuple[Array, NDArray[np.intp]]:
     """Cut triangles into smaller ones; also return the index of the original of each.
 
-    A triangle is cut into four. At a singular corner where the normals turn by more than 60
-    degrees, it is cut into two from that corner: smaller triangles there turn as much.
+    A triangle is cut into four. If the normals turn by more than 60 degrees at a singular corner,
+    the triangle is cut into two from that corner, since the normals of smaller triangles at the
+    corner would turn as much.
     """
     whole = np.ones(len(normals), dtype=bool)
     parts, which = [], []
@@ -229,14 +238,14 @@ def _cut(normals: Array) -> tuple[Array, NDArray[np.intp]]:
 
 
 def _has_short_end(arcs: Array) -> NDArray[np.bool_]:
-    """Return which arcs begin or end near a singular point, but not at it."""
+    """Return a mask of the arcs that begin or end near a singular point, but not at it."""
     lengths = np.linalg.norm(arcs, axis=2)
     ends = np.where(lengths[:, ::2] > 0.0, lengths[:, ::2], np.inf)
     return ends.min(axis=1) < SHORT * lengths.max(axis=1)
 
 
 def first_directions(arcs: Array) -> Array:
-    """Return the first control normal (k, 3) of each arc that is not zero, of unit length."""
+    """Return the first nonzero control normal (k, 3) of each arc, scaled to unit length."""
     nonzero = arcs.any(axis=2)
     first = np.take_along_axis(arcs, nonzero.argmax(axis=1)[:, None, None], axis=1)[:, 0]
     length = np.linalg.norm(first, axis=1, keepdims=True)

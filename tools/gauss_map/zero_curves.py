@@ -18,7 +18,7 @@ __all__ = ["zero_curves"]
 
 # Accuracy of a vertex, relative to the side of a cell on which it lies.
 ACCURACY = 1e-14
-# A vertex within this distance of a node, relative to the side, is the node.
+# A vertex within this distance of a node, relative to the side, counts as the node.
 AT_NODE = 1e-9
 # Largest distance, in cells, from a saddle to the boundary of its block. Curves that cross at a
 # small angle need a large block.
@@ -38,10 +38,10 @@ def zero_curves(grid: SignGrid, saddles: Array) -> list[Array]:
 
 
 def _hide_block(grid: SignGrid, values: Array, saddle: Array) -> int:
-    """Hide the values inside the smallest block around a saddle that at least four curves enter.
+    """Set values to NaN inside the smallest block around a saddle that at least four curves enter.
 
-    Returns half of its size in cells, 0 if there is none. Two curves suffice for a block that the
-    boundary of the domain clips: the ends of the others may be outside.
+    Return half of the size of the block in cells, 0 if there is no such block. Two curves suffice
+    for a block that the boundary of the domain clips: other curves may enter it outside the domain.
     """
     cell = np.ravel(grid.cells_at(saddle[None]))
     shape, wraps = np.array(values.shape), grid.curvature.wraps
@@ -66,7 +66,7 @@ def _hide_block(grid: SignGrid, values: Array, saddle: Array) -> int:
 
 
 def _to_saddles(grid: SignGrid, line: Array, blocks: list[tuple[Array, int]]) -> Array:
-    """Continue the ends of a line at the boundary of a block to the saddle in it."""
+    """Continue a line to the saddles of the blocks at whose boundaries it ends."""
     (low, high), period = grid.curvature.ends, grid.curvature.extent
     start, end = (np.empty((0, 2)) for _ in range(2))
     for saddle, half in blocks:
