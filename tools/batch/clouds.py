@@ -1,4 +1,4 @@
-"""The same number of points of each part, in NumPy arrays, for training."""
+"""`Clouds`: the same number of points of each part of a data set, in NumPy arrays, for training."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Clouds:
     Attributes
     ----------
     folder : Path
-        The data set.
+        The folder of the data set.
     settings : Settings
         The settings of the data set.
     parts : (P,) int64 array
@@ -66,7 +66,10 @@ class Clouds:
         return (self[place] for place in range(len(self)))
 
     def _rows(self, part: int, count: int) -> NDArray[np.int64]:
-        """Return the indices of the samples to take: each once before any is repeated."""
+        """Return the indices (points,) of the samples of a part to take.
+
+        No sample is repeated before all have been taken.
+        """
         if self.seed is None:
             return np.arange(self.points, dtype=np.int64) % count
         # The key includes the length of the seed; otherwise (1,) and (1, 0) would be the same.

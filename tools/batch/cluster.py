@@ -1,8 +1,8 @@
 """Running a data set on a cluster, by Dask's distributed scheduler.
 
-A task is a few parts. The worker that gets it writes them into the folder of the data set, which
-all machines see by the same path, and answers with a few numbers. If a worker is lost, Dask gives
-its task to another one, which samples the missing parts.
+A task is a few parts. A worker samples them, writes the samples into the folder of the data set,
+which all machines see by the same path, and answers with a few numbers. If a worker is lost, Dask
+gives its task to another one, which samples the missing parts.
 """
 
 from __future__ import annotations
@@ -27,11 +27,12 @@ from .workers import Tally, Worker, sampled
 
 __all__ = ["connected", "run_on_cluster"]
 
-# The number of times that a task is given to another worker because its worker is lost.
+# The number of times that a task may be given to another worker after its worker was lost.
 LOST = 10
 # Seconds that a scheduler, or its first worker, may take to answer.
 PATIENCE = 30
-# The number of tasks that the scheduler holds for each thread of a worker; others are sent later.
+# The number of tasks that the scheduler holds for each thread of a worker; further tasks are sent
+# later.
 AHEAD = 2
 # The largest number of parts of a task, and the least number of tasks for each thread of a worker
 # if there are enough parts.
@@ -42,7 +43,7 @@ _HERE = threading.local()
 
 @contextmanager
 def connected(scheduler: Any) -> Iterator[Any]:  # noqa: ANN401
-    """Yield a client of Dask for a client, a cluster or an address.
+    """Yield a client of Dask: the given one, or one that is connected to a cluster or address.
 
     Raises FileError if no scheduler answers, InputError for any other argument.
     """
@@ -72,7 +73,9 @@ def run_on_cluster(
     count: int | None,
     client: Any,  # noqa: ANN401
 ) -> Generator[Tally]:
-    """Yield tallies of `count` parts, a few at a time; closing the iterator cancels waiting tasks.
+    """Sample parts on a cluster; yield the tally of each task, which has a few parts.
+
+    `count` is the number of all parts, if it is known. Closing the iterator cancels waiting tasks.
 
     Raises FileError if workers have another version or do not see the folder of the data set, and
     if the scheduler is lost. Workers finish their current tasks even if a run is stopped.
@@ -104,7 +107,7 @@ def run_on_cluster(
 def work(plan: Plan, parts: Sequence[Input]) -> Tally:
     """Sample parts on a worker of Dask, in a process that belongs to the worker's thread."""
     # Dask forbids its workers to have child processes, which could be left behind. The process that
-    # samples ends with its parent (`end_with_parent`), so it cannot.
+    # samples ends with its parent (`end_with_parent`), so that it cannot be left behind.
     multiprocessing.current_process().daemon = False
     worker = getattr(_HERE, "worker", None)
     if worker is None or worker.plan.run != plan.run:
@@ -140,5 +143,5 @@ def _checked_workers(client: Any, plan: Plan) -> int:  # noqa: ANN401
 
 
 def state_of(folder: Path) -> tuple[str, str, bool]:
-    """Return the version of a worker's package, its formulas, and whether it sees the folder."""
+    """Return a worker's version of gaussmap, its digest of formulas, and if it sees `folder`."""
     return __version__, digest(), (folder / SETTINGS).is_file()

@@ -1,4 +1,4 @@
-"""`Dataset`: the contents of a folder of many sampled parts, and their reading."""
+"""`Dataset`: reads the samples of many parts, and their manifest, from a folder."""
 
 from __future__ import annotations
 
@@ -258,8 +258,8 @@ class Dataset:
             The requested fields of the samples. A field that a part lacks is NaN, −1, False or 0.
         shuffle : int or sequence of int, optional
             A seed for drawing points at random, without repetition if the part has enough.
-            ``shuffle=(seed, epoch)`` draws others in each epoch. Without a seed, the first points
-            are taken.
+            ``shuffle=(seed, epoch)`` draws other points in each epoch. Without a seed, the first
+            points are taken.
         dtype : {float32, float64}, optional
             The type of the numbers; that of the data set by default.
         labels : (P,) array_like, optional

@@ -83,7 +83,7 @@ class Settings:
         cls, asked: dict[str, Any], fields: tuple[str, ...], dtype: str = "float64"
     ) -> Settings:
         """Return settings of samples computed by this version of the package."""
-        # As if read from JSON: tuples become lists.
+        # By way of JSON, since settings that are read from a file have lists in place of tuples.
         return cls.from_json(cls(asked, fields, dtype, __version__, digest(), FORMAT).to_json())
 
     def to_json(self) -> str:
@@ -116,7 +116,7 @@ class Settings:
 
 
 def checked_names(names: object, known: Sequence[str], kind: str) -> tuple[str, ...]:
-    """Return the names if all are known, and there is at least one, and none twice."""
+    """Return the names as a tuple; InputError if there are none, or unknown or repeated ones."""
     items = None if isinstance(names, str) else listed(names)
     if items is None:
         raise InputError(f"{kind}s must be a tuple of names, not {shown(names)}.")
@@ -143,7 +143,7 @@ def read_settings(folder: PathLike) -> Settings:
 
 
 def part_path(folder: Path, part: int) -> Path:
-    """Return the path of the samples of a part."""
+    """Return the path of the Parquet file of a part."""
     return folder / POINTS / f"{part:06d}.parquet"
 
 
@@ -156,7 +156,7 @@ def parts_in(folder: Path) -> list[int]:
 
 
 def remove_from(folder: Path, parts: int) -> None:
-    """Remove the parts from index `parts` on, left by a run with a longer list."""
+    """Remove the files of parts with indices from `parts` on, left by a run with a longer list."""
     with _writing(folder):
         for part in parts_in(folder):
             if part >= parts:
@@ -165,9 +165,10 @@ def remove_from(folder: Path, parts: int) -> None:
 
 @contextmanager
 def replaced(folder: Path, path: Path) -> Iterator[Path]:
-    """Yield a path to write to; the file takes the place of `path` when it is complete.
+    """Yield a temporary path to write to; when it is complete, the file replaces `path`.
 
-    The path is in another folder: Polars and DuckDB would read an unfinished file as a part.
+    The temporary path is in the folder `partial`, since Polars and DuckDB read all files in
+    `points` as parts, even unfinished ones.
     """
     temporary = folder / PARTIAL / secrets.token_hex(8)
     try:
@@ -188,7 +189,7 @@ def replaced(folder: Path, path: Path) -> Iterator[Path]:
 
 @contextmanager
 def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Iterator[None]:
-    """Make the folder of a data set, or continue with an existing one; other runs may not write.
+    """Make the folder of a data set, or continue with an existing one; lock it for other runs.
 
     An existing data set must have the same settings; with `overwrite` it is removed first. The
     manifest is removed, and written again when all parts are done.
@@ -206,7 +207,8 @@ def opened(folder: PathLike, settings: Settings, overwrite: bool = False) -> Ite
         _refuse_links(path)
         path.mkdir(parents=True, exist_ok=True)
         if not (path / SETTINGS).exists() and any(
-            # A run that was killed while it wrote the settings left this file.
+            # A file with this beginning was left by a run that was killed while it wrote the
+            # settings.
             entry.name != LOCK and not entry.name.startswith(BEGUN)
             for entry in path.iterdir()
         ):

@@ -27,7 +27,7 @@ __all__ = ["Input", "Source", "content_of", "inputs_of", "parameters_of"]
 
 Source = Surface | Spline | Part | str | os.PathLike[str]
 # The fingerprint of a surface is its points at this number of parameters along u and along v:
-# enough to see small changes, and fewer than sampling takes.
+# enough to detect small changes, and fewer points than sampling evaluates.
 LATTICE = 17
 
 
@@ -46,10 +46,10 @@ class Input:
 
 
 def inputs_of(sources: Iterable[Source]) -> Iterator[Input]:
-    """Yield the parts of a list, one by one.
+    """Yield the `Input` of each entry of a list of parts.
 
     Whether files exist is not checked: a worker does that. Raises InputError for an entry that is
-    neither a surface nor a text.
+    neither a surface nor a name or path.
     """
     for part, source in enumerate(sources):
         if isinstance(source, str) and source in CATALOGUE:
@@ -86,7 +86,7 @@ def _of_surface(part: int, surface: Surface | Spline | Part) -> Input:
 
 
 def content_of(source: Surface | Spline | Part | Path) -> str:
-    """Return the SHA-256 of the sampled data: of a file's bytes, or of a surface's points.
+    """Return a SHA-256 that identifies a part: that of a file's bytes, or of points of a surface.
 
     A surface given by a function is identified by its points at a lattice of parameters; the code
     of the function does not matter.
@@ -108,7 +108,7 @@ def content_of(source: Surface | Spline | Part | Path) -> str:
 
 
 def parameters_of(source: Surface | Spline | Part) -> str:
-    """Return the parameters of a catalogue surface as JSON; an empty text for others."""
+    """Return the parameters of a catalogue surface as JSON; for other parts, an empty text."""
     function = getattr(source, "function", None)
     if not isinstance(function, CatalogueFunction):
         return ""

@@ -39,7 +39,8 @@ def watched(
 ) -> Iterator[Tally]:
     """Yield tallies of parts, and show the progress: parts done, failures, rate, time left.
 
-    `how` are options of tqdm. The number of parts may be unknown; `dashboard` is an address.
+    `parts` is the number of parts, None if it is unknown; `dashboard` is the address of Dask's
+    dashboard; `how` are options of tqdm.
     """
     if dashboard is not None and not how.get("disable"):
         _Lines().write(f"Dask's dashboard: {dashboard}")
@@ -56,7 +57,7 @@ def watched(
 
 
 class _Lines:
-    """Standard error as a file of lines."""
+    """A file-like object that prints each text as a line on standard error."""
 
     def write(self, text: str) -> None:
         if (line := text.strip()) and sys.stderr is not None:
@@ -96,9 +97,9 @@ def make(
 ) -> Tally:
     """Sample all parts into a data set; return the tally of all parts.
 
-    `plan` says what to sample, at `normals` if they are prescribed; `how` are options of tqdm.
-    Raises InputError and FileError as `folder.opened` does, and FileError if the data set cannot be
-    written.
+    `plan` describes the requested samples; they are at `normals`, if normals are prescribed. `how`
+    are options of tqdm. Raises InputError and FileError as `folder.opened` does, and FileError if
+    the data set cannot be written.
     """
     count = thread_count(None) if workers is None else whole_number(workers, "workers")
     seconds, memory = limits_of(count, time_limit, memory_limit)
@@ -133,7 +134,7 @@ def limits_of(workers: int, seconds: float, memory: float | None) -> tuple[float
 def _runner(
     workers: int, scheduler: object
 ) -> Iterator[tuple[Callable[..., Generator[Tally]], str | None]]:
-    """Yield the function that samples parts, here or on a cluster, and Dask's dashboard address."""
+    """Yield the function that samples parts, here or by Dask, and the address of the dashboard."""
     if scheduler is None:
         yield partial(run_locally, workers=workers), None
         return

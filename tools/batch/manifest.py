@@ -24,14 +24,14 @@ TYPES = {"int": "int64", "str": "string", "float | None": "float64"}
 
 
 def _column(meaning: str, unit: str = "", **default: Any) -> Any:  # noqa: ANN401
-    """Return the field of a column, with its meaning and its unit."""
+    """Return the dataclass field of a column, with the meaning and the unit as metadata."""
     about = {"meaning": meaning} | ({"unit": unit} if unit else {})
     return field(metadata=about, **default)
 
 
 @dataclass(frozen=True, slots=True)
 class ManifestRow:
-    """The status and results of a part, regardless of when and how often it was sampled."""
+    """A row of the manifest: the status and results of a part, however often it was sampled."""
 
     part: int = _column("the number of the part in the list, from 0 on")
     name: str = _column("the name of the part")
@@ -60,7 +60,7 @@ COLUMNS = {x.name: x for x in fields(ManifestRow)}
 
 
 def manifest_schema() -> Any:  # noqa: ANN401
-    """Return Arrow's schema, with units and meanings in the metadata."""
+    """Return the Arrow schema of the manifest, with units and meanings of columns as metadata."""
     arrow = from_extra("pyarrow", "batch", "a data set")
     return arrow.schema(
         [

@@ -49,7 +49,7 @@ class _How(TypedDict, total=False):
 
 
 class _Stored(_How, total=False):
-    """The options of data sets."""
+    """The options for making a data set, in addition to the sampling options."""
 
     workers: int | None
     scheduler: object
@@ -261,7 +261,7 @@ def _iterates(surfaces: Iterable[Source]) -> bool:
 def _each(
     surfaces: Iterable[Any], request: Request, how: dict[str, Any], on_error: str, shows: bool
 ) -> Iterator[Samples | GaussmapError]:
-    """Yield the samples of each surface, or the substitute that `on_error` names."""
+    """Yield the samples of each surface; for a surface that fails, do what `on_error` says."""
     from tqdm import tqdm
 
     bar = tqdm(surfaces, desc="sampling", unit="surface", disable=None if shows else True)

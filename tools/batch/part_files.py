@@ -51,16 +51,16 @@ __all__ = [
 
 LONGEST_REASON, CODEC = 100, "zstd"
 REMEDY = "remove it, and run the same sampling again"
-# The fields that all samples have if requested, of surfaces and of CAD parts.
+# The fields that both samples of surfaces and samples of CAD parts have if they are requested.
 ALWAYS = tuple(name for name in ARRAY_NAMES if name in ARRAY_NAMES_OF_PART)
 ROW, SETTINGS = b"row", b"settings"  # in the metadata of a part's schema
 ROWS_AT_ONCE = 1 << 16  # of the manifest
 
 
 def points_schema(settings: Settings) -> Any:  # noqa: ANN401
-    """Return the schema: the index of the part, and a column for each component of a field.
+    """Return the Arrow schema of a part: its index, and a column for each component of a field.
 
-    Only fields that some parts lack may be null: the face of a sample, for example.
+    A column may be null only if some parts lack its field: the index of a face, for example.
     """
     arrow = from_extra("pyarrow", "batch", "a data set")
     columns = [
@@ -83,7 +83,7 @@ def _key(settings: Settings) -> str:
 
 
 def points_table(samples: Samples, part: int, schema: Any) -> Any:  # noqa: ANN401
-    """Return the samples of a part; fields that they lack are null."""
+    """Return the samples of a part as an Arrow table; columns of missing fields are null."""
     arrow = from_extra("pyarrow", "batch", "a data set")
     held = columns_of(samples.arrays())
     count = len(samples)
@@ -100,7 +100,7 @@ def points_table(samples: Samples, part: int, schema: Any) -> Any:  # noqa: ANN4
 def write_part(
     folder: Path, settings: Settings, row: ManifestRow, samples: Samples | None = None
 ) -> None:
-    """Write a part and its row, replacing an existing file."""
+    """Write the file of a part, with its samples and its row, replacing an existing file."""
     schema = points_schema(settings)
     table = schema.empty_table() if samples is None else points_table(samples, row.part, schema)
     table = table.replace_schema_metadata({**schema.metadata, ROW: json.dumps(asdict(row))})
@@ -125,7 +125,7 @@ def write_manifest(folder: Path, settings: Settings, parts: Iterable[int]) -> No
 
 
 def rows_of(folder: Path, settings: Settings, parts: Iterable[int]) -> Iterator[ManifestRow]:
-    """Yield the rows of parts, all of which have files."""
+    """Yield the rows of the manifest of parts, all of which have files."""
     for part in parts:
         with opened_part(folder, settings, part) as (_, row):
             yield row
@@ -187,7 +187,7 @@ def _parquet() -> Any:  # noqa: ANN401
 
 
 def arrays_in(table: Any, names: Sequence[str]) -> dict[str, list[NDArray[Any]]]:  # noqa: ANN401
-    """Return the columns of fields; nulls become NaN, −1, False or 0."""
+    """Return the columns of each field as arrays; nulls become NaN, −1, False or 0."""
     return {name: [_filled(table[column]) for column in COLUMNS[name]] for name in names}
 
 
@@ -202,7 +202,7 @@ def _filled(column: Any) -> NDArray[Any]:  # noqa: ANN401
 
 
 def stacked(columns: Sequence[NDArray[Any]], name: str) -> NDArray[Any]:
-    """Return the columns of a field as its array, writable and in its own memory."""
+    """Return the array of a field, made of its columns; it is writable and has its own memory."""
     if row_shape(name):
         return np.stack(columns, axis=1)
     return np.array(columns[0])

@@ -64,7 +64,7 @@ class Plan:
     run: str = field(default_factory=secrets.token_hex)
 
     def normals(self) -> NDArray[np.float64] | None:
-        """Return the prescribed normals, read from their file, as they may be large."""
+        """Return the prescribed normals, if any, read from a file, since they may be large."""
         return _read(self.folder / NORMALS) if "normals" in self.settings.asked else None
 
 
@@ -108,7 +108,7 @@ def plan_of(
 
 
 def _known_fields(fields: Sequence[str], given: bool) -> tuple[str, ...]:
-    """Return the fields; some parts may lack those of CAD parts and of grids."""
+    """Return the requested fields, which may be fields that only CAD parts or only grids have."""
     names = listed(fields)
     if names is None:
         return checked_fields(fields)  # which raises

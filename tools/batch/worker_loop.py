@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["KEPT", "STOPPED", "Task", "serve"]
 
 GIB = 2**30
-# The statuses besides "ok" and "failed": the part is unchanged; its samples cannot be written.
+# The statuses besides "ok" and "failed": KEPT if the part is unchanged, and STOPPED if its samples
+# cannot be written.
 KEPT, STOPPED = "kept", "stopped"
 
 
@@ -41,7 +42,7 @@ class Task:
     plan : Plan
         The plan of the run.
     before : ManifestRow or None
-        The existing row of the part, which is kept if its content has not changed.
+        The row of the part from an earlier run; the part is kept if its content is the same.
     again : bool
         Whether this is a second attempt.
 
@@ -78,7 +79,7 @@ def serve(pipe: Connection, memory: float, parent: int) -> None:
 
 
 def _say(pipe: Connection, about: dict[str, Any]) -> None:
-    """Write a JSON text: unlike a pickle, it runs no code when it is read."""
+    """Send results as a JSON text, which runs no code when it is read, unlike a pickle."""
     pipe.send_bytes(json.dumps(about).encode())
 
 
@@ -94,7 +95,8 @@ def _answers(task: Task) -> Iterator[dict[str, Any]]:
         warnings.simplefilter("always")
         try:
             surface, known = _source(task)
-            # Sent first, so that the parent knows it even if sampling kills this process.
+            # These columns are sent first, so that the parent has them even if sampling kills this
+            # process.
             yield known
             if task.before is not None and known["content"] == task.before.content:
                 yield {"status": KEPT}
@@ -117,7 +119,10 @@ def _answers(task: Task) -> Iterator[dict[str, Any]]:
 
 
 def _source(task: Task) -> tuple[Any, dict[str, str]]:
-    """Return the part, and its identifying columns of the manifest."""
+    """Return the surface of a part, and the columns of the manifest that identify the part.
+
+    The surface is None if the file of the part has not changed.
+    """
     from ..cad.inspection import is_part_file
     from ..files.numpy_files import array_file
     from ..sources.surface_of import surface_of
@@ -138,7 +143,7 @@ def _source(task: Task) -> tuple[Any, dict[str, str]]:
 
 
 def _sampled(source: Any, task: Task) -> tuple[dict[str, Any], Any]:  # noqa: ANN401
-    """Return numbers for the manifest, and the samples."""
+    """Return the results of a part for its row of the manifest, and its samples."""
     from ...runtime.onto_surface.on_surface import place_of_samples
     from ...runtime.samples.fields import checked_fields
     from ..cad.part import Part

@@ -25,10 +25,10 @@ from .worker_loop import KEPT, STOPPED, Task, serve
 
 __all__ = ["Tally", "Worker", "run_locally", "sampled"]
 
-# The number of failures that are shown when a run ends; the manifest has all.
+# The largest number of failed parts that are shown when a run ends; the manifest has all of them.
 SHOWN = 10
-# A process has one thread, since one process runs on each core. Users' modules are found after
-# those of Python and of packages, so that they hide none of these.
+# A process has one thread, since one process runs on each core. Modules in the user's folder must
+# not hide modules of Python and of packages (PYTHONSAFEPATH).
 ENVIRONMENT = dict.fromkeys(
     ("NUMBA_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS",
      "PYTHONSAFEPATH"), "1"
@@ -37,9 +37,10 @@ ENVIRONMENT = dict.fromkeys(
 
 @dataclass(frozen=True, slots=True)
 class Tally:
-    """The numbers of parts that are sampled, failed, or done by an earlier run.
+    """The numbers of parts that were sampled, that failed, and that an earlier run had done (kept).
 
-    `failures` are the names of the first failed parts, with their errors.
+    `samples` is the number of samples of all these parts, and `failures` are the names of the first
+    failed parts, with their errors.
     """
 
     ok: int = 0
@@ -173,7 +174,10 @@ class Worker:
 def run_locally(
     plan: Plan, parts: Iterable[Input], count: int | None, workers: int
 ) -> Generator[Tally]:
-    """Yield a tally of each part; closing the iterator, errors and Ctrl-C end all processes."""
+    """Sample parts by processes on this machine; yield the tally of each part.
+
+    All processes end if the iterator is closed, or after an error or Ctrl-C.
+    """
     crew = [Worker(plan) for _ in range(workers if count is None else min(workers, count))]
     try:
         yield from sampled(parts, crew)
@@ -215,7 +219,7 @@ def sampled(parts: Iterable[Input], crew: Sequence[Worker]) -> Generator[Tally]:
 
 
 def _task(plan: Plan, part: Input) -> Task:
-    """Return the task of a part, with its existing row, if any."""
+    """Return the task of a part, with its row from an earlier run if the part may be kept."""
     row = row_of(plan.folder, plan.settings, part.part)
     if row is not None and (
         (row.name, row.source) != (part.name, part.source) or (plan.again and row.status == FAILED)
