@@ -65,7 +65,7 @@ def run(options: SimpleNamespace) -> None:
 
 
 def _parts_of(options: SimpleNamespace) -> tuple[list[Source], Named]:
-    """Return the parts, with files by name, and the options with which workers read these."""
+    """Return the parts, surfaces and names of files, and the options for reading these files."""
     none = dict.fromkeys(("formula", "domain", "time_limit", "memory_limit"))
     own = none | {"quiet": False}  # data sets do not depend on the number of threads
     named = Named.of(SimpleNamespace(**vars(options) | own))

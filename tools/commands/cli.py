@@ -67,7 +67,7 @@ def _run(arguments: list[str], ready: Callable[[], object]) -> int:
 
 
 def _usage(error: click.UsageError) -> str:
-    """Return the error in the arguments, with a reference to the help."""
+    """Return the message for an error in the arguments, with a reference to the help."""
     text = error.format_message()
     if isinstance(error, click.BadParameter) and not isinstance(error, click.MissingParameter):
         option = "/".join(error.param.opts) if error.param else ""

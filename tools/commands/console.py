@@ -1,4 +1,4 @@
-"""Standard output and standard error, and Ctrl-C."""
+"""Writing to standard output and standard error, and handling of Ctrl-C."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def say(text: str) -> None:
 
 
 def summarize(result: Samples | Mesh, options: SimpleNamespace) -> None:
-    """Print the summary of what was written, unless --quiet is set."""
+    """Print the name of the output file and the summary of its contents, unless --quiet is set."""
     if not options.quiet:
         say(printable(f"{options.output}: {result.summary()}"))
 
@@ -58,7 +58,7 @@ def table(rows: Iterable[tuple[str, str]]) -> None:
 
 
 def complain(text: str) -> None:
-    """Print one line to standard error; ignore errors if it is closed."""
+    """Print one line to standard error, unless standard error is closed."""
     with suppress(OSError, ValueError):
         write(f"gaussmap: {' '.join(text.split())}", sys.stderr)
 
@@ -74,7 +74,7 @@ def show_warning(message: Warning | str, *_: object, **__: object) -> None:
 
 
 def write(text: str, stream: TextIO | None) -> None:
-    """Print a text, with `?` for characters that the encoding lacks, unless the stream is None."""
+    """Print a text to a stream, unless it is None, with `?` for characters not in its encoding."""
     if stream is not None:
         encoding = stream.encoding or "utf-8"
         print(text.encode(encoding, "replace").decode(encoding), file=stream)
@@ -97,7 +97,7 @@ def flush() -> None:
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Let Ctrl-C work during compilation: a callback from LLVM would swallow it."""
+    """Let Ctrl-C work during compilation, where a callback from LLVM swallows KeyboardInterrupt."""
     previous = sys.unraisablehook
     again: list[threading.Timer] = []
 
@@ -122,7 +122,7 @@ def interruptible() -> Iterator[None]:
 
 
 def give_up_output() -> None:
-    """Discard the rest of standard output, which Python would otherwise report at exit."""
+    """Discard the rest of standard output, so that Python reports no error about it at exit."""
     with suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())

@@ -46,7 +46,7 @@ class Formulas(Mapping[str, "Formula"]):
         return len(self._formulas)
 
     def __reduce__(self) -> str:
-        """Return the name of the only object, which copies and pickles refer to."""
+        """Return the name of the only instance; copies and pickles refer to this instance."""
         return "formulas"
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""Building blocks of commands: work imported late, options in groups, types of values."""
+"""Building blocks of commands: modules imported late, options in groups, types of values."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ ALL = "gaussmap.all"
 
 
 class Option(click.Option):
-    """An option as the help writes it, such as "--spacing DX DY"; without values it is a flag.
+    """An option, given as the help shows it: "--spacing DX DY". An option without values is a flag.
 
-    "INDEX ..." stands for one index or several, which become one text with commas. The help lists
-    it in its group, and the brief help explains it if it is a `main` one. At most one of several
-    `exclusive` options may be given.
+    "INDEX ..." stands for one index or several, which are joined with commas to one text. The help
+    lists an option in its group, and the brief help explains it if it is a `main` option. At most
+    one of the `exclusive` options of a command may be given.
     """
 
     def __init__(
@@ -56,11 +56,11 @@ class Option(click.Option):
 
 
 class Command(click.Command):
-    """A command that calls `run` of the module of its name, which is imported when it is called.
+    """A command that, when it is called, imports the module of the same name and calls its `run`.
 
     So help, errors of usage and completion need neither NumPy nor Numba. `ctx.obj` is called after
-    the imports. A command with a `brief` epilog has a help that fits on a screen: --help-all
-    explains the options that are not main ones.
+    the imports. If a command has a `brief` epilog, its help fits on a screen and explains the main
+    options only; --help-all explains all options.
     """
 
     def __init__(self, *arguments: Any, brief: str = "", **settings: Any) -> None:  # noqa: ANN401
@@ -73,7 +73,7 @@ class Command(click.Command):
             self.params.append(shown)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Parse, and refuse two exclusive options."""
+        """Parse the arguments; UsageError if two exclusive options are given."""
         try:
             rest = super().parse_args(ctx, self._joined(args))
         except click.UsageError as error:
@@ -91,7 +91,7 @@ class Command(click.Command):
         return rest
 
     def _joined(self, args: list[str]) -> list[str]:
-        """Return arguments, with commas between the numbers of an option that takes several."""
+        """Return the arguments; several numbers after one option are joined by commas."""
         several = {x.opts[-1] for x in self.params if str(x.metavar).endswith("...")}
         joined: list[str] = []
         for x in args:
@@ -108,9 +108,9 @@ class Command(click.Command):
         module.run(SimpleNamespace(**ctx.params))
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the options under the headings of their groups; in the brief help, the main ones.
+        """Write the options under the headings of their groups.
 
-        The brief help only names the others.
+        The brief help explains the main options, and only names the other ones.
         """
         groups: dict[str, list[tuple[str, str]]] = {}
         named: dict[str, list[str]] = {}
@@ -161,7 +161,7 @@ class Program(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the command; for the name of a surface, UsageError with a hint."""
+        """Return the named command; UsageError with a hint if the name is that of a surface."""
         if args[0] not in self.commands and not ctx.resilient_parsing and is_source(args[0]):
             raise click.UsageError(
                 f"no such command '{args[0]}'; did you mean `gaussmap sample {args[0]}`?", ctx
@@ -202,7 +202,7 @@ def setting(text: str) -> tuple[str, float]:
 
 
 def density(text: str) -> str | float:
-    """Return a number, the power of |K|, or else the name of a density."""
+    """Return the exponent of |K| if the text is a number, else the text, the name of a density."""
     try:
         return float(text)
     except ValueError:

@@ -19,10 +19,10 @@ SUFFIXES = (*CAD_SUFFIXES, ".npz", ".npy", *RASTER_SUFFIXES)
 
 
 def listed(named: Iterable[str], list_file: str | None) -> list[str]:
-    """Return the parts named, and those in a list, one a line; "-" is standard input.
+    """Return the names of parts in `named` and in the lines of a file; "-" is standard input.
 
-    A folder stands for the files of known suffixes in it and in its subfolders, a pattern for all
-    files that it matches, each sorted by name.
+    A folder stands for the files of known suffixes in the folder and its subfolders, a pattern for
+    all files that match it, in the order of their names.
 
     Raises InputError for a name without files, FileError if a list cannot be read.
     """

@@ -48,7 +48,7 @@ def _rows(samples: Samples) -> NDArray[np.floating]:
 
 
 def _sampled(options: SimpleNamespace) -> Samples:
-    """Return the samples, with those fields that the format of the output can hold."""
+    """Return the samples; InputError if the format of the output needs fields that they lack."""
     fields = None if options.fields is None else options.fields.split(",")
     is_part = is_part_file(options.surface)
     written = checked_fields(

@@ -60,7 +60,7 @@ def named_surface(
 
 
 def request_of(options: SimpleNamespace, default_count: int) -> Request:
-    """Return the request of the options; without any number or normals, the default count."""
+    """Return the request that the options describe, by default for `default_count` samples."""
     normals = named_normals(options)
     asked = normals, options.count, options.angle, options.coverage
     count = default_count if all(x is None for x in asked) else options.count
@@ -74,7 +74,7 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
 
 
 def named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
-    """Return the normals given by name or in a file; None if a number of samples is given."""
+    """Return the normals that the options describe or name a file of; None without such options."""
     if options.seed is not None and options.random is None:
         raise InputError("--seed goes with --random COUNT only.")
     if options.frequency is not None:

@@ -14,7 +14,7 @@ __all__ = ["known_fields", "lacks", "report_from_json", "report_to_json"]
 
 
 def report_to_json(report: SamplingReport) -> str:
-    """Return a report as a line of ASCII."""
+    """Return a report as one line of ASCII."""
     return json.dumps(asdict(report))
 
 
@@ -24,7 +24,10 @@ def report_from_json(text: str) -> SamplingReport:
 
 
 def known_fields(names: Iterable[str]) -> tuple[str, ...]:
-    """Return the fields that a file declares, in the order of `COLUMNS`."""
+    """Return the names of the fields in a file, in the order of `COLUMNS`.
+
+    Raises UnusableError if there are no fields, or unknown ones.
+    """
     held = set(names)
     if not held or not held <= set(COLUMNS):
         raise UnusableError("holds fields that gaussmap does not know; update gaussmap.")

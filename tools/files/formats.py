@@ -1,4 +1,4 @@
-"""The formats of files by their suffixes, with their writers and readers."""
+"""The formats of files, with their writers and readers; suffixes of files choose formats."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ __all__ = [
 
 
 class Format(NamedTuple):
-    """The writer of files of a suffix, the fields that it needs, and the extra it requires."""
+    """The writer of a format, the fields that it needs, the library that it uses, and its extra."""
 
     write: Callable[[Any, Path], None]
     needs: tuple[str, ...] = ()
@@ -125,7 +125,7 @@ def _check_library(suffix: str, formats: Mapping[str, Format]) -> None:
 
 
 def _suffix_of_samples(path: PathLike) -> str:
-    """Return the suffix; UnknownNameError if unknown, with a hint if it is one of meshes."""
+    """Return the suffix; UnknownNameError if it is unknown, with a hint if it is for meshes."""
     suffix = checked_path(path).suffix.lower()
     if suffix in MESH_SUFFIXES and suffix not in SUFFIXES:
         raise UnknownNameError(
@@ -136,7 +136,7 @@ def _suffix_of_samples(path: PathLike) -> str:
 
 
 def check_fields(path: PathLike, fields: Sequence[str]) -> None:
-    """Raise InputError if the format, known by the suffix, needs fields that are missing."""
+    """Raise InputError if the format of the suffix needs fields that are not among `fields`."""
     suffix = _suffix_of_samples(path)
     lacking = [repr(name) for name in OF_SAMPLES[suffix].needs if name not in fields]
     if lacking:

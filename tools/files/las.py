@@ -31,7 +31,7 @@ USER, RECORD = "gaussmap", 1
 
 
 def write_las(samples: Samples, path: Path) -> None:
-    """Write points, all other fields as extra dimensions, the CRS, and the report in a record.
+    """Write points, the CRS, the report as a record, and all other fields as extra dimensions.
 
     The origin of the samples is added again: the points are in world coordinates.
     """
@@ -77,5 +77,5 @@ def _steps(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
 
 
 def _kept(column: NDArray[np.generic]) -> np.dtype[np.generic]:
-    """Return the type of an extra dimension; LAS has no booleans."""
+    """Return the type of the extra dimension for a column; LAS has no booleans."""
     return np.dtype(np.uint8) if column.dtype == np.bool_ else column.dtype

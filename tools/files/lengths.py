@@ -65,20 +65,20 @@ def checked_unit(unit: object) -> str:
 
 
 def whole_of(samples: Samples) -> Whole | None:
-    """Return the part that the samples are on, or were moved from; None without one."""
+    """Return the part on which samples lie, or from which they were moved; None without a part."""
     base = samples.offset_of
     surface = samples.surface if base is None else base.surface
     return surface if isinstance(surface, Whole) else None
 
 
 def units_of(samples: Samples) -> dict[str, str]:
-    """Return the units of fields; L is replaced by the unit of length if known."""
+    """Return the units of fields by name, with the unit of length in place of L if it is known."""
     unit = samples.report.unit
     return {name: x if unit is None else x.replace("L", unit) for name, x in UNITS.items()}
 
 
 def names_with_units(samples: Samples) -> list[str]:
-    """Return the names of columns; lengths and curvatures have their unit if known."""
+    """Return the names of columns, which contain known units of lengths and curvatures."""
     units, known = units_of(samples), samples.report.unit is not None
     return [
         f"{column} [{units[name]}]" if known and "L" in UNITS.get(name, "") else column

@@ -1,4 +1,4 @@
-"""Arrays in files: FILE.npy, FILE.npz, or FILE.npz:NAME. Nothing is unpickled."""
+"""Arrays in files, named FILE.npy, FILE.npz or FILE.npz:NAME. Nothing is unpickled."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def is_array_file(source: str) -> bool:
 
 
 def array_file(source: str) -> Path:
-    """Return the file in FILE.npy, FILE.npz or FILE.npz:NAME."""
+    """Return the path of the file in FILE.npy, FILE.npz or FILE.npz:NAME, without NAME."""
     return Path(_parts(source)[0])
 
 
@@ -34,7 +34,7 @@ def _parts(source: str) -> tuple[str, str | None]:
 
 
 def read_array(source: str) -> NDArray[Any]:
-    """Return the array in FILE.npy, FILE.npz or FILE.npz:NAME; never unpickle."""
+    """Return the array named FILE.npy, FILE.npz or FILE.npz:NAME; nothing is unpickled."""
     file_name, key = _parts(source)
     try:
         if not is_array_file(file_name):

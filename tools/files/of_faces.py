@@ -16,12 +16,15 @@ from .lengths import whole_of
 __all__ = ["columns_of_faces", "texts_of"]
 
 
-# Spreadsheets take texts with these beginnings for formulas, unless an apostrophe comes first.
+# Spreadsheets interpret texts with these beginnings as formulas, unless an apostrophe comes first.
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def columns_of_faces(samples: Samples) -> list[FaceColumn]:
-    """Return the columns, with units; none unless the samples have a part and faces."""
+    """Return the columns with their units.
+
+    There are none unless the samples have a part and indices of faces.
+    """
     part = whole_of(samples)
     if part is None or samples.face_index is None:
         return []
@@ -29,7 +32,7 @@ def columns_of_faces(samples: Samples) -> list[FaceColumn]:
 
 
 def texts_of(column: FaceColumn, samples: Samples) -> NDArray[Any]:
-    """Return the values of a column in a .csv file, for samples (N,)."""
+    """Return the texts of a column in a .csv file, one for each sample (N,)."""
     return np.array([_text(x) for x in column.values], dtype=object)[samples.face_index]
 
 

@@ -140,7 +140,7 @@ def to_open3d(self: Samples) -> open3d.geometry.PointCloud:
 def polydata(pv: Any, data: Any, arrays: dict[str, NDArray[Any]]) -> Any:  # noqa: ANN401
     """Attach arrays to the points of a PolyData, with the normals as active normals."""
     for name, array in arrays.items():
-        # VTK's own conversion: pyvista refuses arrays without elements.
+        # The array is added by VTK itself, since pyvista refuses arrays without elements.
         numbers = array.view(np.uint8) if array.dtype == np.bool_ else array
         data.GetPointData().AddArray(pv.convert_array(numbers, name=name, deep=True))
     if "normals" in arrays:

@@ -19,12 +19,12 @@ __all__ = ["columns_of_terrain", "in_world", "write_points"]
 # A point with three coordinates in the format WKB.
 POINT = np.dtype([("order", "u1"), ("type", "<u4"), ("place", "<f8", 3)])
 POINT_Z = 1001
-# The option of GDAL for the date in a file: equal samples make equal files.
+# The option of GDAL for the date in a file. It is fixed, so that equal samples make equal files.
 DATE = "OGR_CURRENT_DATE"
 
 
 def columns_of_terrain(samples: Samples) -> dict[str, NDArray[np.floating]]:
-    """Return slope and aspect, in degrees, for samples of a terrain with normals."""
+    """Return the columns slope and aspect, in degrees, for samples of terrain with normals."""
     report = samples.report
     if (report.crs is None and report.origin is None) or "normals" not in samples.fields:
         return {}

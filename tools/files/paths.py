@@ -1,4 +1,4 @@
-"""Writing files: a file at its path is complete, or absent.
+"""Writing files so that a file at its path is either complete or absent.
 
 Everything is written to a temporary file in the same folder, which then replaces the target in one
 step.
@@ -29,14 +29,14 @@ __all__ = [
 
 PathLike = str | os.PathLike[str]
 
-# The largest number of characters of a library's own message.
+# The largest number of characters that are quoted from a library's own message.
 MOST_SAID = 100
 # The prefix of the names of temporary files.
 BEGUN = ".gaussmap-"
 
 
 def known_suffix(path: PathLike, known: Sequence[str]) -> str:
-    """Return the suffix of a path in lower case; UnknownNameError if it is none of the known."""
+    """Return the suffix of a path in lower case; UnknownNameError if it is not in `known`."""
     path = checked_path(path)
     suffix = path.suffix.lower()
     if suffix not in known:
@@ -46,7 +46,7 @@ def known_suffix(path: PathLike, known: Sequence[str]) -> str:
 
 
 def check_target(path: PathLike, suffixes: Sequence[str]) -> None:
-    """Raise now the errors that writing to `path` would raise later; for use ahead of long work.
+    """Raise the errors that writing to `path` would raise; to be called before long work.
 
     The suffix must be one of `suffixes`, which are in lower case with their dots. To test that the
     folder is writable, an empty file is created in it and removed.
@@ -68,7 +68,7 @@ def check_target(path: PathLike, suffixes: Sequence[str]) -> None:
 
 @contextmanager
 def atomic_path(path: PathLike) -> Iterator[Path]:
-    """Yield a temporary path to write to; it takes the place of `path` when the block succeeds.
+    """Yield a temporary path to write to; the file replaces `path` when the block succeeds.
 
     The temporary file lies in the same folder and has the same suffix. If the block raises,
     KeyboardInterrupt included, the temporary file is removed and an existing file at `path` stays
@@ -83,7 +83,7 @@ def atomic_path(path: PathLike) -> Iterator[Path]:
     temporary = _temporary(target)
     try:
         yield temporary
-        # There may be no older file, and some file systems have no permissions.
+        # Errors are ignored, as there may be no older file, or no permissions on the file system.
         with suppress(OSError):
             temporary.chmod(stat.S_IMODE(target.stat().st_mode))
         os.replace(temporary, target)
@@ -100,7 +100,7 @@ def atomic_path(path: PathLike) -> Iterator[Path]:
 def written_by_library(path: PathLike) -> Iterator[None]:
     """Turn any exception of a library that writes a file into a FileError.
 
-    Libraries for compressed files have their own types for a full disk.
+    Libraries for compressed files raise exceptions of their own types if the disk is full.
     """
     try:
         yield
@@ -114,7 +114,7 @@ def written_by_library(path: PathLike) -> Iterator[None]:
 
 
 def checked_path(path: PathLike) -> Path:
-    """Return a path; InputError if the argument is none."""
+    """Return the argument as a Path; InputError if it is no valid path."""
     try:
         result = Path(path)
     except TypeError:
@@ -133,7 +133,7 @@ def checked_path(path: PathLike) -> Path:
 
 
 def _target(path: Path) -> Path:
-    """Return the real path of a writable file, with symbolic links resolved."""
+    """Return the path with symbolic links resolved; FileError if no file can be written there."""
     target = Path(os.path.realpath(path))
     try:
         folder, mode = _mode(target.parent), _mode(target)
@@ -157,7 +157,7 @@ def _target(path: Path) -> Path:
 
 
 def _mode(path: Path) -> int | None:
-    """Return the type and permissions of the file at `path`, or None if there is none."""
+    """Return the mode of the file at `path`, its type and permissions; None if there is no file."""
     try:
         return path.stat().st_mode
     except (FileNotFoundError, NotADirectoryError):
@@ -165,13 +165,13 @@ def _mode(path: Path) -> int | None:
 
 
 def _temporary(target: Path) -> Path:
-    # Not tempfile, whose files are private to the user (mode 0600) whatever the umask. Not the
-    # target's stem, which could become too long with an addition.
+    # Not tempfile, whose files are private to the user (mode 0600) whatever the umask. The name
+    # does not contain the stem of the target, since it could become too long.
     return target.with_name(f"{BEGUN}{secrets.token_hex(8)}{target.suffix}")
 
 
 def reason_of(error: OSError) -> str:
-    """Return the text of the system for an error."""
+    """Return the message of the operating system for an error."""
     return error.strerror or str(error) or type(error).__name__
 
 

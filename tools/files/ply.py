@@ -36,25 +36,26 @@ if TYPE_CHECKING:
 
 __all__ = ["read_ply", "write_mesh_ply", "write_ply"]
 
-# The names of types in the standard, the newer names that some programs write, and two names that
-# are in neither.
+# The type of each name of a type: names of the standard, newer names that some programs write, and
+# two names that belong to neither.
 _TYPES = {
     **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
     **{"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4"},
     **{"float": "f4", "double": "f8", "float32": "f4", "float64": "f8"},
     **{"int64": "i8", "uint64": "u8"},
 }
-# Of several names of a type, the standard's is written; some readers know no other.
+# If a type has several names, the name in the standard is written; some readers know no other name.
 _NAMES = {kind: name for name, kind in reversed(_TYPES.items())}
 
 _REPORT = "gaussmap report "
-# The beginning of a comment that lists the fields, in a file that lacks some of them.
+# The beginning of the comment that lists the fields, in a file without some of the fields.
 _FIELDS = "gaussmap fields "
-# The length of a comment: some readers hold a header line in a buffer of 256 or 1,024 bytes.
+# The largest length of a comment, since some readers have a buffer of 256 or 1,024 bytes for a line
+# of the header.
 _CHUNK = 200
 _LARGEST_HEADER = 1 << 20
 _LARGEST_INTEGER = 2**31 - 1
-# The number of rows that are packed or unpacked at once, such that they fit into the cache.
+# The number of rows that are packed or unpacked at once, so small that they fit into the cache.
 ROWS = 4096
 
 
@@ -183,7 +184,7 @@ def _read_header(file: BufferedReader) -> _Header:
 
 
 def _empty_arrays(fields: Sequence[str], vertices: _Element) -> dict[str, NDArray[Any]]:
-    """Return arrays for the fields; float32 only if all columns are."""
+    """Return arrays for the fields; real numbers are float32 if all columns of real numbers are."""
     kinds = vertices.columns
     missing = [column for name in fields for column in COLUMNS[name] if column not in kinds]
     if missing:
@@ -201,7 +202,7 @@ def _empty_arrays(fields: Sequence[str], vertices: _Element) -> dict[str, NDArra
 
 
 def _fill(file: BufferedReader, row: np.dtype[Any], arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Read rows into the arrays of their columns."""
+    """Read the rows of vertices from a file into the arrays of fields."""
     columns = columns_of(arrays)
     count = len(next(iter(columns.values())))
     block = np.empty(min(ROWS, count), row)
@@ -220,7 +221,10 @@ def _report(text: str, samples: int) -> SamplingReport:
 
 
 def _kept(array: NDArray[Any]) -> str:
-    """Return the type of numbers in a file, which has no booleans and no 64-bit integers."""
+    """Return the type of numbers in a file, which has no booleans and no 64-bit integers.
+
+    All other types of arrays are kept.
+    """
     return {"i8": "i4", "b1": "u1"}.get(array.dtype.str[1:], array.dtype.str[1:])
 
 

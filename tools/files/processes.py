@@ -1,4 +1,4 @@
-"""Processes whose work may hang or crash: they have limits, and end with their parent."""
+"""Processes whose work may hang or crash: they get limits, and end when their parent ends."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PR_SET_PDEATHSIG = 1
 
 
 def end_with_parent(by: str, parent: int | None = None) -> None:
-    """Let the system send this process the signal `by` when its parent ends, where it can.
+    """Let the system send this process the signal named `by` when its parent ends (Linux only).
 
     If `parent`, the process id of the parent, is given and the parent has already ended, end at
     once.
@@ -27,7 +27,7 @@ def end_with_parent(by: str, parent: int | None = None) -> None:
 
 
 def limit(**most: int) -> None:
-    """Set limits of the system, such as RLIMIT_CPU, where they exist; no core files are written."""
+    """Set limits of this process, such as RLIMIT_CPU, where they exist; forbid core files."""
     with suppress(ImportError):  # some systems have no limits
         import resource
 

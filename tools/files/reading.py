@@ -13,13 +13,16 @@ from .paths import reason_of
 
 __all__ = ["UnusableError", "opened", "readable", "regular_file"]
 
-# The beginning of a pointer file, which Git LFS leaves in place of a large file, and the error.
+# The beginning of a pointer file, which Git LFS leaves in place of a large file; the error for it.
 LFS = b"version https://git-lfs.github.com/spec/"
 POINTER = "is a Git LFS pointer, not the file itself; get that with 'git lfs pull'."
 
 
 class UnusableError(Exception):
-    """An error for a file with invalid content; its text is the sentence after "'path'"."""
+    """An error for a file with invalid content.
+
+    Its text continues a sentence that begins with the path of the file.
+    """
 
 
 def regular_file(path: Path | str) -> BufferedReader:
@@ -42,7 +45,7 @@ def regular_file(path: Path | str) -> BufferedReader:
 def opened(path: Path, kind: str, content: str) -> Iterator[BufferedReader]:
     """Yield an open file; any error while reading it becomes a FileError that names the path.
 
-    `kind` continues "is no" and `content` names what the file holds, both in error messages.
+    Both words are for error messages: `kind` follows "is no", `content` is what the file holds.
     """
     try:
         file = regular_file(path)  # tells an error here from one in the content

@@ -14,7 +14,8 @@ __all__ = ["checked_crs", "crs_text", "projected", "target_crs", "wkt_of"]
 
 Array = NDArray[np.float64]
 
-# Beyond this latitude UPS replaces UTM; the codes of its northern and southern zone.
+# The latitude beyond which UPS replaces UTM, and the EPSG codes of the two zones of UPS, north and
+# south.
 LAST_LATITUDE, POLAR = 84.0, (32661, 32761)
 # The largest range of longitude, in degrees, for one zone of UTM: beyond, the scale is wrong by a
 # percent.
@@ -40,10 +41,10 @@ def checked_crs(crs: str | int | None, name: str) -> Any:  # noqa: ANN401
 
 
 def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any:  # noqa: ANN401
-    """Return the CRS of points, in lengths: the requested one, the source, or else UTM.
+    """Return the CRS of points, which has lengths: `target` if given, else `source`, else UTM.
 
-    x and y are coordinates in the source. Raises InputError for a system in degrees, and if no
-    system is known.
+    x and y are coordinates in `source`; UTM is used if `source` has degrees. Raises InputError if
+    `target` has degrees, or if no zone of UTM fits.
     """
     if target is not None and target.is_geographic:
         raise InputError(
@@ -69,7 +70,7 @@ def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any: 
 
 
 def projected(source: Any, target: Any, x: Array, y: Array, name: str) -> tuple[Array, Array]:  # noqa: ANN401
-    """Return coordinates in another system; InputError if it is undefined for some of them."""
+    """Return x and y in the CRS `target`; InputError for points outside of its range."""
     warp = from_extra("rasterio.warp", "gis", "a projection")
     flat_x, flat_y = x.ravel(), y.ravel()
     found = np.empty((2, x.size))
@@ -84,7 +85,7 @@ def projected(source: Any, target: Any, x: Array, y: Array, name: str) -> tuple[
 
 
 def crs_text(crs: Any) -> str:  # noqa: ANN401
-    """Return EPSG:number if that is exactly the system, else its WKT."""
+    """Return "EPSG:number" if this code is exactly the given CRS, else the WKT of the CRS."""
     number = crs.to_epsg(confidence_threshold=100)
     if number is not None and checked_crs(number, "crs") == crs:
         return f"EPSG:{number}"
@@ -92,5 +93,5 @@ def crs_text(crs: Any) -> str:  # noqa: ANN401
 
 
 def wkt_of(crs: str) -> str:
-    """Return the WKT (version 1, as in LAS) of a text of `crs_text`."""
+    """Return the WKT (version 1, as in LAS) of a CRS that is given as by `crs_text`."""
     return checked_crs(crs, "crs").to_wkt()

@@ -20,11 +20,11 @@ from .of_terrain import columns_of_terrain
 
 __all__ = ["write_csv", "write_rows", "write_xyz"]
 
-# The formats of numbers: as many digits as it takes to read the same number again.
+# The formats of numbers, with enough digits to read the same number again.
 _DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%r", "O": "%s"}
 _ROWS = 4096
-# The least number of rows for which importing Polars pays, and the number of rows it writes at
-# once.
+# The least number of rows for which importing Polars saves time, and the number of rows that it
+# writes at once.
 WORTH_AN_IMPORT, ROWS_OF_POLARS = 20_000, 1 << 18
 
 
@@ -49,11 +49,11 @@ def write_xyz(samples: Samples, path: Path) -> None:
 
 
 def write_rows(file: BinaryIO, line: str, columns: Sequence[NDArray[Any]]) -> None:
-    """Write `line` for each row of the columns; each {} in it becomes the row's value of a column.
+    """Write `line` once for each row, with the row's values of the columns in place of each {}.
 
-    The words of a line are separated by spaces or by commas. If Polars is installed, it writes many
-    rows, ten times as fast as Python, with as few digits as it takes to read the same numbers
-    again.
+    The words of a line are separated by spaces or by commas. If there are many rows and Polars is
+    installed, Polars writes them, ten times as fast as Python, with as few digits as are needed to
+    read the same numbers again.
     """
     columns = [column.view(np.uint8) if column.dtype == np.bool_ else column for column in columns]
     polars = if_installed("polars") if len(columns[0]) >= WORTH_AN_IMPORT else None
@@ -77,7 +77,7 @@ def _formatted(line: str, columns: Sequence[NDArray[Any]]) -> Iterator[bytes]:
 
 
 def _table(polars: Any, words: Sequence[str], columns: Sequence[NDArray[Any]]) -> Any:  # noqa: ANN401
-    """Return a column for each word of a line."""
+    """Return a Polars table with a column of texts or numbers for each word of `line`."""
     waiting = iter(f"n{k}" for k in range(len(columns)))
     numbers = {
         f"n{k}": x.tolist() if x.dtype == object else np.ascontiguousarray(x)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["write_3mf"]
 
-# Not trimesh: it needs two more libraries, and writes different bytes each time.
+# trimesh is not used: it needs two more libraries, and writes different bytes each time.
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 MODEL = "application/vnd.ms-package.3dmanufacturing-3dmodel+xml"
 PACKAGE = "http://schemas.openxmlformats.org/package/2006"
@@ -29,19 +29,21 @@ RELATIONS = f"""{HEAD}<Relationships xmlns="{PACKAGE}/relationships">
 Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
 </Relationships>
 """
-# The units of the format, by their names here. Lengths in other units are written in millimetres.
+# The names of units in the format, by their names in gaussmap. Lengths in other units are written
+# in millimetres.
 UNITS = {
     "um": "micron", "mm": "millimeter", "cm": "centimeter", "m": "meter",
     "in": "inch", "ft": "foot",
 }  # fmt: skip
-# Entries of a zip archive have a time, from 1980 on: a fixed one makes equal meshes equal files.
+# Entries of a zip archive have a time, from 1980 on. It is fixed, so that equal meshes make equal
+# files.
 TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write_3mf(mesh: Mesh, path: Path) -> None:
-    """Write vertices and triangles; an unknown unit of length counts as a millimetre.
+    """Write vertices and triangles; an unknown unit of length is taken to be a millimetre.
 
-    The format forbids triangles with a repeated vertex: these are left out.
+    Triangles with a repeated vertex are left out, since the format forbids them.
     """
     contents = {
         "[Content_Types].xml": TYPES,
@@ -55,7 +57,7 @@ def write_3mf(mesh: Mesh, path: Path) -> None:
 
 
 def _model(mesh: Mesh) -> Iterable[str]:
-    """Yield the lines of the model."""
+    """Yield the lines of 3D/3dmodel.model, the XML file with the mesh."""
     unit = mesh.unit if mesh.unit in UNITS else "mm"
     factor = METRES.get(mesh.unit, METRES[unit]) / METRES[unit]
     yield f'{HEAD}<model unit="{UNITS[unit]}" xml:lang="en-US" xmlns="{CORE}">\n<resources>\n'

@@ -22,8 +22,8 @@ _STL_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribu
 
 
 def write_obj(mesh: Mesh, path: Path) -> None:
-    """Write text: vertices, texture coordinates, normals, and triangles that name all three."""
-    # Not trimesh: it writes a fixed number of decimals, which loses small numbers.
+    """Write vertices, texture coordinates, normals, and triangles, as indices of these, as text."""
+    # trimesh is not used: it writes a fixed number of decimals, which loses small numbers.
     split = mesh.split  # a vertex for each of its normals
     texture = split_at_seams(split.uv, split.triangles, split.domain, split.boundary)
     with open(path, "wb") as file:
@@ -36,7 +36,7 @@ def write_obj(mesh: Mesh, path: Path) -> None:
 
 
 def write_stl(mesh: Mesh, path: Path) -> None:
-    """Write triangles with their own normals, in single precision."""
+    """Write the corners and the normal of each triangle, in single precision."""
     corners = mesh.vertices[mesh.triangles]
     rows = np.zeros(len(corners), _STL_ROW)
     with np.errstate(all="ignore"):  # values beyond single precision, triangles without area
@@ -53,9 +53,10 @@ def write_stl(mesh: Mesh, path: Path) -> None:
 
 
 def write_glb(mesh: Mesh, path: Path) -> None:
-    """Write triangles, vertices, normals, u, v and sample indices, in single precision.
+    """Write triangles, vertices, normals, and u and v as the attribute _UV, in single precision.
 
-    A vertex on a sharp edge of a CAD part is repeated for each normal; no other one is repeated.
+    A vertex on a sharp edge of a CAD part is repeated for each of its normals; no other vertex is
+    repeated.
     """
     trimesh = from_extra("trimesh", "trimesh", "a .glb file")
     if np.abs(mesh.vertices).max() > np.finfo(np.float32).max:

@@ -42,7 +42,7 @@ def write_vtu(mesh: Mesh, path: Path) -> None:
 
 
 def _write_xml(name: str, data: Any, path: Path) -> None:  # noqa: ANN401
-    """Let a writer of VTK write to memory, since it only prints errors about files."""
+    """Write a file by way of memory, since a writer of VTK only prints errors about files."""
     writer = getattr(import_module("vtkmodules.vtkIOXML"), name)()
     writer.SetDataModeToBinary()
     writer.SetInputData(data)
