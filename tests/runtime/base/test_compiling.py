@@ -10,6 +10,12 @@ import pytest
 from gaussmap.runtime.base import compiling
 
 
+@pytest.fixture(autouse=True)
+def _not_quiet(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands with --quiet, run by tests in this process, silence the notice."""
+    monkeypatch.setattr(compiling.NOTICE, "quiet", False)
+
+
 class Terminal(io.StringIO):
     def isatty(self) -> bool:
         return True
