@@ -138,7 +138,7 @@ def _fields(
     fields: Sequence[str], dtype: DTypeLike,
 ) -> Fields:  # fmt: skip
     """Return fields of the samples at a tip: one for each normal with an index in `numbers`."""
-    there: Fields = {}
+    there: Mapping[str, Any] = {"patch_index": tip.patch} if isinstance(tip, Tip) else {}
     if isinstance(geometry, OnSpline):
         there = geometry.at_parameters(
             tip.uv[None], normals[numbers[:1]], np.zeros(1), ("patch_index",), dtype

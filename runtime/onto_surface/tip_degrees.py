@@ -12,7 +12,8 @@ them, sign changes may be missed; therefore the nearest ray is moved to the extr
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,9 @@ from ..base.aliases import Array
 from ..base.kept import kept
 from ..domain.domain import Boundary, Domain
 from ..domain.trim import Trim
-from ..spline.tips import are_one, collapsed_sides
+from ..spline.joints import EDGES
+from ..spline.nets import NetSpline
+from ..spline.tips import are_one, collapsed_sides, tips_of
 from ..tape.tapes import jets_of
 from .on_spline import OnPatches, OnSpline
 from .proved import ProvedSurface
@@ -49,7 +52,7 @@ class Tip(NamedTuple):
 
     The rays are in anticlockwise order. `bends` (k,) are the lengths of their second differences;
     `ray_at` returns the rays at fractional indices (m,). All normals n with n·axis < cosine have
-    the degree `outside`.
+    the degree `outside`. The parameters of nets are those in a `patch`.
     """
 
     point: Array
@@ -60,6 +63,24 @@ class Tip(NamedTuple):
     axis: Array
     cosine: float
     outside: int
+    patch: int = -1
+
+    @classmethod
+    def of(
+        cls, point: Array, uv: Array, rays: Array, bends: Array, ray_at: Callable[[Array], Array],
+        patch: int = -1,
+    ) -> Tip | None:  # fmt: skip
+        """Return the tip with the given rays; None if they are in a plane."""
+        normals = _unit(np.cross(rays, np.roll(rays, -1, axis=0)))
+        normals = normals[normals.any(axis=1)]
+        mean = _unit(normals.sum(axis=0)[None])
+        if not np.abs(rays @ mean[0]).max() > ROUNDING:
+            return None  # a smooth pole, whose opposite meridians have other parameters
+        cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
+        # Only a cap smaller than a half-sphere contains the arcs between the normals in it, too.
+        cosine = cosine if cosine > 0.0 else -math.inf
+        outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
+        return cls(point, uv, rays, bends, ray_at, mean[0], cosine, outside, patch)
 
     def degrees(self, normals: Array) -> NDArray[np.int64]:
         """Return the degree of the tip at each of the unit normals (S, 3)."""
@@ -151,8 +172,12 @@ def tips_on(geometry: OnPatches | ProvedSurface) -> list[Tip | Pinch]:
 
         around = Tipped(jets, surface.domain, surface.boundary, surface.trim)
         return kept(index, "tips", lambda: around.tips(around.sides(), lines))
-    if not geometry.has_tips or not isinstance(geometry, OnSpline):
+    if not geometry.has_tips:
         return []
+    nets = geometry.spline
+    if isinstance(nets, NetSpline):
+        return kept(nets, "tips", lambda: list(_tips_of_nets(nets)))
+    assert isinstance(geometry, OnSpline)
     whole = geometry.whole or geometry
     spline = whole.spline
     least = RAYS if whole.on == "surface" else 1
@@ -229,19 +254,47 @@ class Tipped(NamedTuple):
         if not rays.any(axis=1).all():
             return None
         second = np.roll(rays, 1, axis=0) - 2.0 * rays + np.roll(rays, -1, axis=0)
-        bends = np.linalg.norm(second, axis=1)
-        normals = _unit(np.cross(rays, np.roll(rays, -1, axis=0)))
-        normals = normals[normals.any(axis=1)]
-        mean = _unit(normals.sum(axis=0)[None])
-        if not np.abs(rays @ mean[0]).max() > ROUNDING:
-            return None  # a smooth pole, whose opposite meridians have other parameters
-        cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
-        # Only a cap smaller than a half-sphere contains the arcs between the normals in it, too.
-        cosine = cosine if cosine > 0.0 else -math.inf
-        outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
         uv = uv_at(np.zeros(1) if axis == end else np.full(1, parts - 1.0))
         point = self.jets(*uv.T.copy())[0, 0]
-        return Tip(point, uv[0], rays, bends, ray_at, mean[0], cosine, outside)
+        return Tip.of(point, uv[0], rays, np.linalg.norm(second, axis=1), ray_at)
+
+
+def _tips_of_nets(spline: NetSpline) -> Iterator[Tip]:
+    """Yield the tips of nets; the rays of a tip are the tangents of the edges that meet there."""
+    tips, nets = tips_of(spline), spline.control_nets
+    beside = np.full(3 * spline.patches, -1)
+    for one, other in (spline.topology.pairs.T, spline.topology.pairs.T[::-1]):
+        beside[one] = other
+    if tips is None:
+        return
+    for point in tips.points:
+        at = np.linalg.norm(nets[:, :3] - point, axis=2) <= tips.same
+        # Edge j runs from corner j + 1 to corner j + 2.
+        starts, ends = np.roll(at, -1, axis=1), np.roll(at, -2, axis=1)
+        first, last = (starts & ~ends).argmax(axis=1), (ends & ~starts).argmax(axis=1)
+        left = set(np.flatnonzero((starts & ~ends).any(axis=1)).tolist())
+        while left:
+            around, patch = list[int](), min(left)
+            while patch in left:
+                left.remove(patch)
+                around.append(patch)
+                patch = int(beside[3 * patch + last[patch]]) // 3
+            if patch != around[0]:
+                continue  # on the boundary
+            corners, middles = np.array([EDGES[k][:2] for k in first[around]]).T
+            rays = _unit(nets[around, middles] - nets[around, corners])
+            rays = rays[np.linalg.norm(rays - np.roll(rays, 1, axis=0), axis=1) > ROUNDING]
+            uv, bends = np.eye(3)[corners[0], :2], np.zeros(len(rays))
+            tip = Tip.of(point, uv, rays, bends, partial(_between, rays), around[0])
+            if tip is not None:
+                yield tip
+
+
+def _between(rays: Array, places: Array) -> Array:
+    """Return unit rays (m, 3) at fractional indices of a closed cone that is flat between rays."""
+    low = np.floor(places).astype(int)
+    share = (places - low)[:, None]
+    return _unit((1.0 - share) * rays[low % len(rays)] + share * rays[(low + 1) % len(rays)])
 
 
 def _unit(vectors: Array) -> Array:

@@ -37,9 +37,12 @@ def directions() -> Array:
 
 
 @pytest.mark.compiled
-@covering(name=[*WAVES], on=["spline", "surface"], along_u=[False, True])
+@covering(name=[*WAVES], on=["spline", "surface", "nets"], along_u=[False, True])
 def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, along_u: bool) -> None:
-    image = gm.GaussMap(lemon(name, along_u), cells=(64, 64), on=on)
+    surface, nets = lemon(name, along_u), None
+    if on == "nets":
+        nets = gm.Spline.from_nets(gm.fit(surface, (64, 64)).control_nets)
+    image = gm.GaussMap(nets) if nets else gm.GaussMap(surface, cells=(64, 64), on=on)
     n = directions()
     np.testing.assert_array_equal(image.degree(n), 1)
     points = image.points(n)
@@ -57,8 +60,12 @@ def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, alo
     assert (tips.gaussian_curvature == 0).all()
     assert (tips.normals == n[tips.normal_index]).all()
     np.testing.assert_allclose(np.abs(tips.points), [[0, 0, 3**0.5]] * len(tips), atol=1e-15)
-    assert image.surface is not None
-    np.testing.assert_array_equal(tips.uv[:, int(along_u)], 0.0)
+    if nets:
+        assert tips.patch_index is not None
+        corners = nets.points_in_patches(tips.patch_index, tips.uv)
+        np.testing.assert_allclose(corners, tips.points, atol=1e-15)
+    else:
+        np.testing.assert_array_equal(tips.uv[:, int(along_u)], 0.0)
 
 
 @pytest.mark.compiled
