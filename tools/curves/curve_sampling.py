@@ -211,7 +211,7 @@ class CurveSamples:
 
 @dataclass(frozen=True, eq=False)
 class Hits:
-    """Pairs of indices, of an arc and of one of its normals, in order along the curve.
+    """Pairs of an arc and one of its normals, as indices, in order along the curve.
 
     `signs` are the signs of κ on the arcs.
     """
@@ -339,7 +339,7 @@ def find(spline: CurveSpline | CurveArcs, normals: Array) -> Hits:
 
 
 def _places(spline: CurveSpline | CurveArcs, angles: Array) -> NDArray[np.int64]:
-    """Return for each joint the number of sorted angles below that of its normal.
+    """Return for each joint the number of sorted angles below the angle of its normal.
 
     Full turns are counted. Along straight arcs the normal is constant. The ends of an open curve
     belong to the curve: the angles there are moved outwards by the rounding error of the normal.
@@ -412,7 +412,7 @@ def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
     n, arcs = plane_vector(mine), spline._arcs(piece)
     A = mine[:, 0] * arcs.a.x + mine[:, 1] * arcs.a.y
     with np.errstate(all="ignore"):  # where κ ≈ 0
-        # If the turning angle of an arc is within rounding, the parameter is arbitrary on it.
+        # On an arc whose turning angle is within rounding, the parameter is arbitrary.
         inside = np.clip(python_function(formulas.arc_parameter)(arcs, n), 0.0, 1.0)
         t: Array = np.where(A != 0.0, inside, 0.5)
         x, curvature = python_function(formulas.arc_sample)(arcs, t, A)

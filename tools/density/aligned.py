@@ -149,7 +149,7 @@ class AlignedGrid:
             left = most - int(numbers[0].sum()) * int(numbers[1].sum())
             found.append((self._excess(steps, scales), left, numbers))
         least = min(excess for excess, _, _ in found)
-        # Of nearly equal errors, choose the numbers with the fewest samples left over.
+        # Of nearly equal errors, choose the numbers of lines that leave the fewest samples unused.
         return min((x for x in found if x[0] <= AS_GOOD * least), key=lambda x: x[1])[2]
 
     def _excess(self, steps: Steps, scales: list[Array]) -> float:

@@ -84,11 +84,11 @@ class Candidates:
             part.reset_distances(np.inf if squares is None else squares[part.order])
 
     def choose(self, radius: float, most: int) -> Indices:
-        """Choose candidates until all others are within a radius of a sample or a chosen one.
+        """Choose candidates until each of the others is near a sample or a chosen candidate.
 
-        Return the row indices of the chosen candidates. If they are more than `most`, return only
-        `most` of them, from all over the surface; then distances are too small, since the chosen
-        candidates that are not returned count as samples.
+        Near means within `radius`. Return the row indices of the chosen candidates. If they are
+        more than `most`, return only `most` of them, from all over the surface; then distances are
+        too small, since the chosen candidates that are not returned count as samples.
         """
         found = dict[int, Numbers]()
         # First the even parts, then the odd ones: neighbouring parts that choose at the same time

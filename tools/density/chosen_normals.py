@@ -1,4 +1,4 @@
-"""The normals to search for: given ones, or a lattice that yields about a number of samples."""
+"""The normals to search for: given normals, or a lattice that yields a number of samples."""
 
 from __future__ import annotations
 

@@ -44,13 +44,14 @@ WIDER = 2.0
 # which is lower: with 20, samples on narrow faces are as close as the radius of these faces, and a
 # wing with a round trailing edge takes 6 times as many.
 FLOOR, MOST_CURVED, MOST_FOR_NORMALS = 0.8, 20.0, 10.0
-# For an angle, the mean of κ² is that of the capped κ: mean and ceiling are iterated until the
-# ratio of consecutive means exceeds this.
+# For an angle, κ is capped in the mean of κ², too: mean and ceiling are iterated until the ratio of
+# consecutive means exceeds this.
 SETTLED = 0.9
-# An angle is refused if it takes more samples than MOST_FOR_ANGLE, minutes of work, and more than
-# it takes on SPHERES spheres: then narrow faces are the reason, and not a small angle.
+# An angle is refused if it takes more than MOST_FOR_ANGLE samples, minutes of work, and more
+# samples than it takes on SPHERES spheres: then narrow faces are the reason, and not a small angle.
 MOST_FOR_ANGLE, SPHERES = 2e6, 300.0
-# The largest number of searches for points with too large an angle, on parts with narrow tips.
+# The largest number of searches for points at which the angle is too large, on parts with narrow
+# tips.
 MOST_SEARCHES = 8
 # |K|^α vanishes with K; gaps there are wider than the mean by at most this factor.
 WIDEST_GAP = 1000.0
@@ -73,8 +74,9 @@ LEAST_CHORD = math.radians(0.5)
 DIGITS = 6
 # Each piece gets a sample if there are at least this many samples per piece.
 SAMPLES_A_PIECE = 2
-# Bisection for the radius of a balanced cover within a count and a coverage: the largest number of
-# steps, the part of the count that ends it, and the logarithm of the ratio of the first bounds.
+# Bisection for the radius of a cover with density "balanced", a count and a coverage: the largest
+# number of steps; the part of the count at which the bisection ends; and the logarithm of the ratio
+# of the first bounds.
 BISECTIONS, NEAR_ENOUGH, WIDEST_RADIUS = 10, 0.97, 10.0
 
 
@@ -212,7 +214,7 @@ class Filling:
     def _floor(self, ceiling: float) -> float:
         """Return the floor of "balanced" for a target density with a ceiling."""
         request, space = self.request, self.space.between(self.space.target.floor, ceiling)
-        # Normals or an angle fix the radius: a flat surface counts as one that has all normals.
+        # Normals or an angle fix the radius: a flat surface counts as a surface with all normals.
         absolute = request.normals is not None or request.angle is not None
         least = request.solid_angle if absolute else FLAT_SURFACE
         return FLOOR * max(space.integral, least) / space.area
@@ -235,10 +237,11 @@ class Filling:
 
     @property
     def _asked(self) -> float | None:
-        """The requested coverage as a scaled length, from the rounding error to the surface's size.
+        """The requested coverage as a scaled length.
 
-        If the cells are on a spline and the samples on the surface, twice the distance between
-        spline and surface is subtracted; at least half of the coverage remains.
+        It is at least the rounding error and at most the size of the surface. If the cells are on a
+        spline and the samples on the surface, twice the distance between spline and surface is
+        subtracted; at least half of the coverage remains.
         """
         asked, space = self.request.coverage, self.space
         if asked is None:

@@ -211,6 +211,6 @@ def _space_of(samples: Samples, spline: AnySpline | None, threads: int | None) -
 
 
 def space_on(spline: Spline, surface: Surface | None, threads: int | None) -> Space:
-    """Return the space of `surface`, approximated by `spline`; that of the spline for None."""
+    """Return the space of a surface that has a spline; without a surface, that of the spline."""
     on = OnSpline(spline, threads) if surface is None else OnSurface(spline, threads, surface)
     return space_of([on], threads)

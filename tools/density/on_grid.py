@@ -97,7 +97,10 @@ def _by_count_and_distance(
 
 
 def _grid_of(space: Space, count: int, distance: float) -> Grid:
-    """Return the finest grids, as one, with at most `count` samples, divided among the pieces."""
+    """Return the finest grids with at most `count` samples in all, joined to one grid.
+
+    The count is divided among the pieces.
+    """
     counts = apportioned(count, space.integrals).tolist()
     grids = (AlignedGrid.of(space, k).grid_for(n, distance) for k, n in enumerate(counts) if n)
     return reduce(add, grids)

@@ -28,7 +28,7 @@ class Piece(ABC):
 
     `label` is its name in messages, `trim` the part of the domain that belongs to it, None for the
     whole domain. `indices` are fields that are constant on the piece, and the index of its first
-    patch. The distance between points of the surface and those of `jets` is at most `distance`, in
+    patch. The distance between points of the surface and points of `jets` is at most `distance`, in
     the unit L of the surface. Curvature at scales below `finest` (2,), lengths in u and v, is
     noise.
     """
@@ -80,7 +80,7 @@ class Piece(ABC):
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> dict[str, NDArray[Any]]:
-        """Return fields of samples at parameters (k, 2); `rows` (k, 8) are those of their cells."""
+        """Return fields of samples at parameters (k, 2), in cells with the rows `rows` (k, 8)."""
 
     def solid_angle(self, density: float) -> float | None:
         """Return the solid angle of the Gaussian image that lattices of this density resolve.

@@ -70,7 +70,10 @@ def beside(trims: Trims, lost: Cells, pixels: Indices) -> tuple[Indices, Array]:
 
 
 def _subplaces(trims: Trims, pieces: Indices, boxes: Array) -> tuple[Flags, Array]:
-    """Return whether boxes (M, 4) have subplaces inside the trim, and a central one of these."""
+    """Return whether boxes (M, 4) have subplaces inside the trim, and the most central of them.
+
+    The most central subplace (M, 2) of a box is nearest to the mean of its subplaces inside.
+    """
     steps = (np.arange(SUB) + 0.5) / SUB
     grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
     sizes = boxes[:, None, 2:] - boxes[:, None, :2]

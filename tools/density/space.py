@@ -151,7 +151,7 @@ class Space:
 
     @property
     def longest(self) -> float:
-        """The longest extent of a piece along an axis, times √w for the least density w."""
+        """The largest extent of a piece along x, y or z, times √w for the least density w."""
         points = (self.first.rows[found, :3] for _, found in by_piece(self.first))
         return math.sqrt(self.smallest) * max(float(np.ptp(x, axis=0).max()) for x in points)
 

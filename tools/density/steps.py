@@ -143,7 +143,7 @@ def _least(value: Callable[[float], float]) -> float:
     found = [value(x) for x in places]
     for _ in range(SEARCHES):
         k = int(found[0] < found[1])
-        # Drop the part beyond the worse point, and take a new point in the rest.
+        # Drop the part beyond the worse point, and take a new point in the remaining interval.
         low, high = (low, places[1]) if k else (places[0], high)
         places[k], found[k] = places[1 - k], found[1 - k]
         new = high - GOLDEN * (high - low) if k else low + GOLDEN * (high - low)
@@ -155,7 +155,10 @@ def _least(value: Callable[[float], float]) -> float:
 def _steps_at_share(
     forms: Forms, share: float, count: float, distance: float, angle: float
 ) -> tuple[Steps, float]:
-    """Return the steps for a share and a count, and their angle; the search begins at `angle`."""
+    """Return the steps for a share (see SHARES) and a count of samples, and their angle.
+
+    The search for the angle begins at `angle`.
+    """
 
     def steps_at(angle: float) -> Steps:
         return _steps(forms, ((2.0 * angle) ** 2, (2.0 * distance) ** 2), share)

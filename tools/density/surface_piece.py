@@ -78,7 +78,7 @@ class SurfacePiece(Piece):
     def fields_at(
         self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
     ) -> dict[str, NDArray[Any]]:
-        """Return fields of samples at parameters (k, 2); `rows` (k, 8) are those of their cells."""
+        """Return fields of samples at parameters (k, 2), in cells with the rows `rows` (k, 8)."""
         return self.geometry.at_parameters(uv, rows[:, 3:6], rows[:, 7], fields, dtype)
 
     def solid_angle(self, density: float) -> float:

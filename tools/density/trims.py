@@ -33,8 +33,8 @@ class Trims:
         self.pieces = pieces
         self.trimmed = np.array([x.trim is not None for x in pieces], dtype=np.bool_)
         self.domains = np.array([x.domain for x in pieces])
-        # The index of each piece in `_loops`, −1 for pieces without loops there; and the sum of the
-        # bounds of u of pieces with u reversed, NaN for others.
+        # The index of each piece in `_loops`, −1 for a piece without an entry; and for each piece
+        # with u reversed the sum of the bounds of u, NaN for other pieces.
         self._place, self._totals = np.full(len(pieces), -1), np.full(len(pieces), np.nan)
         self._loops = list[Loops]()
         for k in np.flatnonzero(self.trimmed).tolist():

@@ -114,7 +114,7 @@ class MeasuredLine:
         self._take(at, numbers[near], distance <= on_line * self.spacings[found[near]])
 
     def _take(self, at: Array, numbers: Indices, is_on: Flags) -> None:
-        """Make samples that are on the line vertices; they replace other vertices near them."""
+        """Make vertices of the samples on the line; they replace other vertices near them."""
         for t, number in zip(at[is_on].tolist(), numbers[is_on].tolist(), strict=True):
             apart = np.abs(self.t - t)
             ends = np.flatnonzero(self.fixed & (apart <= EQUAL))
@@ -154,7 +154,7 @@ class MeasuredLine:
         self.sample = np.insert(self.sample, at, -1)
 
     def at_vertices(self) -> Array:
-        """Return the positions of the vertices; a closed line repeats the first one at its end."""
+        """Return the positions of the vertices; on a closed line, the last repeats the first."""
         return np.stack([np.interp(self.t, self.measure, x) for x in self.positions.T], axis=1)
 
 

@@ -58,9 +58,9 @@ MOST_AROUND = 256
 class Triangulated:
     """Samples and added vertices in a triangulation of the parameter domain.
 
-    `sample` and `is_free` are those of `Vertices`; `triangles`, `sides` and `neighbours` (k, 3)
-    those of `kernels.flips`, which changes them in place; `is_node` marks vertices that are samples
-    on a graded grid.
+    `sample` and `is_free` are explained in `Vertices`; `triangles`, `sides` and `neighbours` (k, 3)
+    are explained in `kernels.flips`, which changes them in place. `is_node` marks vertices that are
+    samples on a graded grid.
     """
 
     name: str

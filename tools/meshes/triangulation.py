@@ -81,7 +81,10 @@ def triangulations(
 
 
 def _attempts(has_copies: bool, distance: float) -> list[tuple[float, float]]:
-    """Return the displacements and margins to try, for a mean distance of points."""
+    """Return the pairs of a displacement and a margin to try in turn.
+
+    `distance` is the mean distance of points.
+    """
     if not has_copies:
         return [(x, 0.0) for x in (0.0, *DISPLACEMENTS)]
     near = [steps * distance for steps in STEPS if steps * distance < MARGINS[0]]
@@ -205,9 +208,10 @@ def _in_strip(
     points: Array, original: Indices, is_mirrored: NDArray[np.bool_], lengths: Array,
     strip: tuple[int, int, float],
 ) -> Triangulation:  # fmt: skip
-    """Triangulate one of equal strips along u, with a margin; return the triangles of the strip.
+    """Triangulate a strip of the domain with a margin; return the triangles of the strip.
 
-    These are the triangles whose corner of the smallest index is in the strip, and no copy.
+    It is one of equal strips along u. Its triangles are those whose corner of the smallest index is
+    in the strip, and no copy.
     """
     number, strips, margin = strip
     along = points[:, 0] * strips - number

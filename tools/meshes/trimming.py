@@ -104,7 +104,7 @@ class _Trim:
         return inner, Vertices.joined([outside, filling])
 
     def border(self) -> Vertices:
-        """Return the vertices of all lines, in order; vertices on open sides are not free."""
+        """Return the vertices of all boundary lines, in order; on open sides they are not free."""
         ends = [len(x.t) - x.closed for x in self.lines]
         found = [x.at_vertices()[:end] for x, end in zip(self.lines, ends, strict=True)]
         sample = [x.sample[:end] for x, end in zip(self.lines, ends, strict=True)]
@@ -134,7 +134,7 @@ class _Trim:
         return added
 
     def is_inside(self, whole: Vertices, triangles: Indices, possible: Flags, sure: Flags) -> Flags:
-        """Return a mask of the triangles inside; all their vertices must be `possible`.
+        """Return a mask of the triangles inside the trim; their vertices must be `possible`.
 
         A triangle with a `sure` vertex is inside; any other triangle is inside if its centroid is.
         """

@@ -122,7 +122,7 @@ def check_fields(samples: Samples) -> None:
 
 
 def before_offset(samples: Samples) -> Array:
-    """Return the points (N, 3) of samples in float64; for an offset, those of the original."""
+    """Return the points (N, 3) of samples in float64; for an offset, before they were moved."""
     points = samples.points.astype(np.float64)
     if samples.offset_of is None:
         return points

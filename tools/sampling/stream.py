@@ -130,7 +130,7 @@ class _Stream:
 
     @property
     def _chosen(self) -> Chosen:
-        """The normals: the prescribed ones, or those of a lattice for the count."""
+        """The prescribed normals, or the normals of a lattice for the count."""
         if self.request.count is not None:
             return choose(self.geometry.fitted, self.request.count, self.progress)
         normals = self.request.directions
@@ -168,10 +168,10 @@ class _Stream:
 
 
 def _chunk(found: Samples, start: int, total: int, listed: bool) -> Samples:
-    """Return samples at a block of normals, with indices among all `total` normals.
+    """Return samples at a block of normals, whose `normal_index` refers to all normals.
 
-    The indices of the block begin at `start`. The report has undecided normals if they are
-    `listed`: if the normals were prescribed.
+    The block begins at the normal with the index `start`; there are `total` normals. The report has
+    undecided normals if they are `listed`: if the normals were prescribed.
     """
     arrays: dict[str, Any] = found.arrays()
     if start and "normal_index" in arrays:

@@ -39,7 +39,7 @@ from .sources import Source, SplineSource, SurfaceSource
 
 __all__ = ["Convolution", "convolve"]
 
-# The number of sums computed at a time; sums may be many more than branches.
+# The number of sums computed at a time; there may be many more sums than branches.
 PIECE = 1 << 14
 
 

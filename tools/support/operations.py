@@ -90,7 +90,10 @@ class Moved:
     distance: float = 0.0
 
     def sheets(self, normals: Vector) -> Sheets:
-        """Return the branches; radii are multiplied by s and the side, then increased by d."""
+        """Return the branches of the moved surface.
+
+        Radii are multiplied by `factor` and `side`, then increased by `distance`.
+        """
         R, growth = self.rotation, self.side * self.factor
         turned = normals if R is None else as_normals(normals @ R)
         sheets = self.of.sheets(self.side * turned)
@@ -118,7 +121,7 @@ class Moved:
         return None if given is None else self._at(given)
 
     def _at(self, given: Any) -> Any:  # noqa: ANN401
-        """Rewrite an expression in normals of the surface in normals of the moved surface."""
+        """Return an expression of the surface in terms of the normal of the moved surface."""
         n, rows = normal_components(), self.side * np.eye(3)
         if self.rotation is not None:
             rows = rows @ self.rotation.T
