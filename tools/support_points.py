@@ -38,7 +38,8 @@ __all__ = ["NetEdges", "Segments", "SupportPoints", "bounds_of", "lines_of", "su
 
 # Sides of the domain are cut into this number of segments for each cell.
 STEPS_A_CELL = 2
-# Directions are halved until PAIRS of a direction and a segment that may be farthest are left.
+# Sets of directions are halved until at most PAIRS pairs of a direction and a segment that may be
+# farthest in it are left in each set.
 PAIRS = 1 << 13
 # Steps of Newton's method, and of bisection where the boundary of a trim crosses a side.
 STEPS, BISECTIONS = 6, 50
@@ -46,7 +47,7 @@ STEPS, BISECTIONS = 6, 50
 IN_BOXES = (np.indices((3, 3)).reshape(2, -1).T + 0.5) / 3.0
 # Whether a side is inside the trim is tested at this distance from it, relative to the domain.
 BESIDE = 1e-8
-# Values of n·x are bounded up to this many units of rounding of the largest coordinate.
+# Bound of the rounding error of n·x, relative to the largest coordinate.
 ROUNDING = 32.0 * np.finfo(np.float64).eps
 
 
@@ -92,7 +93,7 @@ class SupportPoints(NamedTuple):
 
     @classmethod
     def nothing(cls, count: int) -> SupportPoints:
-        """Return the values −∞."""
+        """Return the state before any point is known: values −∞ in `count` directions."""
         return cls(
             np.full((count, 3), np.nan), np.full(count, -np.inf), np.zeros(count),
             np.full((count, 2), np.nan), np.full(count, -1), np.zeros(count, np.bool_),
@@ -102,9 +103,10 @@ class SupportPoints(NamedTuple):
         self, owner: Indices, normals: Array, points: Array, uv: Array | None,
         faces: Indices | int = -1, border: Flags | bool = False, errors: Array | float = 0.0,
     ) -> None:  # fmt: skip
-        """Take points (k, 3) that are farther in directions (k,); of equal ones, take the first.
+        """Replace known points by given points (k, 3) that are farther in their directions.
 
-        `normals` (S, 3) are all directions.
+        `owner` (k,) are the indices of the directions of the given points; `normals` (S, 3) are all
+        directions. Of equally far points the first one is taken.
         """
         values = np.einsum("kx,kx->k", points, normals[owner])
         order = np.lexsort((-values, owner))
@@ -119,9 +121,9 @@ class SupportPoints(NamedTuple):
 def support(self: GaussMap, directions: ArrayLike) -> SupportPoints:
     """Return the farthest point of the surface in each direction, wherever it lies.
 
-    It is a point with this normal or the opposite one, a point of a boundary, a corner, or a tip.
-    If all points of a curve or a region are farthest ones, one of them is returned, always the same
-    one. The values are those of the support function of the convex hull.
+    The farthest point is a point with this normal or the opposite one, a point of a boundary, a
+    corner, or a tip. If all points of a curve or a region are farthest, one of these points is
+    returned, always the same one. The values are those of the support function of the convex hull.
 
     Parameters
     ----------
@@ -192,7 +194,11 @@ def _farthest(gauss_map: GaussMap, normals: Array) -> SupportPoints:
 
 
 def _compare_with_splines(found: SupportPoints, gauss_map: GaussMap, normals: Array) -> None:
-    """Bound the errors by the values of splines and their distances from the surface."""
+    """Raise the errors to bounds that follow from splines: their values plus their distances.
+
+    The distances are those of the splines from the surface. Points of the surface at the parameters
+    of farthest points of splines are added first.
+    """
     on_splines = [(x, _farthest(kept_map(x.spline), normals)) for x in on_grids(gauss_map._fitted)]
     for piece, near in on_splines:
         points = piece.jets(*near.uv.T.copy())[:, 0]
@@ -218,10 +224,10 @@ class HasJets(Protocol):
 class Segments:
     """M segments `starts` + t `steps` (M, 2) of the parameters of a surface, 0 ≤ t ≤ 1.
 
-    With `bends` (M, 2, 2) they are cubics; `bends` are their derivatives at both ends, less the
-    steps. The tangent of each segment in space is assumed to turn by less than half a turn. `face`
-    is the index of the face of a part, and `border` is False for lines inside a surface. The
-    boundary is within `errors` (M,) of the segments in space.
+    With `bends` (M, 2, 2) the segments are cubic curves; `bends` are their derivatives at both
+    ends, less the steps. The tangent of each segment in space is assumed to turn by less than half
+    a turn. `face` is the index of the face of a part, and `border` is False for lines inside a
+    surface. The boundary is within `errors` (M,) of the segments in space.
     """
 
     surface: HasJets
@@ -233,7 +239,7 @@ class Segments:
     bends: Array | None = None
 
     def at(self, rows: Indices, t: Array) -> tuple[Array, Array, Array, Array]:
-        """Return u, v (k, 2) at t (k,) of segments (k,), and x, dx/dt, d²x/dt² (k, 3)."""
+        """Return u, v (k, 2) and x, dx/dt, d²x/dt² (k, 3) at t (k,) on the segments `rows` (k,)."""
         t, steps = t[:, None], self.steps[rows]
         uv, bend = self.starts[rows] + t * steps, np.zeros_like(steps)
         if self.bends is not None:
@@ -262,7 +268,7 @@ class NetEdges:
     errors = 0.0
 
     def at(self, rows: Indices, t: Array) -> tuple[Array, Array, Array, Array]:
-        """Return u, v = NaN at t (k,) of edges (k,), and x, dx/dt, d²x/dt² (k, 3)."""
+        """Return NaN for u, v, and x, dx/dt, d²x/dt² (k, 3), at t (k,) on the edges `rows` (k,)."""
         a, b, c = np.moveaxis(self.control[rows], 1, 0)
         s = t[:, None]
         ab, bc = a + s * (b - a), b + s * (c - b)
@@ -272,9 +278,10 @@ class NetEdges:
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """Segments of one surface or more, with the points and tangents (M, 2, 3) at their ends.
+    """M segments of one or more surfaces, with the points and tangents (M, 2, 3) at both ends.
 
-    Each segment is within a distance `reach` (M,) of its start.
+    A segment is given by the index of its part in `parts` and its row there. Each segment is within
+    a distance `reach` (M,) of its start.
     """
 
     parts: Sequence[Segments | NetEdges]
@@ -286,7 +293,7 @@ class Curves:
 
     @classmethod
     def of(cls, parts: Sequence[Segments | NetEdges]) -> Curves:
-        """Return the segments of all parts that are finite."""
+        """Return the segments of all parts whose points and tangents at both ends are finite."""
         rows = [np.arange(len(x.starts if isinstance(x, Segments) else x.control)) for x in parts]
         part = np.repeat(np.arange(len(parts)), [len(x) for x in rows])
         row = np.concatenate([np.empty(0, np.int64), *rows])
@@ -302,7 +309,7 @@ class Curves:
         return cls(parts, part, row, points, tangents, reach)
 
     def add(self, found: SupportPoints, normals: Array) -> None:
-        """Take the points of segments that are farther in the directions (S, 3)."""
+        """Replace known points by points of segments that are farther in the directions (S, 3)."""
         near = self._near(found, normals) if len(self.part) else ()
         pairs = [self._highest(found, normals, some, rows) for some, rows in near]
         if not pairs:
@@ -315,10 +322,11 @@ class Curves:
             _add_highest(part, found, normals, owner[some], self.row[rows[some]], t[some])
 
     def _near(self, found: SupportPoints, normals: Array) -> Iterator[tuple[Indices, Indices]]:
-        """Yield a few directions at a time, and the segments that may be farthest in them.
+        """Yield indices of a few directions, and of the segments that may be farthest in them.
 
-        If all directions are within δ of a vector a, a segment whose start is lower along a than a
-        known point, by more than its `reach` and δ times their distance, is lower in all of them.
+        Let the directions be within δ of a vector a. A segment cannot be farthest if its start is
+        lower along a than a known point, by more than the `reach` of the segment plus δ times the
+        distance between start and point.
         """
         halves = [(np.arange(len(normals)), np.arange(len(self.part)))]
         while halves:
@@ -340,7 +348,10 @@ class Curves:
     def _highest(
         self, found: SupportPoints, normals: Array, some: Indices, rows: Indices
     ) -> tuple[Indices, Indices, Array]:
-        """Return directions, and segments (k,) that may be highest in them, near t (k,)."""
+        """Return indices of directions (k,) and of segments (k,) that may be highest in them.
+
+        Also return t (k,), near the highest point of each segment.
+        """
         n = normals[some].T[:, :, None]
         ends, slopes = (
             x[0] * n[0] + x[1] * n[1] + x[2] * n[2]
@@ -366,7 +377,10 @@ def _add_highest(
     part: Segments | NetEdges, found: SupportPoints, normals: Array,
     owner: Indices, rows: Indices, t: Array,
 ) -> None:  # fmt: skip
-    """Take the highest points of segments (k,) in directions (k,), near t (k,)."""
+    """Replace known points by the highest points of segments if these are farther.
+
+    Segment rows[i] is considered in the direction owner[i]; its highest point is near t[i].
+    """
     n, steps, inside = normals[owner], np.zeros(len(t)), (t > 0.0) & (t < 1.0)
     for _ in range(STEPS):
         some = np.flatnonzero(inside)
@@ -397,7 +411,10 @@ def _curves_of(gauss_map: GaussMap) -> list[Curves]:
 
 
 def lines_of(geometry: OnPatches) -> Iterator[Segments | NetEdges]:
-    """Yield the boundary of a geometry, and the edges of patches without a normal of their own."""
+    """Yield the boundary of a geometry, and edges of patches on which farthest points may lie.
+
+    These are all edges of nets, and the edges of developable regions of other splines.
+    """
     if not isinstance(geometry, OnSpline):
         rows = [[x.start, x.middle, x.end] for x in EDGES]
         assert isinstance(geometry.spline, NetSpline)
@@ -418,7 +435,11 @@ def lines_of(geometry: OnPatches) -> Iterator[Segments | NetEdges]:
 
 
 def _of_trim(geometry: OnSpline, line: Array) -> Segments:
-    """Return a polyline (k, 2) in the unit square as segments; for a predicate, with errors."""
+    """Return the segments of a polyline (k, 2) in the unit square, a boundary of the trim.
+
+    The segments of a predicate's boundary have errors: distances of its points from chords between
+    their neighbours.
+    """
     spline, middles = geometry.spline, (line[1:] + line[:-1]) / 2.0
     around = wrapped(middles, spline.boundary)
     low, high = np.array(spline.domain).T
@@ -438,7 +459,10 @@ def _of_trim(geometry: OnSpline, line: Array) -> Segments:
 def _inside(
     geometry: OnSpline, starts: Array, steps: Array, inwards: Array, border: bool = True
 ) -> Segments:
-    """Return the parts of segments inside the trim, tested at points moved by `inwards` (2,)."""
+    """Return the parts of segments that are inside the trim.
+
+    The trim is tested at points moved by `inwards` (2,).
+    """
     trim = geometry.spline.trim
     if trim is None:
         return Segments(geometry, starts, steps, border=border)
@@ -467,7 +491,7 @@ def _edges_of_flat(spline: Spline) -> tuple[Array, Array]:
     """Return the edges of developable regions: starts and steps (k, 2) of the parameters.
 
     On a developable patch, critical points of n·x form lines, which end on edges. Patches at tips
-    have no samples either.
+    have no samples either, and are treated like developable patches.
     """
     flat, tips = _developable(spline), tips_of(spline)
     flat = flat.reshape(*spline.cells, 4)
@@ -488,7 +512,10 @@ def _edges_of_flat(spline: Spline) -> tuple[Array, Array]:
 
 
 def _developable(spline: Spline) -> Flags:
-    """Return which patches are developable, from their numbers in ranges, by bisection."""
+    """Return whether patches are developable.
+
+    Ranges of patches are bisected: only the number of developable patches in a range is known.
+    """
     flat, ranges = np.zeros(spline.patches, np.bool_), [(0, spline.patches)]
     while ranges and developable_patches(spline, None):
         first, last = ranges.pop()
@@ -507,7 +534,7 @@ def _developable(spline: Spline) -> Flags:
 def _add_undecided(
     found: SupportPoints, gauss_map: GaussMap, normals: Array, places: Sequence[UndecidedNormal]
 ) -> None:
-    """Take farther points that Newton's method finds in undecided boxes.
+    """Replace known points by farther points that Newton's method finds in undecided boxes.
 
     Such boxes cover, for example, a circle of points with the same normal.
     """
