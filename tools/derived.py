@@ -37,7 +37,7 @@ __all__ = [
 ]
 
 
-# The number of samples of a mesh that hides parts of an outline.
+# The number of samples of the mesh that decides which points of a silhouette are hidden.
 OF_VIEW = 10_000
 
 

@@ -1,7 +1,8 @@
-"""Distances from edges and boundaries: the condition that samples keep one, tested exactly.
+"""Distances from edges and boundaries: a condition that samples are at least that far away.
 
-Curves are cut into short arcs, whose middles are in a k-d tree. It decides for all points but those
-whose distance it leaves open, for which Newton's method finds the nearest points of the arcs.
+Curves are cut into short arcs, whose middles are in a k-d tree. The distance from the nearest
+middle decides most points. For the other points, Newton's method finds the nearest points on the
+arcs.
 """
 
 from __future__ import annotations
@@ -27,14 +28,17 @@ if TYPE_CHECKING:
 
 __all__ = ["AwayFrom", "conditions_of"]
 
-# Arcs have about this part of the distance as their length, and there are about MOST_ARCS at most.
+# The length of an arc is about the distance divided by ARCS_A_DISTANCE; there are about MOST_ARCS
+# arcs at most.
 ARCS_A_DISTANCE, MOST_ARCS = 16.0, 100_000
-# Segments are measured by this number of chords. Arcs bulge by at most this factor.
+# The length of a segment is measured by CHORDS chords. An arc is within BULGE times the largest
+# distance of its ends from its middle.
 CHORDS, BULGE = 8, 1.1
-# Steps of Newton's method. It falls back to a step along the tangent if the distance is not convex.
-# The error of a distance is of second order in steps, which end at FINE distances.
+# The largest number of steps of Newton's method, which takes a step along the tangent instead where
+# the squared distance is not convex enough. The steps end when they are shorter than FINE times the
+# distance; the error of a distance is of second order in the last step.
 STEPS, CONVEX, FINE = 8, 0.1, 1e-8
-# Distances are compared up to this many units of rounding of the largest coordinate.
+# Distances are compared up to this multiple of the largest coordinate, for rounding errors.
 ROUNDING = 32.0 * np.finfo(np.float64).eps
 
 
@@ -44,7 +48,7 @@ class AwayFrom:
 
     Arc i is the part of segment `rows`[i] of `parts`[`part`[i]] with parameters from `first`[i] to
     `last`[i]. It is within `radius` of its middle, a point of the `tree`, and the exact edge is
-    within `errors`[i] of it. Distances up to `slack` more than that may be required.
+    within `errors`[i] of the arc.
     """
 
     parts: Sequence[Segments]
@@ -83,11 +87,14 @@ class AwayFrom:
 
     @property
     def most(self) -> float:
-        """The largest distance from the middle of an arc at which a point may be too near."""
+        """The largest distance of a point that is too near to an arc from the arc's middle."""
         return self.distance + self.radius + float(self.errors.max())
 
     def holds(self, points: Array, normals: Array) -> Flags:
-        """Return which points (k, 3) are far enough from all curves; `normals` are not used."""
+        """Return a mask of the points (k, 3) that are far enough from all curves.
+
+        `normals` are not used.
+        """
         near = self.tree.query(points, distance_upper_bound=self.most)[0]
         found = np.isinf(near)
         open_ = np.flatnonzero(~found & (near >= self.distance))
@@ -100,13 +107,16 @@ class AwayFrom:
         return found
 
     def may_change(self, points: Array, radii: Array) -> Flags:
-        """Return which balls around points (k, 3) may meet the boundary of the condition."""
+        """Return a mask (k,) of balls that may contain both allowed and excluded points.
+
+        The balls have centres `points` (k, 3) and `radii` (k,).
+        """
         most = self.most + float(radii.max(initial=0.0))
         near = self.tree.query(points, distance_upper_bound=most)[0]
         return (near - radii <= self.most) & (near + radii >= self.distance)
 
     def _distances(self, points: Array, arcs: Indices) -> Array:
-        """Return the distances of points (k, 3) from arcs (k,)."""
+        """Return the distance (k,) of each point (k, 3) from the arc of the same row."""
         first, last = self.first[arcs], self.last[arcs]
         t, found = (first + last) / 2.0, np.full(len(arcs), np.inf)
         for _ in range(STEPS):
@@ -124,7 +134,7 @@ class AwayFrom:
         return found
 
     def _at(self, arcs: Indices, t: Array) -> tuple[Array, Array, Array]:
-        """Return x, dx/dt, d²x/dt² (k, 3) at parameters (k,) of arcs (k,)."""
+        """Return x, dx/dt and d²x/dt² (k, 3) at parameters (k,) of arcs, given by indices (k,)."""
         found = np.empty((3, len(arcs), 3))
         for k, some in grouped(self.part[arcs]):
             found[:, some] = self.parts[k].at(self.rows[arcs[some]], t[some])[1:]
@@ -132,7 +142,7 @@ class AwayFrom:
 
 
 def _lengths(part: Segments) -> Array:
-    """Return lengths (M,) of segments, from chords; 0 where they are not finite."""
+    """Return the lengths (M,) of segments, measured by chords; 0 where a length is not finite."""
     count = len(part.starts)
     rows, t = np.repeat(np.arange(count), CHORDS + 1), np.linspace(0.0, 1.0, CHORDS + 1)
     points = part.at(rows, np.tile(t, count))[1].reshape(count, CHORDS + 1, 3)
@@ -141,7 +151,7 @@ def _lengths(part: Segments) -> Array:
 
 
 def conditions_of(self: GaussMap, reach: Reach) -> list[Condition]:
-    """Return the conditions of a reach on the points of a surface."""
+    """Return the conditions that a reach sets on points of a surface, besides those on normals."""
     if reach._along is not None:
         raise InputError(
             "what obstructs a ray is known of CAD parts: make one, as in gm.Part([surface])."

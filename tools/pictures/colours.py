@@ -32,10 +32,10 @@ ROBUST = 95.0  # the percentile of sizes at the ends of a scale that is symmetri
 
 @dataclass(frozen=True)
 class Colours:
-    """The values of samples shown in colour, their scale, and the scale's label.
+    """The values of samples that are shown in colour, and the scale of colours with its label.
 
-    `clipped` says whether some values are beyond the ends of the scale. Values that are `names`
-    have colours of their own.
+    `clipped` says whether some values are beyond the ends of the scale. If there are `names`, the
+    colours are discrete, and `values` are indices of names.
     """
 
     values: NDArray[np.float64]
@@ -50,7 +50,7 @@ class Colours:
 def checked_values(samples: Samples, color: str | ArrayLike) -> tuple[NDArray[np.float64], str]:
     """Return a value for each sample, and its name ("" for an array).
 
-    Raises UnknownNameError and MissingFieldError for names, InputError for arrays.
+    Raises UnknownNameError or MissingFieldError for the name of a column, InputError for an array.
     """
     if not isinstance(color, str):
         values = real_values(color, "color")
@@ -87,12 +87,12 @@ def colours_of(samples: Samples, color: str | ArrayLike) -> Colours:
 
 
 def _unit(name: str, samples: Samples) -> str:
-    """Return the unit of a column, that of the part if it has one."""
+    """Return the unit of a column, with the unit of length of the samples if it is known."""
     return UNITS.get(name, "").replace("length", samples.report.unit or "length")
 
 
 def _discrete(samples: Samples, values: NDArray[np.float64], name: str) -> Colours:
-    """Return a colour for each face or solid; faces have the numbers of the file."""
+    """Return a colour for each face or solid; the names of faces are their indices in the file."""
     from matplotlib import colormaps
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
@@ -111,7 +111,10 @@ def _discrete(samples: Samples, values: NDArray[np.float64], name: str) -> Colou
 
 
 def numbers_in_file(samples: Samples, faces: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the numbers in the file of faces (k,) of samples; the faces if that is unknown."""
+    """Return the indices in the file of faces (k,), given by their indices in the part of samples.
+
+    Without a part, return `faces`.
+    """
     part = whole_of(samples)
     if part is None:
         return faces
@@ -120,7 +123,7 @@ def numbers_in_file(samples: Samples, faces: NDArray[np.int64]) -> NDArray[np.in
 
 
 def _limit(values: NDArray[np.float64]) -> tuple[float, bool]:
-    """Return the end of a scale that is symmetric to zero, and whether some values exceed it."""
+    """Return the upper end of a scale symmetric about zero, and whether some moduli exceed it."""
     sizes = np.append(np.abs(values[np.isfinite(values)]), 0.0)
     largest, limit = float(sizes.max()), float(np.percentile(sizes, ROBUST))
     if largest <= 1.25 * limit or limit == 0.0:
@@ -129,7 +132,7 @@ def _limit(values: NDArray[np.float64]) -> tuple[float, bool]:
 
 
 def _draw_names(axes: Axes, colours: Colours) -> None:
-    """Draw discrete colours with their numbers, some of them if there are many."""
+    """Draw discrete colours with their names; if there are many names, leave some of them out."""
     from matplotlib.cm import ScalarMappable
 
     step = -(-len(colours.names) // MOST_NAMES)

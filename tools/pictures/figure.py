@@ -1,4 +1,4 @@
-"""Figures that notebooks show."""
+"""`Picture`: a Matplotlib figure that notebooks show."""
 
 from __future__ import annotations
 

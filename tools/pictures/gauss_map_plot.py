@@ -37,10 +37,11 @@ POINT = 0.02  # an image smaller than this is drawn as a point
 def plot(self: GaussMap, *, view: Sequence[float] = VIEW) -> Figure:
     """Draw the parabolic curves on the surface, and their images, the folds, on the unit sphere.
 
-    On the right, the surface with samples coloured by K, which changes its sign at the parabolic
-    curves; on the left, the normals of the samples, and the images of these curves with their
-    cusps. The number of points with a normal changes by two at a fold, and by one at the image of a
-    boundary. Parts hidden by the surface are not drawn; parts behind the sphere are pale.
+    On the right is the surface with samples coloured by K, which changes its sign at the parabolic
+    curves; on the left are the normals of the samples, and the images of the parabolic curves with
+    their cusps. The number of points with a normal changes by two at a fold, and by one at the
+    image of a boundary. Parts hidden by the surface are not drawn; parts behind the sphere are
+    pale.
 
     Parameters
     ----------
@@ -108,7 +109,7 @@ def plot(self: GaussMap, *, view: Sequence[float] = VIEW) -> Figure:
 
 
 def _borders(gauss_map: GaussMap) -> tuple[ImageCurve, ...]:
-    """Return the images of the boundary; none if the trim has no loops."""
+    """Return the images of the boundary; none if a trim is not given by loops."""
     trim = getattr(gauss_map.surface, "trim", None)
     if trim is not None and not all(isinstance(x, Loops) for x in trim.parts):
         return ()
@@ -124,7 +125,7 @@ def _draw_on_surface(axes: Any, scene: Scene, curve: ImageCurve, colour: str) ->
 
 
 def _draw_on_sphere(axes: Axes, image: Array, cusps: Indices, colour: str) -> None:
-    """Draw a curve (k, 3) of the sphere, seen along its third axis; parts behind are pale."""
+    """Draw a curve (k, 3) on the sphere, seen along the third axis; its far parts are pale."""
     front = image[:, 2:] >= 0.0
     marker = "o" if float(np.ptp(image, axis=0).max()) < POINT else ""
     for part, alpha, order in ((front, 1.0, 6), (~front, 0.35, 1)):

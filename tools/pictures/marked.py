@@ -11,7 +11,8 @@ from ...runtime.samples.samples import Samples
 
 __all__ = ["Marked", "marked"]
 
-# A direction right, up and towards the viewer: an arrow along it is not seen end on.
+# A direction, by components right, up and towards the viewer, such that an arrow along it is not
+# seen end on.
 BETWEEN = np.array([0.6, 0.35, 0.8])
 
 
@@ -35,8 +36,9 @@ def marked(
 ) -> Marked | None:
     """Return a normal with many visible samples, or None if no visible sample is at a normal.
 
-    Among the normals with at least as many visible samples as the mean, it is the one nearest to
-    the direction BETWEEN, whose components are along the rows of `view`.
+    Among the normals with at least as many visible samples as the mean, the normal nearest to the
+    direction BETWEEN is chosen. The rows of `view` are the directions right, up, and towards the
+    viewer.
     """
     index = samples.normal_index
     chosen = visible & (index >= 0)

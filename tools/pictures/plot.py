@@ -52,7 +52,8 @@ __all__ = [
 COUNT = 2_000  # the default number of samples
 DOTS_PER_INCH = 200
 LONGEST_LINE = 140  # characters of the summary
-# In inches: the size of the figure; the heights of the middle, of titles and of legends.
+# In inches: the width and height of the figure, and the heights at which the middle of the panels,
+# titles and legends are.
 WIDTH, HEIGHT, MIDDLE, TITLES, LEGENDS = 9.0, 4.6, 2.28, 3.8, 0.48
 # The centres of the panels along x, in inches: the sphere, the support function, the surface.
 SPHERE, SUPPORT, SURFACE = 1.4, 3.6, 6.5
@@ -241,7 +242,7 @@ def plot_samples(
 
 
 def _checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64]:
-    """Return the prescribed normals as unit vectors (S, 3), empty if none are given.
+    """Return the prescribed normals as unit vectors (S, 3), or an empty array without any.
 
     Raises InputError if there are too few of them for the samples.
     """
@@ -259,7 +260,7 @@ def _checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64
 
 
 def _checked_axes(axes: Axes | Sequence[Axes] | None) -> tuple[Any, ...]:
-    """Return no axes, the axes of the surface, or those of the surface and the sphere."""
+    """Return the given axes as a tuple: none, those of the surface, or of surface and sphere."""
     if axes is None:
         return ()
     from matplotlib.axes import Axes as AnyAxes
@@ -284,7 +285,7 @@ def _drawn(
     axes: Sequence[Any],
     face_numbers: bool,
 ) -> Figure:
-    """Draw samples on a scene, and the prescribed normals, into a new figure or into axes."""
+    """Draw samples on a scene, and prescribed normals, into `axes` or, if empty, a new figure."""
     visible = scene.visible(samples.points.astype(np.float64))
     with style():
         colours = colours_of(samples, color)
@@ -367,14 +368,17 @@ def _write_titles(figure: Figure, samples: Samples) -> None:
 
 
 def _write(figure: Figure, x: float, y: float, text: str, **looks: Any) -> None:  # noqa: ANN401
-    """Write a text at a position in inches; dollar signs in it are not mathematics."""
+    """Write a text, centred at a position in inches; its dollar signs are not mathematics."""
     figure.text(
         x / WIDTH, y / HEIGHT, printable(text), ha="center", **{"parse_math": False, **looks}
     )
 
 
 def _box(x: float, y: float, width: float, height: float) -> tuple[float, float, float, float]:
-    """Return a rectangle, given by its centre and size in inches, in fractions of the figure."""
+    """Return a rectangle (left, bottom, width, height) in fractions of the figure.
+
+    It is given by its centre and its size in inches.
+    """
     return (x - width / 2) / WIDTH, (y - height / 2) / HEIGHT, width / WIDTH, height / HEIGHT
 
 
@@ -386,12 +390,12 @@ def write_figure(figure: Figure, path: paths.PathLike) -> None:
     check_target(path)
     suffix = Path(path).suffix.lower()
     with style(), paths.atomic_path(path) as temporary, paths.written_by_library(path):
-        # In .pdf and .svg files, quadrangles are rasterized, at a finer resolution than a screen's.
+        # In .pdf and .svg files, quadrangles are rasterized with FINE dots per inch.
         dots = figure.dpi if suffix == ".png" else FINE
         figure.savefig(temporary, format=suffix[1:], metadata=UNDATED[suffix], dpi=dots)
 
 
 def check_target(path: paths.PathLike) -> None:
-    """Raise now the errors that writing would raise later, for a path or a missing matplotlib."""
+    """Raise the errors that writing would raise later, for the path or without Matplotlib."""
     paths.check_target(path, SUFFIXES)
     check_extra("matplotlib", "plot", "a picture")

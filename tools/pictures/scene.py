@@ -41,21 +41,25 @@ Array = NDArray[np.float64]
 VIEW = ELEVATION, AZIMUTH = 28.0, -55.0  # of the viewer, in degrees
 MESH, MOST_MESH = 112, 224  # quadrangles along u and v: the number of cells, within these limits
 ISOLINES = 16  # parameter lines along u and v
-# A surface hides a sample if it is nearer to the viewer by this fraction of its diameter.
+# A surface hides a sample if it is nearer to the viewer than the sample by at least this fraction
+# of the diameter of the surface.
 HIDING = 0.01
-# For a part: the diameter over the longest side of divided triangles.
+# Triangles of a part are divided until their longest side is the diameter divided by this number.
 PIECES = 40
 # A ratio of height to width below LOW or above HIGH is changed to about LOW_WANTED or HIGH_WANTED.
 LOW, LOW_WANTED = 0.1, 0.25
 HIGH, HIGH_WANTED = 10.0, 2.0
-# The number of grid lines across a plane, across other faces, and across faces of parts with many
-# faces.
+# The numbers of grid cells along u and along v: on planes, on other faces, and on faces of parts
+# with more than MANY faces.
 FLAT, CURVED, SMALL, MANY = 2, 40, 12, 60
 SLIVER = 1e-9  # a triangle without an area, relative to the rectangle of parameters
 
 
 def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> Array:
-    """Return the rows (3, 3) right, up, and towards a viewer at two angles in degrees."""
+    """Return a matrix (3, 3) whose rows are the directions right, up, and towards the viewer.
+
+    Elevation and azimuth of the viewer are in degrees.
+    """
     angles = math.radians(elevation), math.radians(azimuth)
     s, c, S, C = (f(angle) for angle in angles for f in (math.sin, math.cos))
     return np.array([[-S, C, 0.0], [-s * C, -s * S, c], [c * C, c * S, s]])
@@ -63,11 +67,12 @@ def view(elevation: float = ELEVATION, azimuth: float = AZIMUTH) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A surface as quadrangles (Q, 4, 3) with lines on it, its heights multiplied by `factor`.
+    """A surface as quadrangles (Q, 4, 3) with lines on it; pictures multiply heights by `factor`.
 
-    The corners of a quadrangle are in cyclic order; a triangle repeats its last corner, as all
-    quadrangles of a part do. Each line is an array (k, 3). `view` holds the rows right, up, and
-    towards the viewer. `faces` (Q,) are the faces of a part to which the quadrangles belong.
+    The corners of a quadrangle are in cyclic order. A triangle is a quadrangle with its last corner
+    repeated; a part has triangles only. Each line is an array (k, 3). The rows of `view` are the
+    directions right, up, and towards the viewer. `faces` (Q,) are the indices of the faces of a
+    part to which the quadrangles belong.
     """
 
     quadrangles: Array
@@ -77,12 +82,15 @@ class Scene:
     faces: NDArray[np.int64] | None = None
 
     def seen(self, points: Array) -> Array:
-        """Return points (..., 3) as right, up, and height towards the viewer."""
+        """Return points (..., 3) by coordinates right, up, and towards the viewer.
+
+        Heights are rescaled.
+        """
         return (points * [1.0, 1.0, self.factor]) @ self.view.T
 
     @cached_property
     def triangles(self) -> Array:
-        """The halves (T, 3, 3) of the quadrangles, in the coordinates of `seen`."""
+        """The triangles (T, 3, 3), halves of quadrangles, in the coordinates of `seen`."""
         seen = self.seen(self.quadrangles)
         second = seen[(seen[:, 2] != seen[:, 3]).any(axis=1)]
         return np.concatenate([seen[:, [0, 1, 2]], second[:, [0, 2, 3]]])
@@ -107,7 +115,7 @@ class Scene:
         seen = self.visible(np.concatenate(self.lines))
         ends = np.cumsum([len(line) for line in self.lines])
         segments = np.concatenate([np.stack([x[:-1], x[1:]], axis=1) for x in self.lines])
-        # Each point but the last one of each line begins a segment.
+        # Every point begins a segment, except the last point of each line.
         first = np.delete(np.arange(len(seen)), ends - 1)
         return segments[seen[first] & seen[first + 1]]
 
@@ -118,10 +126,11 @@ class Scene:
         return np.asarray(seen[:, 2] >= nearest - HIDING * self._diameter)
 
     def in_layers(self) -> list[Scene]:
-        """Return scenes to paint in order, because Matplotlib sorts quadrangles by mean depth.
+        """Return scenes to paint one over the other, since Matplotlib sorts by mean depth only.
 
-        Sorting by depth suits the small quadrangles of a surface. The triangles of a part differ in
-        size: they are divided, and the hidden ones come first.
+        Sorting by mean depth suits the small quadrangles of a surface, which is one scene. The
+        triangles of a part differ in size: they are divided, and hidden triangles are in the first
+        scene, visible ones in the second.
         """
         if self.faces is None:
             return [self]
@@ -138,7 +147,7 @@ class Scene:
 def scene_of_samples(
     samples: Samples, surface: object = None, seen_from: Array | None = None
 ) -> Scene:
-    """Return the scene of the surface of samples; InputError if that is unknown."""
+    """Return the scene of the surface of samples; InputError if the surface is unknown."""
     base = samples.offset_of
     if surface is None and isinstance(samples, Convolution):
         return _rescaled(_of_sums(samples), seen_from)
@@ -154,7 +163,7 @@ def scene_of_samples(
 
 
 def scene_of(surface: object, seen_from: Array | None = None, distance: float = 0.0) -> Scene:
-    """Return the scene of a surface, its spline, their offset, or a part, with heights rescaled.
+    """Return the scene of a surface or spline, of its offset, or of a part, with heights rescaled.
 
     Raises SurfaceError for a part without usable faces, InputError for any other object.
     """
@@ -181,7 +190,10 @@ def _rescaled(
 
 
 def _of_sums(sums: Convolution) -> Array:
-    """Return the quadrangles of the mesh of sums; of those without one, the points, four times."""
+    """Return the triangles of the mesh of sums as quadrangles.
+
+    Without a mesh, each point becomes a quadrangle with four equal corners.
+    """
     try:
         mesh = sums.mesh(prefer="normals")
     except InputError:
@@ -190,7 +202,7 @@ def _of_sums(sums: Convolution) -> Array:
 
 
 def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...]]:
-    """Return quadrangles of a spline, or of its offset, and parameter lines, inside its trim."""
+    """Return quadrangles and parameter lines of a spline or its offset, inside the trim."""
     u, v, inside = _grid_inside(spline)
     mesh = spline.evaluate(u[:, None], v)
     if distance:
@@ -208,10 +220,10 @@ def _of_spline(spline: Spline, distance: float) -> tuple[Array, tuple[Array, ...
 
 
 def _grid_inside(spline: Spline) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Return values of u and v, and which rectangles between them are inside the trim.
+    """Return values of u and v, and a mask (m, n) of the rectangles between them inside the trim.
 
-    If a trim leaves only a small part of the domain, the grid is finer, as fine on this part as
-    usual.
+    If a trim leaves only a small part of the domain, the grid covers this part only, with the usual
+    number of lines.
     """
     counts = [min(max(MESH, count), MOST_MESH) for count in spline.cells]
     ends = np.array(spline.domain)
@@ -229,19 +241,19 @@ def _grid_inside(spline: Spline) -> tuple[Array, Array, NDArray[np.bool_]]:
 
 
 def _inside(trim: Trim, u: Array, v: Array) -> NDArray[np.bool_]:
-    """Return which rectangles between values of u and v have their centre inside a trim."""
+    """Return a mask of the rectangles between values of u and v whose centres are inside a trim."""
     centres = np.meshgrid(*((x[1:] + x[:-1]) / 2 for x in (u, v)), indexing="ij")
     return trim.contains(np.stack(centres, axis=-1).reshape(-1, 2)).reshape(centres[0].shape)
 
 
 def _parts(line: Array, there: NDArray[np.bool_]) -> list[Array]:
-    """Return the parts of a line (k, 3) whose segments (k − 1,) are there."""
+    """Return the pieces of a line (k, 3) that consist of the segments in a mask (k − 1,)."""
     ends = np.flatnonzero(np.diff(np.pad(there, 1).astype(np.int8))).reshape(-1, 2)
     return [line[first : last + 1] for first, last in ends]
 
 
 def _of_part(part: Part) -> tuple[Array, tuple[Array, ...], NDArray[np.int64]]:
-    """Return triangles of the faces of a part, their boundaries, and the face of each triangle."""
+    """Return triangles of a part, boundaries of its faces, and the face index of each triangle."""
     fine = SMALL if len(part) > MANY else CURVED
     pieces, _ = pieces_of(part.faces)
     if not pieces:
@@ -268,7 +280,8 @@ def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
         places = np.unique(np.concatenate([inner, *(x[:-1] for x in loops)]), axis=0)
     scaled = (places - low) / size
     triangles = Delaunay(scaled, qhull_options="QJ Pp").simplices
-    # Qhull joggles points, which leaves triangles without an area along straight boundaries.
+    # Qhull joggles points, so that there are triangles almost without area along straight
+    # boundaries.
     a, b, c = np.moveaxis(scaled[triangles], 1, 0)
     twice = cross_of(b - a, c - a)
     triangles = np.where(twice[:, None] < 0.0, triangles[:, ::-1], triangles)
@@ -279,9 +292,9 @@ def _of_face(piece: FacePiece, fine: int) -> tuple[Array, list[Array]]:
 
 
 def _divided(loop: Array) -> Array:
-    """Return a closed polygon in the unit square with more points; the first one is repeated.
+    """Return a polygon in the unit square with points added, closed by repeating the first point.
 
-    Their spacing is about that of grid lines across a face, on all four sides of the square.
+    There are about 4 × CURVED points, equally spaced between the corners of the polygon.
     """
     closed = np.concatenate([loop, loop[:1]])
     lengths = np.linalg.norm(np.diff(closed, axis=0), axis=1)
@@ -291,7 +304,7 @@ def _divided(loop: Array) -> Array:
 
 
 def divided(triangles: Array, longest: float) -> Array:
-    """Return parts (k, 3, 3) of triangles (T, 3, 3), with no side longer than `longest`."""
+    """Divide triangles (T, 3, 3) into triangles (k, 3, 3) with no side longer than `longest`."""
     done = []
     while len(triangles):
         sides = np.linalg.norm(triangles - np.roll(triangles, -1, axis=1), axis=2)
@@ -312,7 +325,7 @@ def quadrangles(mesh: Array) -> Array:
 
 
 def height_factor(extent: Array) -> float:
-    """Return the factor of heights: 1, unless the surface is very flat or very high."""
+    """Return the factor of heights, which is 1 unless the surface is very flat or very high."""
     width, height = float(extent[:2].max()), float(extent[2])
     if LOW * width <= height <= HIGH * width or height <= 1e-9 * width or width <= 1e-9 * height:
         return 1.0

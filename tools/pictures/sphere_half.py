@@ -23,9 +23,10 @@ RADIUS = 1.15  # in inches
 
 
 class _Kind(NamedTuple):
-    """Unit vectors drawn in the same way: in a colour, with an area relative to others.
+    """Unit vectors that are drawn in one colour, with markers of one size.
 
-    `number` is the number of normals of the kind; equal ones are drawn once.
+    `area` is the area of markers relative to other kinds. `number` is the number of normals of the
+    kind; equal normals are counted, but drawn once.
     """
 
     label: str
@@ -80,7 +81,7 @@ def draw_sphere(
 
 
 def _kinds(samples: Samples, normals: NDArray[np.float64]) -> list[_Kind]:
-    """Return the normals of each kind; each prescribed normal is in one of them, once."""
+    """Return the normals of each kind; each prescribed normal is in one kind, and there once."""
     index, kind = samples.normal_index, samples.kind
     found, first = np.unique(index[index >= 0], return_index=True)
     missed = np.ones(len(normals), dtype=bool)
@@ -105,7 +106,7 @@ def _handle(colour: str, label: str, edge: str = "none") -> Line2D:
 
 
 def _marker_area(normals: NDArray[Any]) -> float:
-    """Return the area of a marker in points², such that markers do not overlap on the sphere."""
+    """Return the area of a marker, in points², at which markers do not overlap on the sphere."""
     mean = normals.mean(axis=0)
     length = float(np.linalg.norm(mean))
     depth = 1.0 - float((normals @ mean).min()) / length if length > 1e-3 else 2.0
@@ -114,7 +115,7 @@ def _marker_area(normals: NDArray[Any]) -> float:
 
 
 def draw_globe(axes: Axes, view: NDArray[np.float64], labelled: bool = True) -> None:
-    """Draw a translucent globe with meridians and parallels every 30°, `labelled` with the axes."""
+    """Draw a translucent globe with lines every 30° and, if `labelled`, with the axes x, y, z."""
     from matplotlib.collections import LineCollection
     from matplotlib.patches import Circle
     from matplotlib.patheffects import withStroke
@@ -148,10 +149,10 @@ def draw_globe(axes: Axes, view: NDArray[np.float64], labelled: bool = True) -> 
 def view_of(
     normals: NDArray[np.floating], old: NDArray[np.float64] | None = None
 ) -> NDArray[np.float64]:
-    """Return the axes (3, 3) of a view of most of the normals: right, up, towards the viewer.
+    """Return the directions right, up and towards the viewer (3, 3) of a view of the normals.
 
     The view `old`, by default that of `view()`, is turned towards the mean normal: not at all if
-    the normals are evenly spread, and fully if all are equal.
+    the normals are evenly spread, fully if all of them are equal.
     """
     old = view() if old is None else old
     mean = normals.mean(axis=0)

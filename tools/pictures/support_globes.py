@@ -35,7 +35,7 @@ class Branch(NamedTuple):
 def branches_of(samples: Samples) -> list[Branch]:
     """Return the branches of the support function at prescribed normals, if there are at most two.
 
-    These are the elliptic and the hyperbolic samples: none or one of each kind for each normal.
+    The branches are the elliptic and the hyperbolic samples: each normal has at most one of each.
     """
     if "support" not in samples.fields:
         return []
@@ -58,7 +58,7 @@ def draw_branch(
     view: NDArray[np.float64],
     marked: Marked | None,
 ) -> None:
-    """Draw a branch as colours of the globe, and its value at the marked normal."""
+    """Draw the support function of a branch as colours on the globe, with its value at the mark."""
     from matplotlib.patches import Circle
 
     axes.set(xlim=(-ROOM, ROOM), ylim=(-ROOM, ROOM), aspect="equal")
@@ -87,10 +87,12 @@ def draw_branch(
 def values_on_globe(
     normals: NDArray[np.float64], points: NDArray[np.float64], view: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return h (PIXELS, PIXELS) on the front of the globe; NaN far from all normals.
+    """Return the support function h (PIXELS, PIXELS) on the front of the globe.
 
-    The points are the gradients of h at the normals, so that n·x is h(n) up to the square of the
-    angle between n and the nearest normal.
+    It is NaN far from all normals.
+
+    The points are the gradients of h at the normals. So h(n) is n·x, with the point x of the
+    nearest normal, up to an error of the order of the squared angle between n and this normal.
     """
     x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, PIXELS)])
     across = np.maximum(np.hypot(x, y), 1.0)  # pixels outside are clipped

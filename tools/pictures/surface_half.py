@@ -17,8 +17,8 @@ from .scene import Scene
 
 __all__ = ["Room", "View", "draw_face_numbers", "draw_surface"]
 
-# Numbers from LONG on have long labels. Axes that are SHORT relative to the longest one have fewer
-# labels, FLAT ones have one.
+# Numbers of at least LONG have long labels. Axes shorter than SHORT times the longest one have
+# fewer labels, axes shorter than FLAT times the longest one have one label.
 LONG, SHORT, FLAT = 1e5, 0.35, 0.15
 ARROWS, ARROW = 6, 0.16  # at most this many, with a length relative to the size of the surface
 View = tuple[float, float]  # elevation and azimuth of the viewer, in degrees
@@ -35,9 +35,10 @@ def draw_surface(
     marked: Marked | None = None,
     room: Room | None = None,
 ) -> None:
-    """Draw the surface and its visible samples (N,) into three-dimensional axes.
+    """Draw the surface and its visible samples, a mask (N,), into three-dimensional axes.
 
-    The surface fills the room, if given. Samples that fill gaps are smaller than others.
+    The surface fills the room (width and height), if given. Samples that fill gaps are smaller than
+    samples at normals.
     """
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
@@ -45,7 +46,8 @@ def draw_surface(
     _frame(axes, scene, view, room, samples.report.unit)
     for layer in scene.in_layers():
         greys = (0.60 + 0.33 * layer.brightness)[:, None] * [0.98, 0.99, 1.0]
-        # Quadrangles are rasterized, also in .pdf and .svg files: seams would show between them.
+        # Quadrangles are rasterized, also in .pdf and .svg files; otherwise seams would be seen
+        # between them.
         axes.add_collection3d(
             Poly3DCollection(
                 layer.quadrangles, facecolors=greys, edgecolors=greys, linewidths=0.3,
@@ -66,7 +68,7 @@ def draw_surface(
 
 
 def draw_face_numbers(axes: Any, samples: Samples, visible: NDArray[np.bool_]) -> None:  # noqa: ANN401
-    """Write the number in the file on each face of a part, at a visible sample near its middle."""
+    """Write on each face its index in the file, at a visible sample near the middle of the face."""
     from matplotlib.patheffects import withStroke
 
     assert samples.face_index is not None
@@ -88,9 +90,9 @@ def _mark(
     scene: Scene,
     size: float,
 ) -> None:
-    """Mark points with their normal; arrows are drawn if points are few and heights not rescaled.
+    """Mark points that have a normal; draw it as arrows if points are few and heights not rescaled.
 
-    If points are many, marks have about the `size` of samples, in points of print.
+    If there are many points, marks have about the `size` of samples, in points of print.
     """
     few = len(points) <= ARROWS
     if few and scene.factor == 1.0:
@@ -145,7 +147,8 @@ def _frame(
         flat = extent[k] < FLAT * extent.max()
         step = 10.0 ** np.floor(np.log10(np.ptp(limits[:, k]) / 4.0))
         middle = FixedLocator([step * np.round(limits[:, k].mean() / step)])
-        # Labels along short axes would overlap, as would long ones; none has an offset.
+        # Labels along short axes would overlap, and so would long labels. No label is relative to
+        # an offset.
         long = np.abs(limits[:, k]).max() >= LONG or extent[k] < SHORT * extent.max()
         axis.set_major_locator(middle if flat else MaxNLocator(2 if long else 4, prune="both"))
         axis.set_major_formatter(lambda value, _: f"{value:.7g}".replace("-", "−"))
@@ -153,7 +156,7 @@ def _frame(
 
 
 def _zoom(axes: Any, aspect: NDArray[np.float64], room: Room) -> float:  # noqa: ANN401
-    """Return the zoom at which the box fills its part of the figure."""
+    """Return the zoom at which the box of the axes fills the room, a width and height in inches."""
     from mpl_toolkits.mplot3d.proj3d import proj_transform
 
     axes.set_box_aspect(aspect)

@@ -1,1 +1,1 @@
-"""Texts that name surfaces of the catalogue, formulas, grids, elevations and CAD parts."""
+"""Surfaces from texts: names of the catalogue, formulas, files of grids, elevations and parts."""

@@ -30,24 +30,24 @@ LONGITUDES, LATITUDES = ("lon", "long", "longitude"), ("lat", "latitude")
 
 
 def is_raster_file(source: str) -> bool:
-    """Return whether a text names a GeoTIFF, by its suffix."""
+    """Return whether a text names a raster file, a GeoTIFF or an ASCII grid, by its suffix."""
     return Path(source).suffix.lower() in RASTER_SUFFIXES
 
 
 def has_place(named: Named) -> bool:
-    """Return whether an option on coordinates is given."""
+    """Return whether one of the options for coordinates of elevations is given."""
     return not named.given().keys().isdisjoint(OF_TERRAIN)
 
 
 def read_raster_file(named: Named, source: str) -> Surface:
-    """Return the surface of a GeoTIFF."""
+    """Return the surface of a raster file."""
     named.refuse(("x", "y"), "is for .npz files; a GeoTIFF has its own coordinates.")
     named.refuse(("periodic",), "is for grids of points, and a GeoTIFF holds elevations.")
     return terrain(source, band=named.band or 1, spacing=named.spacing, **_place(named))
 
 
 def terrain_of_array(heights: NDArray[Any], named: Named, source: str) -> Surface:
-    """Return the surface of elevations in a .npy or .npz file, with options on coordinates."""
+    """Return the surface of elevations from a .npy or .npz file, with coordinates from options."""
     named.refuse(("band",), "is for GeoTIFF files.")
     if heights.ndim != 2 or named.periodic is not None:
         raise InputError(

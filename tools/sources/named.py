@@ -1,4 +1,4 @@
-"""`Named`: the name or the formula of a surface, and the options with which it is made."""
+"""`Named`: the name or formula of a surface or part, and the options with which it is made."""
 
 from __future__ import annotations
 
@@ -54,14 +54,14 @@ class Named:
 
     @classmethod
     def of(cls, options: SimpleNamespace) -> Self:
-        """Return the options of a command that are fields of this class."""
+        """Return the `Named` of the options of a command; other options are ignored."""
         known = vars(options)
         return cls(**{x.name: known[x.name] for x in fields(cls) if x.name in known})
 
     def refuse(self, names: Iterable[str], reason: str) -> None:
-        """Raise InputError if any of these options is given; {} in the reason is the source.
+        """Raise InputError if any of these options is given; {} in `reason` stands for the surface.
 
-        The message names the option, and says why it does not apply to this source.
+        The message names the option, and says why it does not apply to this surface.
         """
         for name in names:
             if name in self.given():

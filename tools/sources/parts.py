@@ -1,4 +1,4 @@
-"""CAD parts in files: STEP, IGES and BREP, and those that gaussmap saved."""
+"""CAD parts in files: STEP, IGES and BREP files, and .npz files that gaussmap saved."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ OF_FACES = ("kind", "name", "faces")
 
 
 def read_part_file(named: Named) -> Part:
-    """Read a part, and select its faces.
+    """Read a part, and select the faces that the options describe.
 
     Raises the errors of `read_cad`, `read_part` and `Part.select`, InputError for other files.
     """

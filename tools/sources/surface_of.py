@@ -26,7 +26,7 @@ PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv"
 
 
 def surface_of(named: Named) -> Surface | Part:
-    """Return the surface or the CAD part that is named.
+    """Return the surface or the CAD part that `named` describes.
 
     Raises InputError for options that do not apply, and the errors of the functions for each kind.
     """
@@ -58,7 +58,7 @@ def _of_catalogue(named: Named, source: str) -> Surface:
 
 
 def _refuse_file(source: str) -> None:
-    """Raise an error if SURFACE is a file of another kind, or the name of a missing file."""
+    """Raise an error if SURFACE names a file of another kind, or a missing file."""
     if is_mesh_file(source):
         raise InputError(f"'{source}' is a mesh; {NO_MESHES}.")
     if Path(source).is_file():
@@ -112,7 +112,10 @@ def _grid(named: Named, source: str) -> Surface:
 def with_tolerance(
     surface_: Surface | Spline, named: Named
 ) -> tuple[Surface | Spline, tuple[int, int] | None]:
-    """Return the surface, or the spline of data, and the cells from --cells or --tolerance."""
+    """Return the surface, and the cells from --cells or --tolerance.
+
+    With --tolerance, a grid of points is replaced by its spline, and the cells are None.
+    """
     if named.tolerance is None or isinstance(surface_, Spline):
         return surface_, named.cells
     spline = fit(surface_, tolerance=named.tolerance, progress=not named.quiet)

@@ -1,4 +1,4 @@
-"""The coordinates of heights: of pixels of a raster, or of arrays x and y."""
+"""The coordinates of heights: from the transform of a raster, a spacing, or arrays x and y."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ __all__ = ["check_degrees", "grid_of", "of_arrays", "of_spacing", "of_transform"
 
 Array = NDArray[np.float64]
 
-# Distances are equal up to this relative difference, allowing for coordinates in single precision.
+# Distances count as equal up to this relative difference, since coordinates may be in single
+# precision.
 EQUAL = 1e-3
-# x and y are in degrees if heights vary by more than this multiple of their extents.
+# x and y look like degrees if heights vary by more than this multiple of the extents of x and y.
 TOO_STEEP = 10.0
 
 
@@ -32,14 +33,17 @@ def of_transform(transform: Sequence[float], shape: tuple[int, int]) -> tuple[Ar
 
 
 def of_spacing(spacing: Sequence[float], shape: tuple[int, int]) -> tuple[Array, Array]:
-    """Return x and y, starting at 0, for spacings dx > 0 and dy, negative from north to south."""
+    """Return x (n,) and y (m,), starting at 0, for spacings dx > 0 and dy.
+
+    dy is negative if rows run from north to south.
+    """
     dx, dy = checked_spacing(spacing, max(shape))
     rows, columns = (np.arange(count, dtype=np.float64) for count in shape)
     return dx * columns, dy * rows + 0.0
 
 
 def of_arrays(x: ArrayLike, y: ArrayLike, shape: tuple[int, int]) -> tuple[Array, Array]:
-    """Return x (n,) and y (m,), or both (m, n); InputError for other shapes, and for NaN."""
+    """Return x (n,) and y (m,), or both (m, n); InputError for other shapes, NaN or infinity."""
     found = []
     for name, values, count, axis in (("x", x, shape[1], 1), ("y", y, shape[0], 0)):
         array = real_array(values, name)
@@ -71,7 +75,7 @@ def grid_of(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def is_even(values: Array) -> bool:
-    """Return whether numbers (k,) are equally spaced, up to rounding."""
+    """Return whether numbers (k,) are equally spaced, up to a relative difference of EQUAL."""
     mean = (values[-1] - values[0]) / (len(values) - 1)
     return bool(mean != 0.0 and np.abs(np.diff(values) / mean - 1.0).max() <= EQUAL)
 

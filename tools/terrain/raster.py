@@ -21,11 +21,11 @@ Array = NDArray[np.float64]
 
 
 class Raster(NamedTuple):
-    """Heights (m, n), NaN where missing, and their position as given in the file.
+    """Heights (m, n), NaN where they are missing, and their position as given in the file.
 
     `transform` (a, b, c, d, e, f) maps a column and a row, counted from the corner of the first
     pixel, to x = a column + b row + c and y = d column + e row + f; None if the file has none.
-    `unit` is that of the heights, or empty.
+    `unit` is the unit of the heights, or empty.
     """
 
     heights: Array
@@ -37,8 +37,9 @@ class Raster(NamedTuple):
 def read_raster(path: Path, band: int, nodata: float | None) -> Raster:
     """Return a band of a raster, with scale and offset applied.
 
-    `nodata` replaces the file's own value, and is compared before scale and offset. Raises
-    FileError, InputError for a missing band, and MissingExtraError.
+    Heights equal to `nodata`, by default the file's own value, are missing; they are compared
+    before scale and offset are applied. Raises FileError, InputError for a missing band, and
+    MissingExtraError.
     """
     rasterio = from_extra("rasterio", "gis", "reading GeoTIFF files")
     ascii_grid = path.suffix.lower() == ".asc"

@@ -1,4 +1,4 @@
-"""`terrain`: elevations of a file or an array as a surface in world coordinates."""
+"""`terrain`: a surface in world coordinates from the elevations in a file or an array."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ def terrain(
 ) -> Surface:
     """Make a surface of elevations, from a raster or an array, in world coordinates.
 
-    Heights are at the centres of pixels. Degrees are projected, and the heights stay as they are:
-    the grid of points is kept, and nothing is resampled. Samples and their files record the
-    reference system (`SamplingReport.crs`).
+    Heights are at the centres of pixels. Coordinates in degrees are projected; heights are not
+    resampled, so that every point of the grid is kept. Samples and their files record the reference
+    system (`SamplingReport.crs`).
 
     Parameters
     ----------
@@ -71,13 +71,13 @@ def terrain(
     band : int, default 1
         The band of a raster.
     nodata : float, optional
-        The number that marks missing heights, in place of that of the file; it is compared before
-        scale and offset. NaN and masked entries are always missing. Parts that depend on missing
-        heights are left out, see `Surface.from_grid`.
+        The number that marks missing heights, in place of the number in the file; it is compared
+        before scale and offset are applied. NaN and masked entries are always missing. Parts of the
+        surface that depend on missing heights are left out, see `Surface.from_grid`.
     crs : str or int, optional
         The coordinate reference system of the points, such as "EPSG:32617" or its number, in
-        lengths. By default that of the source or, if that has degrees, the zone of UTM that
-        contains its middle (UPS beyond 84° of latitude).
+        lengths. By default that of the source or, if the source is in degrees, the zone of UTM that
+        contains the middle of the source (UPS beyond 84° of latitude).
     source_crs : str or int, optional
         The CRS of the source if it states none, or a wrong one; ``"EPSG:4326"`` for longitudes x
         and latitudes y. Without it, `crs` is the CRS of the source.
@@ -107,8 +107,8 @@ def terrain(
     Warns
     -----
     GaussmapWarning
-        If heights look like missing data: usual numbers such as −9999, and blocks of constant
-        height where the others end abruptly.
+        If heights look like missing data: usual numbers such as −9999, or blocks of constant height
+        with abrupt steps at their borders.
 
     Examples
     --------
@@ -192,7 +192,7 @@ def _surface(
     origin: Origin,
     name: str,
 ) -> Surface:
-    """Return the surface; `systems` are the CRS of the coordinates and the requested one."""
+    """Return the surface; `systems` are the CRS of the coordinates and the requested CRS."""
     (x, y), heights, (source, asked) = coordinates, raster.heights, systems
     if min(heights.shape) < 2:
         raise InputError(f"{name} has {heights.shape[0]} x {heights.shape[1]} heights; too few.")
@@ -216,7 +216,10 @@ def _surface(
 
 
 def _points(x: Array, y: Array, heights: Array, name: str) -> tuple[Array, Domain | None]:
-    """Return points (n, m, 3), columns first, so that normals point upward; and their domain."""
+    """Return points (n, m, 3) with normals upward, and their domain, None unless evenly spaced.
+
+    The first index of a point is its column in `heights`, the second its row.
+    """
     even = x.ndim == 1 and is_even(x) and is_even(y)
     if even:
         if x[0] > x[-1]:

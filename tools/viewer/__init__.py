@@ -1,1 +1,1 @@
-"""Pages that show samples and their normals, linked."""
+"""Pages for browsers with samples and their normals: a click on one marks the other."""

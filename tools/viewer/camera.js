@@ -1,4 +1,4 @@
-// From the scene to pixels.
+// The projection of points of the scene to pixels.
 
 function product(a, b) { // of matrices by columns
     const c = new Float64Array(16);
@@ -8,7 +8,7 @@ function product(a, b) { // of matrices by columns
 }
 
 function camera(plot) {
-    // Plotly's matrices, which it does not document; the tests of this page click on known places.
+    // Plotly's matrices. They are not documented; tests of this page click on points at known positions.
     const scene = plot._fullLayout.scene._scene;
     const { model, view, projection } = scene.glplot.cameraParams;
     const scale = Float64Array.of(

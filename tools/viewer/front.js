@@ -1,6 +1,6 @@
 // What is in front on the screen: the nearest triangle at each pixel, and which samples are hidden.
 
-/** The depths of the triangles that are in front, and their numbers or −1, at all pixels. */
+/** The depth and the index of the triangle that is in front at each pixel; Infinity and −1 without one. */
 function frontOf(plot) {
     const matrix = camera(plot), box = plot.getBoundingClientRect();
     const width = Math.ceil(box.width) + 1, height = Math.ceil(box.height) + 1;
@@ -31,12 +31,12 @@ function frontOf(plot) {
 
 const BESIDE = 1e-9; // a pixel on the side of two triangles is on one of them
 
-/** Whether a sample is in front, on this side of the surface or, of a sheet, on the other one. */
+/** Whether a sample is visible. On a thin sheet, samples of both sides are tested on the side of the viewer. */
 function isSeen(front, i, viewer) {
     const side = dot(i, viewer) < 0 ? -LIFT : LIFT; // it is drawn above the triangles, too
     const [x, y, depth] = onScreen(front.matrix, front.box, lifted(points, i, 0, side), lifted(points, i, 1, side),
         lifted(points, i, 2, side));
-    // Between four pixels a triangle is nowhere deeper than at one of these.
+    // Between four pixels, a triangle is nowhere deeper than at the deepest of the four.
     const column = Math.floor(x), row = Math.floor(y), { width, height, depths } = front;
     if (column < 0 || row < 0 || column > width - 2 || row > height - 2) return true;
     const at = row * width + column;

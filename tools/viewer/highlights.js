@@ -1,6 +1,6 @@
-// What is picked, drawn over Plotly's pictures: Plotly takes seconds to change one of many traces.
-// Samples are discs, and circles where the surface is seen from behind. Hidden ones are not drawn, but
-// for the few large ones, which are empty circles then.
+// Selected samples, drawn over Plotly's pictures, since Plotly takes seconds to change one of many traces.
+// Samples are discs, or circles where the surface is seen from behind. Hidden samples are not drawn, except
+// the few large ones, which are empty circles if they are hidden.
 
 const canvases = {};
 const marks = { surface: { rows: points, parts: [] }, sphere: { rows: normals, parts: [], circle: null } };
@@ -13,7 +13,7 @@ function highlight(parts, circle) {
     version += 1;
 }
 
-/** Draw again whenever a camera has moved: Plotly tells so for some ways to move it only. */
+/** Draw again whenever a camera has moved. This is polled: Plotly reports only some ways of moving it. */
 function watch() {
     const seen = ["surface", "sphere"].map((name) => {
         const plot = byId(name), box = plot.getBoundingClientRect();
@@ -56,7 +56,7 @@ function paintDisc(pen, x, y, size, colour, isLarge, isFilled, isEmpty) {
     pen.stroke();
 }
 
-/** The normals that are within an angle of another one. */
+/** Draw the circle of the normals at an angle `degrees` from `normal`. */
 function paintCircle(pen, matrix, box, viewer, { normal, degrees }) {
     const [e, f] = frame(normal), r = degrees * Math.PI / 180;
     pen.strokeStyle = theme.ink;

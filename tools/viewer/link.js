@@ -1,4 +1,4 @@
-// The page: what is picked on one side lights up on the other one.
+// The page: a selection on the surface lights up on the sphere, and one on the sphere on the surface.
 
 const MANY = 60; // points with large dots
 let state = null; // what is picked: {normal}, {sample} or {face}

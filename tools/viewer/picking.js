@@ -11,14 +11,14 @@ function sampleAt(plot, x, y) {
     return found;
 }
 
-/** The face of a part that is in front at these pixels; −1 for none. */
+/** The index of the face of a part that is in front at the position x, y in pixels; −1 for none. */
 function faceAt(plot, x, y) {
     const { width, found } = frontOf(plot), at = found[Math.round(y) * width + Math.round(x)];
     return at >= 0 ? faceOfTriangle[at] : -1;
 }
 
 function normalAt(plot, x, y) {
-    // Newton's method for the place on the front of the sphere that is drawn at these pixels.
+    // Newton's method for the point on the front of the sphere that is drawn at the position x, y in pixels.
     const matrix = camera(plot), box = plot.getBoundingClientRect();
     let best = null, least = Infinity, front = null;
     for (let a = 0; a < 72; a++) for (let b = 1; b < 36; b++) {
@@ -47,7 +47,7 @@ function normalAt(plot, x, y) {
 
 const SNAP = 7; // pixels
 
-/** A normal of a sample: the nearest one if all are prescribed, or one drawn near by; or else n. */
+/** The normal of the sample drawn within SNAP pixels; else the normal nearest to n if all are prescribed, or n. */
 function snapped(plot, n, x, y) {
     const matrix = camera(plot), box = plot.getBoundingClientRect();
     let least = SNAP, highest = -2, drawn = null, nearest = null;

@@ -1,4 +1,4 @@
-// What Plotly draws: the surface with its samples, and the sphere with their normals.
+// The scenes that Plotly draws: the surface with its samples, and the sphere with their normals.
 
 const column = (rows, k) => Float32Array.from({ length: rows.length / 3 }, (_, i) => rows[3 * i + k]);
 const lifted = (rows, i, k, lift) => rows[3 * i + k] + lift * normals[3 * i + k] / data.aspect_factors[k];
@@ -70,17 +70,17 @@ function ball() {
 
 const rowsOf = ({ x, y, z }) => x.flatMap((a, i) => [a, y[i], z[i]]);
 
-// The diameter of samples in pixels: that of discs that would cover an eighth of the frame.
+// The diameter of samples in pixels. All discs together would cover an eighth of the frame.
 const side = Math.min(byId("surface").clientWidth, byId("surface").clientHeight);
 const size = Math.min(Math.max(side * Math.sqrt(0.5 / (Math.PI * count)), 1.4), 4);
 const kinds = EACH.map(ofKind);
-// These traces stay as they are; what is picked is drawn over them, see highlights.js.
-// Samples are drawn above the triangles, which would hide halves of them; those of parts are coarser.
+// These traces are never changed; selected samples are drawn over them, see highlights.js.
+// Samples are lifted above the triangles, which would hide halves of them. Triangles of parts are coarser.
 const LIFT = part ? 0.012 : 0.004;
 const layers = {
     surface: [mesh(), ...kinds.map((which, k) => markers(placed(points, which, LIFT), size, PALE[k])),
         ...(part ? [edges()] : [])],
-    // Larger ones below: one normal may have samples of both kinds.
+    // Markers of the first kind are larger and lie below the others: one normal may have samples of several kinds.
     sphere: [ball(), globe(), ...kinds.map((which, k) =>
         markers(placed(normals, which, k && LIFT), k ? size : 1.4 * size, PALE[k]))],
 };
@@ -98,14 +98,14 @@ function layout(aspect, range, eye) {
 }
 
 const EYE = { x: 1.0, y: -1.45, z: 0.95 };
-// Plotly draws four times as many pixels by default, which many samples do not need.
+// By default Plotly draws four times as many pixels, which is not needed for many samples.
 const config = { displayModeBar: false, responsive: true, scrollZoom: true, plotGlPixelRatio: count > 10000 ? 1 : 2 };
 const unit = [[-1.05, 1.05], [-1.05, 1.05], [-1.05, 1.05]];
 
-// What is left free around a picture, and the part of it that counts as none.
+// A picture fills this part of its frame; a smaller change of its scale than ENOUGH is not made.
 const FILLED = 0.94, ENOUGH = 0.01;
 
-/** Scale a scene so that points, rows of three numbers, fill its frame as they are first seen. */
+/** Scale a scene so that, with the current camera, its points (rows of three numbers) fill the frame. */
 function fitted(plot, rows, aspect) {
     const box = plot.getBoundingClientRect(), matrix = camera(plot);
     let low = [Infinity, Infinity], high = [-Infinity, -Infinity];
@@ -114,7 +114,7 @@ function fitted(plot, rows, aspect) {
         low = low.map((x, k) => Math.min(x, at[k]));
         high = high.map((x, k) => Math.max(x, at[k]));
     }
-    // About the middle of the frame, which the picture is turned about.
+    // The extent is measured from the middle of the frame, about which the picture is turned.
     const half = [box.width / 2, box.height / 2];
     const reach = half.map((h, k) => Math.max(h - low[k], high[k] - h) / h);
     const factor = FILLED / Math.max(...reach);

@@ -1,9 +1,9 @@
-// Which samples belong to a normal, and to a place.
+// Which samples belong to a selected normal, and to a selected sample.
 
 const NEAR = neighbours.length / count;
 const EQUAL = 1e-6; // the rounding of float32, and some of that of sampling
 
-/** Connected groups of samples: along the graph of neighbours, of one kind each if asked. */
+/** Groups of samples that are connected in the graph of neighbours; if `oneKind`, only within one kind. */
 function groups(members, oneKind) {
     const left = new Set(members), found = [];
     for (const first of members) {
@@ -25,7 +25,8 @@ function groups(members, oneKind) {
 
 const dot = (i, n) => normals[3 * i] * n[0] + normals[3 * i + 1] * n[1] + normals[3 * i + 2] * n[2];
 
-/** Samples within an angle of a normal; those that have it exactly, or else one of each group. */
+/** Samples with normals within an angle of n (`members`), and the ones that light up (`best`): those with
+ * exactly the normal n if it is prescribed or several samples have it, else the nearest one of each group. */
 function preimages(n, degrees) {
     const least = Math.cos(degrees * Math.PI / 180) - 1e-7, members = [];
     for (let i = 0; i < count; i++) if (dot(i, n) >= least) members.push(i);

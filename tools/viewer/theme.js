@@ -1,5 +1,5 @@
 "use strict";
-// Light or dark: as the page around this one if that is known, else as the system is.
+// Light or dark: like the page that contains this one in a frame, if its theme is known, else like the system.
 
 const system = matchMedia("(prefers-color-scheme: dark)");
 const around = () => {
@@ -25,7 +25,7 @@ function setTheme() {
     document.documentElement.dataset.theme = name;
 }
 
-/** Call `action` whenever light turns to dark, or back. */
+/** Call `action` whenever the theme changes between light and dark. */
 function onTheme(action) {
     const changed = () => { const before = theme; setTheme(); if (theme !== before) action(); };
     system.addEventListener("change", changed);

@@ -1,8 +1,8 @@
-"""One page with a surface and the unit sphere of its normals, which light up together.
+"""A page with a surface and the unit sphere of its normals; selected points and normals light up.
 
-Plotly.js draws it: its package on the registry holds a complete library for three dimensions in
-browsers in one script, which is embedded in the page (k3d needs Jupyter's widgets, and pythreejs is
-bundled for notebooks only). The page needs no network.
+Plotly.js draws the page: the Python package of Plotly contains a complete library for three
+dimensions in browsers as one script, which is embedded in the page, so that it needs no network.
+(k3d needs Jupyter's widgets, and pythreejs is bundled for notebooks only.)
 """
 
 from __future__ import annotations
@@ -46,14 +46,14 @@ PARABOLIC_LEGEND = (
     '<span class="legend"><span class="dot" style="background:{}"></span>'
     "parabolic (K = 0)</span>"  # flat, too
 )
-# The hints for clicks: on a surface, and on a part.
+# The hints that the page shows for clicks: on a surface, and on a part.
 HINTS = (
     "Click a place: its region and their normals light up.",
     "Click a face: its samples and their normals light up.",
 )
-# The colours of elliptic, hyperbolic and parabolic samples; darker ones for what lights up.
+# The colours of elliptic, hyperbolic and parabolic samples; selected samples have darker colours.
 PALE = (SCALE[4], SCALE[2], "#b9b9b9")
-# Colours of faces without a colour in the file; neighbours seldom have the same one.
+# Colours of faces without a colour in the file; neighbouring faces seldom have the same colour.
 COLOURS_OF_FACES = ("#c9d6df", "#e3d5bd", "#cfe0cf", "#dfcfdc", "#c8dcdc", "#e0d0c8", "#d3d3e3")
 # The margin around the surface, relative to its diameter: samples are drawn above the surface (LIFT
 # in scene.js), and points outside of the range of an axis are not drawn.
@@ -130,7 +130,7 @@ def check_count(count: int) -> None:
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
-    """Raise now the errors that `view` would raise later, for its path or a missing plotly."""
+    """Raise the errors that `view` would raise later, for its path or without Plotly."""
     paths.check_target(path, SUFFIXES)
     check_extra("plotly", "view", "a page with a picture to turn")
 
@@ -161,7 +161,7 @@ def page(samples: Samples, surface: Surface | AnySpline | Part | None = None) ->
 
 
 def _heights(scene: Scene) -> str:
-    """Return a sentence about heights that are drawn larger or smaller than they are."""
+    """Return a note that heights are exaggerated or reduced; empty if they are not."""
     if scene.factor == 1.0:
         return ""
     how = "exaggerated" if scene.factor > 1.0 else "reduced"
@@ -171,7 +171,7 @@ def _heights(scene: Scene) -> str:
 def _data(
     samples: Samples, scene: Scene, surface: Surface | AnySpline | Part | None
 ) -> dict[str, Any]:
-    """Return the data for the script: coordinates relative to the centre, with diameter 1."""
+    """Return the data for the script, with the centre of the surface as origin and diameter 1."""
     corners = scene.quadrangles.reshape(-1, 3)
     low, high = corners.min(axis=0), corners.max(axis=0)
     middle, diameter = low / 2 + high / 2, float(np.linalg.norm(high - low)) or 1.0
@@ -230,7 +230,7 @@ def _data_of_part(
 
 
 def _colour(face: Face) -> str:
-    """Return the colour of a face in the file, or else one that differs from its predecessors'."""
+    """Return the colour of a face in the file, or else one of COLOURS_OF_FACES by its index."""
     if face.color is None:
         return COLOURS_OF_FACES[face.index % len(COLOURS_OF_FACES)]
     return "#" + bytes(round(255 * x) for x in face.color).hex()
@@ -245,7 +245,7 @@ def _said(face: Face, unit: str) -> str:
 
 
 def _gaps(lines: Sequence[Array], middle: Array, diameter: float) -> Array:
-    """Return lines for the page, concatenated, with NaN between them."""
+    """Return lines in the page's coordinates as one array (k, 3), with NaN between them."""
     apart = np.full((1, 3), np.nan)
     rows = [y for x in lines for y in ((x - middle) / diameter, apart)]
     return np.concatenate(rows) if rows else apart
@@ -257,7 +257,7 @@ def _encoded(array: NDArray[Any], dtype: type[np.generic]) -> str:
 
 
 def _neighbours(points: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the nearest neighbours of each sample, as rows (N, k)."""
+    """Return the indices (N, k) of the nearest neighbours of each sample."""
     count = min(NEIGHBOURS, len(points) - 1)
     if count == 0:
         return np.zeros((1, 1), np.int64)
