@@ -91,8 +91,8 @@ for name, mesh, samples in (
 # %% [markdown]
 # ## To other programs
 #
-# `write` has the formats .ply, .obj, .stl, .3mf, .vtu, .vtp and .glb. `to_trimesh`,
-# `to_pyvista` and `to_open3d` convert the mesh without a file.
+# `write` has the formats .ply, .obj, .stl, .3mf, .vtu, .vtp and .glb. `to_trimesh` and
+# `to_pyvista` convert the mesh without a file.
 
 # %%
 meshes["balanced"].write("cyclide.obj")

@@ -28,7 +28,6 @@ class Methods:
     offset = Later(TOOLS)
     plot = Later("gaussmap.tools.pictures.plot", "plot_samples")
     to_dataframe = Later(OTHERS)
-    to_open3d = Later(OTHERS)
     to_pyvista = Later(OTHERS)
     to_trimesh = Later(OTHERS)
     unobstructed = Later(TOOLS)

@@ -11,7 +11,6 @@ class Methods:
     from ...tools.derived import weights as weights
     from ...tools.derived import write as write
     from ...tools.files.of_samples import to_dataframe as to_dataframe
-    from ...tools.files.of_samples import to_open3d as to_open3d
     from ...tools.files.of_samples import to_pyvista as to_pyvista
     from ...tools.files.of_samples import to_trimesh as to_trimesh
     from ...tools.pictures.plot import plot_samples as plot

@@ -5,20 +5,17 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ...runtime.base.extras import from_extra
 from .formats import write_mesh
-from .of_samples import polydata, vectors
+from .of_samples import polydata
 
 if TYPE_CHECKING:
-    import open3d  # pyright: ignore[reportMissingImports]
     import pyvista
     import trimesh
 
     from ..meshes.mesh import Mesh
 
-__all__ = ["to_open3d", "to_pyvista", "to_trimesh", "write"]
+__all__ = ["to_pyvista", "to_trimesh", "write"]
 
 
 def write(self: Mesh, path: str | os.PathLike[str]) -> None:
@@ -123,31 +120,3 @@ def to_trimesh(self: Mesh) -> trimesh.Trimesh:
         vertex_attributes={"uv": self.uv.copy(), "sample_index": self.sample_index.copy()},
         process=False,
     )
-
-
-def to_open3d(self: Mesh) -> open3d.geometry.TriangleMesh:
-    """Return the mesh with its normals.
-
-    Returns
-    -------
-    open3d.geometry.TriangleMesh
-        The mesh.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra `open3d`.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> mesh = gm.sample("torus", 200, cells=(16, 16)).mesh()
-    >>> mesh.to_open3d().is_watertight()  # doctest: +SKIP
-    True
-
-    """
-    library = from_extra("open3d", "open3d", "this")
-    triangles = library.utility.Vector3iVector(self.triangles.astype(np.int32))
-    result = library.geometry.TriangleMesh(vectors(library, self.vertices), triangles)
-    result.vertex_normals = vectors(library, self.normals)
-    return result

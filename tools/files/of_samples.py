@@ -13,14 +13,13 @@ from .of_faces import columns_of_faces
 from .of_terrain import columns_of_terrain
 
 if TYPE_CHECKING:
-    import open3d  # pyright: ignore[reportMissingImports]
     import pandas
     import pyvista
     import trimesh
 
     from ...runtime.samples.samples import Samples
 
-__all__ = ["polydata", "to_dataframe", "to_open3d", "to_pyvista", "to_trimesh", "vectors"]
+__all__ = ["polydata", "to_dataframe", "to_pyvista", "to_trimesh"]
 
 
 def to_dataframe(self: Samples) -> pandas.DataFrame:
@@ -107,36 +106,6 @@ def to_trimesh(self: Samples) -> trimesh.PointCloud:
     return from_extra("trimesh", "trimesh", "this").PointCloud(points, metadata=arrays)
 
 
-def to_open3d(self: Samples) -> open3d.geometry.PointCloud:
-    """Return the points in float64, with their normals if the samples have them.
-
-    Returns
-    -------
-    open3d.geometry.PointCloud
-        The points.
-
-    Raises
-    ------
-    MissingExtraError
-        Without the extra `open3d`.
-    MissingFieldError
-        Unless the samples have the field points.
-
-    Examples
-    --------
-    >>> import gaussmap as gm
-    >>> samples = gm.sample("torus", 200, cells=(16, 16))
-    >>> samples.to_open3d().has_normals()  # doctest: +SKIP
-    True
-
-    """
-    points, library = self.points, from_extra("open3d", "open3d", "this")
-    cloud = library.geometry.PointCloud(vectors(library, points))
-    if "normals" in self.fields:
-        cloud.normals = vectors(library, self.normals)
-    return cloud
-
-
 def polydata(pv: Any, data: Any, arrays: dict[str, NDArray[Any]]) -> Any:  # noqa: ANN401
     """Attach arrays to the points of a PolyData, with the normals as active normals."""
     for name, array in arrays.items():
@@ -146,8 +115,3 @@ def polydata(pv: Any, data: Any, arrays: dict[str, NDArray[Any]]) -> Any:  # noq
     if "normals" in arrays:
         data.GetPointData().SetActiveNormals("normals")
     return data
-
-
-def vectors(library: Any, rows: NDArray[Any]) -> Any:  # noqa: ANN401
-    """Return rows (N, 3) as a vector of Open3D."""
-    return library.utility.Vector3dVector(rows.astype(np.float64))

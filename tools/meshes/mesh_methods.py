@@ -14,7 +14,6 @@ class Methods:
 
     __slots__ = ()
 
-    to_open3d = Later(FILES)
     to_pyvista = Later(FILES)
     to_trimesh = Later(FILES)
     write = Later(FILES)

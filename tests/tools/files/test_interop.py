@@ -86,10 +86,6 @@ LIBRARIES: dict[str, tuple[Callable[..., Any], ...]] = {
         lambda x: (x.vertices, x.faces, x.vertex_normals),
         lambda x, name: x.vertex_attributes[name],
     ),
-    "open3d": (
-        lambda x: np.asarray(x.points), lambda x, _: np.asarray(x.normals),
-        lambda x: map(np.asarray, (x.vertices, x.triangles, x.vertex_normals)), lambda *_: None,
-    ),
 }  # fmt: skip
 
 
@@ -101,7 +97,7 @@ def test_samples(library, dtype):
     found = samples(dtype=dtype)
     cloud = getattr(found, f"to_{library}")()
     np.testing.assert_array_equal(points(cloud), found.points)
-    for name in FIELDS[1:] if library != "open3d" else ("normals",):
+    for name in FIELDS[1:]:
         np.testing.assert_array_equal(data(cloud, name), getattr(found, name))
 
 
@@ -116,7 +112,7 @@ def test_mesh(library):
     np.testing.assert_array_equal(triangles, ours.triangles)
     atol = 1e-15 if library == "trimesh" else 0.0
     np.testing.assert_allclose(normals, ours.normals, rtol=0, atol=atol)
-    for name in ("uv", "sample_index") if library != "open3d" else ():
+    for name in ("uv", "sample_index"):
         np.testing.assert_array_equal(data(theirs, name), getattr(ours, name))
 
 
@@ -130,11 +126,6 @@ def test_pyvista_has_copies():
     assert max(np.abs(x).max() for x in (found.points, found.uv, surface.vertices)) < 100.0
 
 
-def test_open3d_without_normals():
-    pytest.importorskip("open3d")
-    assert not samples(fields=("points",)).to_open3d().has_normals()
-
-
 @pytest.mark.parametrize(
     ("library", "extra", "convert"),
     [
@@ -143,8 +134,6 @@ def test_open3d_without_normals():
         ("pyvista", "vtk", lambda: mesh().to_pyvista()),
         ("trimesh", "trimesh", lambda: samples().to_trimesh()),
         ("trimesh", "trimesh", lambda: mesh().to_trimesh()),
-        ("open3d", "open3d", lambda: samples().to_open3d()),
-        ("open3d", "open3d", lambda: mesh().to_open3d()),
     ],
 )
 def test_a_library_that_is_not_installed(library, extra, convert, monkeypatch):
@@ -153,7 +142,7 @@ def test_a_library_that_is_not_installed(library, extra, convert, monkeypatch):
     refused(message, convert, error=gm.errors.MissingExtraError)
 
 
-@pytest.mark.parametrize("convert", ["to_pyvista", "to_trimesh", "to_open3d"])
+@pytest.mark.parametrize("convert", ["to_pyvista", "to_trimesh"])
 def test_points_are_needed(convert):
     with pytest.raises(gm.errors.MissingFieldError, match="add 'points' to the fields"):
         getattr(samples(fields=("uv",)), convert)()
@@ -165,7 +154,7 @@ def test_meshes_load_what_triangulates_and_nothing_heavier():
         "import sys, gaussmap as gm;"
         "samples = gm.sample(gm.surfaces.torus(), normals=gm.icosphere(8));"
         "before = 'scipy.spatial' in sys.modules; samples.mesh();"
-        "heavy = ('sympy', 'pandas', 'pyvista', 'trimesh', 'open3d', 'matplotlib');"
+        "heavy = ('sympy', 'pandas', 'pyvista', 'trimesh', 'matplotlib');"
         "print(before, 'scipy.spatial' in sys.modules, [x for x in heavy if x in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
