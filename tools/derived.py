@@ -132,14 +132,15 @@ def mesh(
 ) -> Mesh:
     """Return a triangle mesh of the whole surface through the samples.
 
-    Neighbours are those of a Delaunay triangulation of the parameters: the mesh closes where the
-    surface does, has one vertex at a pole, and reaches open boundaries by added points, spaced like
-    the samples near them. Then edges are flipped. Samples that coincide become one vertex.
+    A Delaunay triangulation of the parameters connects the samples, and then edges are flipped. The
+    mesh closes where the surface does, has one vertex at a pole, and reaches open boundaries by
+    added points, spaced like the samples near them. Samples at the same point become one vertex.
 
     Samples on a graded grid (`row` and `column`) stay vertices, however long its cells are.
 
-    An `offset` has a mesh unless it folds or is trimmed. Folds between samples are not seen; those
-    at samples are seen by curvatures, or, if these are missing, by edges that turn around.
+    An `offset` has a mesh unless it folds or is trimmed. A fold is detected at samples, by their
+    curvatures or, without curvatures, by edges that turn around. A fold between samples is not
+    detected.
 
     For a CAD part the result is a `PartMesh` of new vertices, as many as there are samples: first
     the vertices and edges of the part are sampled, once for both adjacent faces, then the interior
@@ -151,18 +152,18 @@ def mesh(
     spline : Spline, optional
         The spline of the samples, if they do not hold it; for an offset, the spline of `offset_of`.
     angle : float, optional
-        In degrees. Triangles that deviate from a normal at a corner by more are left out; for
-        samples of only a part of the surface. Not for CAD parts.
+        In degrees. Triangles whose normals deviate by more from a normal at one of their corners
+        are left out; use this for samples of only a part of the surface. Not for CAD parts.
     prefer : {"shape", "normals"}, default "shape"
         - "shape": triangles are Delaunay on the surface, and have angles as large as the
-          samples allow. A sample so close to others that a smallest angle stays below 5° is
-          left out, and further ones until 95 % of the smallest angles are 25° at least, or
-          until a tenth of the others would be left out (`Mesh.left_out` counts all). Samples are
-          left out where distances change by a factor of two from one sample to the next, since
-          triangles there cannot have large angles. Of a count of samples with
-          ``density="balanced"`` on a closed surface, most narrow bends cost none, and very
-          sharp ones cost up to 8 % of the count. Samples on a grid are never left out, even if its
-          cells are long.
+          samples allow. A sample is left out if it is so close to others that the smallest angle of
+          a triangle stays below 5°. Then further samples are left out, until the smallest angles of
+          95 % of the triangles are at least 25°, or a tenth of the remaining samples has been left
+          out. `Mesh.left_out` is the number of all these samples. They lie where distances change
+          by a factor of two from one sample to the next, since triangles there cannot have large
+          angles. With a count and ``density="balanced"`` on a closed surface, most narrow bends
+          cost no samples, and very sharp ones up to 8 % of the count. Samples on a grid are never
+          left out, even if its cells are long.
         - "normals": triangles deviate from the normals at their corners as little as the
           samples allow. They are long and thin where the surface is curved in one direction only. A
           sample is left out where a triangle would have no area. On a CAD part, planes, cylinders
@@ -296,12 +297,12 @@ def offset(self: Samples, distance: float, *, trimmed: bool = False) -> Samples:
         The distance d, in L. For d < 0 the offset lies inwards, if normals point outwards.
     trimmed : bool, default False
         Leave out samples whose points become nearer to the surface than the distance: parts that
-        fold, and parts that come near to other parts of the surface. At what stays, a ball of this
-        radius touches the surface and does not cut it. After several offsets, the distance is that
-        of all. It is measured from at least 20,000 samples of the surface (of a part that is a
-        selection, from those of its faces), whose gaps are at most about a fifth of it: what is
-        left out is nearer than the distance, and what stays may be nearer by 2 %, where sheets
-        meet.
+        fold, and parts that come near to other parts of the surface. At the samples that stay, a
+        ball of this radius touches the surface and does not cut it. After several offsets, the
+        total distance counts. Distances are measured from at least 20,000 samples of the surface
+        (of the selected faces, if a part is a selection), whose gaps are at most about a fifth of
+        the distance. So all samples that are left out are nearer than the distance, and samples
+        that stay may be nearer by 2 %, where sheets meet.
 
     Returns
     -------
@@ -359,8 +360,9 @@ def unobstructed(
     by : Part, Mesh or trimesh.Trimesh, optional
         The obstacle: by default the part or surface of the samples. A part becomes a mesh of 20,000
         vertices, as ``gm.sample(part, 20_000).mesh()``, or of more if it has very many edges; the
-        mesh is made once, and stored with the part. Of faces of a `Part.select` it is the whole
-        part, unless they were read from a file; for a clamp or a table give its mesh.
+        mesh is made once, and stored with the part. For faces selected by `Part.select`, the
+        obstacle is the whole part, unless the selection was read from a file. For a clamp or a
+        table, give its mesh.
 
     Returns
     -------
@@ -419,8 +421,8 @@ def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
     Parameters
     ----------
     by : Mesh, optional
-        A mesh of the surface, against which rays are tested; by default that of 10,000 samples,
-        which takes most of the time: for many views make one.
+        A mesh of the surface, against which rays are tested. By default a mesh of 10,000 samples is
+        made, which takes most of the time: for many views, make one mesh and pass it.
         Next to cusps of the outline, where rays pass the surface within about the distance of the
         mesh from it, the result may be wrong.
 
