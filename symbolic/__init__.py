@@ -5,5 +5,6 @@
 
 import lazy_loader
 
-# The names are in __init__.pyi: reading a user's text takes no derivation.
+# The names are loaded as __init__.pyi lists them, when they are first used: reading a user's text
+# must not derive formulas.
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -16,7 +16,10 @@ NEEDS_A_CHECKOUT = (
 
 
 def main(arguments: list[str] | None = None, folder: Path = GENERATED) -> int:
-    """Write a folder, or compare it; the exit code is 1 when it is stale."""
+    """Write the generated files to a folder, or compare them with it.
+
+    Return the exit code: 1 if the folder is stale, else 0.
+    """
     parser = argparse.ArgumentParser(prog="python -m gaussmap.symbolic", description=__doc__)
     parser.add_argument(
         "--check", action="store_true", help="write nothing; show a diff and fail if stale"

@@ -1,4 +1,4 @@
-"""One quadratic Bézier triangle, given by numbers or symbols, and all that is derived from it."""
+"""One quadratic Bézier triangle, given by numbers or symbols, and its support function."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ class BezierTriangle:
     """A quadratic Bézier triangle (10) with exact control points.
 
     `control_points` are six points of three coordinates in the order b200, b020, b002, b110, b101,
-    b011; u belongs to b200, v to b020. Coordinates are numbers, SymPy expressions, or strings of
-    these. A float is taken at its exact binary value, a string such as "0.1" at its decimal one.
+    b011; u belongs to b200, v to b020. Coordinates are numbers, SymPy expressions, or texts of
+    either. A float stands for its exact binary value, a text such as "0.1" for its decimal value.
 
     Results are expressions in the components of `normal`, of any length: by default n_1, n_2, n_3
     as in the paper (real symbols, available as `patch.normal`), or the three given symbols. Results
@@ -63,7 +63,10 @@ class BezierTriangle:
         }
 
     def evaluate(self, formula: Formula) -> dict[str, sp.Expr]:
-        """Return the outputs of a formula for this patch; other inputs stay symbols."""
+        """Return the outputs of a formula for this patch.
+
+        Inputs that do not belong to the patch stay symbols.
+        """
         values = self._values | dict(zip(n.components, self.normal, strict=True))
         return {name: substitute(x, values) for name, x in formula.expanded().items()}
 
@@ -91,7 +94,7 @@ class BezierTriangle:
 
     @cached_property
     def gradient(self) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-        """The gradient of the support function: the envelope point."""
+        """The gradient of the support function: the point of the patch with the normal n."""
         x, y, z = (sp.cancel(sp.diff(self._cubic_over_quadratic, by)) for by in self.normal)
         return x, y, z
 
@@ -167,7 +170,7 @@ class BezierTriangle:
         return sp.Matrix([substitute(y, values) for y in MOVED.expanded().values()])
 
     def _point_with(self, normal: Sequence[sp.Expr]) -> sp.Matrix:
-        """Return the point with a normal that depends on s and t, as quotients of polynomials."""
+        """Return the point with the normal n(s,t), as quotients of polynomials in s and t."""
         values = dict(zip(self.normal, normal, strict=True))
         quotients = (sp.fraction(component) for component in self.gradient)
         return sp.Matrix(
@@ -204,7 +207,7 @@ class BezierTriangle:
 
 
 def written_in_groups(quotient: sp.Expr, variables: Sequence[sp.Symbol]) -> sp.Expr:
-    """Write a quotient of polynomials with rational coefficients as the paper writes (12).
+    """Write a quotient of polynomials with rational coefficients as eq. (12) in the paper.
 
     Terms of the numerator with equal coefficients are in brackets, largest groups of the highest
     powers first; the common factor of the denominator precedes it.
@@ -254,7 +257,10 @@ def _six_points(control_points: Iterable[Iterable[object]]) -> list[list[object]
 def _given_vectors(
     formula: Formula, names: Sequence[sp.Symbol], rows: Iterable[Iterable[object]]
 ) -> list[sp.Expr]:
-    """Return the outputs of a formula for three vectors of numbers."""
+    """Return the outputs of a formula for three given vectors.
+
+    Their coordinates are numbers, SymPy expressions or texts, as those of control points.
+    """
     numbers = [_exact(entry, set()) for row in rows for entry in row]
     values = dict(zip(flat(names), numbers, strict=True))
     return [substitute(output, values) for output in formula.expanded().values()]

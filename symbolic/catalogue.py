@@ -1,4 +1,4 @@
-"""Every formula by its name."""
+"""`formulas`: every formula by its name."""
 
 from collections.abc import Mapping
 from types import MappingProxyType

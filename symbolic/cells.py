@@ -1,4 +1,4 @@
-"""Optimal cells of samples and meshes on a quadratic patch, and their errors.
+"""Optimal cells of samples and of meshes on a quadratic patch, and the errors of these cells.
 
 Over its tangent plane a surface is z = (κ₁ x² + κ₂ y²)/2, up to terms of third order, and its
 normal turns by the gradient (κ₁ x, κ₂ y). All formulas are exact for that patch.
@@ -36,7 +36,7 @@ def height(x: sp.Expr, y: sp.Expr) -> sp.Expr:
 
 
 def gradient(corners: Sequence[Corner]) -> sp.Matrix:
-    """Return the gradient of the plane through three points of the patch."""
+    """Return the gradient of the plane through three points of the patch, given by (x, y)."""
     p, *others = corners
     edges = sp.Matrix([[q[0] - p[0], q[1] - p[1]] for q in others])
     rises = sp.Matrix([height(*q) - height(*p) for q in others])
@@ -44,9 +44,9 @@ def gradient(corners: Sequence[Corner]) -> sp.Matrix:
 
 
 def turning(corners: Sequence[Corner], place: Corner) -> sp.Expr:
-    """Return the angle between the normal of the plane through three points and that at a point.
+    """Return the angle between the normal of the plane through `corners` and that at `place`.
 
-    For small angles, it is the length of the difference of the gradients.
+    It is approximated by the length of the difference of both gradients, for small angles.
     """
     off = gradient(corners) - sp.Matrix([kappa1 * place[0], kappa2 * place[1]])
     return sp.sqrt(sp.simplify(off.dot(off)))
@@ -55,7 +55,8 @@ def turning(corners: Sequence[Corner], place: Corner) -> sp.Expr:
 def legs() -> tuple[sp.Expr, sp.Expr]:
     """Return the sides, along x and y, of the rectangle of area A in which normals turn least.
 
-    The largest angle is that between the normals in the middle and at a corner.
+    The angle that is minimized is the largest one: between the normals in the middle and at a
+    corner.
     """
     p = sp.Symbol("p", positive=True)
     squared = (kappa1 * p / 2) ** 2 + (kappa2 * area / p / 2) ** 2
@@ -75,11 +76,12 @@ def _hexagon() -> sp.Expr:
     return found
 
 
-# The angle in the best rectangle, divided by sqrt(κ₁ κ₂ A). It is also the angle between the normal
-# of a triangle, half of the rectangle, and the normals at its corners.
+# The largest angle between normals in the best rectangle and the normal in its middle, divided by
+# sqrt(κ₁ κ₂ A). It is also the angle between the normal of a triangle, half of the rectangle, and
+# the normals at its corners.
 ALIGNED = _aligned()
-# The angle in a regular hexagon, divided by κ₁ sqrt(A), for κ₁ = κ₂. Equilateral triangles of the
-# area A/2 have the same circumradius.
+# The same angle for a regular hexagon, divided by κ₁ sqrt(A), for κ₁ = κ₂. Equilateral triangles of
+# the area A/2 have the same circumradius.
 HEXAGON = _hexagon()
 # The distance between the patch and an equilateral triangle, divided by κ₁ A, for κ₁ = κ₂: R²/2, at
 # the centre of the triangle.

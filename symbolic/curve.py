@@ -55,7 +55,10 @@ POWER_FORM = _power_form()
 
 
 def eliminate() -> tuple[sp.Expr, sp.Expr]:
-    """Solve n·p_t = 0 for t; return t, and the support function minus n·c, in A = n·a, B = n·b."""
+    """Solve n·p_t = 0 for t; return t and h − n·c in A = n·a, B = n·b.
+
+    h is the support function.
+    """
     h = A * t**2 / 2 + B * t
     (solution,) = sp.solve(sp.diff(h, t), t)
     return solution, sp.cancel(substitute(h, {t: solution}))
@@ -152,8 +155,8 @@ COEFFICIENTS = mu_l, mu_c, mu_r = plane_vectors(("mu_l", "mu_c", "mu_r"))
 def b_spline_net() -> sp.Matrix:
     """Return the Bézier ordinates (piece, point) of the uniform quadratic B-spline.
 
-    It solves the conditions: three pieces, C¹ at all four joints, translates summing to 1. Raises
-    ArithmeticError unless exactly one function satisfies them.
+    It is the only solution of these conditions: three pieces, C¹ at all four joints, and translates
+    that sum to 1. Raises ArithmeticError if there is not exactly one solution.
     """
     net = sp.Matrix(3, 3, sp.symbols("o:9"))
     zero = sp.zeros(1, 3)
@@ -201,7 +204,7 @@ ARC = Formula.build(
 
 
 def _beyond_end() -> Formula:
-    """Solve for the coefficient before an arc, from its first control point f."""
+    """Derive the coefficient of the piece before an arc, from the arc's first control point f."""
     f, inside = scalar("f"), scalar("mu_c")
     (solution,) = sp.solve(NET[b20] - f, mu_l)
     return Formula.build(

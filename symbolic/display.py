@@ -29,7 +29,7 @@ class Length(sp.Expr):
 
 GREEK = {"mu": r"\mu", "kappa": r"\kappa", "rho": r"\rho", "beta": r"\beta"}
 
-# Expressions in mathematical notation for the single names that programs use.
+# The mathematical notation of quantities that have a single name in programs.
 AS_WRITTEN = {
     scalar("c3_twice"): 2 * scalar("c_3"),
     scalar("n_n"): cast(sp.Expr, Length(*vectors("n"))) ** 2,
@@ -84,7 +84,7 @@ def latex_name(name: str, *, bold: bool = False) -> str:
 
 
 class ForPeople(PositiveFirst):
-    """A mixin for printers: products of vectors."""
+    """A mixin for printers of mathematical notation: it prints products of vectors."""
 
     dot: str
     cross: str
@@ -151,7 +151,7 @@ def _as_written(value: sp.Expr) -> sp.Expr:
 
 
 def _equations(definitions: Sequence[Definition]) -> list[tuple[sp.Expr, sp.Expr]]:
-    """Return the two sides of definitions in mathematical notation, without x = x."""
+    """Return both sides of definitions in mathematical notation; definitions x = x are left out."""
     pairs = ((_as_written(x), _as_written(value)) for x, value in definitions)
     return [(left, right) for left, right in pairs if left != right]
 
@@ -159,7 +159,7 @@ def _equations(definitions: Sequence[Definition]) -> list[tuple[sp.Expr, sp.Expr
 def _rows(
     printer: TextPrinter | MathPrinter, value: sp.Expr, width: int, size: Callable[[str], int]
 ) -> list[str]:
-    """Print a sum in rows of about the length `width`."""
+    """Print a sum in rows of a length of about `width`, as measured by `size`."""
     rows = [""]
     for term in _signed_terms(printer, value):
         if rows[-1] and size(rows[-1]) + size(term) > width:
@@ -169,9 +169,9 @@ def _rows(
 
 
 def _signed_terms(printer: TextPrinter | MathPrinter, value: sp.Expr) -> list[str]:
-    """Print the terms of a sum; terms with the same coefficient, up to sign, in brackets.
+    """Print the terms of a sum; put terms with the same coefficient, up to its sign, in brackets.
 
-    Groups of two terms among several are not bracketed: brackets would hide more than they save.
+    Two such terms are only bracketed if the sum has no others.
     """
     groups: dict[sp.Expr, list[sp.Expr]] = {}
     terms = printer._as_ordered_terms(value) if value.is_Add else [value]

@@ -1,4 +1,4 @@
-"""The elementary functions of tapes: Taylor coefficients, their extrema and roundings."""
+"""The elementary functions of tapes: Taylor coefficients, their extrema and rounding errors."""
 
 from __future__ import annotations
 
@@ -23,18 +23,19 @@ __all__ = [
 
 x, y, w = scalar("x"), scalar("y"), scalar("w")
 HIGHEST = 3  # order of Taylor coefficients
-# Errors of functions of the C library, in units of 2⁻⁵³: two units in the last place, an assumption
-# that exceeds what glibc states.
+# The assumed bound of relative errors of functions of the C library, in units of 2⁻⁵³: two units in
+# the last place, which exceeds the errors that glibc states.
 LIBRARY = 4
 
 
 class Function(NamedTuple):
-    """A function of x, and the terms in which its derivatives are written.
+    """A function `of` x, and the terms in which its derivatives are written.
 
-    `values` are the value y of the function and, for some, a second one, w; `named` are terms that
-    several derivatives share. If terms of derivatives cancel, the sums of their absolute values are
-    at most `cancelling`. If their extrema are not known, `slopes` bound the derivatives of the
-    function and of its Taylor coefficients.
+    `values` replaces expressions by the value y of the function and, for some functions, by a
+    second value w. `named` are terms that several derivatives share. If terms of a derivative
+    cancel, the sum of their absolute values is at most `cancelling`. If the extrema of the Taylor
+    coefficients are not known, `slopes` bound the derivatives of the function and of its Taylor
+    coefficients.
     """
 
     of: Any
@@ -66,7 +67,8 @@ FUNCTIONS = {
     "atan": Function(
         sp.atan(x), {1 + x**2: 1 / w}, {"w": 1 / (1 + x**2)}, cancelling=sp.Rational(5, 3)
     ),
-    # Rounding x² adds x² units to w: the sums of moduli, times 1 + x², are at most 2/√π.
+    # Rounding x² adds x² units to the error of w. Therefore the sums of absolute values are
+    # multiplied by 1 + x²; they are at most 2/√π.
     "erf": Function(sp.erf(x), {sp.exp(-(x**2)): w}, cancelling=sp.Rational(8, 7)),
     # sin(x)/x is the integral of cos(t x) over t from 0 to 1, which gives the slopes. The bound of
     # terms that cancel is for |x| ≥ 1.
@@ -76,8 +78,8 @@ FUNCTIONS = {
     ),
     "sign": Function(sp.sign(x)),
 }  # fmt: skip
-# The codes of the operations of tapes.
-# A spline writes four rows, its own and those of three coordinates after it.
+# The codes of the operations of tapes. The operation "spline" has four rows of results: its own,
+# and those of three "coordinate" after it.
 BASIC = (
     "u",
     "v",
@@ -118,9 +120,10 @@ def _taylor(function: Function) -> Parts:
 
 
 def _critical(function: Function) -> tuple[float, list[float]]:
-    """Return the period of possible extrema of Taylor coefficients, or 0, and isolated ones.
+    """Return where Taylor coefficients may have extrema: a period, or 0, and isolated positions.
 
-    The period is the distance of the zeros of sin and cos. Singularities count as extrema.
+    For functions of sin and cos, the period is the distance of the zeros of both. Singularities
+    count as extrema.
     """
     if function.slopes:
         return 0.0, []
@@ -161,7 +164,7 @@ def _roundings(expression: Any, known: Mapping[Any, int]) -> int:  # noqa: ANN40
 
 
 def _roundings_of(function: Function, formula: Formula) -> list[int]:
-    """Return the roundings of the value of a function and of its Taylor coefficients."""
+    """Return the numbers of roundings of the value of a function and of its Taylor coefficients."""
     exact = function.of.is_Pow or function.of.has(
         sp.sign
     )  # except for the roundings of products, quotients and roots
@@ -211,7 +214,10 @@ PARTS, PRECISION = (33, 33), 150
 
 
 def _parts_of_quarter() -> list[Any]:
-    """Return numbers whose sum is π/2; products of the first ones with small integers are exact."""
+    """Return numbers whose sum is π/2.
+
+    The products of all but the last with small integers are exact.
+    """
     rest: Any = sp.Rational((sp.pi / 2).evalf(PRECISION))
     parts = []
     for bits in PARTS:
@@ -222,7 +228,7 @@ def _parts_of_quarter() -> list[Any]:
 
 
 def _horner(function: Any, first: int, last: int, result: Any = sp.S.Zero) -> Any:  # noqa: ANN401
-    """Return the terms of a Taylor series from x^first to x^last over x^first, in z = x².
+    """Return the terms of a Taylor series from x^first to x^last, divided by x^first, in z = x².
 
     `result` is the sum of the higher terms.
     """
@@ -233,7 +239,7 @@ def _horner(function: Any, first: int, last: int, result: Any = sp.S.Zero) -> An
 
 
 def _sinc_series(order: int) -> Any:  # noqa: ANN401
-    """Return the coefficient of an order of sin(x)/x as a series in x and z = x²."""
+    """Return a Taylor coefficient of sin(x)/x at x as a series in x and z = x², by its order."""
     result: Any = sp.S.Zero
     for power in range(LAST, order - 1, -2):
         coefficient = (-1) ** (power // 2) * sp.binomial(power, order) / sp.factorial(power + 1)

@@ -39,7 +39,8 @@ __all__ = [
 TEMPLATES = Path(__file__).parent / "templates"
 PLACEHOLDER = re.compile(r"^(?P<indent> *)\{\{(?P<key>\w+)\}\}$", re.MULTILINE)
 WIDTH = 92
-# The tuples of several vectors or numbers: name of the argument, type, sentence and fields.
+# The named tuples of several vectors or numbers: name of the argument, name of the type, sentence,
+# and fields.
 Group = tuple[str, str, str, tuple[sp.Symbol, ...]]
 HESSIAN = tuple(scalar(f"H_{x}") for x in ("xx", "yy", "zz", "xy", "xz", "yz"))
 GROUPS: tuple[Group, ...] = (
@@ -47,7 +48,7 @@ GROUPS: tuple[Group, ...] = (
     ("arc", "Arc", "The vectors of a quadratic arc, as those of a patch.", plane_vectors("abc")),
     ("hessian", "Hessian", "The entries of a Hessian, a symmetric matrix.", HESSIAN),
 )
-# The fields that a formula must use to take the whole tuple as an argument.
+# A formula takes the whole tuple as one argument if its inputs contain these fields.
 NEEDED = {
     "patch": set(vectors("abcde")),
     "arc": set(plane_vectors("ab")),
@@ -55,7 +56,8 @@ NEEDED = {
 }
 
 
-# The names of the tuples of numbers for each kind of symbol.
+# The type of the tuple of numbers for each kind of vector symbol, with the sentence of its
+# docstring.
 KINDS = {
     VectorSymbol: ("Vector", "A vector of R³."),
     PlaneVector: ("PlaneVector", "A vector of R²."),
@@ -78,7 +80,8 @@ def counts(formula: Formula) -> str:
 def arguments(formula: Formula) -> dict[str, tuple[sp.Symbol, ...]]:
     """Return the arguments of the function of a formula, each with the inputs that it contains.
 
-    An argument is a scalar or a vector, or a `Patch`, `Arc` or `Hessian` of several of these.
+    An argument is a scalar, a vector, or a `Patch`, `Arc` or `Hessian` that contains several
+    inputs.
     """
     result: dict[str, tuple[sp.Symbol, ...]] = {}
     for symbol in formula.inputs:
@@ -113,7 +116,7 @@ def function(formula: Formula) -> str:
 
 
 def unpacked(argument: str, symbols: Sequence[sp.Symbol]) -> list[str]:
-    """Return assignments that read the numbers in an argument: a vector or a tuple of several."""
+    """Return assignments that read the numbers in an argument, a vector or a tuple of vectors."""
     if symbols == HESSIAN:
         return [f"{', '.join(x.name for x in symbols)} = {argument}"]
     return [
@@ -125,7 +128,11 @@ def unpacked(argument: str, symbols: Sequence[sp.Symbol]) -> list[str]:
 
 
 def grouped(symbols: Sequence[sp.Symbol]) -> list[tuple[Group | None, tuple[sp.Symbol, ...]]]:
-    """Return symbols in their order; those that fill a tuple are together, with its group."""
+    """Return pairs of a group and its symbols, in the order of `symbols`.
+
+    Symbols that are all the fields of a named tuple are together; any other symbol is alone, with
+    None.
+    """
     result: list[tuple[Group | None, tuple[sp.Symbol, ...]]] = []
     place = 0
     while place < len(symbols):

@@ -1,4 +1,4 @@
-"""Any function h on the unit sphere, eqs. (5)-(7): its envelope, and the Hessian of its extension.
+"""The envelope of any function h on the sphere, eqs. (5)-(7), and the Hessian of its extension.
 
 The surface depends only on the values of h on the sphere, whatever its extension: it is the
 envelope of |n| h(n/|n|), which is homogeneous of degree 1. The gradient of this extension is eq.
@@ -41,13 +41,13 @@ def named(name: str) -> tuple[sp.Symbol, ...]:
 
 
 def symmetric(symbols: Iterable[sp.Symbol]) -> sp.Matrix:
-    """Return the symmetric matrix of these symbols."""
+    """Return the symmetric matrix (3, 3) with these six symbols, in the order of ENTRIES."""
     values = {place: x for x, place in zip(symbols, ENTRIES.values(), strict=True)}
     return sp.Matrix(3, 3, lambda i, j: values[min(i, j), max(i, j)])
 
 
 def entries(name: str, matrix: sp.Matrix) -> list[tuple[str, sp.Expr]]:
-    """Return the entries of a symmetric matrix with their names."""
+    """Return the entries of a symmetric matrix as pairs of a name (such as H_xx) and a value."""
     return [(f"{name}_{key}", cast(sp.Expr, matrix[place])) for key, place in ENTRIES.items()]
 
 
@@ -59,7 +59,7 @@ TANGENTIAL = sp.eye(3) - n.column * n.column.T
 
 
 def _on_sphere(expression: sp.Expr) -> sp.Expr:
-    """Return the normal form of a polynomial in n for |n| = 1, of degree below 2 in n_z."""
+    """Return a polynomial in n reduced by |n| = 1 to a degree below 2 in n_z."""
     n_z = n.components[2]
     return cast(sp.Expr, sp.rem(sp.expand(expression), dot(n.column, n.column) - 1, n_z))
 
@@ -79,7 +79,7 @@ def derivatives_of_extension(function: sp.Expr, order: int) -> sp.Matrix:
 def _to_second_order() -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
     """Return a polynomial with value h, gradient dh, second derivatives h_xx … at c, and c = n.
 
-    It stands for all functions: first and second derivatives depend on no higher terms.
+    It can replace any function, since first and second derivatives do not depend on higher terms.
     """
     (c,) = vectors("c")
     step = n.column - c.column
@@ -88,7 +88,7 @@ def _to_second_order() -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
 
 
 def verified(target: sp.Matrix, derived: sp.Matrix) -> sp.Matrix:
-    """Return `target` if it is `derived` on the unit sphere; ArithmeticError if not."""
+    """Return `target` if it equals `derived` on the unit sphere; else raise ArithmeticError."""
     function_at = _to_second_order()[1]
     for value, expected in zip(target.flat(), derived.flat(), strict=True):
         if _on_sphere(value - substitute(expected, function_at)) != 0:

@@ -1,4 +1,4 @@
-"""A user's support function h(n): from the expression to a function of arrays."""
+"""A user's support function h(n): from a SymPy expression to the source of a function of arrays."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ from .simplify import straight_line
 __all__ = ["NORMAL", "array_function", "is_homogeneous"]
 
 NORMAL = n.components
-# Longer expressions are not tested for homogeneity; the general formula holds for them as well.
+# For longer expressions, homogeneity is not tested, and the general formula is used, which always
+# holds.
 LONGEST_PROOF = 2000
 MOST_EXPANDED = 10_000  # the largest number of terms to which the proof may expand
 ROUNDING = 1e-9  # relative to h
@@ -62,8 +63,8 @@ def array_function(h: sp.Expr, domain: Boolean | bool = True) -> str:
 def branch(h: sp.Expr) -> Formula:
     """Return the formula of envelope and Hessian at a unit normal.
 
-    The gradient of a function that is homogeneous of degree 1 is the envelope; for others, eqs. (5)
-    and (6) are used.
+    The gradient of a function that is homogeneous of degree 1 is the envelope; for other functions,
+    eqs. (5) and (6) are used.
     """
     gradient = [_derivative(h, axis) for axis in NORMAL]
     hessian = [_derivative(gradient[i], NORMAL[j]) for i, j in ENTRIES.values()]
@@ -114,7 +115,7 @@ def _vanishes(defect: sp.Expr, h: sp.Expr) -> bool:
 
 
 def _expanded_terms(expression: sp.Expr) -> float:
-    """Return an upper bound of the number of terms of the expanded expression or its arguments."""
+    """Return an upper bound of the number of terms into which an expression expands."""
     inner = [_expanded_terms(cast(sp.Expr, x)) for x in expression.args]
     if expression.is_Add:
         return sum(inner)
@@ -127,7 +128,11 @@ def _expanded_terms(expression: sp.Expr) -> float:
 
 
 def _derivative(expression: sp.Expr, by: sp.Symbol) -> sp.Expr:
-    """Differentiate, away from kinks such as that of |n_x|, where (7) does not apply."""
+    """Differentiate where the function is smooth.
+
+    The delta functions that SymPy gives at kinks, such as that of |n_x|, are dropped: (7) does not
+    apply there.
+    """
     derivative = sp.diff(expression, by)
     kinks = dict.fromkeys(derivative.atoms(sp.DiracDelta), sp.S.Zero)
     return cast(sp.Expr, derivative.xreplace(kinks))

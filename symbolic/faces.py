@@ -1,6 +1,6 @@
 """Faces of CAD parts: surfaces of revolution, offset surfaces, and normals of tori.
 
-The other kinds of faces are rational, or surfaces of the catalogue moved in space.
+Faces of other kinds are rational surfaces, or surfaces of the catalogue moved in space.
 """
 
 from __future__ import annotations
@@ -121,7 +121,10 @@ OFFSET_SIDE = Formula.build(
 
 
 def _quotient(field: Iterable[sp.Expr], longitude: sp.Expr, latitude: sp.Expr) -> sp.Expr:
-    """Divide a normal field by the unit vector at two angles; ValueError if not parallel."""
+    """Divide a normal field by the parallel unit vector at a longitude and latitude.
+
+    Raises ValueError if they are not parallel.
+    """
     across = sp.cos(latitude)
     direction = sp.cos(longitude) * across, sp.sin(longitude) * across, sp.sin(latitude)
     quotients = {

@@ -39,7 +39,8 @@ __all__ = ["GENERATED", "derive", "differences", "existing", "write"]
 
 GENERATED = Path(__file__).parent.parent / "generated"
 PROJECT = GENERATED.parent / "pyproject.toml"
-# The titles of files of formulas, by the modules of the same names that hold the formulas.
+# The title of each generated file of formulas, by the module that holds its formulas; file and
+# module have the same name.
 TITLES = {
     curve: "Planar curves: the formulas of symbolic/curve.py as functions of vectors.",
     elementary: "Elementary functions: the formulas and tables of symbolic/elementary.py.",
@@ -101,7 +102,7 @@ def write(texts: Mapping[str, str], folder: Path) -> None:
 
 
 def differences(texts: Mapping[str, str], folder: Path) -> list[str]:
-    """Return a unified diff from the files of a folder to the given ones; empty if equal."""
+    """Return a unified diff from the files of a folder to the given texts, empty if equal."""
     old = existing(folder)
     lines: list[str] = []
     for name in sorted(old.keys() | texts.keys()):
@@ -117,7 +118,7 @@ def existing(folder: Path) -> dict[str, str]:
 
 
 def formatted(source: str, name: str = "module.py") -> str:
-    """Return Python source without unused imports, formatted by the settings of this project.
+    """Return Python source, formatted by the settings of this project, without unused imports.
 
     Raises CalledProcessError if ruff is not installed or the source is no Python.
     """
@@ -208,7 +209,7 @@ def surface_jets_source() -> str:
 
 
 def surface_tapes_source() -> str:
-    """Return generated/surface_tapes.py: positions as the steps that compute them."""
+    """Return generated/surface_tapes.py: the tape of the position of each surface."""
     title = "The catalogue of parametric surfaces: positions as steps of `symbolic/tape.py`."
     catalogue = surfaces.CATALOGUE.values()
     entries = (
@@ -220,8 +221,8 @@ def surface_tapes_source() -> str:
 def signatures_source() -> str:
     """Return generated/surfaces_signatures.pyi: signatures of the functions of gaussmap.surfaces.
 
-    The functions are made at run time, from the catalogue; type checkers and completion read this
-    file.
+    The functions themselves are made at run time, from the catalogue; this file is for type
+    checkers and completion.
     """
     title = "Signatures of gaussmap.surfaces for type checkers and completion; nothing runs this."
     functions = "\n\n".join(_signature(x) for x in surfaces.CATALOGUE.values())

@@ -1,6 +1,6 @@
-"""The named formula, an object from which kernels are emitted and LaTeX is printed.
+"""`Formula`: a named formula, an object from which kernels and LaTeX are printed.
 
-Formulas are written and shown in the notation of vectors; computations use components.
+Formulas are written and shown in the notation of vectors; kernels compute with components.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Parts(NamedTuple):
     terms: Named = ()
 
     def named(self) -> Content:
-        """Make symbols of names: scalars or vectors, depending on the expression."""
+        """Return the content; the symbol of a name is a scalar or a vector, as its expression."""
         terms, outputs = (
             tuple((named(x, y), y) for x, y in row) for row in (self.terms, self.outputs)
         )
@@ -50,7 +50,8 @@ class Formula:
 
     `description` is a sentence or two, with mathematics between dollar signs. `definitions` are in
     the order of computation: each may use the inputs and earlier definitions. `outputs` are the
-    results among them; the others are named terms. All three are derived when first read.
+    symbols of results; all other definitions are named terms. `inputs`, `definitions` and `outputs`
+    are derived when one of them is first read.
     """
 
     name: str
@@ -69,7 +70,7 @@ class Formula:
         terms: Named = (),
         outputs: Named,
     ) -> Formula:
-        """Make a formula of names and expressions; a name is a vector if its expression is one.
+        """Make a formula of names and expressions; the symbol of a vector expression is a vector.
 
         Raises ValueError if an expression is neither a scalar nor a vector, if a symbol is used
         before it is defined, or is defined twice.
@@ -157,7 +158,7 @@ class Formula:
 def formula(
     name: str, description: str, *, source: str = BEYOND_THE_PAPER
 ) -> Callable[[Callable[[], Parts]], Formula]:
-    """Make a formula of the parts that a function derives at the first use.
+    """Make a formula of the parts that a function derives when the formula is first read.
 
     This is a decorator: the formula replaces the function.
     """
@@ -176,10 +177,10 @@ def compose(
     source: str,
     outputs: Iterable[sp.Symbol],
 ) -> Formula:
-    """Chain formulas into one: results of earlier parts are inputs of later ones.
+    """Chain formulas into one formula: results of earlier parts are inputs of later parts.
 
-    Only the definitions that `outputs` need are kept. Reading the formula raises ValueError if two
-    parts define a term differently, or none defines an output.
+    Only the definitions that `outputs` need are kept. When the formula is first read, ValueError is
+    raised if two parts define a term differently, or if no part defines an output.
     """
     ends = tuple(outputs)
     return Formula(name, description, source, lambda: _chained(name, parts, ends))

@@ -151,7 +151,7 @@ SOLID_ANGLE = Formula.build(
 
 
 def _determinant(names: tuple[str, ...]) -> sp.Expr:
-    """Return the determinant of three of the vectors, in alphabetical order, with its sign."""
+    """Return the determinant of three vectors, written with the vectors in alphabetical order."""
     if len(set(names)) < 3:
         return sp.S.Zero
     key = sorted(names)

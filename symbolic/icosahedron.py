@@ -54,17 +54,17 @@ def golden_parts(corner: sp.Matrix) -> list[tuple[int, int]]:
 
 @cache
 def barycentric(face: tuple[int, int, int]) -> sp.Matrix:
-    """Return the matrix that gives α, β, γ of n = α i + β j + γ k, with the corners of a face."""
+    """Return the matrix that maps n to α, β, γ with n = α i + β j + γ k, for corners i, j, k."""
     corners = sp.Matrix.hstack(*(CORNERS[x] for x in face)).applyfunc(lambda x: x.rewrite(sp.sqrt))
     # Arithmetic in the field of numbers a + b √5 is much faster than with expressions.
     return DomainMatrix.from_Matrix(corners, extension=True).to_field().inv().to_Matrix()
 
 
 def frame(face: tuple[int, int, int]) -> sp.Matrix:
-    """Return the linear map (3, 3) to 2γ − h, 2β − h and h = α + β + γ.
+    """Return the matrix (3, 3) that maps a normal to 2γ − h, 2β − h and h = α + β + γ.
 
-    Divided by h, the first two range from −1 to 1 on the face, and give the columns and the rows of
-    its lattice. The third, h, is the height.
+    α, β, γ are those of `barycentric`. Divided by h, the first two values range from −1 to 1 on the
+    face, and determine columns and rows of its lattice.
     """
     alpha, beta, gamma = (barycentric(face).row(k) for k in range(3))
     height = alpha + beta + gamma
@@ -89,7 +89,7 @@ def face_radius() -> sp.Expr:
 
 
 def tables() -> dict[str, tuple[str, Any]]:
-    """Return the tables for algorithms, by name: a sentence, and correctly rounded numbers."""
+    """Return the tables for kernels, by name: a sentence, and correctly rounded numbers."""
     sides = [tuple(combinations(face, 2)) for face in FACES]
     owners = [next(k for k, pairs in enumerate(sides) if edge in pairs) for edge in EDGES]
     holders = [next(k for k, face in enumerate(FACES) if corner in face) for corner in range(12)]

@@ -24,7 +24,7 @@ N, N_u, N_v, w = vectors(("N", "N_u", "N_v", "w"))
 E, F, G, L = (scalar(x) for x in "EFGL")
 
 FIRST_FORM = [("E", Dot(d, d)), ("F", Dot(d, e)), ("G", Dot(e, e))]
-# The normal N, and the second fundamental form times its length.
+# The normal N, and the second fundamental form times the length of N.
 NORMAL_AND_SECOND_FORM = [
     ("N", Cross(d, e)),
     ("A", Dot(N, a)),
@@ -111,9 +111,12 @@ ORDERS = ((2, 0), (1, 1), (0, 2), (1, 0), (0, 1))
 
 
 def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
-    """Return the 2-jet of a surface by φ and r from that by s and t, at cos φ = x, sin φ = y.
+    """Return derivatives of a surface by φ and r from those by s and t, for cos φ = x, sin φ = y.
 
-    One 2-jet determines the other, so that a quadratic patch can represent the surface.
+    Both are derivatives of the orders ORDERS.
+
+    First and second derivatives by s and t determine those by φ and r, so that a quadratic patch
+    can replace the surface.
     """
     phi, psi, radius = sp.symbols("phi psi radius", real=True)
     s = radius * sp.cos(psi) - r * sp.cos(phi)
@@ -138,7 +141,7 @@ def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
     "and $y$ are the cosine and the sine of the angle.",
 )
 def POLAR_CHART() -> Parts:
-    """Write the 2-jet by s and t, and check by the chain rule that it gives the one by φ and r.
+    """Write the 2-jet by s and t, and check by the chain rule that it gives the 2-jet by φ and r.
 
     Raises ArithmeticError if it does not.
     """

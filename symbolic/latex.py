@@ -61,7 +61,7 @@ ENDS = {
 
 @dataclass(frozen=True)
 class Entry:
-    """The presentation of a formula or a surface; in sentences and facts `$` encloses LaTeX."""
+    """The texts of a formula or a surface; `$` encloses LaTeX in sentences and facts."""
 
     formula: Formula
     sentence: str
@@ -80,7 +80,7 @@ def parts_of(formula: Formula) -> list[str]:
 
 
 def markdown(sources: Mapping[str, str]) -> str:
-    """Return generated/formulas.md, whose formulas a code host renders.
+    """Return generated/formulas.md, in the Markdown of code hosts, which render formulas.
 
     `sources` are the texts of the generated files by their names.
     """
@@ -94,9 +94,9 @@ def markdown(sources: Mapping[str, str]) -> str:
 
 
 def passages(entry: Entry, found: Mapping[str, list[str]]) -> tuple[str, str, str]:
-    """Return a sentence, the formula and the list of facts in the Markdown of code hosts.
+    """Return sentence, formula and list of facts of an entry, in the Markdown of code hosts.
 
-    `found` are the generated functions by their names.
+    `found` are the generated functions of each formula, by the name of the formula.
     """
 
     def converted(sentence: str) -> str:
@@ -135,7 +135,7 @@ def document(sources: Mapping[str, str]) -> str:
 
 @cache
 def sections() -> dict[str, list[Entry]]:
-    """Return the entries by the titles of their sections."""
+    """Return the entries of each section, by the title of the section."""
     result = {title: [_formula(x) for x in formulas] for title, formulas in FORMULAS.items()}
     return result | {"Parametric surfaces": [_surface(x) for x in surfaces.CATALOGUE.values()]}
 
@@ -203,7 +203,7 @@ def _converted(
     mathematics: Callable[[str], str],
     plain: Callable[[str], str] = str,
 ) -> str:
-    """Return a sentence with mathematics (between dollar signs) and plain text converted."""
+    """Return a sentence with mathematics (between dollar signs) and other text converted."""
     parts = sentence.split("$")
     parts[::2] = map(plain, parts[::2])
     parts[1::2] = map(mathematics, parts[1::2])
@@ -224,7 +224,7 @@ def _symbols(formula: Formula) -> tuple[sp.Symbol, ...]:
 
 
 def _named(source: str, formula: Formula) -> str:
-    """Return mathematics in the sentence of a formula as LaTeX, with the names of the formula."""
+    """Return mathematics from a formula's sentence as LaTeX; vectors of the formula are bold."""
     bold = _vectors() | {s.name for s in _symbols(formula) if isinstance(s, VectorSymbol)}
 
     def latex(name: re.Match[str]) -> str:
@@ -235,6 +235,6 @@ def _named(source: str, formula: Formula) -> str:
 
 
 def _escaped(text: str) -> str:
-    """Return plain text for LaTeX, with text between backquotes in typewriter letters."""
+    """Return plain text escaped for LaTeX; text between backquotes becomes typewriter text."""
     escaped = re.sub(r"([<>])", r"$\1$", re.sub(r"([_&%#])", r"\\\1", text))
     return re.sub(r"`(.*?)`", r"\\texttt{\1}", escaped)

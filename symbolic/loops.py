@@ -1,7 +1,7 @@
-"""Formulas as loops over arrays: a row per set of inputs, with the formula written out inside.
+"""Formulas as loops over arrays with a row for each set of inputs; the formula is written out.
 
-They are plain Python; `runtime` compiles them. A loop is self-contained: it can be read and reused
-by itself.
+The loops are plain Python, which `runtime` compiles. A loop is self-contained: it can be read and
+reused alone.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ __all__ = ["array_function", "jet_function", "row_loop", "row_shapes"]
 
 Symbols = Sequence[sp.Symbol]
 
-# The names of the arrays of some symbols; others are named after the symbol.
+# The names of the arrays of some arguments; the array of any other argument is named after it.
 ARRAYS = {"n": "normals", "x": "points", "hessian": "hessians"}
 
 
 def array_function(formula: Formula, over: Collection[sp.Symbol]) -> str:
     """Return a formula as a function of arrays, which fills the arrays of its outputs.
 
-    The inputs in `over` are arrays with a row for each evaluation; the others are passed as to
-    `emit.function`.
+    The inputs in `over` are arrays with a row for each evaluation; all other inputs are arguments
+    as in `emit.function`.
     """
     given = {x: y for x, y in arguments(formula).items() if not {*y} <= {*over}}
     inputs = {x: y for x, y in arguments(formula).items() if x not in given}
@@ -80,8 +80,8 @@ def row_loop(
 ) -> str:
     """Return the loop that reads each row of the inputs and writes the row of the outputs.
 
-    Inputs and outputs are named as arguments. Raises ValueError if the formula uses a name of the
-    loop.
+    The keys of `inputs` and `outputs` are names of arguments. Raises ValueError if the formula uses
+    a name that the loop uses.
     """
     taken = {"row", *map(_array, inputs), *map(_array, outputs)}
     names = {x.name for x, _ in straight_line(formula).assignments}
@@ -101,7 +101,7 @@ def _array(argument: str) -> str:
 
 
 def _entries(argument: str, symbols: Symbols) -> list[tuple[str, str]]:
-    """Return the names of the numbers in an argument, with their indices in its array."""
+    """Return pairs of the name of a number in an argument and its entry in the argument's array."""
     array = _array(argument)
     if argument == "hessian":
         return [
@@ -128,9 +128,10 @@ def _row_shape(argument: str, symbols: Symbols) -> tuple[int, ...]:
 
 
 def row_shapes(formula: Formula) -> tuple[dict[str, tuple[int, ...]], dict[str, tuple[int, ...]]]:
-    """Return the shapes of a row of each array of `array_function`, of inputs and of outputs.
+    """Return the shape of a row of each array of `array_function`: for inputs, and for outputs.
 
-    Raises ValueError for a formula that takes or returns all vectors of a patch or an arc.
+    Raises ValueError for a formula that takes or returns all vectors of a patch or an arc, since
+    these are no array.
     """
     inputs = arguments(formula)
     outputs = {g[0] if g else x[0].name: x for g, x in grouped(formula.outputs)}

@@ -50,10 +50,11 @@ BORDER_SPACING = Formula.build(
     "perpendicular to the unit normals $n0$ and $n1$, in the sense of least squares.",
 )
 def EDGE_OVER_SURFACE() -> Parts:
-    """Solve for the shift of the middle Bézier point of an edge along n0 + n1, by least squares.
+    """Derive by least squares how far the middle Bézier point of an edge moves along n0 + n1.
 
-    With this shift the ends of the edge, a quadratic curve, should be perpendicular to the normals:
-    the products of n0 and n1 with its first and last leg, e/2 ± beta (n0 + n1), should vanish.
+    The edge, a quadratic curve, should be perpendicular to n0 and n1 at its ends: the products of
+    n0 and n1 with the first and the last leg of its control polygon, e/2 ± beta (n0 + n1), should
+    vanish.
     """
     towards = 1 + Dot(n0, n1)
     legs = Dot(e, n0) / 2 + beta * towards, Dot(e, n1) / 2 - beta * towards

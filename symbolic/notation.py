@@ -43,7 +43,7 @@ class VectorSymbol(sp.Symbol):
 
     @classmethod
     def class_key(cls) -> tuple[Literal[2], Literal[0], str]:
-        """Sort vectors among the other symbols, by their names."""
+        """Return the key of scalar symbols, so that SymPy sorts vectors among them, by name."""
         return sp.Symbol.class_key()
 
     @property
@@ -139,7 +139,10 @@ def substitute(expression: sp.Expr, values: Mapping[Any, sp.Expr]) -> sp.Expr:
 
 
 def derivative(expression: sp.Expr, by: Mapping[VectorSymbol, VectorSymbol]) -> sp.Expr:
-    """Return the derivative of products of vectors, given those of vectors, 0 by default."""
+    """Return the derivative of a sum of products of vectors.
+
+    `by` has the derivatives of the vectors.
+    """
     zero: sp.Expr = sp.S.Zero
     if isinstance(expression, VectorProduct):
         factors = [cast(VectorSymbol, x) for x in expression.args]
@@ -190,7 +193,7 @@ def named(name: str, expression: sp.Expr) -> sp.Symbol:
 
 
 def flat(symbols: Iterable[sp.Symbol]) -> tuple[sp.Symbol, ...]:
-    """Replace vector symbols by their components."""
+    """Return the symbols, with each vector symbol replaced by its components."""
     return tuple(
         x for s in symbols for x in (s.components if isinstance(s, VectorSymbol) else (s,))
     )

@@ -1,4 +1,4 @@
-"""Users' formulas as compiled functions, by the code with which `make generate` writes files."""
+"""Users' formulas as compiled functions, printed by the same code as the files in generated/."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PREAMBLE = "import math\nfrom typing import NamedTuple\n"
 
 
 def compiled(formula: Formula) -> CompiledFormula:
-    """Return a formula as a function of arrays that Numba compiles, with the stages of its making.
+    """Return a formula as a function of arrays that Numba compiles; all stages can be inspected.
 
     It is printed by the same code as the functions in `generated/`. Compilation happens at the
     first call.
@@ -120,7 +120,7 @@ class CompiledFormula:
 
     @property
     def operations(self) -> tuple[int, int]:
-        """The numbers of operations, as written and as they run."""
+        """The number of operations of the formula as written, and of its function as it runs."""
         return self.simplified.operations_before, self.simplified.operations_after
 
     @property
@@ -184,7 +184,7 @@ class CompiledFormula:
         return array_function(self.formula, self.formula.inputs)
 
     def _made(self, source: str, names: dict[str, Any]) -> Callable[..., Any]:
-        """Return the function of a source, which debuggers can show."""
+        """Run the source of a function and return the function; debuggers can show the source."""
         text = f"{PREAMBLE}\n\n{source}"
         place = f"<formula {self.formula.name} {id(self)} {len(text)}>"
         linecache.cache[place] = (len(text), None, text.splitlines(keepends=True), place)

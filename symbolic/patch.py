@@ -84,9 +84,9 @@ SOLUTION = eliminate()
 
 
 def _written(target: sp.Expr, derived: sp.Expr) -> sp.Expr:
-    """Return `target`, a shorter form of `derived` in D, U, V, u, v.
+    """Return `target`, a shorter expression in D, U, V, u, v that is equal to `derived`.
 
-    Raises ArithmeticError if they are not equal.
+    Raises ArithmeticError if it is not equal.
     """
     forms = {D: SOLUTION.D, U: SOLUTION.U, V: SOLUTION.V}
     if sp.cancel(substitute(substitute(target, {u: U / D, v: V / D}), forms) - derived) != 0:
@@ -310,7 +310,7 @@ def bernstein(polynomial: sp.Expr, degree: int) -> dict[str, sp.Expr]:
     source="Sect. 3.2, eq. (14)",
 )
 def CONTROL_NORMALS() -> Parts:
-    """Multiply the linear fields p_u and p_v, given at the corners, in Bernstein form."""
+    """Multiply the linear fields p_u and p_v in Bernstein form, given by values at the corners."""
     corners = {"100": (1, 0), "010": (0, 1), "001": (0, 0)}
     tangents = [
         (f"{field_name}{corner}", sp.expand(substitute(field, {u: sp.S(at[0]), v: sp.S(at[1])})))
@@ -374,7 +374,7 @@ MEASURE = Formula.build(
 
 
 def quadrature_node() -> sp.Rational:
-    """Return t of three inner nodes (1 − 2t, t, t) whose mean integrates all quadratics exactly."""
+    """Return t for which means over permutations of (1 − 2t, t, t) are exact for quadratics."""
     t = sp.Symbol("t")
     second_moment = sp.integrate(u**2, (u, 0, 1 - v), (v, 0, 1))
     return min(sp.solve(((1 - 2 * t) ** 2 + 2 * t**2) / 6 - second_moment, t))

@@ -21,7 +21,7 @@ LONGEST_PRODUCT = 64  # higher powers are calls of `math.pow`
 
 
 class PositiveFirst:
-    """A mixin for printers: terms of sums in SymPy's order, the first positive one in front."""
+    """A mixin for printers: terms of sums are in SymPy's order, but a positive term comes first."""
 
     def _as_ordered_terms(self, expr: sp.Expr, order: str | None = None) -> list[sp.Expr]:
         terms = cast(Any, super())._as_ordered_terms(expr, order)
@@ -31,7 +31,7 @@ class PositiveFirst:
 
 
 class KernelPrinter(PositiveFirst, PythonCodePrinter):
-    """Print without `**`, with integers as integers, so that integer arguments stay exact."""
+    """Print powers without `**`, and integers as integers, so that integer arguments stay exact."""
 
     power, root = "math.pow", "math.sqrt"
 
@@ -61,7 +61,7 @@ class KernelPrinter(PositiveFirst, PythonCodePrinter):
         return f"({numerator}.0 / {denominator}.0)"
 
     def _factors(self, base: sp.Expr, exponent: sp.Expr) -> list[str]:
-        """Return the factors of a power whose exponent is not known to be negative."""
+        """Return the factors whose product is a power; its exponent is not known to be negative."""
         whole, half = divmod(exponent, 1)
         if not whole.is_Integer or half not in (0, sp.S.Half) or whole > LONGEST_PRODUCT:
             return [f"{self.power}({self._print(base)}, {self._print(exponent)})"]

@@ -36,7 +36,7 @@ y11, y12, y22 = (scalar(f"y{k}") for k in ("11", "12", "22"))
 
 
 def _cubic(thirds: Iterable[sp.Expr], along: sp.Expr, across: sp.Expr) -> sp.Expr:
-    """Return the cubic form with the given third derivatives."""
+    """Return the cubic form in `along` and `across` with the given four third derivatives."""
     terms = (sp.binomial(3, k) * z * along ** (3 - k) * across**k / 6 for k, z in enumerate(thirds))
     return sum(terms, start=sp.S.Zero)
 
@@ -58,7 +58,7 @@ MODEL_AT = Formula.build(
 
 
 def _largest(form: sp.Expr) -> sp.Expr:
-    """Return the bound of a polynomial in s and t over the cell: the sum of its coefficients."""
+    """Return a bound of a polynomial over the cell: the sum of the moduli of its coefficients."""
     return sum((sp.Abs(z) for z in sp.Poly(form, s, t).coeffs()), start=sp.S.Zero)
 
 
@@ -85,7 +85,7 @@ REMAINDERS = Formula.build(
     "quadratic patch.",
 )
 def EXCESSES() -> Parts:
-    """Bound both derivatives over the cell, and their combinations in s and in t alone."""
+    """Bound both derivatives over the cell, and their combinations without t and without s."""
     along, across = P + A * s + B * t, Q + B * s + C * t
     linear = {
         "e1": along,
@@ -147,7 +147,8 @@ def CONTRACTION() -> Parts:
 def _ordinate(polynomial: sp.Expr, places: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
     """Return one Bernstein ordinate, over −1 … 1, of a polynomial of degree 2 in each parameter.
 
-    `places` selects it by the value for each parameter: −1 for the first, 0 the middle, 1 the last.
+    `places` selects the ordinate by a value for each parameter: −1 for the first, 0 for the middle
+    and 1 for the last one.
     """
     for z, place in places.items():
         low, middle, high = (polynomial.subs(z, k) for k in (-1, 0, 1))

@@ -1,9 +1,9 @@
-"""Users' mathematical texts as SymPy expressions, without running any of it as Python.
+"""Users' mathematical texts as SymPy expressions; no part of a text is run as Python.
 
 The text is parsed by `ast`, and the expression is built from the tree: literals, arithmetic, the
 declared symbols, and the constants and functions listed here. A value is a number or a truth value;
-each function declares which it takes. SymPy's work is bounded beforehand: long constants become
-floating-point numbers, and operations and queries of signs are counted.
+each function declares which of the two it takes. The work of SymPy is bounded in advance: long
+constants become floating-point numbers, and operations and queries of signs are counted.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ MOST_PLAIN_BITS = 32  # bits of numbers whose roots and functions SymPy may eval
 MOST_EXACT = 30  # numbers and operations in a constant that is not a float
 
 # A function costs SymPy about a microsecond times the square of the steps of its arguments. A query
-# of their signs costs as much as ASKING more steps.
+# of the sign of an argument costs as much as ASKING more steps.
 MOST_WORK = 1_000_000
 ASKING = 80
 MOST_DERIVED = 100_000  # numbers and operations in second derivatives
@@ -62,7 +62,8 @@ class ReadingError(ValueError):
 class Function(NamedTuple):
     """A function of SymPy that texts may use; it takes numbers or truth values.
 
-    `counts` are the possible numbers of arguments. If it `asks`, SymPy queries their signs.
+    `counts` are the possible numbers of arguments. If it `asks`, SymPy queries the signs of
+    arguments.
     """
 
     of: Callable[..., Any]
@@ -171,9 +172,9 @@ def refuse_unusable(expression: sp.Basic) -> None:
 
 
 def is_long(expressions: Iterable[sp.Basic]) -> bool:
-    """Return whether expressions written out have more parts than a text may have.
+    """Return whether expressions, written out, have more parts than texts may have (MOST_STEPS).
 
-    Shared parts count each time: SymPy's functions visit them as often.
+    Shared parts count each time that they occur, since SymPy's functions visit them each time.
     """
     known: dict[sp.Basic, tuple[int, int, int]] = {}
     return sum(_sizes(x, known)[0] for x in expressions) > MOST_STEPS
@@ -236,7 +237,7 @@ def free_symbols(expression: sp.Basic) -> set[sp.Basic]:
 
 
 def replaced(expression: Any, rules: Mapping[Any, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return an expression with parts replaced, as `xreplace`; shared parts are visited once."""
+    """Return an expression with parts replaced, as `xreplace` does, but visit shared parts once."""
     known: dict[Any, Any] = dict(rules)
     plain = {"evaluate": False} if rules and is_long([expression]) else {}
 
@@ -254,7 +255,7 @@ def replaced(expression: Any, rules: Mapping[Any, Any]) -> Any:  # noqa: ANN401 
 def with_shared_parts(
     expressions: Iterable[Any],
 ) -> tuple[list[tuple[sp.Symbol, Any]], list[Any]]:
-    """Return definitions of parts that are used several times, and the expressions with them."""
+    """Return definitions of parts that are used several times, and the expressions in these."""
     expressions = list(expressions)
     uses = Counter(y for x in {y for e in expressions for y in parts(e)} for y in x.args)
     uses.update(expressions)
@@ -318,7 +319,10 @@ class _Reader:
         return self._of(tree.body)
 
     def _of(self, node: ast.AST, takes: type = sp.Basic) -> Any:  # noqa: ANN401
-        """Return the value of a node, a number (Expr) or a truth value (Boolean), by `takes`."""
+        """Return the value of a node: a number (Expr) or a truth value (Boolean).
+
+        `takes` says which of the two is required; by default, both are possible.
+        """
         self._count(1)
         if self.depth > DEEPEST_TREE:
             raise ReadingError("it is nested too deeply")
@@ -391,7 +395,7 @@ class _Reader:
         return left - right * floor
 
     def _chain(self, node: Any, kinds: Any) -> list[Any]:  # noqa: ANN401
-        """Return the terms of a - b + c, or the factors of a / b * c, however many."""
+        """Return the terms of a - b + …, or the factors of a / b * …, without recursion."""
         operands = []
         while isinstance(node, ast.BinOp) and isinstance(node.op, kinds):
             operands.append((node.op, node.right))
@@ -428,7 +432,7 @@ class _Reader:
         return self._function(name, node.args)
 
     def _function(self, name: str, nodes: list[ast.expr]) -> Any:  # noqa: ANN401
-        """Return a function of its arguments, whose count and types are checked."""
+        """Return the value of a function; the number and the types of its arguments are checked."""
         if name not in FUNCTIONS:
             _refuse_syntax()
         function, start = FUNCTIONS[name], self.steps
@@ -438,7 +442,7 @@ class _Reader:
         return self._value(name, values, self.steps - start)
 
     def _value(self, name: str, values: list[Any], size: int) -> Any:  # noqa: ANN401
-        """Return a function of values that were built in `size` steps."""
+        """Return the value of a function at `values`, which were built in `size` steps."""
         function = FUNCTIONS[name]
         if not self.exact and all(x.is_number for x in values):
             plain = all(map(_is_plain, values))
@@ -478,7 +482,7 @@ class _Reader:
         return (sp.Add if name == "Sum" else sp.Mul)(*terms)
 
     def _bounded(self, value: Any) -> Any:  # noqa: ANN401
-        """Return a value, long constants as floats; ReadingError if it is not a real number."""
+        """Return the value, as a float if it is a long constant; ReadingError if it is not real."""
         if isinstance(value, Boolean) or not value.is_number:
             return value
         rounded = _float(value)
@@ -502,13 +506,13 @@ def _is_arithmetic(part: sp.Basic) -> bool:
 
 
 def _is_plain(constant: Any) -> bool:  # noqa: ANN401
-    """Return whether SymPy finds exact values of functions of this constant quickly."""
+    """Return whether SymPy evaluates functions of this constant exactly and quickly."""
     factor, rest = constant.as_coeff_Mul()
     return _bits(factor) <= MOST_PLAIN_BITS and (rest is sp.S.One or rest.is_NumberSymbol)
 
 
 def _float(constant: Any) -> Any:  # noqa: ANN401
-    """Return a constant computed in float64: SymPy's `evalf` takes exponential time if nested."""
+    """Return a constant computed in float64: `evalf` takes exponential time for nested ones."""
     if constant.is_Rational:
         return sp.Float(constant) if constant.is_finite else constant
     if not constant.args:
@@ -519,7 +523,7 @@ def _float(constant: Any) -> Any:  # noqa: ANN401
 
 
 def _bits(number: Any) -> int:  # noqa: ANN401
-    """Return the bits of a number: of numerator or denominator, or the exponent of a float."""
+    """Return the bits of a numerator or denominator, or the modulus of a float's exponent."""
     if number.is_Rational and number.is_finite:
         return max(int(number.p).bit_length(), int(number.q).bit_length())
     if number.is_Float:

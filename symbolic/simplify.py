@@ -1,4 +1,4 @@
-"""From a formula to straight-line code, by a short list of passes."""
+"""Straight-line code of a formula, made by a short list of passes."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def share_subexpressions(definitions: Collection[Definition]) -> list[Definition
 
 
 def other_names(assignments: Iterable[Definition]) -> set[sp.Symbol]:
-    """Return the temporaries whose value is another symbol, possibly with a sign."""
+    """Return the temporaries whose value is only another symbol, possibly with a minus sign."""
 
     def is_name(value: sp.Basic) -> bool:  # a condition has no sign
         return value.is_Symbol or (isinstance(value, sp.Mul) and (-value).is_Symbol)
@@ -73,7 +73,7 @@ def other_names(assignments: Iterable[Definition]) -> set[sp.Symbol]:
 
 
 def used_once(assignments: Iterable[Definition]) -> Collection[sp.Symbol]:
-    """Return the temporaries that occur once."""
+    """Return the temporaries that are used once."""
     nodes = (node for _, value in assignments for node in sp.preorder_traversal(value))
     uses = Counter(node for node in nodes if isinstance(node, sp.Dummy))
     return {symbol for symbol, count in uses.items() if count == 1}
@@ -82,7 +82,7 @@ def used_once(assignments: Iterable[Definition]) -> Collection[sp.Symbol]:
 def write_back(
     assignments: Iterable[Definition], needless: Collection[sp.Symbol]
 ) -> list[Definition]:
-    """Substitute the values of needless symbols where they are used."""
+    """Substitute the values of `needless` symbols where they are used; drop their assignments."""
     values: dict[sp.Symbol, sp.Expr] = {}
     kept: list[Definition] = []
     for symbol, value in assignments:

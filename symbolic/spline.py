@@ -2,9 +2,10 @@
 
 Both diagonals of each grid cell cut it into four triangles. The Zwart-Powell box spline is the only
 C¹ piecewise quadratic on that triangulation whose support is three cells wide (up to a factor): its
-Bézier net is the solution of a linear system. From it follow the net of a cell in its 3 × 3
-coefficients, the coefficient functionals that reproduce all quadratics, and the extrapolation of
-the ring of coefficients outside the domain. Lengths are in cells; a cell is centred at the origin.
+Bézier net is the solution of a linear system. This net determines the control points of a cell as
+combinations of 3 × 3 coefficients, the functionals for coefficients that reproduce all quadratics,
+and the extrapolation of the ring of coefficients outside the domain. Cells have the size 1; a cell
+is centred at the origin.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ Moments = Callable[[], Mapping[tuple[int, int], Fraction]]
 ZERO, QUARTER, HALF = Fraction(0), Fraction(1, 4), Fraction(1, 2)
 
 # Bézier points of the south triangle of a cell in the order b200, b020, b002, b110, b101, b011.
-# The other triangles follow by quarter turns: south, east, north, west.
+# Quarter turns of it give the other triangles, in the order south, east, north, west.
 SOUTH: dict[str, Point] = {
     "200": (-HALF, -HALF),
     "020": (HALF, -HALF),
@@ -52,7 +53,7 @@ NEIGHBOURS: dict[str, tuple[int, int]] = {
 
 
 def quarter_turns(point: Sequence[Any], turns: int) -> tuple[Any, Any]:
-    """Turn a point counter-clockwise about the origin by turns × 90°."""
+    """Return a point rotated counter-clockwise about the origin by turns × 90°."""
     x, y = point
     for _ in range(turns % 4):
         x, y = -y, x
@@ -92,10 +93,12 @@ def barycentric(point: Point, corners: Triangle) -> list[Fraction]:
 
 
 def smoothness_conditions(tiles: Iterable[Triangle]) -> list[dict[Point, Fraction]]:
-    """Return the linear conditions on Bézier ordinates, by domain point, for a C¹ quadratic.
+    """Return the linear conditions under which Bézier ordinates belong to a C¹ piecewise quadratic.
 
-    Across an edge PQ between the triangles RPQ and SPQ, with S = αR + βP + γQ, each ordinate next
-    to S is the same combination of three next to R. Ordinates on a common edge are the same.
+    A condition has the coefficient of each ordinate, by domain point; their sum of products is 0.
+    For an edge PQ between the triangles RPQ and SPQ, with S = αR + βP + γQ, each ordinate on the
+    side of S next to the edge is the combination of three ordinates on the side of R with the
+    weights α, β, γ. Ordinates on the common edge are shared.
     """
     by_edge: dict[frozenset[Point], list[Point]] = {}
     for tile in tiles:
@@ -115,11 +118,11 @@ def smoothness_conditions(tiles: Iterable[Triangle]) -> list[dict[Point, Fractio
 
 @cache
 def box_spline_net() -> Mapping[Point, Fraction]:
-    """Return the Bézier net of the Zwart-Powell box spline centred at the origin, by domain point.
+    """Return the Bézier ordinates of the Zwart-Powell box spline at the origin, by domain point.
 
-    It solves the conditions: C¹ across every edge, zero with its first derivatives on the boundary
-    of 3 × 3 cells, translates summing to 1. Raises ArithmeticError unless exactly one function
-    satisfies them.
+    It is the only solution of these conditions: C¹ across every edge, value and first derivatives 0
+    on the boundary of 3 × 3 cells, and translates that sum to 1. Raises ArithmeticError if there is
+    not exactly one solution.
     """
     cells = list(NEIGHBOURS.values())
     tiles = triangles(cells)
@@ -142,7 +145,7 @@ def box_spline_net() -> Mapping[Point, Fraction]:
 
 
 def net_weights(place: Point) -> dict[str, Fraction]:
-    """Return the weights of the 3 × 3 coefficients in a Bézier point, by its domain point."""
+    """Return the weights of the 3 × 3 coefficients in the Bézier point at a domain point."""
     net = box_spline_net()
     weights = {
         name: net.get((place[0] - x, place[1] - y), ZERO) for name, (x, y) in NEIGHBOURS.items()
@@ -170,8 +173,8 @@ def ordinate(powers: tuple[int, int], left: Point, right: Point) -> Fraction:
 def functional_moments() -> Mapping[tuple[int, int], Fraction]:
     """Return the coefficient of the central cell that reproduces each monomial x^r y^s, r + s <= 2.
 
-    The coefficients of a quadratic are a quadratic in the centre of the cell, as a comparison of
-    Bézier nets shows.
+    The coefficients of a quadratic are the values of another quadratic at the centres of cells, as
+    a comparison of Bézier nets shows.
     """
     unknown = sp.symbols(f"k:{len(MONOMIALS)}")
     coefficients = {
@@ -194,8 +197,8 @@ def functional_moments() -> Mapping[tuple[int, int], Fraction]:
 def edge_moments() -> Mapping[tuple[int, int], Fraction]:
     """Return the middle Bézier point of an edge along x that reproduces each monomial in x.
 
-    It is the mean of the two coefficients on both sides of the edge, which are equal for such a
-    monomial.
+    It is the mean of the coefficients on both sides of the edge, which are equal for a monomial in
+    x.
     """
     return {powers: x for powers, x in functional_moments().items() if powers[1] == 0}
 
@@ -204,7 +207,7 @@ def coefficient_weights(
     *orbits: Sequence[Point],
     moments: Moments = functional_moments,
 ) -> list[Fraction]:
-    """Return the weights of the functional with these moments, one for each orbit of points.
+    """Return the weights of a functional with given moments: one weight for each orbit of points.
 
     By default the moments are those of a coefficient. Raises ArithmeticError if the orbits do not
     determine the functional.
@@ -254,7 +257,7 @@ def _linear(weights: Iterable[Fraction], symbols: Iterable[sp.Symbol]) -> sp.Exp
 
 
 def _used(expressions: Iterable[sp.Expr]) -> list[VectorSymbol]:
-    """Return the coefficients that occur in the expressions, in reading order."""
+    """Return the coefficients that occur in the expressions, in the order of NEIGHBOURS."""
     symbols = {symbol for x in expressions for symbol in x.free_symbols}
     return [x for x in MU.values() if x in symbols]
 
@@ -289,7 +292,7 @@ SCALE = 8  # the common denominator of the weights of a patch
     source="Sect. 3.1 and eq. (8)",
 )
 def TRIANGLE() -> Parts:
-    """Substitute the control points into a … e of eq. (8), and into p − mu_c.
+    """Express the vectors a … e of eq. (8), and p − mu_c, by the coefficients, times SCALE.
 
     Raises ArithmeticError if one of them changes under translation, or if SCALE is not the common
     denominator.
@@ -312,7 +315,7 @@ def _functional(
     orbits: Mapping[str, Sequence[Point]],
     moments: Moments = functional_moments,
 ) -> Formula:
-    """Return a functional of values at orbits of points, called name0, name1, …."""
+    """Return the formula of a functional of values at orbits of points, named as in `orbits`."""
     symbols = [
         scalar(f"{letter}{k}" if len(points) > 1 else letter)
         for letter, points in orbits.items()
@@ -369,7 +372,7 @@ EDGE_POINT_FROM_VERTICES = _functional(
 
 
 def _solved(name: str, sentence: str, point: str, unknown: str) -> Formula:
-    """Solve for one coefficient, from a Bézier point f of the south triangle."""
+    """Return the formula of one coefficient, from a Bézier point f of the south triangle."""
 
     @formula(name, sentence, source="Sect. 3.1")
     def solved() -> Parts:

@@ -62,7 +62,7 @@ def OFFSET() -> Parts:
 
 
 def _curvature_from_hessian() -> Content:
-    """Derive the radii from the characteristic polynomial, which has the root 0 (for n)."""
+    """Derive the principal radii from the characteristic polynomial, which has the root 0 for n."""
     _, minus_trace, minors, _ = HESSIAN_MATRIX.charpoly().all_coeffs()
     m, q = scalar("m"), scalar("q")
     squares = (x**2 for x in symmetric(named("T")).flat())
@@ -94,7 +94,7 @@ AREA_GROWTH = 1 + 2 * R * H + R**2 * K
 
 
 def _in_radii(value: sp.Expr, change: sp.Expr = sp.S.Zero) -> sp.Expr:
-    """Write K and H in the principal radii, after a change of these."""
+    """Write K and H in the principal radii, after adding `change` to both radii."""
     R_1, R_2 = (scalar(name) + change for name in ("R_1", "R_2"))
     return substitute(value, {K: 1 / (R_1 * R_2), H: (R_1 + R_2) / (2 * R_1 * R_2)})
 
@@ -106,7 +106,7 @@ def _in_radii(value: sp.Expr, change: sp.Expr = sp.S.Zero) -> sp.Expr:
     "becomes 0.",
 )
 def OFFSET_CURVATURE() -> Parts:
-    """Add R to both radii, and write the result in the curvatures."""
+    """Add R to both principal radii, and write K and H of the offset in terms of K and H."""
     s = scalar("s")
     outputs = [("s", AREA_GROWTH), ("K_offset", K / s), ("H_offset", (H + R * K) / s)]
     for (_, target), curvature in zip(outputs[1:], (K, H), strict=True):

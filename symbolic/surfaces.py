@@ -46,7 +46,7 @@ class ParametricSurface:
     - "open": the surface has an edge here, or is cut off;
     - "periodic": periodic, x(u1 + s, v) = x(u0 + s, v);
     - "mirrored": periodic with a mirror image, x(u1 + s, v) = x(u0 + s, v0 + v1 − v);
-    - "pole": this side of v is one point, and the opposite meridian continues the surface,
+    - "pole": this side of v is collapsed to a point; the opposite meridian continues the surface,
       x(u, v1 − s) = x(u + (u1 − u0)/2, v1 + s).
     """
 
@@ -86,7 +86,7 @@ class ParametricSurface:
         return {parameter.symbol: parameter.default for parameter in self.parameters}
 
     def derivative(self, *by: sp.Symbol) -> sp.Matrix:
-        """Return the derivative of the position by each of `by`, by default the position."""
+        """Return the derivative of the position by the symbols `by`; without any, the position."""
         return sp.Matrix([sp.diff(x, *by) if by else x for x in self.position])
 
     @cached_property

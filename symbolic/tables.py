@@ -13,19 +13,19 @@ from . import icosahedron, spline
 
 __all__ = ["differences", "grid", "icosahedron_tables"]
 
-# The number of points of a difference; the order of central differences is one less.
+# The number of points of a difference formula; the order of a central difference is one less.
 STENCIL = 9
 WIDTH = 106  # of the longest row of small numbers
 SHORT = 20
 
 
 def grid() -> str:
-    """Return the positions around a cell that patches and fitting read, in order.
+    """Return the constants of the grid: positions around a cell that patches and fitting read.
 
-    NEIGHBOURS and CORNERS are given for each of the four patches. VERTICES are the vertices that
-    the formula `coefficient_from_vertices` reads, counted from the vertex one step south and west
-    of the cell's vertices; TRIANGLE_NEIGHBOURS are the coefficients, of nine, that the formula
-    `triangle` reads.
+    NEIGHBOURS and CORNERS have a row for each of the four patches. VERTICES are the indices of the
+    vertices that the formula `coefficient_from_vertices` reads, counted from the vertex one step
+    south and west of the cell's vertices. TRIANGLE_NEIGHBOURS are the indices, from 0 to 8, of the
+    coefficients that the formula `triangle` reads.
     """
     neighbours, corners = (
         [[list(spline.quarter_turns(x, turns)) for x in places] for turns in range(4)]
@@ -52,9 +52,9 @@ def grid() -> str:
 
 
 def differences() -> str:
-    """Return the weights of first and second differences with a unit step, for each shift.
+    """Return the weights of first and second derivatives at 0 from values at unit steps, by shift.
 
-    The points are the shift and up to four steps on either side of it.
+    For each shift from −4 to 4, the points are the shift and four steps on either side of it.
     """
     half = STENCIL // 2
     rows = [[shift + x for x in range(-half, half + 1)] for shift in range(-half, half + 1)]
@@ -74,7 +74,7 @@ def _weights(order: int, places: Sequence[int]) -> list[sp.Expr]:
 
 
 def _changes(order: int, places: Sequence[int]) -> list[sp.Expr]:
-    """Return the weights minus those of the difference without the two nodes farthest from zero."""
+    """Return the weights minus those of the formula without the two nodes farthest from zero."""
     near = sorted(sorted(places, key=abs)[:-2])
     fewer = dict(zip(near, _weights(order, near), strict=True))
     pairs = zip(places, _weights(order, places), strict=True)
@@ -91,7 +91,7 @@ def icosahedron_tables() -> str:
 
 
 def _array(name: str, values: Sequence[object]) -> str:
-    """Return an array as a constant: long rows one per line, short ones side by side."""
+    """Return the source of a constant array; long rows have lines of their own."""
     text = f"{name} = np.array({values})"
     if len(text) <= WIDTH:
         return text

@@ -1,7 +1,7 @@
 """Tapes: three expressions in u and v as a list of steps, each with results of earlier steps.
 
-Evaluated with numbers a tape gives points, with Taylor polynomials derivatives, with intervals
-bounds: `runtime/tape/kernels/points.py` and its neighbours interpret it.
+Evaluated with numbers, a tape gives points; with Taylor polynomials, derivatives; with intervals,
+bounds. The interpreters are in `runtime/tape/kernels/`, such as `points.py`.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from .reading import is_long, parts, replaced, with_shared_parts
 
 __all__ = ["NoTapeError", "Step", "tape_steps"]
 
-# The name of an operation and its arguments: the indices of steps; a value, and a bound of its
-# error ("constant"); a name ("parameter"); a step, and twice the exponent ("power").
+# The name of an operation and its arguments: in general indices of steps; for "constant" a value
+# and a bound of its error; for "parameter" a name; for "power" the index of a step and twice the
+# exponent.
 Step = tuple[Any, ...]
 
 DIGITS = 40  # of constants, before they are rounded
@@ -48,7 +49,7 @@ class NoTapeError(ValueError):
 def tape_steps(
     position: Sequence[sp.Expr], u: sp.Symbol, v: sp.Symbol, parameters: Sequence[sp.Symbol] = ()
 ) -> tuple[list[Step], list[int]]:
-    """Return steps that compute expressions in u, v and parameters, and the steps of the results.
+    """Return the steps that compute expressions in u, v and parameters, and the results' indices.
 
     Raises NoTapeError if an expression has no tape.
     """
@@ -65,7 +66,7 @@ def tape_steps(
 
 
 def _exact(expression: Any) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return an expression with fractions for floats."""
+    """Return an expression with floats replaced by the fractions that they are exactly."""
     floats = {x: sp.Rational(x) for x in parts(expression) if isinstance(x, sp.Float)}
     return replaced(expression, floats)
 
@@ -77,7 +78,7 @@ def _common(expressions: list[Any]) -> tuple[list[tuple[sp.Symbol, Any]], list[A
 
 
 class _Steps:
-    """The steps of expressions, each written once."""
+    """The steps that compute expressions; equal steps are written once."""
 
     def __init__(self, symbols: Mapping[sp.Symbol, Step]) -> None:
         self.steps: list[Step] = []

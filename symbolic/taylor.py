@@ -26,7 +26,7 @@ __all__ = ["FORMULAS"]
 Coefficients = dict[str, Any]
 Symbols = Mapping[sp.Symbol, sp.Symbol]
 
-# The names of absolute values increased by their errors.
+# The letters of names for absolute values increased by their errors: s, t, F for a, b, f.
 LARGEST = str.maketrans("abf", "stF")
 
 s, t = sp.symbols("s t")  # u and v relative to the point
@@ -44,7 +44,7 @@ def _polynomial(symbol: TaylorSymbol) -> sp.Expr:
 
 
 def _coefficients(expression: sp.Expr, axes: Sequence[str]) -> Coefficients:
-    """Return the coefficients of a polynomial in s and t by their names."""
+    """Return the coefficients of a polynomial in s and t, by their names such as "uv"."""
     polynomial: Any = sp.Poly(expression, s, t)
     return {x: sp.expand(polynomial.coeff_monomial(_orders(x))) for x in axes}
 
@@ -73,7 +73,7 @@ def _parted(term: Any) -> tuple[Any, list[Any]]:  # noqa: ANN401 - SymPy has no 
 
 
 def _change(value: sp.Expr, errors: Symbols, largest: Symbols) -> sp.Expr:
-    """Return a bound of the change of a sum of products by errors of its symbols."""
+    """Return a bound of the change of a sum of products if its symbols change by their errors."""
     terms = [
         number * sp.Mul(*(largest[x] for x in row[:k]), errors[row[k]], *row[k + 1 :])
         for number, row in map(_parted, sp.Add.make_args(value))
@@ -83,15 +83,15 @@ def _change(value: sp.Expr, errors: Symbols, largest: Symbols) -> sp.Expr:
 
 
 def _roundings(value: sp.Expr) -> int:
-    """Return the number of roundings of a term of a sum of products."""
+    """Return the largest number of roundings that a term of a sum of products undergoes."""
     terms = [_parted(term) for term in sp.Add.make_args(value)]
     return len(terms) - 1 + max(len(row) - (number == 1) for number, row in terms)
 
 
 def _radii(of: Coefficients, inputs: Sequence[sp.Symbol], errors: Symbols) -> Parts:
-    """Return bounds for coefficients that are sums of products.
+    """Return the parts of a formula for bounds of the errors of coefficients, sums of products.
 
-    Named terms are the absolute values increased by their errors, and the coefficients that follow
+    Its named terms are the absolute values increased by their errors, and the coefficients computed
     from these.
     """
     symbols = {x for value in of.values() for x in value.free_symbols}

@@ -12,7 +12,10 @@ __all__ = ["functions", "wholes"]
 
 
 def functions(sources: Mapping[str, str]) -> dict[str, list[str]]:
-    """Return the functions `file.name` of each name; `sources` are contents by file name."""
+    """Return the generated functions of each formula, as `file.name`, by the formula's name.
+
+    `sources` are the contents of generated files, by file name.
+    """
     result: dict[str, list[str]] = {}
     for file in sorted(x for x in sources if x.endswith(".py")):
         for name in _functions_in(sources[file]):
@@ -29,7 +32,8 @@ def _functions_in(source: str) -> tuple[str, ...]:
 def wholes(formula: Formula, formulas: Iterable[Formula]) -> list[str]:
     """Return the names of the formulas that contain this one.
 
-    Outputs of this formula may be missing there: `compose` drops those that are not needed.
+    A formula contains this one if it has more than half of its outputs, since `compose` drops
+    outputs that are not needed.
     """
     mine = dict(formula.definitions)
 
