@@ -1,4 +1,4 @@
-"""Declared seams and poles: whether a surface closes there."""
+"""Checks that a surface closes at its declared seams and poles."""
 
 from __future__ import annotations
 
@@ -14,14 +14,15 @@ from .surface_values import SurfaceValues
 
 __all__ = ["close_seams", "closed_points"]
 
-# If both ends of a parameter differ, points this many roundings away from the ends are computed.
+# If the points at the two bounds of a parameter differ, points are computed this many units in the
+# last place away from the bounds.
 ROUNDINGS = 2.0
 
 
 def closed_points(surface: SurfaceValues, cells: tuple[int, int]) -> NDArray[np.float64]:
     """Return points (m + 1, n + 1, 3) of a surface at the corners of m × n cells of its domain.
 
-    Raises SurfaceError as `close_seams` does, and if points are too large to compute with.
+    Raises the SurfaceErrors of `close_seams`, and one if coordinates are too large to compute with.
     """
     u, v = (
         np.linspace(*ends, count + 1) for ends, count in zip(surface.domain, cells, strict=True)
@@ -32,9 +33,9 @@ def closed_points(surface: SurfaceValues, cells: tuple[int, int]) -> NDArray[np.
 
 
 def close_seams(surface: SurfaceValues, vertices: NDArray[np.float64]) -> None:
-    """Make vertices (m + 1, n + 1, 3) on a seam equal, so that the spline closes exactly.
+    """Make the two rows of `vertices` (m + 1, n + 1, 3) at a seam equal: the spline then closes.
 
-    Raises SurfaceError if they differ beyond rounding, or if a pole is not one point.
+    Raises SurfaceError if the rows differ by more than rounding, or if a pole is not collapsed.
     """
     for axis, (along, ends) in enumerate(zip("uv", surface.boundary, strict=True)):
         rows = np.swapaxes(vertices, 0, axis)
@@ -62,9 +63,10 @@ def close_seams(surface: SurfaceValues, vertices: NDArray[np.float64]) -> None:
 
 
 def _by_rounding(surface: SurfaceValues, axis: int, rows: NDArray[np.float64], far: float) -> str:
-    """Return a clause: the distance of the points at both ends, and whether rounding explains it.
+    """Return the clause of a message on the distance `far` between the points at both bounds.
 
-    The rounding is that of the parameter: 2π, for example, is not a float64 number.
+    It says whether the rounding error of the parameter explains this distance: 2π, for example, is
+    not a float64 number.
     """
     low, high = surface.domain[axis]
     first, last = rows[0], rows[-1]

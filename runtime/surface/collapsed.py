@@ -1,7 +1,7 @@
 """Collapsed sides of the domain: poles, where the surface is smooth, and apexes.
 
 A disk in polar coordinates has one such side, a sphere has two. If boundary conditions are not
-declared, poles are detected from a few points: the side is one point, the other parameter is
+declared, poles are detected from a few points: the side is collapsed, the other parameter is
 smoothly periodic, and each meridian continues the opposite one smoothly. Any other collapsed side
 is an apex: the tip of a cone, the corner of a triangle.
 """
@@ -30,16 +30,18 @@ Values = TypeVar("Values", bound=SurfaceValues)
 
 # The number of intervals between points along a side, an even number.
 STEPS = 16
-# The distance of the lines near a side, as a part of the domain. For a surface far from the origin,
-# relative to its size, it is the cube root of the rounding error, if that is larger.
+# The distance between the parameter lines next to a side, relative to the domain: the cube root of
+# the rounding error of coordinates relative to the size of the surface, within these bounds. (The
+# rounding error is large for a surface far from the origin.)
 LEAST_STEP, MOST_STEP = 1e-4, 1e-2
-# A line continues smoothly if three points predict the next one up to this part of the step. This
-# relative error is of second order in the step; for data, the step is that of the grid.
+# A line continues smoothly if extrapolation from three of its points misses the next point by at
+# most this part of the step. The relative error of the extrapolation is of second order in the
+# step. KINK_OF_DATA is for grids of points, whose steps are larger.
 KINK, KINK_OF_DATA = 1e-2, 0.3
 
 
 def with_found_sides(surface: Values) -> tuple[Values, int]:
-    """Return a surface with the poles found at its sides, and the number of its apexes.
+    """Return a surface with the poles that are detected at its sides, and the number of apexes.
 
     A surface that cannot be evaluated next to its sides keeps its boundary conditions; if that is
     an error, the fit reports it.
@@ -61,8 +63,8 @@ def with_found_sides(surface: Values) -> tuple[Values, int]:
 def closed_grid(points: Array, boundary: Boundary, assumed: Assumed) -> tuple[Array, Boundary]:
     """Return a grid (m, n, 3) and its boundary conditions, with detected poles.
 
-    If a parameter turns out to be periodic, the points at its end are dropped: they repeat those at
-    its beginning.
+    If a parameter turns out to be periodic, the last row or column of points is dropped, since it
+    repeats the first one.
     """
     if not any(assumed) or min(points.shape[:2]) < 4:
         return points, boundary
@@ -76,11 +78,13 @@ def closed_grid(points: Array, boundary: Boundary, assumed: Assumed) -> tuple[Ar
 
 @dataclass(frozen=True)
 class _Sides:
-    """The sides of a surface.
+    """The four sides of a surface, from which poles and apexes are detected.
 
-    `lines(axis, end)` are the points (3, k, 3) on a side and on two lines next to it, from end to
-    end. `repeated` is True if closed lines repeat their first point. `same` is the largest distance
-    of points that count as one, `rounding` the rounding error of a combination of a few points.
+    `lines(axis, end)` returns k points on a side, and k points on each of the two parameter lines
+    next to it: an array (3, k, 3). The side is u = const for axis 0, v = const for axis 1, at the
+    lower bound for end 0 and the upper one for end 1. `repeated` is True if closed lines repeat
+    their first point. Points within a distance of `same` count as equal; `rounding` is the rounding
+    error of a linear combination of a few points.
     """
 
     lines: Callable[[int, int], Array]
@@ -93,7 +97,7 @@ class _Sides:
 
     @classmethod
     def of_surface(cls, surface: SurfaceValues) -> _Sides:
-        """Return the sides of a surface, which is evaluated on demand."""
+        """Return the sides of a surface; `lines` evaluates the surface."""
         parts = [low + (high - low) * np.linspace(0.0, 1.0, 5) for low, high in surface.domain]
         size, last_place = extent_of(surface.evaluate(parts[0][:, None], parts[1]))
         part = np.clip(np.cbrt(last_place / (size or 1.0)), LEAST_STEP, MOST_STEP)
@@ -111,7 +115,7 @@ class _Sides:
 
     @classmethod
     def of_grid(cls, points: Array, boundary: Boundary, assumed: Assumed) -> _Sides:
-        """Return the sides of a grid of points; a side with NaN is not one point."""
+        """Return the sides of a grid of points; a side with NaN never counts as collapsed."""
 
         def lines(axis: int, end: int) -> Array:
             rows = np.swapaxes(points, 0, axis)
@@ -138,10 +142,12 @@ class _Sides:
         return cast(Boundary, boundary), apexes
 
     def _is_pole(self, around: int, near: Array) -> bool:
-        """Return whether parameter `around` closes, and each meridian continues the opposite one.
+        """Return whether a collapsed side is a pole.
 
-        `near` (3, k, 3) are the points on the side and on two lines next to it. Meridians that have
-        no tangent at the side (x_u = x_v = 0) may end in a cusp.
+        At a pole the parameter with the index `around` is periodic, and each meridian continues the
+        opposite one. `near` (3, k, 3) are points on the side and on two lines next to it. Meridians
+        that have no tangent at the side (x_u = x_v = 0) may end in a cusp: then their second
+        differences are not smaller than their first differences.
         """
         repeated = self.repeated
         if self.boundary[around][0] != "periodic":
@@ -162,7 +168,11 @@ class _Sides:
         return is_same and self._goes_on(low, high[1])
 
     def _goes_on(self, near: Array, beyond: Array) -> bool:
-        """Return whether lines at the distances 0, 1, 2 (3, k, 3) predict the line at −1 (k, 3)."""
+        """Return whether extrapolation of three lines of points gives the next line.
+
+        `near` (3, k, 3) are points on the lines at 0, 1 and 2 steps from a side, `beyond` (k, 3)
+        the points on the line at −1.
+        """
         step = float(np.abs(near[1] - near[0]).max())
         predicted = python_function(formulas.extrapolation)(*near)
         return bool(np.abs(predicted - beyond).max() <= self.kink * step + self.rounding)

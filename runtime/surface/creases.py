@@ -1,8 +1,9 @@
-"""Creases, parameter lines where a NURBS surface is not smooth, and smoothly closed parameters.
+"""Detection of creases, parameter lines where a NURBS is not smooth, and of smooth seams.
 
 Both are detected from points and derivatives, not from multiplicities: a surface may be smooth at a
-multiple knot, as is a circle of four arcs. It is smooth across a line if its normal does not jump
-there, and the length of the tangent across the line not so much that a spline would fold.
+multiple knot, as is a circle of four arcs. A surface counts as smooth across a line if its normal
+jumps there by at most CREASE_ANGLE, and the length of the tangent across the line by at most a
+factor of LARGEST_JUMP: larger jumps would let a spline fold.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ BESIDE, SINGULAR = 1e-4, 1e-9
 
 
 def creases(nurbs: Nurbs) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the values of u, and those of v, inside the domain where the surface is not smooth."""
+    """Return the values of u, and the values of v, of the creases inside the domain."""
 
     def is_crease(axis: int, t: float) -> bool:
         turning, jump = _turning(nurbs, axis, t, t), _jump(nurbs, axis, t, t)
@@ -41,7 +42,10 @@ def creases(nurbs: Nurbs) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def smoothly_closed(nurbs: Nurbs, axis: int) -> bool:
-    """Return whether both ends of u (axis 0) or v (axis 1) are one line, smooth across it."""
+    """Return whether the two boundaries of u (axis 0) or v (axis 1) form a smooth seam.
+
+    They do if they are the same curve, and the surface is smooth across it.
+    """
     low, high = nurbs.domain[axis]
     first, last = (_jets_along(nurbs, axis, end) for end in (low, high))
     if apart(first[:, 0], last[:, 0], nurbs.control_points):
@@ -71,8 +75,8 @@ def _candidates(nurbs: Nurbs, axis: int) -> list[float]:
 def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
     """Return the largest angle in degrees between the normals below a line and above it.
 
-    `below` and `above` are one parameter, or both ends of a domain that meet at a seam. NaN if no
-    point has normals.
+    `below` and `above` are equal, the value of u or v on the line; at a seam they are the upper and
+    the lower bound of the domain. NaN if no point of the line has normals on both sides.
     """
     low, high = nurbs.domain[axis]
     first = _normals_along(nurbs, axis, (low, below), 1)
@@ -83,9 +87,10 @@ def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
 
 
 def _jump(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
-    """Return the largest ratio of the lengths of x_u, or x_v, below a line and above it.
+    """Return the largest ratio of the lengths of x_u (axis 0) or x_v on both sides of a line.
 
-    The ratio is 1 where both lengths vanish, relative to those at other points.
+    The larger length is divided by the smaller one. The ratio is 1 where both lengths are
+    negligible, compared with the largest length on the line.
     """
     low, high = nurbs.domain[axis]
     first, second = (
@@ -103,7 +108,10 @@ def _part(nurbs: Nurbs, axis: int, part: tuple[float, float]) -> Nurbs:
 
 
 def _normals_along(nurbs: Nurbs, axis: int, part: tuple[float, float], end: int) -> Array:
-    """Return unit normals (k, 3) at one end of a part of the domain, from inside that part."""
+    """Return unit normals (k, 3) at one bound of an interval of u (axis 0) or v (axis 1).
+
+    The normals are evaluated from inside the interval `part`, at its lower (end 0) or upper bound.
+    """
     inside = _part(nurbs, axis, part)
     jets = _jets_along(inside, axis, part[end])
     normals = np.cross(jets[:, 1], jets[:, 2])

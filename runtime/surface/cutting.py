@@ -17,7 +17,7 @@ Surface = TypeVar("Surface", bound=SurfaceValues)
 
 
 def pieces_of(surface: Surface) -> tuple[Surface, ...]:
-    """Return the smooth pieces of a surface; a smooth surface is its only piece."""
+    """Return the smooth pieces of a surface, cut along its creases; (surface,) if it is smooth."""
     function = surface.function
     if isinstance(function, Moved):
         return _moved_pieces(surface, function)
@@ -41,7 +41,7 @@ def _moved_pieces(surface: Surface, moved: Moved) -> tuple[Surface, ...]:
 
 
 def _moved(surface: Surface, moved: Moved, piece: SurfaceValues) -> Surface:
-    """Return the part of a moved surface that is a piece of the original surface."""
+    """Return the piece of a moved surface that is the image of `piece` of the original surface."""
     (low, high), along_v = piece.domain
     (at_low, at_high), ends_v = piece.boundary
     if moved.turned:
@@ -56,7 +56,7 @@ def _moved(surface: Surface, moved: Moved, piece: SurfaceValues) -> Surface:
 
 
 def _piece(surface: Surface, function: Differentiable, number: int, domain: Domain) -> Surface:
-    """Return the part of a surface over a part of its domain."""
+    """Return piece `number` of a surface, the part of the surface over `domain`."""
     return replace(
         surface,
         name=f"{surface.name} (piece {number + 1})",
@@ -67,7 +67,7 @@ def _piece(surface: Surface, function: Differentiable, number: int, domain: Doma
 
 
 def _boundary(surface: SurfaceValues, domain: Domain) -> Boundary:
-    """Return the boundary conditions of a part: its new sides are open."""
+    """Return the boundary conditions of the piece over `domain`: sides made by cuts are open."""
     along_u, along_v = (
         _ends(*x) for x in zip(surface.boundary, surface.domain, domain, strict=True)
     )

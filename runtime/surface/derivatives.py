@@ -1,4 +1,4 @@
-"""Derivatives of surfaces: formulas, those of a user, or high-order differences.
+"""Derivatives of surfaces: from formulas, from a user's callable, or by high-order differences.
 
 The differences are of nine points along u, along v and along one diagonal of the parameters. Steps
 are between 1/512 and 1/256 of the domain, and smaller if differences of seven points show that the
@@ -53,16 +53,16 @@ HALF = POINTS // 2
 # parameters and steps are exact up to the last bit.)
 STEP = 1 / 256
 CHUNK = 4096  # number of rows in one batch
-# If differences of seven and nine points disagree by more than SAME, relative to the differences of
-# values, steps are divided by FINER, at most LEVELS times, while that helps or the disagreement is
-# LARGE.
+# If derivatives from seven and from nine points disagree by more than SAME, relative to the
+# differences of values, steps are divided by FINER. This is repeated, at most LEVELS times, while
+# it reduces the disagreement, or while the disagreement is above LARGE.
 SAME, LARGE = 1e-10, 1e-3
 FINER, LEVELS = 4.0, 5
 ROUNDING = 2.0**-46  # relative to values: smaller differences are rounding errors
 # The number of points where given derivatives are compared with numerical ones.
 PLACES = 48
 # Given and numerical derivatives may differ by TOLERANCE, relative to the largest derivative of the
-# same name, plus DOUBT times the change of the numerical ones when their steps are doubled.
+# same name, plus DOUBT times the change of the numerical derivative when its steps are doubled.
 TOLERANCE = 1e-5
 DOUBT = 10.0
 
@@ -74,7 +74,7 @@ class Differentiable(ABC):
     creases: Lines = ((), ())  # values of u, and of v, inside the domain where it is not smooth
 
     def restricted(self, domain: Domain) -> Differentiable:
-        """Return the function over a part of its domain, evaluated from inside at the ends."""
+        """Return the function over a part of its domain; at creases it is evaluated from inside."""
         return self
 
     @property
@@ -95,13 +95,13 @@ class Differentiable(ABC):
         return None
 
     def differences(self, boundary: Boundary) -> Differences | None:
-        """Return the `Differences` that compute derivatives; None if they are formulas."""
+        """Return the `Differences` that compute `jets`; None if formulas compute them."""
         return None
 
 
 @dataclass(frozen=True)
 class Differences:
-    """The derivatives of a function by differences; the function is only called in the domain."""
+    """The derivatives of a function, by differences of its values inside the domain."""
 
     function: Function
     domain: Domain
@@ -141,7 +141,10 @@ class Differences:
 
 
 def _bounds(interval: Interval, ends: BoundaryPair) -> Interval:
-    """Return the bounds at open ends, infinity at other ends, where the surface continues."""
+    """Return the interval in which u or v may be evaluated.
+
+    It ends at open boundaries; beyond other boundaries the surface continues, and the bound is ±∞.
+    """
     (low, high), (at_low, at_high) = interval, ends
     return low if at_low == "open" else -math.inf, high if at_high == "open" else math.inf
 
@@ -160,9 +163,9 @@ def power_of_two(value: float) -> float:
 
 
 def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tuple[Array, Array]:
-    """Return parameters of the same points inside the domain, from its boundary conditions.
+    """Return the parameters inside the domain at which the surface has the same points.
 
-    Beyond open ends, parameters are unchanged.
+    They follow from the boundary conditions. Parameters beyond open boundaries are unchanged.
     """
     places = u.copy(), v.copy()
     for axis in (0, 1):
@@ -195,24 +198,27 @@ def differences(
     steps : (float, float)
         The distances of the points along u and v, preferably powers of two.
     bounds : pair of (float, float)
-        The function is called only between these bounds, which are at least 16 steps apart; next to
-        them, differences are one-sided.
+        The function is called only between these bounds of u and of v, which are at least 16 steps
+        apart; next to a bound, differences are one-sided.
 
     Returns
     -------
     (k, 6, 3) float64 array
-        The error of a first derivative is about h⁸/630 of the ninth derivative plus 2 ε/h of the
-        value, that of a second derivative h⁸/3150 of the tenth plus 8 ε/h². Next to a bound it is
-        ten to a thousand times larger.
+        The 2-jets. With a step h and a rounding error ε of values, the error of a first derivative
+        is about h⁸/630 times the ninth derivative plus 2 ε/h, and that of a second derivative
+        h⁸/3150 times the tenth derivative plus 8 ε/h². Next to a bound errors are ten to a thousand
+        times larger.
     (k,) float64 array
         Estimated errors: the changes of derivatives if only seven points are used, relative to the
-        differences of values. Infinity if a derivative is not finite, but 0 if x itself is not.
+        differences of values. They are infinite if a derivative is not finite, but 0 if x itself is
+        not finite.
 
     """
     (shift_u, inward_u), (shift_v, inward_v) = (
         shifts_inside(x, step, *ends) for x, step, ends in zip((u, v), steps, bounds, strict=True)
     )
-    # The diagonal that leads away from the nearer bounds has room for both shifts.
+    # The third line of points is the diagonal that leads away from the nearer bounds of u and v:
+    # there it can be shifted by the larger one of the two shifts.
     shift = np.maximum(np.abs(shift_u), np.abs(shift_v)) * inward_u
     sign = inward_u * inward_v
     central = np.arange(-HALF, HALF + 1)[:, None]
@@ -244,8 +250,8 @@ def differences(
 def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
     """Return relative changes (k,) of derivatives if two of the nine points are omitted.
 
-    `values` (9, k, 3) are differences from the central points. Changes are divided by the largest
-    of these plus its rounding error `least` (k,).
+    `values` (9, k, 3) are differences from x itself. Changes are divided by the largest of these
+    differences plus the rounding error `least` (k,) of x.
     """
     changes = np.array([weighted(x, shifts, values) for x in (FIRST_CHANGE, SECOND_CHANGE)])
     size, change = (np.abs(x).max(axis=0).max(axis=1) for x in (values, changes))
@@ -256,9 +262,11 @@ def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
 def shifts_inside(
     values: Array, step: float | Array, low: float | Array, high: float | Array
 ) -> tuple[Indices, Indices]:
-    """Return the numbers of steps by which nodes are shifted to stay inside, and inward signs.
+    """Return shifts (k,) of the nodes of differences at `values` (k,), and inward directions.
 
-    The step and the bounds are the same for all values (k,), or arrays (k,).
+    A shift is the number of steps by which nodes are moved so that they stay between the bounds. A
+    direction (k,) is 1 or −1 and leads away from the nearer bound. The step and the bounds are
+    numbers, or arrays (k,).
     """
     before = np.clip(np.floor((values - low) / step), 0, HALF)
     after = np.clip(np.floor((high - values) / step), 0, HALF)
@@ -273,12 +281,18 @@ def nodes_between(
     low: float | Array,
     high: float | Array,
 ) -> Array:
-    """Return the nodes of a difference; rounding does not move them out of the bounds."""
+    """Return the nodes values + offsets × step of differences.
+
+    They are clipped, since rounding could move them out of the bounds.
+    """
     return np.clip(values + offsets * step, np.minimum(low, values), np.maximum(high, values))
 
 
 def weighted(weights: Array, shifts: Indices, values: Array) -> Array:
-    """Return sums (k, 3) over values (9, k, 3) at nodes, weighted according to shifts (k,)."""
+    """Return weighted sums (k, 3) of values (9, k, 3) at nine nodes.
+
+    `weights` has a row for each possible shift of the nodes, and `shifts` (k,) select the rows.
+    """
     return np.einsum("kj,jkc->kc", weights[shifts + HALF], values)
 
 
@@ -320,7 +334,7 @@ def guarded(function: Evaluation, shape: tuple[int, ...], label: str) -> Functio
 
 
 def filled(function: Differentiable, numerical: Differences) -> Function:
-    """Return the derivatives of a formula, with numerical ones where they are not finite."""
+    """Return 2-jets from a formula, and numerical 2-jets where these are not finite."""
 
     def jets(u: Array, v: Array) -> Array:
         found = function.jets(u, v)
@@ -333,7 +347,7 @@ def filled(function: Differentiable, numerical: Differences) -> Function:
 
 
 def compare(derivatives: Function, numerical: Differences, label: str) -> None:
-    """Raise SurfaceError if derivatives are not finite, or not those of the function.
+    """Raise SurfaceError if given derivatives are not finite, or differ from numerical ones.
 
     The message names the derivative, the parameters, and the difference.
     """

@@ -1,4 +1,4 @@
-"""Texts and SymPy expressions of a user: the way from the runtime to SymPy.
+"""Reads and checks a user's expressions and conditions, given as texts or SymPy objects.
 
 `symbolic.reading` defines the language of texts. SymPy is imported at first use.
 """
@@ -29,8 +29,9 @@ __all__ = [
 
 
 def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tuple[Any, ...]:
-    """Return three expressions in two symbols, or two in one; InputError if they are unusable.
+    """Return the coordinates: three expressions in two symbols, or two expressions in one symbol.
 
+    Raises InputError if they are unusable.
     Symbols in the expressions that have the names of `symbols` are replaced by these, whatever
     their assumptions are.
     """
@@ -66,7 +67,7 @@ def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
 
 
 def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
-    """Return the coordinates: one more than there are parameters; InputError otherwise."""
+    """Return the entries of a position; InputError unless there is one more than parameters."""
     names = "(x, y, z)" if parameters == 2 else "(x, y)"
     coordinates = tuple(listed(position) or ())
     if len(coordinates) != parameters + 1:
@@ -107,7 +108,7 @@ def _symbol(entry: object) -> sympy.Symbol | None:
 
 
 def as_expression(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return an expression, or the expression in a text; `symbols` are the symbols by name.
+    """Return a SymPy expression, or read one from a text, in which `symbols` are known by name.
 
     Raises InputError, which states the reason, if the expression is invalid or cannot be compiled.
     """

@@ -1,6 +1,7 @@
 """Callables of SymPy expressions: points and derivatives; pickled as the expressions.
 
-Derivatives are those of a tape if there is one; otherwise they are symbolic, as for Max(u, v).
+Derivatives are computed from a tape if the expressions have one. Otherwise, as for Max(u, v), SymPy
+differentiates the expressions.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ PROBES = np.array([0.25, 0.75])  # parameters for a trial of the derivatives; an
 
 @dataclass(frozen=True, eq=False)
 class Expressions(Differentiable):
-    """A NumPy function of three expressions in two symbols, or of two in one."""
+    """A NumPy function: three expressions in two symbols, or two expressions in one symbol."""
 
     has_gaps = True  # sin(u)/u
 
@@ -39,7 +40,7 @@ class Expressions(Differentiable):
 
     @property
     def differentiable(self) -> bool:
-        """Whether there is a tape, or NumPy has all functions of SymPy's derivatives."""
+        """Whether derivatives can be computed: from a tape, or by NumPy from SymPy's formulas."""
         return self._tape is not None or self._derivatives is not None
 
     def __call__(self, *values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -91,9 +92,10 @@ class Expressions(Differentiable):
 
 
 def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expressions:
-    """Return f(u, v) → (..., 3) for three expressions in two symbols, or f(t) → (..., 2).
+    """Return the NumPy function f(u, v) → (..., 3) of three expressions in two symbols.
 
-    Raises InputError if they are unusable.
+    For two expressions in one symbol, return f(t) → (..., 2). Raises InputError if the expressions
+    are unusable.
     """
     function = Expressions(as_position(position, symbols), tuple(symbols))
     _ = function._position  # raises InputError if the expressions are unusable
@@ -101,7 +103,10 @@ def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expres
 
 
 def _jet(expressions: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> list[Any] | None:
-    """Return the components of positions and derivatives, concatenated; None if SymPy has none."""
+    """Return the 18 expressions of the 2-jet x, x_u, x_v, x_uu, x_uv, x_vv.
+
+    Returns None if SymPy cannot differentiate the expressions.
+    """
     import sympy as sp
 
     if not bridge.reading().is_differentiable(expressions):
@@ -129,7 +134,10 @@ def _with_floor(expression: Any) -> Any:  # noqa: ANN401 - SymPy has no types
 
 
 def _derivative(expression: Any, by: sympy.Symbol) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Differentiate, without contributions of kinks and jumps, as in |u| and floor(u)."""
+    """Return the derivative of an expression.
+
+    Terms that come from kinks and jumps, such as Dirac deltas, are replaced by 0.
+    """
     import sympy as sp
 
     flat = sp.sign, sp.floor, sp.ceiling, sp.Heaviside
@@ -169,5 +177,5 @@ def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> 
 
 
 def _defined(definitions: Any, expressions: Any) -> tuple[Any, Any]:  # noqa: ANN401
-    """Return definitions and expressions: a function for the option `cse` of SymPy's lambdify."""
+    """Return both arguments; with `definitions` fixed, the option `cse` of SymPy's lambdify."""
     return definitions, expressions

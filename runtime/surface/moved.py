@@ -69,7 +69,10 @@ def affine_map(matrix: ArrayLike) -> AffineMap:
 
 @dataclass(frozen=True, eq=False)
 class Moved(Differentiable):
-    """The function of a moved surface; if `turned`, u is reversed between `ends`."""
+    """The function of a surface moved by an affine map.
+
+    If `turned`, u is also reversed: u → u0 + u1 − u, where `ends` are u0 and u1.
+    """
 
     surface: SurfaceValues
     map: AffineMap
@@ -78,13 +81,13 @@ class Moved(Differentiable):
 
     @classmethod
     def of(cls, surface: SurfaceValues) -> Moved:
-        """Return the function of a surface as a `Moved`, itself if it already is one."""
+        """Return the function of a surface as a `Moved`, unchanged if it already is one."""
         if isinstance(surface.function, Moved):
             return surface.function
         return cls(surface, IDENTITY, False, surface.domain[0])
 
     def then(self, map_: AffineMap, turned: bool) -> Moved:
-        """Return this function after a further map."""
+        """Return the function with a further map applied, and u reversed again if `turned`."""
         return replace(self, map=map_.after(self.map), turned=self.turned != turned)
 
     def __call__(self, u: Array, v: Array) -> Array:
@@ -102,7 +105,7 @@ class Moved(Differentiable):
         return jets
 
     def tape(self) -> Tape | None:
-        """Return the operations of the surface, followed by those of the map."""
+        """Return the tape of the surface, extended by the map; None if the surface has none."""
         own = self.surface.tape
         if own is None:
             return None
@@ -121,7 +124,7 @@ class Moved(Differentiable):
         return replace(own, function=evaluate, boundary=boundary)
 
     def _own(self, u: Array) -> Array:
-        """Return the surface's own parameters u."""
+        """Return the parameters u of the surface before the reversal of u."""
         low, high = self.ends
         if not self.turned:
             return u

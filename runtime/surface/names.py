@@ -1,4 +1,4 @@
-"""Default names of surfaces: those of their callables, numbered if they repeat."""
+"""Default names of surfaces: the names of their callables, with a number if a name repeats."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _lock = threading.Lock()
 
 
 def label(name: str | None, kind: str, function: object = None) -> str:
-    """Return a given name, or else the name of a function or of a kind of surface.
+    """Return `name` if it is given, or else a default: the name of `function`, or `kind`.
 
-    Default names are distinct in a process: "waves", then "waves 2". InputError unless a given name
-    is a text.
+    Default names are distinct in a process: "waves", then "waves 2". Raises InputError if `name` is
+    neither None nor a text.
     """
     if name is not None:
         return text(name, "name")

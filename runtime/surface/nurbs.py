@@ -25,9 +25,9 @@ class Nurbs(Differentiable):
     """A NURBS surface over a rectangle of its parameters: `nurbs(u, v)` and `nurbs.jets(u, v)`.
 
     `points` are (m, n, 3), or (m, n, 4) with w x, w y, w z, w. They are relative to `centre` (3,),
-    so that a surface far from the origin keeps its digits. The ends of the domain may be lines
-    where the surface is not smooth; there it is evaluated from inside. `creases` are the values of
-    u, and of v, inside the domain where the surface is not smooth.
+    so that a surface far from the origin keeps its digits. On the boundary of the domain the
+    surface is evaluated from inside, since it need not be smooth there. `creases` are the values of
+    u, and of v, inside the domain across which the surface is not smooth.
     """
 
     degrees: tuple[int, int]
@@ -43,7 +43,7 @@ class Nurbs(Differentiable):
         return f"Nurbs({m} × {n} control points of degrees {self.degrees})"
 
     def __call__(self, u: Array, v: Array) -> Array:
-        """Return points (..., 3); InputError outside the domain where it is not periodic."""
+        """Return points (..., 3); InputError if u or v is outside the domain and not periodic."""
         for name, values, ends, periodic in zip(
             "uv", (u, v), self.domain, self.periodic, strict=True
         ):
@@ -59,7 +59,8 @@ class Nurbs(Differentiable):
     def jets(self, u: Array, v: Array) -> Array:
         """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) at u (k,) and v (k,).
 
-        Nothing is checked. Beyond an end of the domain the last polynomials are continued.
+        The parameters are not checked. Outside the domain, the polynomials of the last knot spans
+        are continued.
         """
         jets = np.empty((len(u), 6, 3))
         u, v = np.array(u), np.array(v)  # Kernels would be compiled anew for other memory layouts
@@ -71,7 +72,10 @@ class Nurbs(Differentiable):
         return nurbs_tape(self._net)
 
     def restricted(self, domain: Domain) -> Nurbs:
-        """Return the surface over a part of its domain, periodic only along whole periods."""
+        """Return the surface over a part of its domain.
+
+        A periodic parameter stays periodic only if the part contains its whole interval.
+        """
         whole = zip(self.periodic, domain, self.domain, strict=True)
         u, v = (periodic and part == ends for periodic, part, ends in whole)
         lines_u, lines_v = (

@@ -1,4 +1,4 @@
-"""Checks of users' NURBS surfaces: arrays of numbers, or an object of geomdl or Splipy."""
+"""Reads and checks a user's NURBS surface, given by arrays or as an object of geomdl or Splipy."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ __all__ = ["MOST_DEGREE", "nurbs_of"]
 
 # No format for CAD data holds larger degrees.
 MOST_DEGREE = 25
-# Control points with smaller weights, relative to the largest one, do not count for the centre.
+# Control points whose weight is below this fraction of the largest weight do not affect the centre.
 LIGHT = 0.1
 
 
 def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nurbs:  # noqa: ANN401
-    """Return the NURBS surface of arrays, or of an object that is given as `degrees`.
+    """Return the NURBS surface that is given by arrays, or by an object passed as `degrees`.
 
-    Raises InputError if these do not define a surface.
+    Raises InputError if the arguments do not define a surface.
     """
     definition: tuple[Any, ...] = degrees, knots, control_points, weights
     if knots is None and control_points is None and weights is None:
@@ -43,8 +43,8 @@ def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nur
         )
     )
     factors = np.ones(points.shape[:2]) if weights is None else _weights(weights, points.shape[:2])
-    # Where one weight outweighs all others, its control point has to be about the origin: otherwise
-    # quotients are small differences of large numbers.
+    # A control point whose weight outweighs all others must be near the centre. Otherwise the
+    # coordinates of the surface are small differences of large quotients.
     heavy = points[factors >= LIGHT * factors.max()]
     centre = heavy.min(axis=0) / 2 + heavy.max(axis=0) / 2
     points = points - centre
@@ -65,7 +65,7 @@ def _pair(values: Any, name: str) -> tuple[Any, Any]:  # noqa: ANN401 - what a u
 
 
 def _knots(values: ArrayLike, degree: int, count: int, name: str) -> Array:
-    """Return the knots for `count` control points; InputError if they do not fit."""
+    """Return the knots of u or v as an array; InputError if `count` control points need others."""
     knots = finite_array(values, None, f"the knots of {name}")
     if count <= degree:
         raise InputError(
@@ -92,7 +92,10 @@ def _knots(values: ArrayLike, degree: int, count: int, name: str) -> Array:
 
 
 def _check_multiplicities(knots: Array, degree: int, name: str) -> None:
-    """Raise InputError for excess knots, and for knots inside the domain that tear the surface."""
+    """Raise InputError if a knot occurs too often for the degree.
+
+    Inside the domain such a knot tears the surface; elsewhere, control points have no effect.
+    """
     values, counts = np.unique(knots, return_counts=True)
     inside = (values > knots[degree]) & (values < knots[-degree - 1])
     for many, reason in (
@@ -142,7 +145,8 @@ def _definition_of(value: object) -> tuple[Any, ...]:
 def _of_geomdl(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not imported
     """Return the definition of a `geomdl.BSpline.Surface` or `geomdl.NURBS.Surface`.
 
-    Its control points are in one list, along v first, without their weights.
+    geomdl stores the control points as one list in which v varies fastest, not multiplied by their
+    weights.
     """
     if len(getattr(value, "trims", ())):
         raise InputError(
@@ -168,8 +172,8 @@ def _of_geomdl(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not impor
 def _of_splipy(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - it is not imported
     """Return the definition of a `splipy.Surface`.
 
-    Its control points are w x, w y, w z, w if it is rational. In a periodic direction, the first
-    control points are not repeated at the end.
+    The control points of a rational surface are stored as w x, w y, w z, w. In a periodic
+    direction, Splipy does not repeat the first control points at the end; here they are appended.
     """
     bases = tuple(value.bases)
     points = real_array(value.controlpoints, "control points")

@@ -1,8 +1,8 @@
 """The tape of a NURBS surface: its polynomials on each pair of knot spans, and their quotients.
 
 The basis functions of a span are polynomials with rational coefficients, which are computed exactly
-from the knots and rounded. Their products with control points are sums in float64 with bounds of
-their rounding.
+from the knots and then rounded. Sums of their products with control points are computed in float64,
+with bounds of the rounding errors.
 """
 
 from __future__ import annotations
@@ -29,7 +29,22 @@ MOST_NUMBERS = 4_000_000  # of the coefficients of all polynomials: 64 MB with t
 
 
 class Axis(NamedTuple):
-    """The k spans of one parameter: ends, continuity, frames, and the basis (k, p + 1, p + 1)."""
+    """The k knot spans of one parameter, and the basis functions on them.
+
+    Attributes
+    ----------
+    breaks : (k + 1,) float64 array
+        The bounds of the spans.
+    smooth : (k + 1,) int64 array
+        The order of continuity at each bound: degree minus multiplicity.
+    frames : (k, 2) float64 array
+        The midpoint and the scale of the local parameter of each span.
+    first : (k,) int64 array
+        The index of the first control point of each span.
+    basis : (k, p + 1, p + 1) float64 array
+        The coefficients of the basis functions on each span.
+
+    """
 
     breaks: Array
     smooth: NDArray[np.int64]
@@ -58,7 +73,7 @@ def nurbs_tape(net: Net) -> Tape | None:
 
 
 def _axis(net: Net, axis: int) -> Axis:
-    """Return the spans of u (axis 0) or v (axis 1) of positive length."""
+    """Return the knot spans of positive length, for u (axis 0) or v (axis 1)."""
     knots, degree = (net.knots_u, net.knots_v)[axis], int(net.degrees[axis])
     first, last = net.spans[axis].tolist()
     spans = np.array([k for k in range(first, last + 1) if knots[k] < knots[k + 1]])
@@ -80,9 +95,10 @@ def _axis(net: Net, axis: int) -> Axis:
 
 @lru_cache(KEPT)
 def _basis(knots: tuple[float, ...], degree: int, middle: float, scale: float) -> Array:
-    """Return the coefficients of basis functions in s = (u − middle) scale, a row for each.
+    """Return the coefficients of the basis functions on a span, one row for each function.
 
-    The knots are those around a span.
+    The functions are polynomials in s = (u − middle) scale. `knots` are the 2 degree + 2 knots
+    around the span.
     """
     exact = [Fraction(scale) * (Fraction(x) - Fraction(middle)) for x in knots]
     rows = [[Fraction(1)]]
@@ -101,7 +117,7 @@ def _basis(knots: tuple[float, ...], degree: int, middle: float, scale: float) -
 
 
 def _polynomials(net: Net, along_u: Axis, along_v: Axis) -> Polynomials:
-    """Return the coefficients on all spans, with bounds of their rounding."""
+    """Return the coefficients on all pairs of spans, with bounds of their rounding errors."""
     p, q = (int(x) for x in net.degrees)
     rows = along_u.first[:, None] + np.arange(p + 1)
     columns = along_v.first[:, None] + np.arange(q + 1)

@@ -56,8 +56,8 @@ class Surface(SurfaceValues):
         For u and for v, the boundary conditions at the lower and the upper bound: "open" (an edge),
         "periodic", "mirrored" (periodic with the other parameter reversed, as on the Möbius band:
         normals are opposite on both sides of the seam, and `Part` refuses it) or "pole" (the side
-        is one point and the opposite meridian continues the surface). The spline may have poles in
-        place of open sides, see `assumed_open`.
+        is collapsed to a point, and each meridian continues along the opposite one). The spline may
+        have poles in place of open sides, see `assumed_open`.
     grid : (m, n, 3) float64 array or None
         The points of a surface that was given by points; NaN where they are missing.
     derivative_function : callable or None
@@ -66,9 +66,10 @@ class Surface(SurfaceValues):
         The part of the domain that belongs to the surface, None for all of it; see `trimmed`.
     assumed_open : (bool, bool)
         For u and for v, whether open sides were assumed (``periodic=False``) and not declared
-        ("open"). Then `fit` tests whether one of them is a single point at which the surface is
-        smooth; such a side becomes a pole, and the other parameter periodic. A surface of points is
-        tested at once: `boundary` has the poles, and `grid` no points that repeat the first ones.
+        ("open"). Then `fit` tests whether a side is collapsed to a point at which the surface is
+        smooth. Such a side becomes a pole, and the other parameter becomes periodic. A surface of
+        points is tested when it is made: `boundary` contains its poles, and `grid` does not repeat
+        the first points at the end of a periodic parameter.
     georeference : Georeference or None
         For a `terrain`: the coordinate reference system `crs`, as "EPSG:number" or WKT, the
         `origin` (x, y, z) that was subtracted from coordinates, and the `unit` of lengths.
@@ -116,7 +117,7 @@ class Surface(SurfaceValues):
         domain : ((u0, u1), (v0, v1)) of float
             The rectangle of the parameters.
         periodic : bool or pair, default False
-            The boundary conditions of both parameters, or a pair of those of u and of v: True
+            One boundary condition for both parameters, or a pair for u and for v: True
             (periodic), False (open, and poles are found, see `assumed_open`); in a pair also one of
             "open", "periodic", "mirrored" (periodic with the other parameter reversed, as on a
             Möbius band or a Klein bottle), "pole" for both ends, or a pair of these (lower bound,
@@ -304,7 +305,7 @@ class Surface(SurfaceValues):
         labelled: str,
         georeference: Georeference | None = None,
     ) -> Surface:
-        """Return the surface of points (m, n, 3), with NaN for missing ones."""
+        """Return the surface of points (m, n, 3), in which missing points are NaN."""
         from ..spline.missing import known_of_grid
         from ..spline.point_grid import spline_of_points
         from .collapsed import closed_grid
@@ -339,8 +340,8 @@ class Surface(SurfaceValues):
         """Make a surface of a NURBS, given by arrays, or by a surface of geomdl or Splipy.
 
         The domain is [U[p], U[m]] × [V[q], V[n]] for knots U, V, as usual. A parameter is periodic
-        if its two ends are one line, across which the surface is smooth. Lines where the surface is
-        not smooth cut it into `pieces`.
+        if its two boundaries are the same curve, and the surface is smooth across it. Lines across
+        which the surface is not smooth cut it into `pieces`.
 
         Parameters
         ----------
@@ -348,8 +349,8 @@ class Surface(SurfaceValues):
             The degrees (p, q) along u and v, from 1 to 25. Instead of all arrays, a
             ``geomdl.NURBS.Surface``, ``geomdl.BSpline.Surface`` or ``splipy.Surface``.
         knots : pair of array_like
-            The knots U (m + p + 1,) and V (n + q + 1,), which never decrease. Those inside the
-            domain are at most p-fold (q-fold); those at its ends need not be multiple.
+            The knots U (m + p + 1,) and V (n + q + 1,), which never decrease. Knots inside the
+            domain are at most p-fold (q-fold); knots at its bounds need not be multiple.
         control_points : (m, n, 3) array_like
             The control points, in L, not multiplied by their weights.
         weights : (m, n) array_like, optional
@@ -367,9 +368,10 @@ class Surface(SurfaceValues):
         Raises
         ------
         InputError
-            For numbers of knots that do not fit, knots that decrease or tear the surface, weights
-            that are not positive, NaN, or another shape; for any other object, or one with trim
-            curves; and for boundary conditions as `from_callable`.
+            If the number of knots does not fit the control points, or knots decrease or tear the
+            surface; for weights that are not positive, NaN, or arrays of another shape; for any
+            other object, or one with trim curves; and for the boundary conditions that
+            `from_callable` refuses.
 
         References
         ----------
@@ -533,9 +535,9 @@ class Surface(SurfaceValues):
             shifted by whole periods, is.
         within : callable, optional
             ``within(u, v)`` takes two float64 arrays (k,) of parameters in the domain, and returns
-            booleans (k,). Parts smaller than an eighth of a patch of the spline may be missed. If
-            it consists of inequalities between NumPy functions, joined by &, | and ~, undecided
-            boxes (see `SamplingReport.undecided`) outside of the part are excluded.
+            booleans (k,). Regions smaller than an eighth of a patch of the spline may be missed. If
+            the predicate consists of inequalities between NumPy functions, joined by &, | and ~,
+            undecided boxes (see `SamplingReport.undecided`) outside of the part are excluded.
 
         Returns
         -------
@@ -548,7 +550,7 @@ class Surface(SurfaceValues):
         ------
         InputError
             For loops with fewer than 3 points, with NaN or infinity, of another shape, or more than
-            100 periods away; for a predicate that is not callable; or without either.
+            100 periods away; for a predicate that is not callable; or if neither is given.
 
         Examples
         --------

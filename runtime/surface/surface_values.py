@@ -100,7 +100,7 @@ class SurfaceValues(Immutable):
 
     @property
     def _needed(self) -> Needed | None:
-        """Where values have to be finite; None for everywhere."""
+        """The predicate of the parameters where values must be finite; None if everywhere."""
         return None if self.trim is None else self.trim.contains
 
     @property
@@ -137,18 +137,18 @@ class SurfaceValues(Immutable):
         Raises
         ------
         SurfaceError
-            As `evaluate`; if a derivative is not finite, or if given derivatives differ from
-            numerical ones; the message gives the parameters.
+            In the cases of `evaluate`; also if a derivative is not finite, or if given derivatives
+            differ from numerical ones. The message gives the parameters.
         InputError
             If the parameters are not real numbers, or the surface was given by points.
 
         Notes
         -----
-        The error of numerical derivatives, relative to the surface's own size and domain, is 1e-12
-        (first) and 1e-9 (second) if the shortest wavelength is a third of the domain or more, and
-        1e-10 and 1e-7 up to 100 waves: if differences of seven points disagree with those of nine,
-        steps are divided by 4, up to five times. With a callable in single precision, first
-        derivatives have four digits, and second ones none.
+        The error of numerical derivatives, relative to the size and the domain of the surface, is
+        1e-12 (first) and 1e-9 (second) if the shortest wavelength is at least a third of the
+        domain, and 1e-10 and 1e-7 if up to 100 waves fit into the domain: if differences of seven
+        points disagree with differences of nine, steps are divided by 4, up to five times. With a
+        callable in single precision, first derivatives have four digits, and second ones none.
 
         Examples
         --------
@@ -246,7 +246,7 @@ class SurfaceValues(Immutable):
 
     @property
     def differences(self) -> Differences | None:
-        """The differences that compute `derivatives`; None if these are formulas.
+        """The finite differences that compute `derivatives`; None if formulas or the user do.
 
         Examples
         --------

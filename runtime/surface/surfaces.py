@@ -56,7 +56,7 @@ class CatalogueFunction(Differentiable):
         return result
 
     def tape(self) -> Tape | None:
-        """Return the operations of the function."""
+        """Return the tape of the surface."""
         values = dict(zip(CATALOGUE[self.name]["parameters"], self.values, strict=True))
         return tape_of_steps(*TAPES[self.name], values)
 
@@ -177,7 +177,7 @@ def _default(name: str) -> Surface:
 
 
 def _maker(name: str) -> Callable[..., Surface]:
-    """Return the function `gaussmap.surfaces.NAME`, with the signature of the catalogue."""
+    """Return the function `gaussmap.surfaces.NAME`; the catalogue gives its parameters."""
     known = CATALOGUE[name]["parameters"]
 
     def make(*values: float, **named: float) -> Surface:
@@ -204,7 +204,7 @@ def _maker(name: str) -> Callable[..., Surface]:
 
 
 def _docstring(name: str) -> str:
-    """Return the documentation of a maker in the form of numpydoc."""
+    """Return the docstring of the function `gaussmap.surfaces.NAME`, in the form of numpydoc."""
     entry = CATALOGUE[name]
     lines = [textwrap.fill(entry["sentence"], 88), "", "Parameters", "----------"]
     for parameter, (default, positive, sentence) in entry["parameters"].items():

@@ -25,8 +25,8 @@ __all__ = ["traced_condition", "traced_tape"]
 Sides = NDArray[np.int8]
 Function = Callable[..., Any]  # of u and v: arrays, or traced numbers
 
-# The number of points where callable and tape are compared. Both have rounding errors: that of the
-# tape is bounded, that of the callable may be larger.
+# The number of points where the callable is compared with its tape. Their values may differ by
+# ROUNDING times the error bound of the tape, since the callable may have larger rounding errors.
 PLACES = 48
 ROUNDING = 64.0
 
@@ -64,9 +64,10 @@ class ObjectArrays:
 
 
 def _with_object_arrays(function: Function) -> Function:
-    """Return a Python function that fills its new arrays with traced numbers.
+    """Return a copy of a Python function in which new arrays of NumPy can hold traced numbers.
 
-    It runs with a copy of its globals: a call that assigns to a global raises TypeError.
+    The copy has globals of its own, with `ObjectArrays` in place of NumPy. A call that assigns to a
+    global raises TypeError. Callables of other types are returned unchanged.
     """
     if not isinstance(function, FunctionType):
         return function
@@ -87,9 +88,10 @@ def _with_object_arrays(function: Function) -> Function:
 
 
 def traced_condition(function: Function, domain: Domain) -> Condition | None:
-    """Return the inequalities in a callable f(u, v) → booleans; None if they are unknown.
+    """Return the condition that a callable f(u, v) → booleans computes; None if it is not traced.
 
-    The inequalities are joined by &, | and ~. At some points, they are compared with the callable.
+    A traced condition consists of inequalities that are joined by &, | and ~. Its values are
+    compared with those of the callable at some points.
     """
     writer = TapeWriter()
     try:
@@ -114,7 +116,7 @@ def _tape_of(function: Function) -> Tape | None:
 
 
 def _agree(function: Function, tape: Tape, domain: Domain) -> bool:
-    """Return whether the callable has the values of a tape, up to rounding."""
+    """Return whether callable and tape have equal values, up to rounding, at some points."""
     u, v = places_in(domain, PLACES)
     values, errors = values_of(tape, u, v)
     with np.errstate(all="ignore"):
@@ -129,7 +131,10 @@ def _agree(function: Function, tape: Tape, domain: Domain) -> bool:
 
 
 def row_of(writer: TapeWriter, value: object) -> int:
-    """Return the row of a traced number, or of a constant; TypeError for anything else."""
+    """Return the row of the tape that holds a traced number, or a constant, which is appended.
+
+    Raises TypeError for any other value.
+    """
     if isinstance(value, Traced) and value.writer is writer:
         return value.row
     if isinstance(value, Real) and float(value) == value:
@@ -138,7 +143,7 @@ def row_of(writer: TapeWriter, value: object) -> int:
 
 
 def applied(name: str) -> Callable[[Traced], Traced]:
-    """Return the method that writes a function of the generated formulas to the tape."""
+    """Return a method of `Traced` that records the operation `name` on the tape, such as "asin"."""
 
     def method(self: Traced) -> Traced:
         return self.written(name, self)
@@ -150,16 +155,16 @@ def applied(name: str) -> Callable[[Traced], Traced]:
 class Traced:
     """A number that depends on u and v: operations on it are written to a tape.
 
-    NumPy's functions call the methods of their names for arrays of objects. Comparisons give
-    conditions, which have no truth value. Absolute values can only be compared. Integer conversion
-    and equality raise TypeError.
+    For an array of objects, a function of NumPy calls the method of the same name of each object:
+    np.sin calls `sin`. Comparisons give conditions, which have no truth value. Absolute values can
+    only be compared. Integer conversion and equality raise TypeError.
     """
 
     writer: TapeWriter
     row: int
 
     def written(self, name: str, *values: object) -> Traced:
-        """Return an operation on numbers."""
+        """Record an operation on numbers on the tape, and return its result."""
         rows = (row_of(self.writer, x) for x in values)
         return Traced(self.writer, self.writer.write(name, *rows))
 
@@ -228,7 +233,10 @@ class Traced:
         return self.written("sqrt", self * self + self.written("square", other))
 
     def arctan2(self, other: object) -> Traced:
-        """Return the angle of (other, self), from its half; unbounded where the half is π/2."""
+        """Return the polar angle of the point (other, self), computed as twice its half.
+
+        At the angle π the tangent of the half is unbounded.
+        """
         size = self.written("sqrt", self.written("square", other) + self * self)
         return self.written("atan", self / (size + other)) * 2.0
 
@@ -288,7 +296,7 @@ class Positive(Condition):
     tape: Tape
 
     def sides(self, boxes: Array) -> Sides:
-        """Return the signs of bounds over boxes (k, 4), 0 for bounds that contain 0."""
+        """Return the signs (k,) of the coordinate over boxes (k, 4); 0 if its bounds contain 0."""
         low, high = boxes[:, ::2], boxes[:, 1::2]
         halves = (high - low) / 2.0 + np.spacing(np.maximum(np.abs(low), np.abs(high)))
         bounds = bounds_over_boxes(self.tape, (low + high) / 2.0, halves)
@@ -298,11 +306,14 @@ class Positive(Condition):
 
 @dataclass(frozen=True, eq=False)
 class Joined(Condition):
-    """Conditions whose values −1, 0, 1 are joined by a function of NumPy."""
+    """A condition made of other conditions, whose values −1, 0, 1 a function of NumPy joins.
+
+    The function is `minimum` for &, `maximum` for | and `negative` for ~.
+    """
 
     join: np.ufunc
     parts: tuple[Condition, ...]
 
     def sides(self, boxes: Array) -> Sides:
-        """Return the joined values of the parts on boxes (k, 4)."""
+        """Return the values (k,) on boxes (k, 4), joined from those of the parts."""
         return self.join(*(x.sides(boxes) for x in self.parts))
