@@ -72,9 +72,10 @@ def _checked(domain: Sequence[Sequence[float]], names: str, form: str) -> list[I
 
 
 def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
-    """Return the boundary conditions from their short forms; InputError on a clash.
+    """Return the boundary conditions that `periodic` means, and whether open sides are assumed.
 
-    Also return, for u and v, whether open sides are assumed: `periodic` has False, not "open".
+    The open sides of a parameter are assumed, not declared, if its entry is False, not "open".
+    Raises InputError if the conditions contradict each other.
     """
     boundary = checked_sides(periodic)
     for name, other, ends, around in (("u", "v", *boundary), ("v", "u", *boundary[::-1])):
@@ -85,13 +86,16 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
 
 
 def checked_sides(periodic: Periodic) -> Boundary:
-    """Return the boundary conditions of all sides, where poles are allowed; or InputError."""
+    """Return the boundary conditions that `periodic` means; InputError if they are unknown.
+
+    A pole does not need the other parameter to be periodic.
+    """
     along_u, along_v = _entries(periodic)
     return _pair(along_u, "u"), _pair(along_v, "v")
 
 
 def _entries(periodic: Periodic) -> tuple[Periodicity, Periodicity]:
-    """Return the entries of u and v."""
+    """Return the entries of `periodic` for u and for v."""
     if isinstance(periodic, bool | np.bool_):
         return bool(periodic), bool(periodic)
     try:
@@ -110,7 +114,7 @@ def closes(ends: Sequence[str]) -> bool:
 
 
 def cells_between(shape: Sequence[int], boundary: Boundary) -> tuple[int, int]:
-    """Return the numbers of cells of a grid of points (m, n, …)."""
+    """Return the numbers of cells, along u and along v, between points of the shape (m, n, …)."""
     m, n = (
         count if closes(ends) else count - 1 for count, ends in zip(shape, boundary, strict=False)
     )
@@ -118,9 +122,10 @@ def cells_between(shape: Sequence[int], boundary: Boundary) -> tuple[int, int]:
 
 
 def widened(values: NDArray[Any], mode: Literal["edge", "wrap"] = "wrap") -> NDArray[Any]:
-    """Return the largest of the values (m, n) of each cell and its neighbours.
+    """Return, for each cell of a grid, the largest of its value and those of its 8 neighbours.
 
-    At the boundary, cells of the opposite side are neighbours ("wrap"), or there are none ("edge").
+    `values` and the result are (m, n). Beyond the boundary, neighbours are the cells at the
+    opposite side ("wrap"), or there are no neighbours ("edge").
     """
     for axis in (0, 1):
         padded = np.pad(values, [(1, 1) if k == axis else (0, 0) for k in (0, 1)], mode=mode)
@@ -138,7 +143,10 @@ def less_periods(
 
 
 def places_in(domain: Domain, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return u and v (count,) of points (i/√2, i/√3), modulo 1, in units of the domain."""
+    """Return parameters u, v (count,) that are spread over a domain.
+
+    Relative to the domain they are i/√2 and i/√3, modulo 1.
+    """
     steps = np.arange(1, count + 1)
     u, v = (
         low + (high - low) * (np.sqrt(x) * steps % 1.0)
@@ -150,7 +158,10 @@ def places_in(domain: Domain, count: int) -> tuple[NDArray[np.float64], NDArray[
 def brought_inside(
     u: NDArray[np.float64], v: NDArray[np.float64], domain: Domain, boundary: Boundary
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Reduce periodic parameters (k,) modulo their periods; leave the others unchanged."""
+    """Return u and v (k,), in which periodic parameters are reduced to the domain.
+
+    A shift by an odd number of periods of a mirrored parameter reverses the other parameter.
+    """
     places = u.copy(), v.copy()
     for axis, (low, high) in enumerate(domain):
         if not closes(boundary[axis]):

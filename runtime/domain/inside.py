@@ -1,4 +1,4 @@
-"""The part of each patch of a spline that is inside its trim."""
+"""The share of each patch of a spline that is inside the trim of its surface."""
 
 from __future__ import annotations
 
@@ -15,17 +15,19 @@ from .trim import Trim
 __all__ = ["FINEST", "Inside", "extremes_around", "subcentroids"]
 
 
-# A patch is tested at the centroids of COARSE² triangles, if the cells at the boundary of the trim
-# are unknown, and a patch at the boundary at those of FINEST² triangles.
+# A patch is divided into equal triangles, whose centroids are tested: FINEST² triangles for patches
+# at the boundary of the trim. Other patches are one triangle each; they are COARSE² triangles if
+# the trim cannot tell which cells its boundary passes.
 COARSE, FINEST = 4, 8
 POINTS_AT_A_TIME = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
 class Inside:
-    """The shares (patches,), from 0 to 1, of each patch inside a trim, by area in the parameters.
+    """The share of each patch of a spline that is inside a trim, by area in the parameters.
 
-    `reached` (patches,) is True for patches that may have a part inside, however small.
+    `shares` (patches,) are from 0 to 1. `reached` (patches,) is True for each patch that may have
+    a part inside, however small.
     """
 
     shares: Array
@@ -33,7 +35,10 @@ class Inside:
 
     @classmethod
     def of(cls, trim: Trim, frame: Array, cells: tuple[int, int], name: str) -> Inside:
-        """Measure the patches of a spline; SurfaceError if its trim leaves nothing."""
+        """Measure the patches of a spline; SurfaceError if all of them are outside the trim.
+
+        `frame` is the lower corner u₀, v₀ of the domain, and the size of a cell along u and v.
+        """
         passed, all_known = trim.cells_of_border(trim.domain, cells)
         number = np.arange(4 * cells[0] * cells[1])
 
@@ -55,7 +60,7 @@ class Inside:
 
 
 def subcentroids(parts: int) -> Array:
-    """Return the centroids (parts², 2) of the equal parts of the triangle (0, 0), (1, 0), (0, 1).
+    """Return the centroids (parts², 2) of equal triangles that fill (0, 0), (1, 0), (0, 1).
 
     No centroid lies on a line through points whose coordinates are binary fractions.
     """
@@ -66,7 +71,10 @@ def subcentroids(parts: int) -> Array:
 
 
 def _shares(trim: Trim, frame: Array, columns: int, patches: Indices, parts: int) -> Array:
-    """Return the shares of patches (k,) inside a trim, by the centroids of their parts."""
+    """Return the share (k,) of each of the `patches` (k,) that is inside a trim.
+
+    A share is the fraction of the parts² centroids of a patch that are inside.
+    """
     places, shares = subcentroids(parts), np.empty(len(patches))
     step = max(POINTS_AT_A_TIME // len(places), 1)
     for first in range(0, len(patches), step):
@@ -79,5 +87,8 @@ def _shares(trim: Trim, frame: Array, columns: int, patches: Indices, parts: int
 
 
 def extremes_around(values: Array) -> tuple[Array, Array]:
-    """Return minima and maxima (m, n) of the values (m, n, 4) of each cell and its neighbours."""
+    """Return the least and the largest value (m, n) around each cell, from values (m, n, 4).
+
+    Both are taken over the four patches of the cell and of each of its neighbours.
+    """
     return -widened(-values.min(axis=2)), widened(values.max(axis=2))

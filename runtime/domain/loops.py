@@ -22,12 +22,13 @@ from .kernels import trim as kernels
 __all__ = ["Loops", "checked_loops"]
 
 
-# About the number of cells per segment, and the largest number of rows of cells.
+# Segments are sorted into a square grid of cells. It has about this many cells for each segment,
+# and at most this many rows.
 CELLS_A_SEGMENT, MOST_ROWS = 8, 2048
-# About the largest number of entries of the lists of all cells.
+# About the largest total length of the lists of segments of all cells.
 MOST_ENTRIES = 1 << 24
-# Segments belong to all cells within this margin, in units of a cell, and in roundings of the
-# largest coordinate.
+# A segment belongs to all cells within a margin around it, the sum of two numbers: the first one in
+# units of a cell, the second one in units in the last place of the largest coordinate.
 MARGIN, MARGIN_IN_ROUNDINGS = 1e-9, 16.0
 POINTS_AT_A_TIME = 1 << 14
 # The largest number of times that a loop may run around a periodic direction.
@@ -43,7 +44,8 @@ class Loops:
     """Closed polygons (k, 2) in the parameter plane; a point is inside by the even-odd rule.
 
     The first point of a polygon is not repeated. Loops may cross the seam of a periodic direction:
-    a point is inside if it is, or a copy of it shifted by whole periods.
+    a point belongs to the inside if the polygons contain the point, or a copy of the point that is
+    shifted by whole periods.
     """
 
     polygons: tuple[Array, ...]
@@ -62,13 +64,13 @@ class Loops:
         return inside
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags:
-        """Return the cells (m, n) of a grid on the domain that the polygons may intersect."""
+        """Return a mask (m, n) of the cells of a grid that the polygons may intersect."""
         low, high = np.array(domain).T
         steps = (high - low) / cells
         points = np.concatenate([_steps(x, steps / 2.0) for x in self.polygons])
         passed = np.zeros(cells, dtype=np.bool_)
         for a, b, c, d in self.shifts:
-            # Shifts that reverse a direction are their own inverses.
+            # The inverse of u → a u + b is u → a (u − b), since a is 1 or −1.
             places = np.stack([a * (points[:, 0] - b), c * (points[:, 1] - d)], axis=1)
             i, j = np.floor((places - low) / steps).astype(np.int64).T
             here = (i >= -1) & (i <= cells[0]) & (j >= -1) & (j <= cells[1])
@@ -80,9 +82,9 @@ class Loops:
         return passed
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
-        """Return 1 for boxes (k, 4) inside, −1 outside, and 0 where a segment may meet the box.
+        """Classify boxes (k, 4): 1 if inside, −1 if outside, 0 if a segment may meet the box.
 
-        Boxes have a margin for rounding. The normals (k, 3) are not used.
+        Boxes have a margin for rounding errors. The normals (k, 3) are not used.
         """
         low, high = boxes[:, ::2], boxes[:, 1::2]
         middles, halves = (low + high) / 2.0, (high - low) / 2.0
@@ -97,7 +99,7 @@ class Loops:
         return sides
 
     def _inwards(self, uv: Array) -> Array:
-        """Move points on open sides inwards, by far less than the size of the domain."""
+        """Return points (k, 2), in which points on open sides are moved inwards, by very little."""
         return uv.clip(*self.limits)
 
     @cached_property
@@ -116,7 +118,10 @@ class Loops:
 
     @cached_property
     def shifts(self) -> Array:
-        """The maps (s, 4) of a point to those copies (a u + b, c v + d) that may be inside."""
+        """The maps (s, 4) of a point u, v to its copies a u + b, c v + d that may be inside.
+
+        A row is a, b, c, d. Copies differ from the point by whole periods.
+        """
         (u0, u1), (v0, v1) = self.domain
         along_u, along_v = (self._periods(axis) for axis in (0, 1))
         rows = []
@@ -145,12 +150,13 @@ class Loops:
         return self.in_cells()
 
     def in_cells(self) -> tuple[kernels.SegmentGrid, Array]:
-        """Return the segments sorted into cells, and the shifts, both scaled by powers of two."""
+        """Return the segments, sorted into cells, and `shifts`, both scaled by powers of two."""
         sizes = self.box[1] - self.box[0]
         scales = np.array([scale_to_one(float(x)) for x in sizes])
         ends = [np.stack([x, np.roll(x, -1, axis=0)], axis=1) for x in self.polygons]
         segments = np.concatenate(ends) * scales
-        # Segments start at their lower end, so that two polygons have the same common segments.
+        # Each segment starts at its lower end: a segment that two polygons share is then equal in
+        # both.
         (u, v), (w, z) = segments[:, 0].T, segments[:, 1].T
         turned = (v > z) | ((v == z) & (u > w))
         segments[turned] = segments[turned][:, ::-1]
@@ -176,9 +182,10 @@ class Loops:
 
 
 def _may_meet(segments: Array, middles: Array, halves: Array) -> Flags:
-    """Return flags (k, n): whether segments (n, 4) may meet boxes; middles, half sizes (k, 2).
+    """Return whether n segments (n, 4) may meet k boxes, as flags (k, n).
 
-    If they are disjoint, a line parallel to u, to v or to the segment separates them.
+    Boxes are given by their centres `middles` (k, 2) and half sizes `halves` (k, 2). A segment does
+    not meet a box if a line parallel to u, to v or to the segment separates them.
     """
     start, way = segments[:, :2], (segments[:, 2:] - segments[:, :2]) / 2.0
     largest = np.maximum(np.abs(segments).max(), np.abs(middles).max(initial=0.0))
@@ -203,7 +210,7 @@ def _steps(polygon: Array, steps: Array) -> Array:
 
 
 def checked_loops(loops: object, domain: Domain, boundary: Boundary) -> Loops:
-    """Return loops; InputError, with the reason, if they are not closed polygons."""
+    """Return the `Loops` that a user gives; InputError if they are not closed polygons."""
     polygons = [_polygon(x, k) for k, x in enumerate(_rings(loops))]
     if not polygons:
         raise InputError("loops is empty; give at least one closed polygon of points u, v.")
@@ -219,7 +226,10 @@ def checked_loops(loops: object, domain: Domain, boundary: Boundary) -> Loops:
 
 
 def _rings(loops: Any) -> list[Any]:  # noqa: ANN401
-    """Return the closed polygons of a geometry, of one polygon, or of a sequence of these."""
+    """Return the closed polygons that a user gives.
+
+    They are given as a geometry, as one array (k, 2), or as a sequence of geometries and arrays.
+    """
     if hasattr(loops, "__geo_interface__"):
         return _rings_of_geometry(loops.__geo_interface__)
     items = listed(loops)
@@ -238,7 +248,7 @@ def _rings(loops: Any) -> list[Any]:  # noqa: ANN401
 
 
 def _rings_of_geometry(geometry: Any) -> list[Any]:  # noqa: ANN401
-    """Return the exteriors and the holes of a geometry."""
+    """Return the outer boundaries and the holes of a (Multi)Polygon, each as a list of points."""
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     if kind not in ("Polygon", "MultiPolygon"):
         raise InputError(f"loops must be a Polygon or a MultiPolygon, not a {shown(kind)}.")
@@ -248,7 +258,7 @@ def _rings_of_geometry(geometry: Any) -> list[Any]:  # noqa: ANN401
 
 
 def _polygon(points: Any, number: int) -> Array:  # noqa: ANN401
-    """Return the points (k, 2) of a polygon, the first one not repeated."""
+    """Return the points (k, 2) of loop `number`; the first point is not repeated at the end."""
     array = finite_array(points, ("k", 2), f"loop {number}")
     if len(array) > 1 and (array[0] == array[-1]).all():
         array = array[:-1]

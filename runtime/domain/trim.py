@@ -38,7 +38,10 @@ class TrimPart(Protocol):
         ...
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
-        """Return the cells (m, n) of a grid that its boundary may intersect; None if unknown."""
+        """Return a mask (m, n) of the cells of a grid that the boundary may intersect, or None.
+
+        The boundary is that of the region where the condition holds. None means that it is unknown.
+        """
         ...
 
     def sides(self, boxes: Array, normals: Array) -> NDArray[np.int8]:
@@ -64,7 +67,8 @@ class Trim:
     boundary : pair of pairs of str
         The boundary conditions, see `Surface`.
     parts : tuple
-        The conditions: closed polygons, predicates, and the present points of a grid.
+        The conditions: closed polygons, predicates, and the region of a grid without missing
+        points.
 
     Examples
     --------
@@ -121,7 +125,7 @@ class Trim:
         return inside
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> tuple[Flags, bool]:
-        """Return the cells that the boundary may intersect, and whether the list is complete.
+        """Return the cells that the boundary may intersect, and whether these are all such cells.
 
         Parameters
         ----------
@@ -133,7 +137,7 @@ class Trim:
         Returns
         -------
         (m, n) bool array
-            The cells that the boundary may pass.
+            True for each cell that the boundary may intersect.
         bool
             False if there is a predicate, whose boundary is unknown.
 
@@ -184,21 +188,21 @@ class Trim:
         return np.min([part.sides(boxes, normals) for part in self.parts], axis=0)
 
     def with_boundary(self, boundary: Boundary) -> Trim:
-        """Return the trim of a surface whose boundary conditions have been found."""
+        """Return the trim with other boundary conditions, found for its surface."""
         if boundary == self.boundary:
             return self
         parts = [replace(x, boundary=boundary) if isinstance(x, Loops) else x for x in self.parts]
         return Trim(self.domain, boundary, tuple(parts))
 
     def turned(self, boundary: Boundary) -> Trim:
-        """Return the trim of the surface with reversed u and the given boundary conditions."""
+        """Return the trim of the surface with u reversed, which has the given `boundary`."""
         low, high = self.domain[0]
         parts = tuple(Turned.of(part, low + high) for part in self.parts)
         return replace(self, boundary=boundary, parts=parts)
 
 
 class OnBoxes(Protocol):
-    """A condition evaluated on boxes."""
+    """A condition on u and v that can be evaluated on boxes."""
 
     def sides(self, boxes: Array) -> NDArray[np.int8]:
         """Return 1 for boxes (k, 4) where the condition holds, −1 where it fails, 0 if unknown."""
@@ -212,7 +216,8 @@ Traced = Callable[[Callable[[Array, Array], Any], Domain], OnBoxes | None]
 class Predicate:
     """A vectorized callable f(u, v) → booleans as a condition, on the domain of a surface.
 
-    `traced` returns its evaluation on boxes, or None. `name` is the surface's, for messages.
+    `traced` returns the condition in a form that can be evaluated on boxes, or None. `name` is the
+    name of the surface, for messages.
     """
 
     function: Callable[[Array, Array], Any]
@@ -266,7 +271,7 @@ class Turned:
         return self.part.contains(own, threads)
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
-        """Return the cells (m, n) of a grid that its boundary may intersect."""
+        """Return a mask (m, n) of the cells of a grid that the boundary may intersect, or None."""
         (low, high), along_v = domain
         found = self.part.cells_of_border(((self.total - high, self.total - low), along_v), cells)
         return None if found is None else found[::-1]
@@ -281,7 +286,10 @@ def trimmed_by(
     trim: Trim | None, loops: object, within: object, domain: Domain, boundary: Boundary,
     name: str, traced: Traced,
 ) -> Trim:  # fmt: skip
-    """Return a trim with the conditions of `Surface.trimmed`; InputError if they are unusable."""
+    """Return `trim` with the conditions `loops` and `within`; InputError if they are unusable.
+
+    See `Surface.trimmed` for the conditions.
+    """
     parts: list[TrimPart] = []
     if loops is not None:
         parts.append(checked_loops(loops, domain, boundary))
@@ -295,7 +303,7 @@ def trimmed_by(
 
 
 def trimmed(trim: Trim | None, domain: Domain, boundary: Boundary, *parts: TrimPart) -> Trim:
-    """Return a trim, by default that of the whole domain, with further conditions."""
+    """Return `trim`, or the whole domain if it is None, with further conditions."""
     whole = Trim(domain, boundary, ()) if trim is None else trim
     return replace(whole, parts=(*whole.parts, *parts))
 
@@ -304,14 +312,17 @@ def trimmed(trim: Trim | None, domain: Domain, boundary: Boundary, *parts: TrimP
 
 
 def with_uv(trim: Trim | None, fields: Sequence[str]) -> tuple[str, ...]:
-    """Return fields of samples, with uv if there is a trim."""
+    """Return names of fields of samples; if there is a trim, "uv" is among them."""
     return (*fields, "uv") if trim is not None and "uv" not in fields else tuple(fields)
 
 
 def samples_inside(
     trim: Trim | None, arrays: dict[str, NDArray[Any]], fields: Sequence[str]
 ) -> dict[str, NDArray[Any]]:
-    """Return fields of the samples that are inside a trim; `arrays` have uv, too."""
+    """Return the arrays named in `fields`, for the samples that are inside a trim.
+
+    `arrays` includes "uv". Without a trim, all arrays are returned unchanged.
+    """
     if trim is None:
         return arrays
     inside = trim.contains(arrays["uv"].astype(np.float64))
