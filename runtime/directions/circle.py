@@ -40,8 +40,8 @@ def circle(count: int) -> NDArray[np.float64]:
     """
     total = whole_number(count, "count")
     check_memory("circle", total)
-    # Angles in parts of a turn / (8 count): a quarter turn has 2 count parts, and its half is
-    # mirrored.
+    # Angles are integers in units of 1/(8 count) of a turn: a quarter turn has 2 count units, and
+    # its second half is the mirror image of the first one.
     quarter, place = np.divmod(4 * (2 * np.arange(total) + 1), 2 * total)
     beyond = place > total
     angle = np.pi / (4 * total) * np.where(beyond, 2 * total - place, place)

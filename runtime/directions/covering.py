@@ -1,4 +1,4 @@
-"""The covering radius of a set of directions: the largest angle to the nearest one."""
+"""The covering radius of a set: the largest angle of any direction to the nearest in the set."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ def covering_radius(normals: ArrayLike) -> float:
 def _smallest_cap(normals: Array) -> float:
     """Return the radius in degrees, at most 90, of the smallest cap that contains all normals.
 
-    At most three normals determine it. Normals outside are added one by one, the farthest first,
-    and the cap grows each time.
+    At most three normals determine a cap. The farthest normal outside the cap is added to these,
+    which makes the cap larger, until no normal is outside.
     """
     basis, radius = normals[:1], -1.0
     while True:
@@ -85,7 +85,10 @@ def _smallest_cap(normals: Array) -> float:
 
 
 def _cap_of_few(normals: Array) -> tuple[Array, Array, float]:
-    """Return the smallest cap of up to four normals: centre, normals on its boundary, radius."""
+    """Return the smallest cap that contains up to four normals.
+
+    Returns its centre (3,), the normals on its boundary (k, 3), and its radius in degrees.
+    """
     found: list[tuple[float, Array, Array]] = []
     for size in (1, 2, 3):
         for rows in combinations(normals, size):

@@ -1,4 +1,4 @@
-"""Parts of a set of normals: those in a cap, those in a polygon on the sphere."""
+"""Regions: caps and polygons on the sphere, and the part of a surface that is in reach."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["Cap", "Condition", "Reach", "angles_between", "cap", "checked_reach"
 
 
 UP = np.array([0.0, 0.0, 1.0])
-# The number of a row of a reach that means unobstructed rays; angles and distances are positive.
+# In a row of `Reach._numbers`, this in place of an angle or a distance means unobstructed rays.
 FREE = -1.0
 
 
@@ -36,21 +36,24 @@ class Cap(NamedTuple):
         return 4.0 * math.pi * math.sin(math.radians(self.angle) / 2.0) ** 2
 
     def contains(self, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return which unit normals (N, 3) are in the cap; rows of NaN or 0 are not."""
+        """Return whether unit normals (N, 3) are in the cap; False for rows of NaN or 0."""
         return normals.any(axis=1) & (angles_between(normals, self.axis) <= self.angle)
 
 
 class Condition(Protocol):
-    """A condition on points of a surface, other than one on normals alone."""
+    """A condition on points of a surface that does not depend on the normals alone."""
 
     def holds(self, points: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return whether it holds at points (k, 3) with unit normals (k, 3)."""
+        """Return whether the condition holds at points (k, 3) with unit normals (k, 3)."""
         ...
 
     def may_change(
         self, points: NDArray[np.float64], radii: NDArray[np.float64]
     ) -> NDArray[np.bool_]:
-        """Return whether it may begin or end within radii (k,) of points (k, 3)."""
+        """Return whether the condition may hold in some part of a ball, and fail in another part.
+
+        The balls have the centres `points` (k, 3) and the `radii` (k,).
+        """
         ...
 
 
@@ -70,12 +73,12 @@ class Reach:
         largest difference from it to either side, at most 90. Level ground is included.
     from_edges : float, optional
         The least distance, in L, from all edges and boundaries of faces of a part, or from the
-        boundary of a surface: that of its trim, and open sides of its domain. A smooth seam of one
-        face is no edge. Creases between the pieces of a surface are edges.
+        boundary of a surface: the boundary of its trim, and the open sides of its domain. A smooth
+        seam of one face is no edge. Creases between the pieces of a surface are edges.
     unobstructed : bool, default False
-        For a CAD part: only points that a ray from outside along the axis reaches, before it meets
-        the part elsewhere, tested against a mesh of the part, as in `Samples.unobstructed`. Faces
-        that were selected from a part are tested against the whole of it.
+        For a CAD part: only points that a ray from outside along the axis reaches before it meets
+        the part elsewhere. This is tested with a mesh of the part, as in `Samples.unobstructed`.
+        Faces that were selected from a part are tested with the whole part.
 
     Raises
     ------
@@ -125,7 +128,7 @@ class Reach:
 
     @classmethod
     def _of(cls, numbers: Sequence[float]) -> Reach:
-        """Return the reach with the `numbers` of another one."""
+        """Return the reach that has the given `_numbers`."""
         rows = np.array(numbers, dtype=np.float64).reshape(-1, 4)
         at_edges, along = ~rows[:, :3].any(axis=1), rows[:, 3] == FREE
         found = cls(from_edges=float(rows[at_edges, 3].max()) if at_edges.any() else None)
@@ -147,7 +150,7 @@ class Reach:
         return *numbers, *away, *free
 
     def _on(self, conditions: Sequence[Condition]) -> Reach:
-        """Return the reach with conditions on the points of a surface or a part."""
+        """Return a copy of the reach with conditions on the points of one surface or part."""
         found = copy(self)
         found._conditions = tuple(conditions)
         return found
@@ -158,13 +161,13 @@ class Reach:
         return min(self._caps, key=lambda cap: cap.angle)
 
     def _contains(self, normals: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return which unit normals (N, 3) are in reach; rows of NaN or 0 are not."""
+        """Return whether unit normals (N, 3) are in all caps; False for rows of NaN or 0."""
         return np.logical_and.reduce([cap.contains(normals) for cap in self._caps])
 
     def _holds(
         self, points: NDArray[np.float64], normals: NDArray[np.float64]
     ) -> NDArray[np.bool_]:
-        """Return which points (N, 3), with unit normals (N, 3), are in reach."""
+        """Return whether points (N, 3) with unit normals (N, 3) are in reach."""
         found = self._contains(normals)
         for x in self._conditions:
             found[found] = x.holds(points[found], normals[found])
@@ -178,7 +181,10 @@ class Reach:
 
 
 def _pair(values: Sequence[float], name: str, most: float) -> tuple[float, float]:
-    """Return two numbers in degrees; InputError if the second is beyond `most` or out of order."""
+    """Return a pair of angles in degrees; InputError if it is out of range or of order.
+
+    The second angle is positive and at most `most`. A `slope` is the least and the largest angle.
+    """
     first, second = finite_array(values, (2,), name).tolist()
     if not 0.0 < second <= most or (name == "slope" and not 0.0 <= first < second):
         form = "the least and the largest angle" if name == "slope" else "a direction and an angle"
@@ -187,7 +193,10 @@ def _pair(values: Sequence[float], name: str, most: float) -> tuple[float, float
 
 
 def checked_reach(reach: Any) -> Reach | None:  # noqa: ANN401
-    """Return a Reach, or a pair of an axis and an angle, as a Reach; InputError if it is none."""
+    """Return the `Reach` of a user: a Reach, a pair of an axis and an angle, or None for none.
+
+    Raises InputError for any other value.
+    """
     if reach is None or isinstance(reach, Reach):
         return reach
     try:
@@ -201,7 +210,7 @@ def checked_reach(reach: Any) -> Reach | None:  # noqa: ANN401
 
 
 def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64]:
-    """Return those of some normals that are within an angle of an axis.
+    """Return the normals, among given ones, that are within an angle of an axis.
 
     Parameters
     ----------
@@ -249,7 +258,7 @@ def cap(normals: ArrayLike, axis: ArrayLike, angle: float) -> NDArray[np.float64
 
 
 def polygon(normals: ArrayLike, corners: ArrayLike) -> NDArray[np.float64]:
-    """Return those of some normals that lie in a convex polygon on the sphere.
+    """Return the normals, among given ones, that lie in a convex polygon on the sphere.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ __all__ = [
 ]
 
 GOLDEN = (1 + math.sqrt(5)) / 2
-# The corners, the edges and the faces of an icosahedron.
+# The parts of an icosphere that threads compute: all corners (one part), each edge, each face.
 PARTS = 1 + 30 + 20
 PARTS_AT_A_TIME = 5
 
@@ -224,5 +224,5 @@ def part_of_fibonacci(
 
 
 def spiral_angle(k: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return the azimuth of the points of a Fibonacci lattice."""
+    """Return the azimuths, in radians, of the points of a Fibonacci lattice with indices k."""
     return 2.0 * math.pi * np.modf(k / GOLDEN)[0]

@@ -52,7 +52,10 @@ def as_normals(
 
 
 def unit_vector(direction: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Return three numbers, of any length but 0, as a unit vector; InputError with their name."""
+    """Return a direction (3,), of any length but 0, as a unit vector.
+
+    Raises InputError, with the `name` of the direction, if it is unusable.
+    """
     vector = finite_array(direction, (3,), name)
     if not vector.any():
         raise InputError(f"{name} is the zero vector, which has no direction.")
@@ -74,7 +77,10 @@ def in_pieces(
     threads: int | None = None,
     width: int = 3,
 ) -> NDArray[np.float64]:
-    """Return rows(first, last) (…, width), computed on threads, PIECE rows at a time."""
+    """Return the array rows(first, last), which has `width` columns.
+
+    Threads compute it, PIECE rows at a time.
+    """
     check_memory("normals", last - first)
     result = np.empty((last - first, width))
 
@@ -91,7 +97,7 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _normalized(vectors: NDArray[np.float64], largest: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return `normalized` vectors whose `largest` components are known."""
+    """Return vectors divided by their lengths; `largest` are their largest |components|."""
     exponents = np.frexp(largest)[1]
     far = np.abs(exponents) > 1
     if far.any():
@@ -117,7 +123,7 @@ def _checked_directions(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return directions as float64, and the largest component of each, in modulus.
 
-    InputError names the first unusable row, from `start` on.
+    The InputError gives the index of the first unusable row; row 0 of `values` has index `start`.
     """
     with np.errstate(over="ignore"):
         array = values.astype(np.float64, copy=False)
