@@ -48,7 +48,11 @@ class TapeWriter:
         self._spline = NO_SPLINE
 
     def write(self, name: str, *arguments: int) -> int:
-        """Return the row of an operation, by its name in `generated.elementary`, on other rows."""
+        """Return the index of the row of an operation, appending the row if it is new.
+
+        `name` is the name of the operation in `generated.elementary`; `arguments` are the rows of
+        its arguments.
+        """
         code: int = getattr(codes, name.upper())
         first = PAIRS.get(code, code)
         a, b = (*arguments, 0, 0)[:2]
@@ -59,13 +63,14 @@ class TapeWriter:
         return row
 
     def constant(self, value: float, distance: float = 0.0) -> int:
-        """Return the row of a number with an error of at most `distance`."""
+        """Return the row of a constant `value` with an error of at most `distance`."""
         return self.row(codes.CONSTANT, number=(value, distance))
 
     def spline(self, polynomials: Polynomials, turned: int = 0, number: Number = (0.0, 0.0)) -> int:
-        """Return the first of the four rows of a spline: x, y, z, and the weight.
+        """Write a spline as four rows, its x, y, z and weight, and return the first row.
 
-        If `turned`, its first parameter is total − u; `number` is the total, with its error.
+        If `turned`, the spline is evaluated at total − u in place of u; `number` is the total and
+        a bound of its error.
         """
         self._spline = polynomials
         row = self.row(codes.SPLINE, last=turned, number=number)
@@ -74,7 +79,7 @@ class TapeWriter:
         return row
 
     def power(self, row: int, halves: int) -> int:
-        """Return the row of a power whose exponent is `halves` / 2, not 0."""
+        """Return the row of a power of `row`; its exponent `halves` / 2 is not 0."""
         if halves < 0:
             return self.power(self.write("reciprocal", row), -halves)
         if halves % 2:
@@ -91,7 +96,10 @@ class TapeWriter:
         return self.write("product", self._whole_power(row, exponent - 1), row)
 
     def replay(self, tape: Tape, total: Number | None = None) -> list[int]:
-        """Write the operations of a tape, for total − u if `total` is given; return its outputs."""
+        """Write the operations of another tape, and return the rows of its outputs.
+
+        If `total` is given, total − u takes the place of u.
+        """
         rows: list[int] = []
         self._spline = tape.spline
         for (code, a, b, last), number in zip(
@@ -113,7 +121,7 @@ class TapeWriter:
         return [rows[x] for x in tape.outputs]
 
     def tape(self, outputs: Sequence[int]) -> Tape | None:
-        """Return the tape of three rows; None if it holds a constant that is not finite."""
+        """Return the tape with three rows as outputs; None if a constant in it is not finite."""
         tape = Tape(
             np.array(self._operations, dtype=np.int64),
             np.array(self._numbers),
@@ -125,7 +133,10 @@ class TapeWriter:
     def row(
         self, code: int, a: int = 0, b: int = 0, last: int = 0, number: Number = (0.0, 0.0)
     ) -> int:
-        """Return the row of an operation, by its code and the entries of a tape."""
+        """Return the index of the row with the given entries, appending the row if it is new.
+
+        The entries are those of `Tape.operations` and `Tape.numbers`.
+        """
         operation = code, a, b, last
         row = self._rows.setdefault((operation, number), len(self._operations))
         if row == len(self._operations):
@@ -137,7 +148,7 @@ class TapeWriter:
 def tape_of_steps(
     steps: Sequence[tuple[Any, ...]], outputs: Sequence[int], values: Mapping[str, float]
 ) -> Tape | None:
-    """Return the tape of steps of `symbolic.tape`, for values of the parameters."""
+    """Return the tape of steps that `symbolic.tape` has made; `values` are its parameters."""
     writer, rows = TapeWriter(), []
     for name, *arguments in steps:
         if name == "constant":
@@ -153,7 +164,10 @@ def tape_of_steps(
 
 
 def moved_tape(tape: Tape, matrix: Array, shift: Array, ends: Interval | None) -> Tape | None:
-    """Return the tape of matrix x + shift; u is reversed between `ends`, if these are given."""
+    """Return the tape of matrix x + shift, where `tape` computes x.
+
+    If `ends` is given, an interval of u, u is also reversed in this interval.
+    """
     writer, total = TapeWriter(), None
     if ends is not None:
         total = sum(ends), float(abs(sum(map(Fraction, ends)) - Fraction(sum(ends))))
@@ -169,7 +183,10 @@ def moved_tape(tape: Tape, matrix: Array, shift: Array, ends: Interval | None) -
 
 
 def _folded(tape: Tape) -> Tape | None:
-    """Return a tape with constants folded, without unused rows."""
+    """Return a tape with constant operations evaluated, and without unused rows.
+
+    Returns None if one of its numbers is not finite.
+    """
     constant = _constant_rows(tape)
     numbers = np.where(constant[:, None], _values(tape), tape.numbers)
     if not np.isfinite(numbers).all():
@@ -193,7 +210,7 @@ def _folded(tape: Tape) -> Tape | None:
 
 
 def _constant_rows(tape: Tape) -> NDArray[np.bool_]:
-    """Return which rows (k,) depend on neither u nor v."""
+    """Return a mask (k,) of the rows that depend on neither u nor v."""
     constant = np.zeros(len(tape.operations), dtype=np.bool_)
     for row, (code, a, b, _) in enumerate(tape.operations):
         constant[row] = code == codes.CONSTANT or (
@@ -203,7 +220,11 @@ def _constant_rows(tape: Tape) -> NDArray[np.bool_]:
 
 
 def bounds_over_boxes(tape: Tape, centres: Array, half_widths: Array, order: int = 2) -> Array:
-    """Return midpoints and radii (k, 2, 10, 3) of Taylor coefficients up to an order on boxes."""
+    """Return bounds of the Taylor coefficients of x(u,v), up to an order, over boxes.
+
+    Boxes are given by `centres` (k, 2) and `half_widths` (k, 2). The result (k, 2, 10, 3) has the
+    midpoint and the radius of each of 10 coefficients of x, y, z.
+    """
     middles, radii = np.empty((2, BALL * (len(tape.operations) + 1)))
     bounds = np.empty((len(centres), 2, 10, 3))
     centres, half_widths = np.array(centres, order="C"), np.array(half_widths, order="C")
@@ -213,7 +234,7 @@ def bounds_over_boxes(tape: Tape, centres: Array, half_widths: Array, order: int
 
 
 def _values(tape: Tape) -> Array:
-    """Return midpoints and radii (k, 2) of the values of all rows, at an arbitrary point."""
+    """Return midpoints and radii (k, 2) of the values of all rows at u = v = 0."""
     middles, radii = np.empty((2, BALL * (len(tape.operations) + 1)))
     place = np.zeros((1, 2))
     bounds = np.empty((1, 2, 10, 3))
