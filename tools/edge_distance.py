@@ -1,4 +1,4 @@
-"""Distances from edges and boundaries: a condition that samples are at least that far away.
+"""Distances from edges and boundaries: the condition that samples keep a distance from them.
 
 Curves are cut into short arcs, whose middles are in a k-d tree. The distance from the nearest
 middle decides most points. For the other points, Newton's method finds the nearest points on the
@@ -87,7 +87,7 @@ class AwayFrom:
 
     @property
     def most(self) -> float:
-        """The largest distance of a point that is too near to an arc from the arc's middle."""
+        """The largest distance from an arc's middle at which a point may be too near to the arc."""
         return self.distance + self.radius + float(self.errors.max())
 
     def holds(self, points: Array, normals: Array) -> Flags:

@@ -1,1 +1,1 @@
-"""Data sets of many parts: creation by several processes, and reading."""
+"""Data sets of many parts: several processes make them; `Dataset` reads them."""

@@ -243,7 +243,7 @@ def _begin(path: Path, settings: Settings, overwrite: bool) -> None:
 
 
 def _refuse_links(path: Path) -> None:
-    """Raise FileError for symbolic links: writing through them would change other folders."""
+    """Raise FileError if there are symbolic links, as writing would change other folders."""
     for folder in (path, *(path / name for name in FOLDERS)):
         with suppress(FileNotFoundError), os.scandir(folder) as entries:
             for entry in entries:
@@ -271,7 +271,7 @@ def _check_same(old: Settings, new: Settings, path: Path) -> None:
     had, wanted = (json.loads(x.to_json()) for x in (old, new))
     for then, now in ((had | {"asked": 0}, wanted | {"asked": 0}), (had["asked"], wanted["asked"])):
         for name in sorted({*then, *now}):
-            # As texts, since NaN is not equal to itself.
+            # Values are compared as texts, since NaN is not equal to itself.
             before, after = (json.dumps(x.get(name)) for x in (then, now))
             if before == after:
                 continue

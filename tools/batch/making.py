@@ -45,8 +45,8 @@ def watched(
     if dashboard is not None and not how.get("disable"):
         _Lines().write(f"Dask's dashboard: {dashboard}")
     failed = 0
-    # The first parts take longer, and parts of an earlier run take no time: the rate is a moving
-    # mean.
+    # The rate is a moving mean, since the first parts take longer, and parts of an earlier run take
+    # no time.
     with tqdm(total=parts, desc="sampling", unit="part", smoothing=0.1, **how) as bar:
         for tally in tallies:
             failed += tally.failed

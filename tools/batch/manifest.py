@@ -19,7 +19,7 @@ __all__ = [
 ]
 
 OK, FAILED = "ok", "failed"
-# Arrow's type for each type of a column.
+# The name of the Arrow type for each Python type of a column.
 TYPES = {"int": "int64", "str": "string", "float | None": "float64"}
 
 
@@ -73,7 +73,7 @@ def manifest_schema() -> Any:  # noqa: ANN401
 
 
 def manifest_table(rows: Iterable[ManifestRow]) -> Any:  # noqa: ANN401
-    """Return the rows as an Arrow table."""
+    """Return rows of the manifest as an Arrow table."""
     arrow = from_extra("pyarrow", "batch", "a data set")
     # Paths may hold bytes that are not valid UTF-8, which Arrow refuses.
     known = [

@@ -250,7 +250,7 @@ def sample_many(
 
 
 def _iterates(surfaces: Iterable[Source]) -> bool:
-    """Return whether `surfaces` can be iterated over, which arrays without dimension cannot."""
+    """Return whether `surfaces` can be iterated over; arrays of zero dimensions cannot."""
     try:
         iter(surfaces)
     except Exception:  # objects raise anything

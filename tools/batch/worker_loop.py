@@ -61,7 +61,7 @@ class Task:
 
 
 def serve(pipe: Connection, memory: float, parent: int) -> None:
-    """Answer tasks until the pipe is closed, with at most `memory` GiB."""
+    """Sample the parts of tasks until the pipe is closed, with at most `memory` GiB of memory."""
     end_with_parent("SIGKILL", parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent process
     limit(RLIMIT_DATA=int(memory * GIB))

@@ -72,7 +72,7 @@ class Tally:
 
 
 class Worker:
-    """A process that samples one part at a time; it is started when needed, and restarted.
+    """A process that samples one part at a time; it is started when needed, and again if it ended.
 
     Attributes
     ----------
@@ -187,7 +187,7 @@ def run_locally(
 
 
 def sampled(parts: Iterable[Input], crew: Sequence[Worker]) -> Generator[Tally]:
-    """Yield a tally of each part, sampled by processes.
+    """Sample parts by the processes of `crew`; yield the tally of each part.
 
     Raises FileError if the data set cannot be written.
     """

@@ -1,4 +1,4 @@
-"""`gaussmap batch`."""
+"""The command `gaussmap batch`."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _as_json(options: SimpleNamespace, tally: Tally, seconds: float) -> dict[str
 
 
 def _rows(options: SimpleNamespace, tally: Tally, seconds: float) -> list[tuple[str, str]]:
-    """Return the rows of the summary: names and sentences."""
+    """Return the rows of the summary: pairs of a name and a sentence."""
     rows = [
         (
             "data set",

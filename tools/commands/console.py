@@ -46,7 +46,7 @@ def summarize(result: Samples | Mesh, options: SimpleNamespace) -> None:
 
 
 def table(rows: Iterable[tuple[str, str]]) -> None:
-    """Print a line for each row; on a terminal, the text is wrapped in its own column."""
+    """Print a name and a sentence for each row; on a terminal, sentences are wrapped."""
     pairs = [(printable(name), printable(sentence)) for name, sentence in rows]
     width = max(len(name) for name, _ in pairs) + 2
     for name, sentence in pairs:

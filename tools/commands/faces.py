@@ -1,4 +1,4 @@
-"""`gaussmap faces`."""
+"""The command `gaussmap faces`."""
 
 from __future__ import annotations
 

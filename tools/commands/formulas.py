@@ -1,4 +1,4 @@
-"""`gaussmap formulas`."""
+"""The command `gaussmap formulas`."""
 
 from __future__ import annotations
 

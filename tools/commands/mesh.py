@@ -1,4 +1,4 @@
-"""`gaussmap mesh`."""
+"""The command `gaussmap mesh`."""
 
 from __future__ import annotations
 

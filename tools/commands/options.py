@@ -178,7 +178,7 @@ def number(text: str) -> float:
 
 
 def whole(most: int, least: int = 1) -> Callable[[str], int]:
-    """Return a parser of whole numbers within bounds."""
+    """Return a parser of whole numbers from `least` to `most`."""
 
     def read(text: str) -> int:
         try:

@@ -1,4 +1,4 @@
-"""`gaussmap plot`."""
+"""The command `gaussmap plot`."""
 
 from __future__ import annotations
 

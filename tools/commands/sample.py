@@ -1,4 +1,4 @@
-"""`gaussmap sample`."""
+"""The command `gaussmap sample`."""
 
 from __future__ import annotations
 

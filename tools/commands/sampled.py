@@ -74,7 +74,7 @@ def request_of(options: SimpleNamespace, default_count: int) -> Request:
 
 
 def named_normals(options: SimpleNamespace) -> NDArray[np.float64] | None:
-    """Return the normals that the options describe or name a file of; None without such options."""
+    """Return the normals that the options describe, or those of a file; None if there are none."""
     if options.seed is not None and options.random is None:
         raise InputError("--seed goes with --random COUNT only.")
     if options.frequency is not None:

@@ -1,4 +1,4 @@
-"""`gaussmap support`."""
+"""The command `gaussmap support`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`gaussmap surfaces`."""
+"""The command `gaussmap surfaces`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`gaussmap view`."""
+"""The command `gaussmap view`."""
 
 from __future__ import annotations
 

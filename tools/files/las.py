@@ -24,7 +24,7 @@ STEP = 2.0**-27
 LARGEST = 2**31 - 1
 # A point format of LAS 1.4 without times and colours.
 FORMAT, VERSION = 6, "1.4"
-# The position of the date that laspy writes to a file; 0 says that the date is unknown.
+# The byte offset of the date that laspy writes to a file; a date of 0 is unknown.
 DATE = 90
 # The user and the number of the record that holds the report.
 USER, RECORD = "gaussmap", 1

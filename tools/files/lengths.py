@@ -52,12 +52,12 @@ NAMES = {**{x: x for x in METRES}, **{x: unit for unit, every in SYNONYMS.items(
 
 
 def unit_named(name: str) -> str | None:
-    """Return the unit with a name used by files or users; None if the name is unknown."""
+    """Return the unit, a key of METRES, for any of its names; None if the name is unknown."""
     return NAMES.get(name.strip().lower())
 
 
 def checked_unit(unit: object) -> str:
-    """Return the unit with a name; InputError if the name is unknown."""
+    """Return the unit, a key of METRES, for any of its names; InputError if the name is unknown."""
     known = unit_named(unit) if isinstance(unit, str) else None
     if known is None:
         raise InputError(f"unit must be one of {', '.join(METRES)}, not {shown(unit)}.")

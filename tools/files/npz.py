@@ -16,7 +16,8 @@ from .reading import UnusableError
 
 __all__ = ["read_npz", "write_npz"]
 
-# To be raised when the files change such that older versions of gaussmap would misread them.
+# The version of the format. Raise it when files change so that older versions of gaussmap would
+# misread them.
 _VERSION = 1
 
 
@@ -26,8 +27,8 @@ def write_npz(samples: Samples, path: Path) -> None:
     if samples.fields != ARRAY_NAMES:
         arrays["fields"] = np.array(samples.fields)
     report = np.array(report_to_json(samples.report))
-    # An open file, since savez appends .npz to paths that end in .NPZ. Not savez_compressed: it
-    # takes forty times as long, and saves a sixth.
+    # The file is opened here, since savez appends .npz to paths that end in .NPZ. savez_compressed
+    # is not used: it takes forty times as long, and saves a sixth of the size.
     with open(path, "wb") as file:
         np.savez(file, format_version=np.int64(_VERSION), report=report, **arrays)
 

@@ -42,6 +42,6 @@ def _text(value: float | str | None) -> str:
     if isinstance(value, str) and value.startswith(FORMULA):
         value = f"'{value}"
     line = io.StringIO()
-    # With this line ending, names with line breaks are quoted.
+    # The writer quotes names with line breaks if the line ending contains both characters.
     csv.writer(line, lineterminator="\r\n").writerow(["" if value is None else value, ""])
     return line.getvalue()[:-3]

@@ -25,7 +25,7 @@ AT_A_TIME = 1 << 17
 
 
 def checked_crs(crs: str | int | None, name: str) -> Any:  # noqa: ANN401
-    """Return a CRS of rasterio for EPSG:number, a number or WKT; InputError for others."""
+    """Return a CRS of rasterio for "EPSG:number", a number or WKT; InputError for anything else."""
     if crs is None:
         return None
     rasterio = from_extra("rasterio.crs", "gis", f"{name}=...")

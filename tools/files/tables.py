@@ -43,7 +43,7 @@ def write_csv(samples: Samples, path: Path) -> None:
 
 
 def write_xyz(samples: Samples, path: Path) -> None:
-    """Write lines `x y z nx ny nz`."""
+    """Write a line `x y z nx ny nz` for each sample."""
     with open(path, "wb") as file:
         write_rows(file, "{} {} {} {} {} {}\n", [*samples.points.T, *samples.normals.T])
 

@@ -1,4 +1,4 @@
-"""Triangles for programs that know little else: .obj, .stl and .glb, which is binary glTF."""
+"""Files of triangles that most programs read: .obj, .stl and .glb, which is binary glTF."""
 
 from __future__ import annotations
 

@@ -247,7 +247,7 @@ def _inside(trim: Trim, u: Array, v: Array) -> NDArray[np.bool_]:
 
 
 def _parts(line: Array, there: NDArray[np.bool_]) -> list[Array]:
-    """Return the pieces of a line (k, 3) that consist of the segments in a mask (k − 1,)."""
+    """Return the connected pieces of a line (k, 3) whose segments are in a mask (k − 1,)."""
     ends = np.flatnonzero(np.diff(np.pad(there, 1).astype(np.int8))).reshape(-1, 2)
     return [line[first : last + 1] for first, last in ends]
 

@@ -1,4 +1,4 @@
-// From pixels to a sample, or to a normal.
+// The sample or the normal at a position in pixels.
 
 function sampleAt(plot, x, y) {
     const front = frontOf(plot), viewer = towardsViewer(front.matrix);

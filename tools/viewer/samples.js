@@ -1,6 +1,6 @@
-// Samples and their normals, linked. Picking is done here: Plotly's clicks in three dimensions come
-// when a button goes down, before it is known whether the user turns the picture, and not at all on
-// touch screens.
+// The data of samples and their normals. These scripts handle clicks themselves: Plotly reports clicks in
+// three dimensions when a button goes down, before it is known whether the user turns the picture, and not
+// at all on touch screens.
 const data = JSON.parse(document.getElementById("data").textContent);
 const byId = (name) => document.getElementById(name);
 
