@@ -77,9 +77,10 @@ def derivatives_of_extension(function: sp.Expr, order: int) -> sp.Matrix:
 
 
 def _to_second_order() -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
-    """Return a polynomial with value h, gradient dh, second derivatives h_xx … at c, and c = n.
+    """Return a polynomial in n with given derivatives at a point c, and a substitution of n for c.
 
-    It can replace any function, since first and second derivatives do not depend on higher terms.
+    At c its value is h, its gradient dh, and its second derivatives are h_xx, …. So it can replace
+    any function, since first and second derivatives at c do not depend on higher terms.
     """
     (c,) = vectors("c")
     step = n.column - c.column

@@ -171,7 +171,7 @@ def POLAR_CHART() -> Parts:
     "distance from it, along the directions of 0, 45 and 90 degrees.",
 )
 def AT_POLE() -> Parts:
-    """Solve for the 2-jet at a pole: along each direction it gives two derivatives by r."""
+    """Solve for the 2-jet at a pole, which determines two derivatives by r along each direction."""
     known = vectors(("e0", "c0", "c1", "e2", "c2"))
     e0, c0, c1, e2, c2 = known
     X = sp.symbols("X_ss X_st X_tt X_s X_t")

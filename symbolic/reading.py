@@ -79,7 +79,7 @@ def _functions(
 
 
 def _power(base: Any, exponent: Any) -> Any:  # noqa: ANN401 - SymPy has no types
-    """Return a power unless its numbers may be too large: SymPy would compute 2**(10**9) + 1."""
+    """Return a power; ReadingError if SymPy may compute huge numbers, as for 2**(10**9) + 1."""
     bits = max((_bits(x) for x in base.atoms(sp.Number)), default=1)
     for term in sp.Add.make_args(exponent):
         if term.is_number and abs(_float(term)) * max(bits, 1) > MOST_BITS:
@@ -158,7 +158,7 @@ def read(text: str, symbols: Mapping[str, Any] | None = None, exact: bool = Fals
 
 
 def refuse_unusable(expression: sp.Basic) -> None:
-    """Raise ReadingError for parts that kernels cannot compute, and for huge numbers."""
+    """Raise ReadingError if an expression has huge numbers or parts that kernels cannot compute."""
     if _depth(expression) > DEEPEST_TREE:
         raise ReadingError("it is nested too deeply")
     for part in parts(expression):

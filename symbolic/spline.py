@@ -32,7 +32,7 @@ Moments = Callable[[], Mapping[tuple[int, int], Fraction]]
 ZERO, QUARTER, HALF = Fraction(0), Fraction(1, 4), Fraction(1, 2)
 
 # Bézier points of the south triangle of a cell in the order b200, b020, b002, b110, b101, b011.
-# Quarter turns of it give the other triangles, in the order south, east, north, west.
+# Quarter turns of this triangle give the other ones, in the order south, east, north, west.
 SOUTH: dict[str, Point] = {
     "200": (-HALF, -HALF),
     "020": (HALF, -HALF),
@@ -95,10 +95,10 @@ def barycentric(point: Point, corners: Triangle) -> list[Fraction]:
 def smoothness_conditions(tiles: Iterable[Triangle]) -> list[dict[Point, Fraction]]:
     """Return the linear conditions under which Bézier ordinates belong to a C¹ piecewise quadratic.
 
-    A condition has the coefficient of each ordinate, by domain point; their sum of products is 0.
-    For an edge PQ between the triangles RPQ and SPQ, with S = αR + βP + γQ, each ordinate on the
-    side of S next to the edge is the combination of three ordinates on the side of R with the
-    weights α, β, γ. Ordinates on the common edge are shared.
+    A condition maps domain points to coefficients: the sum of the products of coefficients and
+    ordinates is 0. For an edge PQ between the triangles RPQ and SPQ, with S = αR + βP + γQ, each
+    ordinate on the side of S next to the edge is the combination of three ordinates on the side of
+    R with the weights α, β, γ. Ordinates on the common edge are shared.
     """
     by_edge: dict[frozenset[Point], list[Point]] = {}
     for tile in tiles:

@@ -90,7 +90,7 @@ class _Steps:
         self._found[symbol] = self.step_of(expression)
 
     def step_of(self, expression: sp.Expr) -> int:
-        """Return the index of the step of an expression, writing its steps."""
+        """Return the index of the step that computes an expression, appending missing steps."""
         if expression not in self._found:
             self._found[expression] = self._written(expression)
         return self._found[expression]
