@@ -10,6 +10,7 @@ from .boundary import BoundaryArc
 from .classes import PatchClass
 from .parabolic_lines import TRIANGLE, pieces_of, singular_points
 from .patches import Patches
+from .polylines import different
 from .solid_angle import by_boundary, is_wide, solid_angles, triangle_of
 
 __all__ = ["measures_of"]
@@ -55,7 +56,7 @@ def _fans_of(patch: Patches) -> list[Array]:
     border, others = _on_sides(patch, TRIANGLE), list(singular_points(patch))
     for piece in pieces_of(patch):
         polygon = _snapped(piece.corners, border)
-        places = _different([*border, *_on_sides(patch, polygon), *others])
+        places = different([*border, *_on_sides(patch, polygon), *others], DOUBLE_ROOT)
         corners = _barycentric(_fan(polygon, places))
         normals = triangle_of(np.repeat(patch.normals, len(corners), axis=0), corners)
         lengths = np.linalg.norm(normals, axis=3)
@@ -79,15 +80,6 @@ def _on_sides(patch: Patches, polygon: Array) -> list[Array]:
     return places
 
 
-def _different(places: list[Array]) -> list[Array]:
-    """Return parameter pairs without the pairs that nearly repeat an earlier pair."""
-    result: list[Array] = []
-    for place in places:
-        if all(np.abs(place - other).max() > DOUBLE_ROOT for other in result):
-            result.append(place)
-    return result
-
-
 def _snapped(polygon: Array, places: list[Array]) -> Array:
     """Move the corners of a polygon that are near singular points onto these points.
 
@@ -104,7 +96,7 @@ def _barycentric(places: Array) -> Array:
     return np.concatenate([places, 1.0 - places.sum(axis=-1, keepdims=True)], axis=-1)
 
 
-def _fan(polygon: Array, places: list[Array]) -> Array:
+def _fan(polygon: Array, places: Array) -> Array:
     """Cut a convex polygon into triangles (m, 3, 2) with the given inner points as corners."""
     centre = polygon.mean(axis=0)
     triangles = [np.stack([centre, polygon[k - 1], polygon[k]]) for k in range(len(polygon))]

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags
+from .polylines import different
 from .sign_grid import SignGrid
 
 __all__ = ["CriticalZeros", "critical_zeros"]
@@ -78,7 +79,7 @@ def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
     curving = np.abs(np.diagonal(hessian, axis1=1, axis2=2)) + 1e-300
     reach = np.clip(np.sqrt(2.0 * (np.abs(K) + error)[:, None] / curving), 0.5 * size, cell)
     return CriticalZeros(
-        _different(places[saddle & near & ~grid.flat[cells]], SAME * grid.cell),
+        different(places[saddle & near & ~grid.flat[cells]], SAME * grid.cell),
         places[touched],
         (extent * reach)[touched],
         bool(((close & ~near) | (ring & away) | (saddle & near & beside_border)).any()),
@@ -131,12 +132,3 @@ def _newton_step(gradient: Array, hessian: Array, constant: float = CONSTANT) ->
     """Return the shortest least-squares Newton steps to a zero of the gradient of K."""
     inverse = np.linalg.pinv(hessian, rcond=constant, hermitian=True)
     return np.einsum("kxy,ky->kx", inverse, gradient)
-
-
-def _different(places: Array, same: Array) -> Array:
-    """Return parameter pairs without the pairs that nearly repeat an earlier pair."""
-    kept = np.empty((0, 2))
-    for place in places:
-        if not (np.abs(kept - place) <= same).all(axis=1).any():
-            kept = np.concatenate([kept, place[None]])
-    return kept

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.repeats import repeated
 
-__all__ = ["Evaluation", "distances", "refined"]
+__all__ = ["Evaluation", "different", "distances", "refined"]
 
 Array = NDArray[np.float64]
 Evaluation = Callable[[Array], Array]
@@ -17,6 +17,15 @@ Evaluation = Callable[[Array], Array]
 # parabola requires; other curves need a second or third pass.
 PASSES = 3
 MOST_PARTS = 1000
+
+
+def different(places: Iterable[Array], same: float | Array) -> Array:
+    """Return parameter pairs without the pairs that nearly repeat an earlier pair."""
+    kept = np.empty((0, 2))
+    for place in places:
+        if not (np.abs(kept - place) <= same).all(axis=1).any():
+            kept = np.concatenate([kept, place[None]])
+    return kept
 
 
 def refined(uv: Array, evaluate: Evaluation, size: float, onto_curve: Evaluation) -> Array:

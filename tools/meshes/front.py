@@ -12,6 +12,7 @@ from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.repeats import repeated
 from ...runtime.base.trees import tree_of
 from ...runtime.directions.unit import unit_vector
+from .links import edges_of
 from .mesh import Mesh
 
 if TYPE_CHECKING:
@@ -108,8 +109,7 @@ class FreeAlong:
         a, b, c = np.moveaxis(turned[mesh.triangles, :2], 1, 0)
         chosen = mesh.triangles[cross_of(b - a, c - a) < 0.0]
         size = float(np.ptp(turned, axis=0).max())
-        sides = np.sort(chosen[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        sides, times = np.unique(sides, axis=0, return_counts=True)
+        sides, times = edges_of(chosen, len(turned))
         ends, step = turned[sides[times == 1], :2], size / STEPS
         parts = np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / step).astype(np.int64) + 1
         owner, k = repeated(parts)

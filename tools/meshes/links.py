@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["edge_numbers", "neighbours"]
+__all__ = ["edge_numbers", "edges_of", "neighbours"]
 
 Indices = NDArray[np.int64]
 
@@ -18,6 +18,12 @@ def edge_numbers(triangles: Indices, count: int) -> Indices:
     """
     one, other = triangles[:, [1, 2, 0]], triangles[:, [2, 0, 1]]
     return np.minimum(one, other) * count + np.maximum(one, other)
+
+
+def edges_of(triangles: Indices, count: int) -> tuple[Indices, Indices]:
+    """Return the edges (E, 2) between `count` vertices, and the number of triangles of each."""
+    numbers, times = np.unique(edge_numbers(triangles, count), return_counts=True)
+    return np.stack(np.divmod(numbers, count), axis=1), times
 
 
 def neighbours(triangles: Indices, may_end: NDArray[np.bool_]) -> tuple[Indices, bool]:

@@ -15,7 +15,7 @@ from ...runtime.base.scales import scale_to_one
 from ...runtime.domain.domain import Boundary, Domain, checked_domain, checked_sides
 from ...runtime.spline.spline import short_label
 from .kernels.flips import smallest_cosines, smallest_tangents
-from .links import edge_numbers
+from .links import edges_of
 from .mesh_methods import Methods
 from .texture import corner_places
 
@@ -149,9 +149,7 @@ class Mesh(Methods):
     @cached_property
     def _edges(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """The edges (E, 2), and the number of triangles of each."""
-        count = max(len(self.vertices), 1)
-        numbers, times = np.unique(edge_numbers(self.triangles, count), return_counts=True)
-        return np.stack(np.divmod(numbers, count), axis=1), times
+        return edges_of(self.triangles, max(len(self.vertices), 1))
 
     @property
     def edges(self) -> NDArray[np.int64]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import os
 import select
@@ -129,11 +128,6 @@ class Browser:
         """Wait for two frames."""
         frame = "new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => f(1))))"
         self.value(frame)
-
-    def screenshot(self, path: Path) -> None:
-        """Write what is seen to a .png file."""
-        content = self.send("Page.captureScreenshot", format="png")["data"]
-        path.write_bytes(base64.b64decode(content))
 
     def _send(self, method: str, session: str | None, **parameters: Any) -> dict[str, Any]:
         self.number += 1
