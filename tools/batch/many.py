@@ -137,8 +137,8 @@ def sample_many(
     progress : bool, default True
         Show a bar on standard error, if that is a terminal.
     on_error : {"raise", "skip", "return"}, default "raise"
-        Without `out`, for a surface that cannot be sampled: raise its error; leave it out, with a
-        warning; or yield its error in its place.
+        What to do without `out` if a surface cannot be sampled: raise its error, leave the surface
+        out with a warning, or yield the error in its place.
     out : path, optional
         The folder of the data set. All following arguments are for data sets only.
     workers : int, optional

@@ -97,7 +97,7 @@ def plot(
         Elevation and azimuth of the viewer, in degrees.
     axes : Axes3D, or (Axes3D, Axes), optional
         Existing axes to draw into: the surface only, or the surface and the sphere. They get no
-        title, legend or scale of colours. Hidden parts are left out for this view only.
+        title, legend or scale of colours. The parts that are left out are those hidden in `view`.
     normals : (S, 3) array_like, optional
         The prescribed normals of the samples: those without a sample are drawn in grey.
     face_numbers : bool, default False
