@@ -31,8 +31,8 @@ LIBRARY = 4
 class Function(NamedTuple):
     """A function `of` x, and the terms in which its derivatives are written.
 
-    `values` replaces expressions by the value y of the function and, for some functions, by a
-    second value w. `named` are terms that several derivatives share. If terms of a derivative
+    `values` replaces expressions by terms in the value y of the function and, for some functions,
+    in a second value w. `named` are terms that several derivatives share. If terms of a derivative
     cancel, the sum of their absolute values is at most `cancelling`. If the extrema of the Taylor
     coefficients are not known, `slopes` bound the derivatives of the function and of its Taylor
     coefficients.
