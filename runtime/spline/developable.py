@@ -19,11 +19,12 @@ LEAST_DENSITY = 10_000 / (4 * math.pi)
 
 @dataclass(frozen=True, eq=False)
 class CellMeasure:
-    """The cells (m n,): areas, absolute solid angles of their images, and the largest |K| nearby.
+    """The areas of cells (m n,), the solid angles of their Gaussian images, and their |K|.
 
-    K of a cell is the sum of its signed solid angles divided by its area: the spline of a
-    developable surface has elliptic and hyperbolic patches, whose solid angles cancel. This K also
-    vanishes where K changes its sign, hence the maximum over the cell and its neighbours.
+    K of a cell is the sum of the signed solid angles of its patches divided by its area: the spline
+    of a developable surface has elliptic and hyperbolic patches, whose solid angles cancel. This
+    quotient also vanishes where K changes its sign; therefore `curvatures` are maxima over each
+    cell and its neighbours. The `solid_angles` of cells are sums of absolute values.
     """
 
     areas: Array
@@ -32,7 +33,7 @@ class CellMeasure:
 
     @classmethod
     def of(cls, measure: tuple[Array, Array], cells: tuple[int, int]) -> CellMeasure:
-        """Return the measure of cells from areas and solid angles of the patches (4 m n,)."""
+        """Return the measure of cells from areas and signed solid angles of patches (4 m n,)."""
         areas, signed = (x.reshape(*cells, 4).sum(axis=2) for x in measure)
         with np.errstate(divide="ignore", invalid="ignore"):
             curvatures = np.where(areas > 0.0, np.abs(signed) / areas, 0.0)
@@ -41,10 +42,11 @@ class CellMeasure:
         return cls(measure[0].reshape(-1, 4).sum(axis=1), solid_angles, curvatures.ravel())
 
     def curved(self, density: float) -> Flags:
-        """Return which cells are curved enough to be sampled, as booleans (m n,).
+        """Return a mask (m n,) of the cells that are curved enough to be sampled.
 
-        A cell counts if |K| times the density is at least 1, where the diagonal of the bounding box
-        is the unit of length: a surface of that size with this |K| would have a sample.
+        `density` is the number of normals per steradian. A cell is curved enough if |K| times the
+        density is at least 1, where the diagonal of the bounding box is the unit of length: a
+        surface of area 1 with this |K| would have a sample.
         """
         return self.curvatures * max(density, LEAST_DENSITY) >= 1.0
 

@@ -1,4 +1,4 @@
-"""Joints of quadratic patches: edges that are one curve, and the angles between normals there."""
+"""Joints of quadratic patches: edges that two patches share, and the angles between normals."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["EDGES", "Edge", "Joints", "Topology", "linked", "merged_points"]
 
 
 class Edge(NamedTuple):
-    """Indices in a net b200, b020, b002, b110, b101, b011: an edge, and the points beside it.
+    """An edge and the control points beside it, as indices in b200, b020, b002, b110, b101, b011.
 
     The edge has the control points `start`, `middle`, `end`. The vectors from `start` to
     `start_beside`, and from `middle` to `end_beside`, point inwards.
@@ -34,7 +34,7 @@ class Edge(NamedTuple):
 
 # The edges u = 0, v = 0, w = 0, counterclockwise.
 EDGES = (Edge(1, 5, 2, 3, 4), Edge(2, 4, 0, 5, 3), Edge(0, 3, 1, 4, 5))
-# The positions of the control normals of corners, and of edges from start to end. Control normals
+# The indices of the control normals at corners, and along edges from start to end. Control normals
 # are in the order N200, N110, N101, N020, N011, N002.
 CORNER_NORMALS = (0, 3, 5)
 EDGE_NORMALS = ((3, 4, 5), (5, 2, 0), (0, 1, 3))
@@ -42,8 +42,8 @@ EDGE_NORMALS = ((3, 4, 5), (5, 2, 0), (0, 1, 3))
 PLACES = np.linspace(0.0, 1.0, 9)
 # Points closer than this, relative to the largest coordinate, are the same point.
 SAME_POINT = 2.0**-36
-# The number of points of an edge from which the nearest one to a corner is chosen, and the number
-# of Newton steps.
+# The nearest point of an edge to a corner is the nearest of this many points of the edge, improved
+# by this many Newton steps.
 TRIED, STEPS = 33, 4
 
 
@@ -77,7 +77,10 @@ class Joints(NamedTuple):
 
 
 def merged_points(points: Array) -> tuple[Array, Indices]:
-    """Return the distinct points, up to rounding, and the index among them of each point (N, 3)."""
+    """Merge points (N, 3) that are equal up to rounding.
+
+    Returns the distinct points, and for each point the index (N,) of its distinct point.
+    """
     size = float(np.abs(points).max()) * SAME_POINT
     number = np.arange(len(points))
     if size == 0.0:
@@ -111,9 +114,11 @@ def linked(count: int, one: Indices, other: Indices) -> tuple[int, Indices]:
 
 @dataclass(frozen=True, eq=False)
 class Topology:
-    """Nets (T, 6, 3), the indices (T, 6) of their points, and their control normals (T, 6, 3).
+    """How the patches of a spline of nets are joined.
 
-    Joints whose normals differ by at most `smooth` degrees are smooth.
+    `nets` (T, 6, 3) are the control nets, `numbers` (T, 6) the indices of their points, `normals`
+    (T, 6, 3) their control normals. Joints where the normals of both patches differ by at most
+    `smooth` degrees are smooth.
     """
 
     nets: Array
@@ -123,13 +128,16 @@ class Topology:
 
     @cached_property
     def _ends(self) -> Indices:
-        """Start, end and middle (3 T, 3) of all edges; edge j of patch k is in row 3 k + j."""
+        """The indices of start, end and middle (3 T, 3) of all edges.
+
+        Edge j of patch k is in row 3 k + j.
+        """
         rows = [[edge.start, edge.end, edge.middle] for edge in EDGES]
         return self.numbers[:, rows].reshape(-1, 3)
 
     @cached_property
     def pairs(self) -> Indices:
-        """The two edges (J, 2) of each joint, as rows 3 k + j."""
+        """The two edges (J, 2) of each joint; edge j of patch k has the index 3 k + j."""
         start, end, middle = self._ends.T
         keys = np.stack([np.minimum(start, end), np.maximum(start, end), middle], axis=1)
         rows = np.flatnonzero(start != end)  # a collapsed edge is not a joint
@@ -164,15 +172,15 @@ class Topology:
 
     @cached_property
     def is_point(self) -> Flags:
-        """Which edges (3 T,) are collapsed to a point."""
+        """Whether edges (3 T,) are collapsed to a point."""
         return (self._ends[:, :1] == self._ends[:, 1:]).all(axis=1)
 
     @cached_property
     def smooth_pairs(self) -> Indices:
         """Pairs of edges, as in `pairs`, along which the normals are the same.
 
-        They are the pairs of the smooth joints, and pairs of the two other edges of patches with a
-        collapsed edge.
+        They are the two edges of each smooth joint and, for each patch with a collapsed edge, its
+        two other edges.
         """
         rows = np.flatnonzero(self.is_point)
         patch, edge = np.divmod(rows, 3)
@@ -182,10 +190,11 @@ class Topology:
 
     @cached_property
     def owner(self) -> tuple[Indices, NDArray[np.int8]]:
-        """The edge that owns the boundary cone of each edge (3 T,), and a sign.
+        """For each edge (3 T,), the edge that owns its boundary cone, and a sign.
 
-        Both edges of a smooth joint have the same owner, whose cone decides on which side a normal
-        is. The sign is that of the quadratic form of an edge relative to the form of its owner.
+        Both edges of a smooth joint have the same owner, whose cone decides on which side of the
+        joint a normal is. The sign is −1 if the quadratic form of the edge (U, V or W) is negative
+        where the form of its owner is positive.
         """
         owner, side = np.arange(3 * len(self.nets)), np.ones(3 * len(self.nets), np.int8)
         pairs = self.pairs[self.joints.smooth]
@@ -197,16 +206,17 @@ class Topology:
 
     @cached_property
     def on_border(self) -> Flags:
-        """Which edges (3 T,) are boundaries or creases: neither collapsed nor in `smooth_pairs`."""
+        """Whether edges (3 T,) are boundaries or creases: not collapsed, not in `smooth_pairs`."""
         free = ~self.is_point
         free[self.smooth_pairs.ravel()] = False
         return free
 
     @cached_property
     def corners(self) -> tuple[Array, Indices]:
-        """Unit normals at corners, shared by patches that meet smoothly, and their indices (T, 3).
+        """Unit normals at corners, and for each corner of a patch the index (T, 3) of its normal.
 
-        A normal is 0 if no patch has a normal at that corner.
+        Patches that meet smoothly at a corner share a normal there. A normal is 0 if no patch has a
+        normal at the corner.
         """
         pairs = self.smooth_pairs
         # Edge j runs from corner j + 1 to corner j + 2.
@@ -225,9 +235,9 @@ class Topology:
 
     @cached_property
     def pole_corner(self) -> Indices:
-        """The singular corner (T,) of each patch at a smooth pole, −1 for none.
+        """For each patch (T,), the index of its singular corner at a smooth pole, or −1.
 
-        Patches with a collapsed edge have none: their Gaussian images are curves.
+        A patch with a collapsed edge has no such corner: its Gaussian image is a curve.
         """
         shared, fan = self.corners
         own = _unit(self.normals[:, CORNER_NORMALS].reshape(-1, 3)).reshape(-1, 3, 3)
@@ -237,10 +247,10 @@ class Topology:
 
     @cached_property
     def polar(self) -> tuple[Indices, Indices]:
-        """The end, 0 or 1, of each edge (3 T,) at a smooth pole, and an edge with the same tangent.
+        """For each edge (3 T,), its end at a smooth pole, and the first edge with its tangent.
 
-        The end is −1 if neither or both are poles. Edges have the same tangent at a pole if they
-        form a joint, or meet at a singular corner of a patch; the first of them stands for all.
+        The end is 0 or 1, and −1 if no end or both ends are at poles. Edges have the same tangent
+        at a pole if they form a joint, or meet at a singular corner of a patch.
         """
         shared, fan = self.corners
         row = np.arange(3 * len(self.nets))
@@ -259,7 +269,7 @@ class Topology:
         return found, first[group]
 
     def _normals_at_points(self, rows: Indices) -> Array:
-        """Return the unit normals (k, 3) of patches at their collapsed edges, in rows 3 k + j."""
+        """Return the unit normals (k, 3) of patches at collapsed edges with the indices `rows`."""
         patch, edge = np.divmod(rows, 3)
         beside = np.array([[x.start, x.start_beside, x.end_beside] for x in EDGES])[edge]
         start, first, second = np.moveaxis(self.nets[patch[:, None], beside], 1, 0)
@@ -269,9 +279,9 @@ class Topology:
 
     @cached_property
     def angles(self) -> Array:
-        """The largest angle (T,), in radians, between normals of a patch and of smooth neighbours.
+        """The largest angle (T,), in radians, between normals of each patch and of its neighbours.
 
-        Normals are compared along smooth joints, and with the shared normals at corners.
+        The normals are compared along smooth joints, and with the shared normals at corners.
         """
         found = np.zeros(len(self.nets))
         joints = self.joints
@@ -308,13 +318,16 @@ class Topology:
 
 
 def _firsts(numbers: Indices) -> Iterator[tuple[int, int]]:
-    """Yield for each index its first position in the flattened array, and the index."""
+    """For each index in `numbers`, yield its first position in the flat array, and the index."""
     values, places = np.unique(numbers, return_index=True)
     return zip(places.tolist(), values.tolist(), strict=True)
 
 
 def _touches(curve: Array, point: Array, size: float) -> bool:
-    """Return whether a point is closer to a parabola than `size`, away from its ends."""
+    """Return whether a parabolic arc is nearer to a point than `size`, but not at its ends.
+
+    `curve` (3, 3) are the Bézier points of the arc.
+    """
     start, middle, end = curve - point
     a, b = start - 2.0 * middle + end, 2.0 * (middle - start)
     t = np.linspace(0.0, 1.0, TRIED)[:, None]
@@ -335,7 +348,7 @@ def _normals_along(normals: Array, edges: Indices) -> Array:
 
 
 def _largest_angles(left: Array, right: Array) -> Array:
-    """Return the largest angle (J,) between vectors (J, k, 3), without zero vectors."""
+    """Return the largest angle (J,) between vectors (J, k, 3), in radians; 0 has no angle."""
     left, right = _unit(left), _unit(right)
     known = left.any(axis=-1) & right.any(axis=-1)
     chord = np.where(known, np.linalg.norm(left - right, axis=-1), 0.0)
@@ -343,7 +356,7 @@ def _largest_angles(left: Array, right: Array) -> Array:
 
 
 def _unit(vectors: Array) -> Array:
-    """Return vectors (…, 3) of unit length, 0 for those that are rounding errors."""
+    """Return vectors (…, 3) divided by their lengths; vectors that are rounding errors become 0."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     regular = lengths > SAME_POINT
     return np.where(regular, vectors / np.where(regular, lengths, 1.0), 0.0)

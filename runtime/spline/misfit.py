@@ -18,11 +18,11 @@ class Misfit:
     ----------
     distance : float
         The largest distance, in L, at thousands of points that the fit did not use, including
-        hundreds on each of several lines; for data, at all points
-        that are not trimmed off nor depend on missing ones.
+        hundreds on each of several lines. For data, at all data points, except points that are
+        trimmed off or where the spline depends on missing points.
     rms : float
         The root mean square of the distance, in L, over points that are evenly distributed in the
-        domain; for data, over those.
+        domain. For data, over the same data points as `distance`.
     angle : float or None
         The largest angle, in degrees, between the normals of spline and surface at parameters other
         than poles and singular points; None for data, which have no normals.

@@ -34,13 +34,13 @@ __all__ = [
 # The usual values of missing elevations.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))
 USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)
-# A lowest or highest value that differs from the given `nodata` by at most this part of itself may
-# be the same number, printed with six digits.
+# If the lowest or the highest value differs from the given `nodata` by at most this fraction, it
+# may be the number that means missing data: the given one may be a copy with six digits.
 NEAR = 1e-5
-# The least number of heights in a block of missing data, and the least part of all heights.
+# A block of missing data has at least this many heights, and at least this fraction of all heights.
 FEWEST, SMALLEST = 16, 1e-3
-# Shores are about as steep as the land. A block is missing data if the median step at its boundary
-# exceeds the QUANTILE of the steps elsewhere by this factor.
+# A block counts as missing data if the median step of height at its boundary exceeds the QUANTILE
+# of the steps elsewhere by a factor of STEEPER. (Shores of water are about as steep as the land.)
 STEEPER, QUANTILE = 3.0, 0.99
 # The number of rows of points next to a pole on which all patches around it depend.
 ROWS_AT_POLE = 3
@@ -48,9 +48,9 @@ ROWS_AT_POLE = 3
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """The patches of a spline on a grid of cells that do not depend on missing points.
+    """The patches of a spline that do not depend on missing points.
 
-    `patches` (4 m n,) is True for them.
+    `patches` (4 m n,) is True for these patches; `cells` (m, n) are the numbers of cells.
     """
 
     domain: Domain
@@ -65,7 +65,7 @@ class Known:
         return self.patches[found]
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
-        """Return the cells (m, n) that the boundary intersects; None for cells of another grid."""
+        """Return a mask (m, n) of the cells at the boundary; None for cells of another grid."""
         if (domain, cells) != (self.domain, self.cells):
             return None
         least, most = extremes_around(self.patches.reshape(*cells, 4).astype(np.float64))
@@ -85,9 +85,10 @@ def checked_nodata(nodata: Any) -> float:  # noqa: ANN401
 
 
 def without_nodata(points: Array, nodata: object, name: str) -> Array:
-    """Return points or elevations with NaN in place of `nodata`; warn of likely missing data.
+    """Return points or elevations with NaN in place of `nodata`.
 
-    It also warns if no value equals `nodata`, which may have been rounded.
+    If `nodata` is None, or equals no value, which may be due to rounding, this warns of values that
+    look like missing data.
     """
     if nodata is None:
         _warn_of_nodata(points, name)
@@ -127,10 +128,11 @@ def _warn(text: str) -> None:
 
 
 def _suspicious_block(heights: Array) -> tuple[float, int] | None:
-    """Return the height of a block of missing data in heights (m, n), and its size; or None.
+    """Return the value of a block of missing data in heights (m, n), and its size; or None.
 
-    The block is a connected area of the lowest or the highest value, which is 0 unless the area
-    reaches the boundary of the grid. Heights jump at its boundary, unlike at a lake or the sea.
+    The block is a connected area of the lowest or of the highest value. It reaches the boundary of
+    the grid, unless its value is 0. The size is its number of heights. Heights jump at the boundary
+    of the block, unlike at the shore of a lake or of the sea.
     """
     known = ~np.isnan(heights)
     if not known.any():
@@ -147,7 +149,7 @@ def _suspicious_block(heights: Array) -> tuple[float, int] | None:
 
 
 def _largest_block(same: Flags) -> Flags:
-    """Return the largest connected part of flags (m, n)."""
+    """Return the largest connected area where flags (m, n) are True, as flags (m, n)."""
     if same.sum() < FEWEST:
         return np.zeros_like(same)
     from scipy.ndimage import label
@@ -157,7 +159,7 @@ def _largest_block(same: Flags) -> Flags:
 
 
 def _jumps(heights: Array, block: Flags) -> bool:
-    """Return whether steps at the boundary of a block are much higher than those elsewhere."""
+    """Return whether steps of height at the boundary of a block are much larger than elsewhere."""
     across, elsewhere = [], []
     for axis in (0, 1):
         steps, inside = np.abs(np.diff(heights, axis=axis)), np.diff(block, axis=axis)
@@ -212,7 +214,10 @@ def known_of_values(
 
 
 def known_of(inner: Array, border: Border, domain: Domain, boundary: Boundary) -> Known:
-    """Return the patches without NaN in their control nets, from coefficients (m, n, 3)."""
+    """Return the patches whose control nets have no NaN.
+
+    `inner` (m, n, 3) are coefficients and `border` the boundary, both with NaN for missing values.
+    """
     bad: Flags = np.any(np.isnan(inner), axis=2)
     spread_missing(bad, boundary, 1)  # the coefficients around a pole depend on one another
     inner[bad] = np.nan

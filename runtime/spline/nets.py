@@ -33,8 +33,8 @@ PARTS = 4
 class NetSpline(PatchSpline, NetMethods):
     """A spline of T quadratic Bézier triangles on any triangulation; made by `Spline.from_nets`.
 
-    The parameters `uv` of its samples are those in the triangle of their patch, u, v ≥ 0 and
-    u + v ≤ 1. Functions that need a grid of cells raise InputError.
+    The parameters `uv` of a sample refer to its patch: u, v ≥ 0 and u + v ≤ 1. Functions that need
+    a grid of cells raise InputError.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class NetSpline(PatchSpline, NetMethods):
     def checked(
         cls, points: ArrayLike, triangles: ArrayLike | None, name: str, smooth: float
     ) -> NetSpline:
-        """Make a spline of the arguments of `Spline.from_nets`."""
+        """Make a spline from the arguments of `Spline.from_nets`, after checking them."""
         limit = finite_number(smooth, "smooth")
         if not 0.0 <= limit < 90.0:
             raise InputError(f"smooth must be an angle from 0 to 90 degrees, not {limit:g}.")
@@ -111,7 +111,7 @@ class NetSpline(PatchSpline, NetMethods):
 
     @cached_property
     def vectors(self) -> Array:
-        """The vectors a, b, c, d, e (T, 5, 3) of eq. (8), times `scale`."""
+        """The vectors a, b, c, d, e (T, 5, 3) of all patches (paper, eq. (8)), times `scale`."""
         return vectors_of_nets((self.control_nets - self.control_nets[:, 2:3]) * self.scale)
 
     @cached_property
@@ -139,7 +139,7 @@ class NetSpline(PatchSpline, NetMethods):
         return math.hypot(*np.ptp(points, axis=0)), math.isqrt(self.patches)
 
     def patch(self, rows: NDArray[np.int64] | slice = slice(None)) -> Patch:
-        """Return the vectors of given patches for formulas, times `scale`; p is 0."""
+        """Return the vectors of the patches `rows` times `scale`, for formulas; p is 0."""
         a, b, c, d, e = np.moveaxis(self.vectors[rows], 1, 0)
         zero = np.zeros_like(a)
         return Patch(vector(a), vector(b), vector(c), vector(d), vector(e), vector(zero))
@@ -154,8 +154,8 @@ class NetSpline(PatchSpline, NetMethods):
     ) -> tuple[Array, NDArray[np.bool_]]:
         """Return unnormalized normals (k, 3) of patches (k,) at parameters u, v (k, 2).
 
-        At a singular point, which has no normal, return that of a nearby point towards the centre;
-        the second array (k,) marks these points.
+        At a singular point, which has no normal, the result is the normal of a nearby point towards
+        the centre of the patch. The second array (k,) is True for singular points.
         """
         patch = self.patch(patches)
 
@@ -170,7 +170,10 @@ class NetSpline(PatchSpline, NetMethods):
 
     @property
     def cap(self) -> tuple[Array, float]:
-        """A unit vector, and its least cosine with normals; −1 unless all cosines are positive."""
+        """A unit vector, the axis, and the least cosine of angles between axis and normals.
+
+        The cosine is −1 unless all normals are within 90° of the axis.
+        """
         control = self.topology.normals.reshape(-1, 3)
         lengths = np.linalg.norm(control, axis=1)
         unit = control[lengths > 0.0] / lengths[lengths > 0.0, None]

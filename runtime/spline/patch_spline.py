@@ -54,5 +54,5 @@ class PatchSpline(Immutable, ABC):
 
     @property
     def noise(self) -> float:
-        """A bound of the rounding of the coordinates, times `scale`."""
+        """A bound of the rounding errors of coordinates, times `scale`."""
         return DATA_ERROR * (self._largest * self.scale)

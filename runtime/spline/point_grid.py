@@ -17,14 +17,15 @@ from .spline import Spline
 
 __all__ = ["checked_spacing", "points_of_elevations", "spline_of_points"]
 
-# A last row this close to the first, relative to the distance of two rows, repeats the first row.
+# If the last row is this close to the first row, relative to the distance between the first two
+# rows, it repeats the first row.
 REPEATED = 1e-3
 
 
 def spline_of_points(
     points: NDArray[np.float64], boundary: Boundary, name: str, domain: Domain | None = None
 ) -> Spline:
-    """Return the spline of points (m, n, 3) at the vertices of its cells."""
+    """Return the spline that approximates points (m, n, 3), given at the vertices of its cells."""
     _check(points, boundary, name)
     if domain is None:
         m, n = cells_between(points.shape, boundary)
@@ -59,7 +60,10 @@ def points_of_elevations(
 
 
 def checked_spacing(spacing: Sequence[float] | None, count: int) -> tuple[float, float]:
-    """Return the spacing of elevations, at most `count` along x and y; InputError if invalid."""
+    """Return the spacing dx, dy of at most `count` elevations along x and along y.
+
+    Raises InputError if it is invalid.
+    """
     try:
         dx, dy = (as_float(x) for x in (() if spacing is None else spacing))
     except Exception:  # `float` may raise anything
@@ -93,7 +97,7 @@ def _check(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
 
 
 def _farthest(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
-    """Return the largest difference; NaN if all differences are missing."""
+    """Return the largest difference of coordinates; NaN if all differences are NaN."""
     return float(np.fmax.reduce(np.abs(first - second), axis=None))
 
 

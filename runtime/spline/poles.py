@@ -1,12 +1,13 @@
-"""Poles of splines: sides that are one point, around which the surface is smooth.
+"""Poles of splines: collapsed sides around which the surface is smooth.
 
 The coefficients around a pole are exactly in one plane, so that the pole has one normal. The
-patches next to a pole have an edge that is collapsed to a point p. With the first ring of
-coefficients at p + d and the ghosts at p − d, the normal there is along the cross product of two
-sums of neighbouring d: the same for all patches if all d lie in one plane, and the Gaussian images
-close around it without a gap. On a smooth surface the distances of d from such a plane are of third
-order in the size of a cell. They must be exactly zero: therefore d is rounded to x a + y b with
-integers x, y and two vectors a, b of integers, all in units of the rounding of the coordinates.
+patches next to a pole have an edge that is collapsed to a point p. The first ring of coefficients
+is at p + d, with a vector d for each coefficient, and the ghosts are at p − d. The normal of a
+patch at p is along the cross product of two sums of neighbouring vectors d. If all vectors d lie in
+one plane, it is the same for all patches, and their Gaussian images close around it without a gap.
+On a smooth surface the distances of d from such a plane are of third order in the size of a cell.
+They must be exactly zero: therefore each d is rounded to x a + y b with integers x, y and two
+vectors a, b of integers, all in units of the rounding of the coordinates.
 """
 
 from __future__ import annotations
@@ -27,13 +28,13 @@ __all__ = ["broken_poles", "close_pole", "ring_around", "spread_missing", "witho
 # The number of pairs a, b from which the plane closest to the ring is chosen.
 CANDIDATES = 4096
 # The length of a and b is the root of this times the distance of neighbours in the ring. With
-# longer vectors the plane is closer to that of the ring; with shorter ones their multiples are
-# closer to its coefficients.
+# longer vectors, the plane of a and b is closer to the plane of the ring; with shorter vectors,
+# points x a + y b are closer to the coefficients of the ring.
 BALANCE = 1.0 / 32.0
 
 
 def broken_poles(points: Array, boundary: Boundary, axis: int) -> list[int]:
-    """Return the ends, 0 or 1, of an axis that are declared poles, but not one point of a grid."""
+    """Return the ends, 0 or 1, of u (axis 0) or v that are declared poles, but not collapsed."""
     rows, found = np.swapaxes(points, 0, axis), list[int]()
     for end in (0, 1):
         row = rows[-end][~np.isnan(rows[-end]).any(axis=1)]
@@ -43,7 +44,7 @@ def broken_poles(points: Array, boundary: Boundary, axis: int) -> list[int]:
 
 
 def spread_missing(bad: Flags, boundary: Boundary, rows: int) -> None:
-    """Mark all points of the `rows` next to a pole as bad if any of them is, in flags (m, n)."""
+    """Set all flags `bad` (m, n) in the `rows` next to a pole if one of these flags is set."""
     for axis, end in np.ndindex(2, 2):
         near = np.swapaxes(bad, 0, axis)[-rows:] if end else np.swapaxes(bad, 0, axis)[:rows]
         if boundary[axis][end] == "pole" and near.any():
@@ -51,7 +52,7 @@ def spread_missing(bad: Flags, boundary: Boundary, rows: int) -> None:
 
 
 def without_poles(boundary: Boundary) -> Boundary:
-    """Return boundary conditions with open sides in place of poles, which refuse NaN."""
+    """Return boundary conditions with open sides in place of poles: poles do not allow NaN."""
 
     def pair(ends: BoundaryPair) -> BoundaryPair:
         return ("open", "open") if "pole" in ends else ends
@@ -80,7 +81,7 @@ def ring_around(ring: Array) -> tuple[Array, Array]:
 
 
 def _planar(offsets: Array) -> Array | None:
-    """Return integer vectors (m, 3) in one plane; None if they do not run around 0 once."""
+    """Return offsets (m, 3) moved into one plane, as integers; None if they do not run around 0."""
     size = float(np.abs(offsets).max())
     axes, radius = _axes(offsets / (size or 1.0))
     length = math.sqrt(BALANCE * 2.0 * math.pi * radius * size / len(offsets))
@@ -94,7 +95,7 @@ def _planar(offsets: Array) -> Array | None:
 
 
 def _axes(offsets: Array) -> tuple[Array, float]:
-    """Return an orthonormal basis (2, 3) of the plane of a ring, and the smaller radius in it.
+    """Return an orthonormal basis (2, 3) of the plane of a ring, and the ring's smaller radius.
 
     The normal of the plane is the vector area of the ring, which turns counterclockwise around it.
     """
@@ -107,7 +108,10 @@ def _axes(offsets: Array) -> tuple[Array, float]:
 
 
 def _lattice(axes: Array, length: float) -> Array:
-    """Return two integer vectors (2, 3) in a plane close to that of axes."""
+    """Return two integer vectors (2, 3) that span a plane close to the plane of `axes` (2, 3).
+
+    Their lengths are between `length` and twice `length`, up to rounding.
+    """
     lengths = length * np.linspace(1.0, 2.0, CANDIDATES)
     pairs = np.round(lengths[:, None, None] * axes)
     normals = np.cross(pairs[:, 0], pairs[:, 1])

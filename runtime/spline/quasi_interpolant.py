@@ -32,8 +32,8 @@ __all__ = [
 ]
 
 
-# Missing values are extrapolated over this many steps: a patch depends on values two cells away,
-# and the nearest known value may be one cell away from it.
+# Missing values are extrapolated over this many steps, 2 + 1: a patch depends on values two cells
+# away, and the nearest known value may be one cell away from the patch.
 FAR = 3
 
 
@@ -48,7 +48,7 @@ class Values(NamedTuple):
     middles: Sides
 
     def filled_by(self, fill: Callable[[Array], Array]) -> Values:
-        """Return the values, with missing ones filled in by `continued` or `completed`."""
+        """Return the values with missing values filled in; `fill` is `continued` or `completed`."""
         g = fill(self.vertices)
         rows = g[:, 0], g[:, -1], g[0], g[-1]
         sides = zip(self.middles, rows, strict=True)
@@ -59,7 +59,10 @@ class Values(NamedTuple):
 def values_at(
     function: Callable[[Array, Array], Array], domain: Domain, cells: tuple[int, int]
 ) -> Values:
-    """Return the values of function(u, v) → (..., 3); InputError if the domain is too narrow."""
+    """Evaluate function(u, v) → (..., 3) on the cells of a domain.
+
+    Raises InputError if the domain is too narrow for the cells in float64.
+    """
     lines = []
     for along, (low, high), count in zip("uv", domain, cells, strict=True):
         line = low + (high - low) * (np.arange(2 * count + 1) / (2 * count))
@@ -75,14 +78,14 @@ def values_at(
 
 
 def from_values(values: Values) -> tuple[Array, Border]:
-    """Return the coefficients (m, n, 3) and the boundary from values at centres and vertices."""
+    """Return the inner coefficients (m, n, 3) and the border, from values on cells."""
     inner = np.empty_like(values.centres)
     kernels.fit_centres_and_vertices(values.centres, values.vertices, inner)
     return inner, Border.of_values(values.middles, values.vertices)
 
 
 def from_grid(points: Array, boundary: Boundary) -> tuple[Array, Border]:
-    """Return the coefficients and the boundary from values at the vertices only."""
+    """Return the inner coefficients and the border, from values at vertices only."""
     ringed = vertices_with_ring(points, boundary)
     inner = np.empty((ringed.shape[0] - 3, ringed.shape[1] - 3, 3))
     kernels.fit_vertices(ringed, inner)
@@ -130,7 +133,11 @@ def filled(points: Array) -> Array:
 
 
 def completed(points: Array) -> Array:
-    """Return points (m, n, 3), with missing ones from the nearest quadratic patch."""
+    """Return points (m, n, 3), in which a quadratic polynomial replaces missing points.
+
+    The polynomial is fitted to the known points by least squares. If no point is known, all
+    become 0.
+    """
     bad: Flags = np.any(np.isnan(points), axis=2)
     if not bad.any() or bad.all():
         return np.nan_to_num(points)
@@ -143,10 +150,11 @@ def completed(points: Array) -> Array:
 
 
 def continued(points: Array) -> Array:
-    """Return points (m, n, 3), where some missing ones, NaN or infinite, are extrapolated.
+    """Return points (m, n, 3), in which some missing points, NaN or infinite, are extrapolated.
 
-    Up to FAR steps from a known point they lie on a quadratic through the three known points of one
-    line; elsewhere they are NaN.
+    A missing point up to FAR steps from the nearest known point gets the value of the quadratic
+    through three points on the line through both, from the nearest known point on. Other missing
+    points become NaN.
     """
     bad: Flags = np.any(~np.isfinite(points), axis=2)
     places, nearest = np.argwhere(bad), _nearest(bad).T
@@ -160,7 +168,7 @@ def continued(points: Array) -> Array:
 
 
 def _nearest(bad: Flags) -> NDArray[np.int32]:
-    """Return the indices (2, k) of the known values nearest to the k missing ones."""
+    """Return, for each of k missing values, the indices (2, k) of the nearest known value."""
     from scipy.ndimage import distance_transform_edt
 
     nearest: NDArray[np.int32] = np.empty((2, *bad.shape), dtype=np.int32)

@@ -247,7 +247,7 @@ class Spline(PatchSpline, Methods):
 
     @cached_property
     def inside(self) -> Inside | None:
-        """The part of each patch inside the trim, None without one."""
+        """The share of each patch that is inside the trim; None without a trim."""
         return self.trim and Inside.of(self.trim, self.frame, self.cells, self.name)
 
     def _evaluate(
@@ -299,7 +299,7 @@ class Spline(PatchSpline, Methods):
         return points, normals
 
     def in_cells(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return parameters as numbers of cells from the corner of the domain.
+        """Return parameters in units of cells, from the lower corner of the domain.
 
         Parameters
         ----------

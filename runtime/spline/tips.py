@@ -1,8 +1,8 @@
-"""Tips of splines: edges of patches that are one point, as at the apex of a cone.
+"""Tips of splines: edges of patches that are collapsed to a point, as at the apex of a cone.
 
 A quadratic patch with such an edge is developable: its normals depend only on one parameter, the
-distance from the tip. It has no samples, since all other normals that it seems to have are rounding
-errors. Smooth poles, with one normal, are no tips.
+distance from the tip. Such a patch has no samples: its normals form a curve, and other normals in
+its Gaussian image are rounding errors. Smooth poles, which have one normal, are no tips.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from .spline import Spline
 
 __all__ = ["Tips", "are_one", "collapsed_sides", "is_point", "tips_of"]
 
-# Points of a surface within this distance, relative to its size, are one point.
+# Points of a surface within this distance, relative to its size, count as one point.
 SAME_POINT = 1e-9
 
 
 class Tips(NamedTuple):
-    """The tips of a spline: `points` (T, 3), and the patches at them as flags (patches,).
+    """The tips of a spline, at `points` (T, 3), and the patches at tips as flags (patches,).
 
-    A `collapsed` patch has an edge that is a tip, a `touching` patch has a corner there. Points
-    within the distance `same` of a tip are that tip.
+    A `collapsed` patch has an edge that is collapsed to a tip; a `touching` patch has a corner at a
+    tip. Points within the distance `same` of a tip count as the tip.
     """
 
     points: Array
@@ -43,17 +43,17 @@ class Tips(NamedTuple):
 
 
 def is_point(spline: Spline, axis: int, end: int) -> bool:
-    """Return whether the lower (0) or upper (1) side of the domain along an axis is one point."""
+    """Return whether the lower (end 0) or upper (1) side of u (axis 0) or v (1) is collapsed."""
     return are_one(_side(spline, axis, end), _size(spline))
 
 
 def are_one(points: Array, size: float) -> bool:
-    """Return whether points (k, 3) are one point, for a surface of a given size."""
+    """Return whether points (k, 3) count as one point, relative to the `size` of their surface."""
     return bool(np.ptp(points, axis=0).max() <= SAME_POINT * size)
 
 
 def collapsed_sides(spline: Spline) -> list[tuple[int, int]]:
-    """Return the axis and the end, 0 or 1, of each open side that is a single point."""
+    """Return the axis and the end, 0 or 1, of each open side that is collapsed to a point."""
     return [
         (axis, end)
         for axis, end in np.ndindex(2, 2)
@@ -71,7 +71,7 @@ def tips_of(spline: AnySpline) -> Tips | None:
 
 
 def _of_grid(spline: Spline) -> Tips | None:
-    """Return the tips of a spline on a grid of cells: open sides that are one point."""
+    """Return the tips of a spline on a grid of cells: its collapsed open sides."""
     sides = collapsed_sides(spline)
     if not sides:
         return None
@@ -114,7 +114,7 @@ def _of_nets(spline: NetSpline) -> Tips | None:
 
 
 def _side(spline: Spline, axis: int, end: int) -> Array:
-    """Return the points on a side, at the corners of cells and halfway between."""
+    """Return points (k, 3) on a side: at the corners of cells, and halfway between these."""
     along = np.linspace(*spline.domain[1 - axis], 2 * spline.cells[1 - axis] + 1)
     place = np.full_like(along, spline.domain[axis][end])
     return spline.evaluate(*((place, along) if axis == 0 else (along, place)))
