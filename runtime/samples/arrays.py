@@ -233,7 +233,7 @@ class SampleArrays:
 
     @property
     def _regular(self) -> NDArray[np.bool_]:
-        """(N,) bool array: the samples that represent a part of the surface."""
+        """(N,) bool array: whether the component is regular: such samples represent some area."""
         component = self.arrays().get("component")
         return np.ones(len(self), bool) if component is None else component == Component.REGULAR
 
@@ -284,7 +284,7 @@ class SampleArrays:
         return (self[k : k + 1] for k in range(len(self)))
 
     def __getitem__(self, key: ArrayLike | slice) -> Self:
-        """Return the rows of a slice, a mask, an index array or a number."""
+        """Return the samples that a slice, a mask, an array of indices or one index selects."""
         rows = key if isinstance(key, slice) else checked_rows(key, len(self))
         arrays = {name: array[rows] for name, array in self.arrays().items()}
         return type(self)(
@@ -330,9 +330,10 @@ def _is_parabolic(samples: SampleArrays) -> NDArray[np.bool_]:
 
 
 def _size_and_error(samples: SampleArrays) -> tuple[float, float]:
-    """Return the diagonal of the bounding box, and the error of a curvature relative to 1/D.
+    """Return the diagonal D of the bounding box, and the error of curvatures in units of 1/D.
 
-    Without a spline, the box is that of the points. Without points as well, both numbers are 0.
+    The box contains the spline, or the points if there is no spline. If there are no points either,
+    both numbers are 0.
     """
     spline = samples.spline
     if spline is not None:

@@ -189,7 +189,7 @@ def new_field(
 ) -> NDArray[Any]:
     """Return an uninitialized array for a field of `count` samples.
 
-    It is a part of the same field of `memory`, if this is large enough and has the same dtype.
+    The array is a part of `memory[name]`, if that array is large enough and has the same dtype.
     """
     import numpy as np
 
@@ -204,7 +204,7 @@ def regular(
     fields: Sequence[str],
     memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> dict[str, NDArray[Any]]:
-    """Return the field `component` of `count` regular points; no field if it is not requested."""
+    """Return {"component": codes of `count` regular points}, or {} if it is not in `fields`."""
     found = {x: new_field(x, count, dtype_of(x, "f8"), memory) for x in GIVEN_NAMES if x in fields}
     for array in found.values():
         array[:] = Component.REGULAR

@@ -32,7 +32,7 @@ __all__ = [
     "warn_of",
 ]
 
-# A larger share of the area, of the length of a curve, or of samples causes a warning.
+# A larger share of the area, of the length of a curve, or of the samples causes a warning.
 WORTH_A_WARNING = 0.01
 # A requested count is missed if the number of samples differs from it by more than this share of it
 # plus FEW: on a symmetric surface several samples appear or vanish together.
@@ -42,7 +42,7 @@ PLACES = ("surface", "spline")
 
 
 class UndecidedNormal(NamedTuple):
-    """A normal, and a box of parameters in which the number of its points is unknown.
+    """A normal, and a box of parameters that has an unknown number of points with this normal.
 
     Attributes
     ----------
@@ -95,7 +95,8 @@ def _floats(values: Iterable[Any]) -> tuple[float, ...]:
     return tuple(float(x) for x in values)
 
 
-# Entries become plain values of these types, by their annotations: numbers of NumPy, lists of JSON.
+# The functions that make plain values of entries, which may be numbers of NumPy or lists from JSON:
+# one for each annotated type.
 PLAIN: dict[str, Callable[[Any], Any]] = {
     "str": str,
     "int": int,
@@ -143,8 +144,9 @@ class SamplingReport:
     on : {"surface", "spline"} or None
         Where the samples lie: on the surface, or on the spline that approximates it.
     unrefined : int or None
-        With ``on="surface"``, the number of samples that are not on it (`Samples.on_surface` is
-        False): at singular points, and those of a silhouette that could not be moved there.
+        With ``on="surface"``, the number of samples that are not on the surface
+        (`Samples.on_surface` is False): samples at singular points, and samples of a silhouette
+        that could not be moved to the surface.
     proved : int or None
         The number of prescribed normals whose samples are proved to stand for all points; the
         others are `undecided`. For curves, it is known up to rounding that all of their points have
@@ -178,9 +180,9 @@ class SamplingReport:
         For a CAD part with ``edges=True``: the number of samples on sharp edges.
     reach : tuple of float or None
         For a CAD part with ``reach=(axis, angle)``: the unit vector of the axis, and the angle in
-        degrees; for a `Reach`, four such numbers for each of its conditions, 0, 0, 0 and the
-        distance from edges, and the axis and −1 for unobstructed rays. `Samples.coverage`,
-        `normal_deviation` and `weights` refer to the points in reach.
+        degrees. For a `Reach`, four numbers for each of its conditions: the axis and the angle of
+        each cap; then 0, 0, 0 and the distance from edges; then the axis and −1 for unobstructed
+        rays. `Samples.coverage`, `normal_deviation` and `weights` refer to the points in reach.
     unit : str or None
         For a CAD part, and a `terrain` with a `crs`: the unit of lengths, such as "mm", if it is
         known.
@@ -276,10 +278,10 @@ def sampling_report(
     cells: CellMeasure | None = None,
     **known: Any,  # noqa: ANN401
 ) -> SamplingReport:
-    """Return the report of a sampling with `density` normals per steradian and its `arrays`.
+    """Return the report of a sampling with `density` normals per steradian.
 
-    `cells` are measured on the surface, if the samples are on it, otherwise on the spline; `known`
-    are other entries of the report.
+    `arrays` are the fields of the samples, and `known` other entries of the report. `cells` are
+    measures of the cells on the surface; by default the measures on the spline are used.
     """
     misfit, place = spline.misfit, spline.georeference
     return SamplingReport(
@@ -306,7 +308,7 @@ def warn_of(
     coverage: float | None = None,
     filled: bool = False,
 ) -> None:
-    """Warn if samples leave out a part of the surface, or miss a count or a coverage.
+    """Warn if samples leave out a part of the surface, are not on it, or miss count or coverage.
 
     If the samples are `filled`, developable regions have samples as well.
     """
@@ -368,7 +370,10 @@ def _unrefined(report: SamplingReport) -> list[str]:
 def common_report(
     reports: Sequence[SamplingReport], arrays: Mapping[str, NDArray[Any]]
 ) -> SamplingReport:
-    """Return a report with the common entries of reports, and the total number of samples."""
+    """Return a report with the entries that agree in all reports, and with counts of all samples.
+
+    `arrays` are the fields of all samples.
+    """
     common: dict[str, Any] = {
         x.name: getattr(reports[0], x.name)
         if len({getattr(report, x.name) for report in reports}) == 1
@@ -387,9 +392,10 @@ def common_report(
 
 
 def joined_proof(normals: int, reports: Iterable[SamplingReport]) -> dict[str, Any]:
-    """Return `proved` and `undecided` for normals that were searched on each of several surfaces.
+    """Return the entries `proved` and `undecided` for normals searched on several surfaces.
 
-    The undecided boxes come in the order of their normals.
+    All `normals` were searched on each surface, and each surface has one of the reports. The
+    undecided boxes come in the order of their normals.
     """
     undecided = sorted((y for x in reports for y in x.undecided or ()), key=attrgetter("normal"))
     return {"proved": normals - len({x.normal for x in undecided}), "undecided": tuple(undecided)}

@@ -179,10 +179,10 @@ class Samples(SampleArrays, Methods):
 
 
 def spline_or(samples: Samples, spline: AnySpline | None, moved: OffsetOf | None = None) -> Spline:
-    """Return the given spline, or else that of the samples, or else that of their surface.
+    """Return `spline`, or if it is None the spline of the samples, or a spline of their surface.
 
-    Of samples that were moved, it is the one from which they were. Raises InputError if there is
-    none.
+    For samples of an offset, spline and surface are taken from `moved`, from which the samples were
+    moved. Raises InputError if there is no spline.
     """
     held = moved or samples
     spline, surface = held.spline if spline is None else spline, held.surface

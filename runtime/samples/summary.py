@@ -91,7 +91,7 @@ def _length(value: float, report: SamplingReport) -> str:
 
 
 def _filling(samples: SampleArrays) -> int:
-    """Return the number of samples neither at a prescribed normal nor on an edge, if known."""
+    """Return the number of samples neither at a prescribed normal nor on an edge; 0 if unknown."""
     if "normal_index" not in samples.fields:
         return 0
     filling = samples.normal_index < 0

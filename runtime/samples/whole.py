@@ -74,7 +74,7 @@ class Whole:
         raise NotImplementedError
 
     def _face_columns(self) -> list[FaceColumn]:
-        """Return the columns on faces in tables of samples."""
+        """Return the columns with properties of faces, for tables of samples."""
         raise NotImplementedError
 
     def _boundaries(self) -> Any:  # noqa: ANN401
