@@ -38,11 +38,12 @@ MANY = Counts(steps=301, lines=4, spread=2048)
 # The counts for a spline with fewer cells than FEW_CELLS: the surface is evaluated at most twice as
 # often as for the fit, and at most 8,000 times.
 FEW_CELLS, FEW = 2048, Counts(steps=202, lines=1, spread=512)
-# More lines in both directions are this close to the sides: at poles and open sides the spline is
-# least accurate in the first cell.
+# Further lines of test points run along the sides, at these distances relative to the domain: at
+# poles and open sides the spline is least accurate in the first cell.
 NEAR_ENDS = (0.002, 0.015)
-# A side of the domain is collapsed if the line nearest to it is shorter than this part of the
-# diagonal; within this part of the domain from it, normals converge more slowly.
+# A side of the domain counts as collapsed if the line of test points next to it is shorter than
+# COLLAPSED times the diagonal of the bounding box. Within a distance of NEXT_TO_POLE of such a
+# side, relative to the domain, normals converge more slowly.
 COLLAPSED, NEXT_TO_POLE = 0.01, 1.0 / 16.0
 # Normals take four evaluations, points one: normals are compared at every third test point on
 # lines, and at every fourth of the scattered ones.
@@ -52,9 +53,9 @@ EACH_ON_LINES, EACH_SPREAD = 3, 4
 # They are never parameters of fits, which are rational.
 GOLDEN = 0.6180339887498949
 PLASTIC = 0.7548776662466927
-# Normals are computed from central differences over ± this part of the domain: their errors are of
-# second order in it, and rounding errors of order −1. On surfaces far from the origin, relative to
-# their size, it is the cube root of the rounding.
+# Normals are computed from central differences over ± a step, relative to the domain: their errors
+# are of second order in the step, and rounding errors of order −1. The step is the cube root of the
+# rounding error of coordinates relative to the size of the surface, within these bounds.
 SHORTEST_STEP, LONGEST_STEP = 2.0**-17, 2.0**-11
 # Normals of the surface with a larger error than this (radians), near singular points, are ignored.
 NORMAL_ERROR = 1e-4
@@ -77,8 +78,8 @@ class Comparison:
     misfit : Misfit
         The misfit of a spline.
     angle_away : float or None
-        The largest angle away from collapsed sides of the domain, such as poles: next to these it
-        falls only slowly with the size of the cells.
+        The largest angle between normals, away from collapsed sides of the domain, such as poles:
+        next to these sides angles decrease only slowly with the size of the cells.
     farthest, steepest : (2,) float64 array
         The parameters, as fractions of the domain, of the largest distance, and of the largest
         angle (of `angle_away` if that is known).
@@ -96,7 +97,7 @@ def compare_with_data(
 ) -> Comparison:
     """Return the misfit of a spline to a grid of points (m, n, 3).
 
-    Points with NaN do not count, nor those outside of a trim.
+    Points with NaN, and points outside of the trim, are left out.
     """
     cells = cells_between(data.shape, boundary)
     parts = [np.arange(k) / count for k, count in zip(data.shape, cells, strict=False)]
@@ -123,7 +124,7 @@ def compare_with_data(
 
 
 def evaluated(spline: Spline, u: Array, v: Array) -> tuple[Array, Array]:
-    """Return points and unnormalized normals of a spline at fractions of the domain."""
+    """Return points and unnormalized normals (k, 3) of a spline at fractions u, v of its domain."""
     return spline._evaluated(np.stack([u * spline.cells[0], v * spline.cells[1]], axis=1))
 
 
@@ -150,9 +151,10 @@ def angles_between(vectors: Array, normals: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """Values of a surface: points (k, 3) at fractions (2, k) of the domain, and l unit normals.
+    """Points of a surface, and normals at some of these points.
 
-    `with_normals` (l,) are the indices of the points that have a normal (l, 3).
+    `parts` (2, k) are the parameters of the `points` (k, 3), as fractions of the domain. The unit
+    `normals` (l, 3) are at the points with the indices `with_normals` (l,).
     """
 
     parts: Array
@@ -233,7 +235,7 @@ class Probe:
         return _known(self.surface, parts, points, some, (self.extent, self.largest))
 
     def _away(self, parts: Array) -> Flags:
-        """Return which test points are away from collapsed sides of the domain."""
+        """Return a mask of the test points (2, k) that are away from collapsed sides."""
         away = np.ones(parts.shape[1], dtype=np.bool_)
         for axis, end in self.sides:
             away &= (parts[axis] if end == 0 else 1.0 - parts[axis]) > NEXT_TO_POLE
@@ -241,9 +243,10 @@ class Probe:
 
 
 def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
-    """Return the test points for splines of a surface with at least the given numbers of cells.
+    """Return the values of a surface at test points, to compare splines with them.
 
-    Raises SurfaceError if the surface cannot be evaluated there.
+    The splines have at least the given numbers of cells. Raises SurfaceError if the surface cannot
+    be evaluated at a test point.
     """
     counts = FEW if cells[0] * cells[1] < FEW_CELLS else MANY
     parts = _places(counts)
@@ -270,12 +273,12 @@ def probe_of(surface: Surface, cells: tuple[int, int]) -> Probe:
 def variation(
     surface: Surface, spline: Spline, comparison: Comparison, slopes: bool
 ) -> tuple[float, float]:
-    """Return the variation of the error of a spline along u and along v at its maximum.
+    """Return how much the error of a spline varies along u, and along v, where it is largest.
 
     If cells are too long along u, the error varies between the middle of a cell and its ends along
-    u; if they are too long along v only, it varies less along u. With `slopes`, the variation is
-    divided by the length of the derivative of the surface: errors along the shorter tangent turn
-    normals more.
+    u; if they are too long along v only, it varies less along u. With `slopes`, the place is where
+    the angle between normals is largest, and each variation is divided by the length of the tangent
+    x_u or x_v: errors along the shorter tangent turn normals more.
     """
     found, place = [], comparison.steepest if slopes else comparison.farthest
     for axis in (0, 1):
@@ -317,7 +320,7 @@ def _even(count: int) -> Array:
 
 
 def worst_of(errors: Array) -> Indices:
-    """Return the indices of WORST of the largest errors, at most one in each of GROUPS groups."""
+    """Return the indices of the WORST largest errors, at most one in each of GROUPS groups."""
     length = max(-(-len(errors) // GROUPS), 1)
     starts = range(0, len(errors), length)
     largest = np.array([k + int(errors[k : k + length].argmax()) for k in starts], dtype=np.int64)
@@ -333,7 +336,7 @@ def _points(surface: Surface, parts: Array) -> Array:
 
 
 def _belonging(surface: Surface, parts: Array) -> Indices:
-    """Return the indices of the test points inside the trim; of all of them, if none is."""
+    """Return the indices of the test points inside the trim, or of all if none is inside."""
     if surface.trim is None:
         return np.arange(parts.shape[1])
     inside = surface.trim.contains(np.stack(_in_domain(parts, surface.domain), axis=1))

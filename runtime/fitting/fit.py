@@ -45,10 +45,10 @@ __all__ = ["DEFAULT_CELLS", "check_range", "fit", "spline_of"]
 DEFAULT_CELLS = (64, 64)
 DEFAULT_TOLERANCE = Tolerance(distance=None, relative=1e-4, angle=0.1)
 DEFAULT_BOUNDS = Bounds(most=(1024, 1024), total=2**16, patience=2)
-# For a tolerance: the numbers of cells of the first attempt, and their maximum.
+# If a tolerance is given: the numbers of cells of the first attempt, and the bounds of the search.
 FEWEST_CELLS = (8, 8)
 BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
-# A callable is called again at AGAIN points: both answers have to agree up to SAME times their
+# A callable is called twice at AGAIN parameters: the points have to agree up to SAME times their
 # extent.
 AGAIN, SAME = 16, 1e-9
 
@@ -66,7 +66,7 @@ def patches_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) 
 
 
 def spline_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) -> Spline:
-    """Return the spline as `patches_of` does; InputError for nets, which have no grid of cells."""
+    """Return a spline on a grid of cells, see `patches_of`; InputError for a spline of nets."""
     return on_grid(patches_of(surface, cells))
 
 
@@ -140,8 +140,9 @@ def fit(
     Warns
     -----
     GaussmapWarning
-        If a tolerance is not reached with 4096 cells along u or v, 2²⁰ cells in all, or the cells
-        of a grid; or if the default misses its goal by a factor of ten.
+        If a tolerance is not reached with 4096 cells along u or v, with 2²⁰ cells in all, or with
+        one cell between any four points of a grid; or if the default misses its goal by a factor
+        of ten.
 
     Notes
     -----
@@ -184,7 +185,7 @@ def fit(
 
 
 def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
-    """Return a spline within a tolerance, by default with the default cells."""
+    """Return a spline of a surface within a tolerance, or else within the default tolerance."""
     spline = _fitted(surface, DEFAULT_CELLS if asked is None else FEWEST_CELLS)
     probe = probe_of(surface, DEFAULT_CELLS)
     goal = (asked or DEFAULT_TOLERANCE).goal(probe.diagonal, probe.largest, poles=asked is not None)
@@ -219,7 +220,10 @@ def _fit_data(
 
 
 def _trim_of(surface: Surface, spline: Spline, finest: bool) -> Trim | None:
-    """Return the trim of a surface; a coarse spline loses patches that need missing points."""
+    """Return the trim of the spline of a surface.
+
+    Patches of a coarse spline of a grid are left out if they depend on missing points.
+    """
     trim, grid = surface.trim, surface.grid
     if trim is None or grid is None or not np.isnan(grid).any():
         return trim
@@ -232,7 +236,7 @@ def _trim_of(surface: Surface, spline: Spline, finest: bool) -> Trim | None:
 def _fit_data_to(
     surface: Surface, grid: NDArray[np.float64], asked: Tolerance
 ) -> tuple[Spline, Misfit]:
-    """Return a spline within a tolerance, and its misfit to the data."""
+    """Return a spline of a grid of points within a tolerance, and its misfit to the points."""
     if asked.angle is not None:
         raise InputError("normal_tolerance=... is for surfaces; data have no normals.")
     extent = np.nanmax(grid, axis=(0, 1)) - np.nanmin(grid, axis=(0, 1))

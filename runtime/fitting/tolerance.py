@@ -14,10 +14,11 @@ from .comparison import Comparison, Misfit
 
 __all__ = ["FAR_OFF", "Bounds", "Goal", "Tolerance", "checked_tolerance", "refined"]
 
-# A spline is an improvement if at most this part of an error remains. Halved cells leave an eighth
-# for order 3, a half for order 1, as at folds.
+# A spline is an improvement if at most this part of an error remains. Halving the cells leaves an
+# eighth of an error of order 3, and a half of an error of order 1, as at folds.
 IMPROVED = 0.75
-# Cells are halved along u and v, or along one of them if its error is this many times the other's.
+# Cells are halved along both u and v, or along only one of them if the error varies more than this
+# many times as much along it.
 DOMINANT = 4.0
 # The smallest angle that is measured, in degrees.
 LEAST_ANGLE = 1e-4
@@ -68,9 +69,10 @@ class Goal:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The requested distance of a spline, in L or relative to the diagonal, and angle in degrees.
+    """The requested accuracy of a spline, from the arguments of `fit`; at least one is not None.
 
-    They are the arguments of `fit`; at least one is not None.
+    `distance` is in L, `relative` is a distance relative to the diagonal of the bounding box,
+    `angle` is the angle between normals in degrees.
     """
 
     distance: float | None
@@ -78,9 +80,9 @@ class Tolerance:
     angle: float | None
 
     def goal(self, diagonal: float, largest: float, poles: bool) -> Goal:
-        """Return the goal for a surface with this diagonal and this largest coordinate.
+        """Return the goal for a surface, from its diagonal and its largest coordinate.
 
-        Raises InputError if it is below the rounding of the coordinates.
+        Raises InputError if the distance is below the rounding of the coordinates.
         """
         asked = self.distance if self.relative is None else self.relative * diagonal
         least = DATA_ERROR * largest
@@ -131,8 +133,9 @@ def refined(
 ) -> tuple[Spline, Misfit, bool]:
     """Return a spline with enough cells for a goal, its misfit, and whether the goal is reached.
 
-    The cells of `spline` are halved along u, along v or both, where the `variation` of the error is
-    largest. If the goal is not reached, return the last spline that was an improvement.
+    The cells of `spline` are halved along u, along v or along both, depending on the `variation` of
+    the error along u and along v. If the goal is not reached, the result is the last spline that
+    was an improvement.
     """
     stalled, comparison = 0, compare(spline)
     best, its_comparison = spline, comparison
@@ -155,13 +158,16 @@ def refined(
 
 
 def _improved(goal: Goal, before: Comparison, after: Comparison) -> bool:
-    """Return whether one of the errors that exceed the goal decreased."""
+    """Return whether an error that exceeded the goal decreased to at most IMPROVED times itself."""
     pairs = zip(goal.excess(before), goal.excess(after), strict=True)
     return any(old > 1.0 and new <= IMPROVED * old for old, new in pairs)
 
 
 def _finer(cells: tuple[int, int], u: float, v: float, bounds: Bounds) -> tuple[int, int]:
-    """Double the cells along u, v or both, by their errors, within the bounds."""
+    """Return the numbers of cells, doubled along u, along v or along both, within the bounds.
+
+    `u` and `v` are the variations of the error along u and along v.
+    """
     twice = [min(2 * count, most) for count, most in zip(cells, bounds.most, strict=True)]
     along_u, along_v = (twice[0], cells[1]), (cells[0], twice[1])
     larger, smaller = (along_u, along_v) if u >= v else (along_v, along_u)
