@@ -37,7 +37,7 @@ def is_mesh_file(name: str) -> bool:
 
 
 def file_advice(name: str) -> str | None:
-    """Return the call that reads a file whose name was given as a surface; None if none does."""
+    """Return advice on a file name that was given as a surface; None for unknown types of files."""
     suffix = Path(name).suffix.lower()
     if suffix in CAD_SUFFIXES:
         return f"read the CAD file first: gm.sample(gm.read_cad({name!r}), ...)"
@@ -68,7 +68,7 @@ def _has(value: object, *names: str) -> bool:
 
 
 def about_value(value: object) -> str:
-    """Return the call that makes a surface of a value that is not one."""
+    """Return advice on a value that is not a surface: usually the call that makes one of it."""
     if is_of_geomdl(value) or is_of_splipy(value):
         return "make one by gm.Surface.from_nurbs(surface)"
     if is_raster(value):

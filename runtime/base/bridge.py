@@ -1,6 +1,6 @@
-"""The only imports of `gaussmap.symbolic` in the runtime; its functions load SymPy when called.
+"""Functions that use `gaussmap.symbolic`; each of them loads SymPy when it is called.
 
-Nothing else in the runtime imports it, so that sampling never waits for SymPy.
+No other module of the runtime imports `gaussmap.symbolic`, so that sampling never waits for SymPy.
 """
 
 from __future__ import annotations

@@ -42,8 +42,9 @@ __all__ = [
 # Made once, since a report checks many numbers.
 WHOLE, OF_NUMPY = (int, np.integer), (np.ndarray, np.generic)
 SIMILAR = 0.7  # similarity of a name to the intended one, see difflib
-# The largest numbers of entries of a sequence that is no array, if each entry is looked at, and if
-# it becomes an array; and the depth to which nested sequences are counted.
+# The largest number of entries of a sequence that is not an array: if entries are checked one by
+# one, and if the sequence is converted to an array. Nested sequences are counted down to the depth
+# DEEPEST.
 MOST_LISTED, MOST_CONVERTED, DEEPEST = 10**7, 10**8, 4
 
 
@@ -65,7 +66,7 @@ def known_name(name: str, known: Sequence[str], kind: str, command: str = "") ->
 
 
 def _near(text: str, known: Sequence[str]) -> list[str]:
-    """Return up to three names that are similar to a text, or contain a word that is."""
+    """Return up to three names that are similar to a text, or else contain a similar word."""
     near = difflib.get_close_matches(text, known, n=3, cutoff=SIMILAR)
     words = {word for name in known for word in name.split("_")} if not near else ()
     best = difflib.get_close_matches(text, words, n=1, cutoff=SIMILAR)
@@ -73,7 +74,7 @@ def _near(text: str, known: Sequence[str]) -> list[str]:
 
 
 def whole_number(value: object, name: str, least: int = 1, most: int = MOST) -> int:
-    """Return a whole number from `least` to `most`; InputError with its name otherwise."""
+    """Return a whole number from `least` to `most`; otherwise InputError, with its `name`."""
     if isinstance(value, bool) or not isinstance(value, WHOLE) or value < least:
         example = ""
         if isinstance(value, float | np.floating) and least <= value <= most:
@@ -119,7 +120,10 @@ def as_float(value: SupportsFloat | str) -> float:
 
 
 def listed(values: object) -> list[Any] | None:
-    """Return the elements as a list; None for texts, no elements, or too many."""
+    """Return the elements of an object as a list; None for texts and dicts, or if it has none.
+
+    None is also returned for more than MOST_LISTED elements. An empty sequence gives [].
+    """
     if isinstance(values, str | bytes | dict) or _size(values) > MOST_LISTED:
         return None
     try:
@@ -130,9 +134,9 @@ def listed(values: object) -> list[Any] | None:
 
 
 def _size(values: object) -> int:
-    """Return the number of entries, nested ones included; 1 for anything without entries.
+    """Return the number of entries of a sequence or array, nested ones included; 1 for others.
 
-    An array without its own memory, or a `range`, may have more entries than fit into memory.
+    A view of an array, or a `range`, may have more entries than fit into memory.
     """
     size, depth = 1, 0
     while isinstance(values, list | tuple | range | np.ndarray) and depth < DEEPEST:
@@ -148,14 +152,14 @@ def _size(values: object) -> int:
 
 
 def text(value: object, name: str) -> str:
-    """Return a str, also from NumPy's str_; InputError with its name for anything else."""
+    """Return a str, also from NumPy's str_; InputError, with `name`, for any other value."""
     if not isinstance(value, str):
         raise InputError(f"{name} must be a text, not {shown(value)}.")
     return str(value)
 
 
 def yes_or_no(value: object, name: str) -> bool:
-    """Return the truth value; InputError with its name for values without one, such as arrays."""
+    """Return the truth value; InputError, with `name`, if there is none, as for arrays."""
     try:
         return bool(value)
     except Exception:
@@ -163,7 +167,7 @@ def yes_or_no(value: object, name: str) -> bool:
 
 
 def finite_number(value: SupportsFloat, name: str) -> float:
-    """Return a finite number as a float; InputError with its name otherwise."""
+    """Return a finite number as a float; InputError, with `name`, for any other value."""
     try:
         number = math.nan if isinstance(value, str) else as_float(value)
     except TypeError:
@@ -174,7 +178,7 @@ def finite_number(value: SupportsFloat, name: str) -> float:
 
 
 def positive_number(value: object, name: str, unit: str = "", most: float = math.inf) -> float:
-    """Return a positive number up to `most`; InputError with its name otherwise."""
+    """Return a positive number up to `most`; InputError, with `name`, for any other value."""
     number = math.nan
     if isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool):
         with suppress(OverflowError):  # from whole numbers beyond float64
@@ -188,9 +192,10 @@ def positive_number(value: object, name: str, unit: str = "", most: float = math
 def finite_array(
     values: ArrayLike, shape: tuple[int | str, ...] | None, name: str
 ) -> NDArray[np.float64]:
-    """Return a finite float64 array of a given shape, if any; InputError with its name otherwise.
+    """Return values as a float64 array of finite numbers; otherwise InputError, with `name`.
 
-    A letter in the shape stands for any number.
+    The array must have the given shape, unless it is None; a letter in the shape stands for any
+    number.
     """
     found = real_values(values, name)
     if shape is not None and not _fits(found, shape):
@@ -212,7 +217,7 @@ def real_array(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def _copy(array: NDArray[Any]) -> NDArray[np.float64]:
-    """Return a C-contiguous copy; InputError if there is no memory for it."""
+    """Return a C-contiguous float64 copy; InputError if there is not enough memory for it."""
     check_memory("numbers", array.size)
     with np.errstate(over="ignore"):
         return array.astype(np.float64, order="C")
@@ -250,7 +255,7 @@ def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
 
 
 def _are_fractions(array: NDArray[Any]) -> bool:
-    """Return whether an object array holds only fractions and integers."""
+    """Return whether an object array holds only fractions and integers, at least one fraction."""
     values = array.ravel().tolist() if array.dtype.kind == "O" else []
     return any(isinstance(x, Fraction) for x in values) and all(
         isinstance(x, Rational) for x in values
@@ -303,7 +308,7 @@ def _shown(shape: tuple[int | str, ...]) -> str:
 
 
 def checked_rows(key: ArrayLike, count: int) -> NDArray[Any]:
-    """Return a mask (count,) or valid row numbers (M,) of samples; InputError otherwise.
+    """Return a mask (count,) or valid indices (M,) of samples; InputError for anything else.
 
     A single number counts as an array of length 1.
     """

@@ -61,7 +61,7 @@ class Notice(event.Listener):
             self._show(f"gaussmap: compiling kernels, only once here ({seconds:.0f} s): {name}")
 
     def _show(self, line: str) -> None:
-        """Replace the line."""
+        """Show `line` in place of the line that is shown now."""
         if line == self.line or self.quiet or sys.stderr is None:
             return
         if sys.stderr.isatty():

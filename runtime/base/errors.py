@@ -162,7 +162,8 @@ class GaussmapWarning(UserWarning):
 
 
 LONGEST_SHOWN = 60
-# Control characters, those that change the direction of writing, surrogates, and ends of lines.
+# Unicode categories of characters that are escaped: control characters, characters that change the
+# format or the direction of writing, surrogates, separators of lines and of paragraphs.
 CONTROLS = ("Cc", "Cf", "Cs", "Zl", "Zp")
 LONGEST_MESSAGE = 300
 

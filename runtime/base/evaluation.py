@@ -22,7 +22,7 @@ def evaluated(
     label: str,
     needed: Needed | None = None,
 ) -> NDArray[np.float64]:
-    """Return the points (..., dimension) of a callable for parameters of one shape, by their names.
+    """Return the points (..., dimension) of a callable; `parameters` are arrays of one shape.
 
     Raises SurfaceError, which names the callable by `label`, if the callable raises, or returns
     another shape, anything but real numbers, or NaN or infinity where values are `needed`; the
@@ -90,7 +90,10 @@ def returned(
 
 
 def _shapes_that_differ(values: object, shape: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """Return the shapes of listed coordinates if they differ, as with constants among them."""
+    """Return the shapes of a list of coordinates if they differ; otherwise [].
+
+    They differ if some coordinates are constants.
+    """
     if not isinstance(values, tuple | list) or shape[1:] or [len(values)] != [*shape]:
         return []
     parts = [np.shape(x) for x in values if isinstance(x, np.ndarray | float | int | np.number)]

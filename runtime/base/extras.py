@@ -18,7 +18,7 @@ def check_extra(module: str, extra: str, purpose: str) -> None:
 
 
 def from_extra(module: str, extra: str, purpose: str) -> Any:  # noqa: ANN401
-    """Import a module; MissingExtraError with the extra that brings it."""
+    """Import a module; MissingExtraError, with the extra that installs it, if that fails."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:

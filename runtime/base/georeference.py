@@ -38,7 +38,10 @@ class Georeference:
 
 
 def checked_origin(origin: Sequence[float] | None) -> Origin:
-    """Return an origin of two or three numbers as three; InputError for others."""
+    """Return an origin x, y, z from two or three numbers; z is 0 by default.
+
+    Returns 0, 0, 0 for None. Raises InputError for other values.
+    """
     if origin is None:
         return 0.0, 0.0, 0.0
     try:

@@ -1,4 +1,4 @@
-"""Methods that are defined in folders which import that of their class; loaded at first use."""
+"""Methods that are defined in modules which import their class; loaded at first use."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ __all__ = ["Later"]
 
 
 class Later:
-    """A descriptor: a function of another module as a method of a class.
+    """A descriptor that makes a function of another module a method of a class.
 
-    So a class has methods from modules that import it. The first access replaces the descriptor by
-    the function. Its name is that of the method by default.
+    The module may import the class. The first access to the method imports the module, and replaces
+    the descriptor by the function. By default the function has the name of the method.
     """
 
     def __init__(self, module: str, function: str = "") -> None:

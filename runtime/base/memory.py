@@ -26,9 +26,9 @@ PROC, CONTROL_GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
 
 
 class Cost(NamedTuple):
-    """The peak memory of a request: bytes for each item, and the number of copies of stored rows.
+    """The peak memory of a request: `each` bytes for an item, and `rows` copies of stored rows.
 
-    `things` are the items, in words; `instead` is advice for requests that are too large.
+    `things` names the items; `instead` is advice for requests that are too large.
     """
 
     things: str
@@ -71,7 +71,7 @@ COSTS: dict[str, Cost] = {
 
 
 def estimate(request: str, number: float, row: float = 0.0) -> float:
-    """Return the bytes that a number of items take; `row` is the stored size of one."""
+    """Return the memory of a number of items in bytes; `row` are the stored bytes of one item."""
     cost = COSTS[request]
     return number * (cost.each + cost.rows * row)
 
@@ -100,7 +100,7 @@ def free_memory() -> float:
 
 
 def _limits() -> Iterator[tuple[float, float]]:
-    """Yield the limits of the machine and of control groups, with the use of each, in bytes."""
+    """Yield the memory limits of the machine and of control groups, and the used part, in bytes."""
     yield float("inf"), 0.0
     with suppress(AttributeError, OSError, ValueError):  # Windows has no sysconf
         total = os.sysconf("SC_PHYS_PAGES") * float(os.sysconf("SC_PAGE_SIZE"))
@@ -112,9 +112,10 @@ def _limits() -> Iterator[tuple[float, float]]:
 
 
 def _limits_of_group(path: str) -> Iterator[tuple[float, float]]:
-    """Yield the limits of a control group and of its ancestors.
+    """Yield limits and used parts of the memory of a control group and of its ancestors.
 
-    In a container the path may be the host's; then the root is the group of the process.
+    In a container the path may be a path on the host, which does not exist here; then the root is
+    the group of the process.
     """
     group = CONTROL_GROUPS / path.lstrip("/")
     for each in (group, *group.parents):

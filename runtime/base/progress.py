@@ -1,4 +1,4 @@
-"""A clock on terminals for work with an unknown number of steps, and its current step."""
+"""A line on terminals for work with an unknown number of steps: its current step, and a clock."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PATIENCE, INTERVAL = 1.0, 0.5
 
 @dataclass
 class Step:
-    """The current step, and its finished share, from 0 to 1, if known."""
+    """The current step of a task; `share` returns its finished share, from 0 to 1, if known."""
 
     task: str
     name: str = ""

@@ -1,4 +1,4 @@
-"""Numbers that are repeated, each as often as a count says."""
+"""Indices that are repeated, each as often as its count says."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ __all__ = ["repeated"]
 
 
 def repeated(counts: Indices) -> tuple[Indices, Indices]:
-    """Return each index k of counts (n,) counts[k] times, and beside it 0 … counts[k] − 1."""
+    """Return two arrays: each index k of counts (n,) repeated counts[k] times, and a counter.
+
+    The counter goes from 0 to counts[k] − 1 for each k.
+    """
     owner = np.repeat(np.arange(len(counts)), counts)
     return owner, np.arange(len(owner)) - (np.cumsum(counts) - counts)[owner]

@@ -41,15 +41,19 @@ def scales_to_one(largest: NDArray[np.float64]) -> NDArray[np.float64]:
 def apart(
     first: NDArray[np.float64], second: NDArray[np.float64], points: NDArray[np.float64]
 ) -> bool:
-    """Return whether points that should be equal differ by more than rounding."""
+    """Return whether `first` and `second`, which should be equal, differ by more than rounding.
+
+    `points` are all points of the surface, which determine the tolerance.
+    """
     size, last_place = extent_of(points)
     return float(np.abs(first - second).max()) > SAME_POINT * size + ROUNDING * last_place
 
 
 def extent_of(points: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the size of points (m, n, 3), and the unit in the last place of their coordinates.
+    """Return the longest side of the bounding box of points (m, n, 3), and their last place.
 
-    Missing points, NaN, are ignored.
+    The last place is the distance from the largest coordinate to the next float64. Missing points,
+    NaN, are ignored.
     """
     high, low = (f.reduce(f.reduce(points)) for f in (np.fmax, np.fmin))  # the fastest way
     largest = np.maximum(np.abs(low), np.abs(high)).max()

@@ -112,7 +112,10 @@ def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Res
 
 @contextmanager
 def counted(count: int | None, progress: bool) -> Iterator[Callable[[int], object]]:
-    """Yield a function that shows the number of finished steps, of `count` if known."""
+    """Yield a function that shows its argument on a terminal, the number of finished steps.
+
+    `count` is the number of all steps, if known.
+    """
     if not seen(progress):
         yield lambda done: None
         return
