@@ -33,7 +33,7 @@ __all__ = ["GaussMap", "check_part", "kept_map"]
 
 # The number of surfaces whose maps are cached; splines and indices take some MB each.
 KEPT = 8
-# The fields in which samples are compared with points of creases.
+# The fields that the comparison of samples with points of creases needs.
 OF_CREASES = ("points", "uv", "normal_index", "component")
 
 
@@ -115,13 +115,13 @@ class GaussMap(Methods):
 
     @property
     def _fitted(self) -> tuple[OnPatches, ...]:
-        """The geometries that densities use, each piece with its spline."""
+        """The pieces with their splines, which the computation of densities needs."""
         return tuple(x.fitted for x in self._pieces)
 
     def _with_fit(self, samples: Samples, reach: Reach | None = None) -> Samples:
-        """Return samples with their spline, and with the entries on it in their report.
+        """Return samples with their spline, and with a report that describes this spline.
 
-        With a `reach`, spline and entries are those of the part whose normals are in it.
+        With a `reach`, both refer to the part of the surface whose normals are in reach.
         """
         if len(self._pieces) != 1:
             return samples
@@ -223,9 +223,9 @@ class GaussMap(Methods):
     def degree(self, normals: ArrayLike, *, threads: int | None = None) -> NDArray[np.int64]:
         """Return Σ sign K over the points with each of the normals.
 
-        On a closed surface it is χ/2 for every normal, χ being the Euler characteristic; on one
-        with one side, as a Klein bottle, the degrees of n and −n add up to χ. If the surface ends
-        in tips, their degrees are added: 1 for normals in the normal cone of a convex
+        On a closed surface it is χ/2 for every normal, χ being the Euler characteristic; on a
+        one-sided surface, such as a Klein bottle, the degrees of n and −n add up to χ. If the
+        surface ends in tips, their degrees are added: 1 for normals in the normal cone of a convex
         tip, and in general the signed number of times that the normals at the tip cover a normal.
         Isolated points with K = 0, curves and points of creases count with their index, and
         undecided boxes with their degree. Curves that end in an edge or in a crease count 0.
@@ -319,7 +319,7 @@ class GaussMap(Methods):
 
 
 def check_part(cells: Sequence[int] | None, on: str | None) -> None:
-    """Raise InputError for arguments on splines, which parts do not have."""
+    """Raise InputError if `cells` or on="spline" is given for a part: parts have no spline."""
     if cells is not None:
         raise InputError("cells are for splines; the faces of a part need none.")
     if checked_place(on) == "spline":

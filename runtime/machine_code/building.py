@@ -2,10 +2,11 @@
 
     python -m gaussmap.runtime.machine_code.building [--usual] [FOLDER]
 
-compiles all of them, or with --usual those that usual calls need, without running them. One process
-per core compiles for the level of this architecture. The file is in FOLDER/compiled, by default in
-the package. Entries of a file of the same sources and versions are reused. With GAUSSMAP_KERNELS=0
-nothing is compiled, and no file used.
+compiles all kernels, or with --usual the kernels that usual calls need, without running them. The
+code is for the level of processors of this architecture; up to SHARES processes compile it. The
+file is in FOLDER/compiled, by default in the package. Entries of an earlier file are reused if it
+was built from the same sources and versions. With GAUSSMAP_KERNELS=0 nothing is compiled, and no
+file is used.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ SHARES = 3
 
 
 class _Taken(NullCache):
-    """A cache that collects compiled kernels, as entries by their keys."""
+    """A cache for Numba that collects compiled kernels in a dict of entries by their keys."""
 
     def __init__(self, function: Callable[..., Any], entries: dict[str, bytes]) -> None:
         self._function, self._entries = function, entries
@@ -54,7 +55,10 @@ class _Taken(NullCache):
 
 
 def build(folder: Path = PACKAGE, usual: bool = False) -> Path | None:
-    """Make the file of the package unless it exists; None if this architecture has none."""
+    """Make the file of machine code unless it is complete, and return its path.
+
+    Returns None if this architecture has no level of processors.
+    """
     path, level, listing = pack_path(folder), level_here(), signatures.read()
     if usual:
         listing = {name: listing[name] for name in signatures.usual()}
@@ -76,7 +80,7 @@ def build(folder: Path = PACKAGE, usual: bool = False) -> Path | None:
 
 
 def kernel_named(name: str) -> Any:
-    """Return the kernel with a qualified name, which may be a formula."""
+    """Return the kernel with a qualified name; a formula with this name becomes a kernel."""
     function = signatures.named(name)
     return function if isinstance(function, Dispatcher) else jit(function)
 
@@ -104,7 +108,7 @@ def _keys(listing: signatures.Listing) -> Iterator[tuple[str, str]]:
 
 
 def _known(path: Path) -> dict[str, bytes]:
-    """Return the entries of a file if it has these sources and versions."""
+    """Return the entries of a file by their keys; {} if its sources or versions are others."""
     try:
         pack = Pack(path)
     except (OSError, ValueError):
@@ -115,9 +119,10 @@ def _known(path: Path) -> dict[str, bytes]:
 
 
 def _shares(listing: signatures.Listing) -> list[dict[str, Any]]:
-    """Divide the signatures into shares, sorted by name: related modules have similar names.
+    """Divide the signatures, sorted by name, into SHARES shares with about equally long sources.
 
-    Functions that several shares call are compiled in each of them.
+    Functions that several shares call are compiled in each of these shares; therefore modules with
+    similar names, which are related, stay together.
     """
     names = sorted(listing)
     lengths = {x: len(getsource(import_module(x))) for x in map(_module_of, names)}
@@ -135,7 +140,7 @@ def _module_of(name: str) -> str:
 
 
 def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:
-    """Compile kernels for their signatures; called in a process of its own."""
+    """Compile kernels for their signatures, in a process of its own; return entries by keys."""
     gc.disable()  # Numba also numbers types, and renumbers those that were garbage-collected.
     entries: dict[str, bytes] = {}
     for name, kinds in listing.items():

@@ -18,7 +18,7 @@ __all__ = ["KernelCache", "say_why"]
 
 
 class KernelCache(NullCache):
-    """The machine code of one kernel: that of the package, or compiled here."""
+    """A cache for Numba with the machine code of one kernel, from the package or compiled here."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         """Touch no file before the first call."""

@@ -1,8 +1,8 @@
 """The disk cache of machine code that was compiled here: a folder with a file for each entry.
 
-The folder is named after the digest of all sources of kernels: a change of a formula compiles the
-kernels again, and its reversal finds the old ones. (Numba's own cache checks only the file of a
-kernel: https://github.com/numba/numba/issues/1833.)
+The folder is named after the digest of all sources of kernels: if a formula changes, all kernels
+are compiled again, and if the change is undone, the old machine code is found. (Numba's own cache
+checks only the file of a kernel: https://github.com/numba/numba/issues/1833.)
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def _is_private(folder: Path) -> bool:
 
 
 def _of_user() -> list[Path]:
-    """Return the user's cache folder, if there is one: a user may have no home."""
+    """Return a list with the user's cache folder, empty for a user without a home folder."""
     with suppress(RuntimeError):
         return [Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gaussmap"]
     return []
@@ -87,7 +87,7 @@ def lock_of(folder: Path, key: str, processor: object) -> FileLock:
 
 
 def entries_in(folder: Path) -> Iterator[bytes]:
-    """Read all entries of a folder, in the order of their names."""
+    """Yield all entries of a folder, in the order of their file names."""
     for path in sorted(folder.glob(f"*{SUFFIX}")):
         yield path.read_bytes()
 
@@ -99,9 +99,10 @@ def _path(folder: Path, key: str, processor: object) -> Path:
 
 
 class FileLock:
-    """A lock between processes: many that start together compile each kernel once.
+    """A lock between processes: if many start together, only one of them compiles a kernel.
 
-    It ends with its process. On systems without locks, each process compiles.
+    The lock is released when its process ends. On systems without file locks, each process
+    compiles the kernel.
     """
 
     def __init__(self, path: Path) -> None:
@@ -109,7 +110,7 @@ class FileLock:
         self._file: IO[bytes] | None = None
 
     def acquire(self) -> None:
-        """Wait for the lock."""
+        """Wait for the lock, at most LONGEST_WAIT seconds."""
         with suppress(ImportError, OSError):  # Windows; read-only folders
             import fcntl
 
@@ -134,7 +135,7 @@ class FileLock:
 
 
 def remove_unused(folder: Path) -> None:
-    """Mark a folder as used; remove the folders of other digests that are long unused."""
+    """Mark a folder as used; remove folders of other digests, unused for DAYS_KEPT days."""
     oldest = time.time() - DAYS_KEPT * 24 * 3600
     with suppress(OSError):
         os.utime(folder)

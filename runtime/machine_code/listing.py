@@ -2,9 +2,10 @@
 
     python -m gaussmap.runtime.machine_code.listing [--write | --usual] [FOLDER]
 
-Kernels that the package's file lacks are compiled and cached in the folder (by default that of this
-machine): after a run of tests, the list lacks these kernels. Exit code 1 means that some are
-missing. With --usual, the kernels cached there become the list of those that usual calls need.
+Kernels that the package's file lacks are compiled when they are called, and cached in FOLDER (by
+default the cache of this machine). So after a run of all tests, FOLDER contains the kernels that
+the list lacks. They are printed, and the exit code is 1 if there are any. With --write, the kernels
+in FOLDER become the list; with --usual, they become the list of kernels that usual calls need.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ PACKAGE = signatures.__name__.partition(".")[0]  # this module may be __main__
 
 
 def compiled_in(folder: Path) -> dict[str, list[Any]]:
-    """Return the signatures of the kernels of this package in a folder."""
+    """Return the signatures of this package's kernels that are cached in a folder, by kernel."""
     found: dict[str, list[Any]] = defaultdict(list)
     for entry in entries_in(folder):
         name, kinds = signature_in(entry) or ("", [])

@@ -42,7 +42,8 @@ LEVELS = {
 def identity() -> dict[str, str]:
     """Return the versions and the platform that machine code depends on.
 
-    Releases of one series of Numba, and of llvmlite, load one another's machine code.
+    Of Numba and llvmlite only the series counts, the first two numbers of the version: releases of
+    one series load each other's machine code.
     """
     architecture, _, system = llvm.get_process_triple().partition("-")
     return {
@@ -65,7 +66,7 @@ def runs_here(level: Level) -> bool:
 
 
 def changed_options() -> dict[str, str]:
-    """Return the options of Numba that request other code than usual, by variable."""
+    """Return the environment variables that are set and change the code of Numba."""
     names = (f"NUMBA_{name}" for name in CODE_OPTIONS)
     return {name: os.environ[name] for name in names if os.environ.get(name)}
 

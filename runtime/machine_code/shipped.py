@@ -58,13 +58,13 @@ class Pack:
 
 
 def pack_path(folder: Path = PACKAGE) -> Path | None:
-    """Return the path of the file for this architecture in a package; None if it can have none."""
+    """Return the path of the file for this architecture; None if it has no level of processors."""
     level = level_here()
     return None if level is None else folder / "compiled" / f"{level.name}.kernels"
 
 
 def write_pack(path: Path, entries: Mapping[str, bytes], **header: object) -> None:
-    """Write a file of entries by their keys."""
+    """Write a file of machine code; `entries` are entries by their keys."""
     places, offset = {}, 0
     for key, entry in entries.items():
         places[key] = (offset, len(entry))
@@ -88,7 +88,7 @@ def open_pack() -> Pack | None:
 
 
 def misfit() -> str:
-    """Return the other versions that the file of the package is for; an empty text if none."""
+    """Return the versions in the package's file that differ from the installed ones, as a text."""
     pack = _pack_of_package()
     if pack is None:
         return ""

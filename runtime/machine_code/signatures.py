@@ -30,7 +30,7 @@ __all__ = [
 
 SIGNATURES = Path(__file__).with_suffix(".json")
 USUAL = SIGNATURES.with_name("usual.json")
-# The types of arguments of each kernel, by module and name.
+# A list of signatures, the types of all arguments, for the qualified name of each kernel.
 Listing = Mapping[str, Sequence[Any]]
 
 
@@ -45,7 +45,7 @@ def usual() -> list[str]:
 
 
 def write(listing: Listing) -> None:
-    """Replace the list; one line for each signature."""
+    """Write the list of signatures, one line for each signature."""
     blocks = []
     for name in sorted(listing):
         lines = ",\n  ".join(sorted(map(json.dumps, listing[name])))
@@ -54,7 +54,7 @@ def write(listing: Listing) -> None:
 
 
 def write_usual(names: Iterable[str]) -> None:
-    """Replace the list of the kernels that usual calls need."""
+    """Write the list of the kernels that usual calls need."""
     USUAL.write_text(json.dumps(sorted(names), indent=1) + "\n", encoding="utf-8")
 
 
