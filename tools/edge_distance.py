@@ -86,9 +86,14 @@ class AwayFrom:
         return cls(parts, part, rows, first, last, errors, tree, BULGE * radius, distance)
 
     @property
+    def error(self) -> float:
+        """The largest error of an arc."""
+        return float(self.errors.max())
+
+    @property
     def most(self) -> float:
         """The largest distance from an arc's middle at which a point may be too near to the arc."""
-        return self.distance + self.radius + float(self.errors.max())
+        return self.distance + self.radius + self.error
 
     def holds(self, points: Array, normals: Array) -> Flags:
         """Return a mask of the points (k, 3) that are far enough from all curves.

@@ -22,6 +22,8 @@ __all__ = ["Cap", "Condition", "Reach", "angles_between", "cap", "checked_reach"
 UP = np.array([0.0, 0.0, 1.0])
 # In a row of `Reach._numbers`, this in place of an angle or a distance means unobstructed rays.
 FREE = -1.0
+# Errors of edges are named if they are larger than this part of the distance from edges.
+WORTH_NAMING = 1e-9
 
 
 class Cap(NamedTuple):
@@ -42,6 +44,11 @@ class Cap(NamedTuple):
 
 class Condition(Protocol):
     """A condition on points of a surface that does not depend on the normals alone."""
+
+    @property
+    def error(self) -> float:
+        """The error of edges, in L, by which the condition is stricter; 0 without edges."""
+        ...
 
     def holds(self, points: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Return whether the condition holds at points (k, 3) with unit normals (k, 3)."""
@@ -173,11 +180,29 @@ class Reach:
             found[found] = x.holds(points[found], normals[found])
         return found
 
+    @property
+    def _reported(self) -> dict[str, Any]:
+        """The entries of a report; the error of edges is known with the conditions on a surface."""
+        error = max((x.error for x in self._conditions), default=0.0)
+        return {"reach": self._numbers, "edge_error": error if self._from_edges else None}
+
+    def _said(self, unit: str | None = None, error: float | None = None) -> str:
+        """Return the conditions in words; the error of edges is named unless it is of rounding."""
+        said = [
+            f"normals within {cap.angle:g}° of ({', '.join(f'{x + 0.0:.3g}' for x in cap.axis)})"
+            for cap in self._caps
+            if cap.angle < 180.0
+        ]
+        if distance := self._from_edges:
+            unit = f" {unit or ''}".rstrip()
+            more = error is not None and error > WORTH_NAMING * distance
+            plus = f" + {error:.2g}{unit} (their error)" if more else ""
+            said.append(f"at least {distance:g}{unit}{plus} from edges")
+        said += [] if self._along is None else ["unobstructed"]
+        return ", ".join(said) or "all normals"
+
     def __repr__(self) -> str:
-        caps = (f"{cap.angle:g}° of {cap.axis.round(3).tolist()}" for cap in self._caps)
-        away = f", {self._from_edges:g} from edges" if self._from_edges else ""
-        free = "" if self._along is None else ", unobstructed"
-        return f"Reach(within {', '.join(caps)}{away}{free})"
+        return f"Reach({self._said()})"
 
 
 def _pair(values: Sequence[float], name: str, most: float) -> tuple[float, float]:

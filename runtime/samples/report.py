@@ -179,10 +179,13 @@ class SamplingReport:
     edge_samples : int or None
         For a CAD part with ``edges=True``: the number of samples on sharp edges.
     reach : tuple of float or None
-        For a CAD part with ``reach=(axis, angle)``: the unit vector of the axis, and the angle in
-        degrees. For a `Reach`, four numbers for each of its conditions: the axis and the angle of
-        each cap; then 0, 0, 0 and the distance from edges; then the axis and −1 for unobstructed
-        rays. `Samples.coverage`, `normal_deviation` and `weights` refer to the points in reach.
+        With ``reach=(axis, angle)``: the unit vector of the axis, and the angle in degrees. For a
+        `Reach`, four numbers for each of its conditions: the axis and the angle of each cap; then
+        0, 0, 0 and the distance from edges; then the axis and −1 for unobstructed rays.
+        `Samples.coverage`, `normal_deviation` and `weights` refer to the points in reach.
+    edge_error : float or None
+        With ``from_edges``: the largest error of the arcs that approximate edges, in L. The error
+        of each arc is added to the distance that samples keep from it.
     unit : str or None
         For a CAD part, and a `terrain` with a `crs`: the unit of lengths, such as "mm", if it is
         known.
@@ -212,7 +215,7 @@ class SamplingReport:
     SamplingReport(surface='torus', normals=2, samples=4, patches=16384, ..., apexes=0)
     >>> report.density is report.edge_samples is report.crs is report.origin is None
     True
-    >>> report.reach is report.unit is None
+    >>> report.reach is report.edge_error is report.unit is None
     True
     >>> report.developable_share, report.apexes, report.index
     (0.0, 0, None)
@@ -246,6 +249,7 @@ class SamplingReport:
     oriented: bool | None = None
     edge_samples: int | None = None
     reach: tuple[float, ...] | None = None
+    edge_error: float | None = None
     unit: str | None = None
     crs: str | None = None
     origin: tuple[float, float, float] | None = None

@@ -35,6 +35,8 @@ def summary_of(samples: SampleArrays) -> str:
     if report.proved is not None and report.normals:
         line += f"; proved to be complete for {report.proved:,} of "
         line += plural(report.normals, "normal")
+    if report._in_reach is not None:
+        line += f"; in reach: {report._in_reach._said(report.unit, report.edge_error)}"
     if report.angle is not None:
         line += f"; every normal is within {report.angle:.3g}° of that of a sample"
     if report.coverage is not None:

@@ -50,8 +50,8 @@ def sample_part(
     on_faces = [x for x in fields if x not in EDGE_NAMES]
     found = fields_of(cover, list(dict.fromkeys([*on_faces, *FLAG_NAMES])), dtype)
     report = _report(part, space, cover, found, request)
-    if request.reach is not None:
-        report = replace(report, reach=request.reach._numbers)
+    if (reach := space.pieces[0].reach) is not None:
+        report = replace(report, **reach._reported)
     arrays: dict[str, Any] = {name: found[name] for name in on_faces}
     if edges:
         assert isinstance(cover.space, PartSpace)

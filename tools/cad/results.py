@@ -48,14 +48,9 @@ def space_of(
         pieces, failed = pieces_of(part.faces, reach)
     if not pieces:
         if reach is not None and len(failed) < len(part.faces):
-            away = (
-                "" if reach._from_edges is None else f", at least {reach._from_edges:g} from edges"
-            )
-            free = "" if reach._along is None else ", unobstructed"
             raise SurfaceError(
-                f"part {part.name!r} has no point in reach: normals within the "
-                f"{reach._smallest.angle:g}° (those of the wall of a bore are at 90° to its axis)"
-                f"{away}{free}."
+                f"part {part.name!r} has no point in reach: {reach._said(part.unit)} (normals of "
+                "the wall of a bore are at 90° to its axis)."
             )
         reason = f": {next(iter(failed.values()))}" if failed else "."
         raise SurfaceError(f"part {part.name!r} has no face that can be sampled{reason}")

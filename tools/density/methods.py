@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ...runtime.base.checks import finite_array, known_name
@@ -145,7 +147,9 @@ def coverage(
     """
     with busy("measuring the coverage", progress):
         points, space = self.points, _space_of(self, spline, threads)
-        return bound(space, space.scaled_points(points)) / space.unit
+        known = self.report.coverage
+        asked = math.inf if known is None else known * space.unit
+        return bound(space, space.scaled_points(points), asked) / space.unit
 
 
 def normal_deviation(

@@ -98,6 +98,7 @@ class FreeAlong:
     slack: float
     edges: KDTree
     step: float
+    error = 0.0
 
     @classmethod
     def of(cls, mesh: Mesh, axis: Array) -> FreeAlong:

@@ -271,16 +271,25 @@ def _sampled(
     surface: Surface | AnySpline | Whole, given: Arguments
 ) -> tuple[Samples, NDArray[np.float64]]:
     """Choose how to sample a surface; return samples and the normals that were searched."""
-    density, normals = given.request.density, given.request.normals
     if isinstance(surface, Whole):
         return _of_part(surface, given)
     if given.edges:
         raise InputError("edges are sampled of CAD parts; other surfaces have no sharp edges.")
     reach = given.request.reach
-    if reach is not None:
-        place_of_samples(surface, given.on)  # raises
-        reach = reach._on(kept_map(surface, given.cells, given.on)._conditions_of(reach))
-        given = given._replace(request=replace(given.request, reach=reach))
+    if reach is None:
+        return _of_surface(surface, given)
+    place_of_samples(surface, given.on)  # raises
+    reach = reach._on(kept_map(surface, given.cells, given.on)._conditions_of(reach))
+    given = given._replace(request=replace(given.request, reach=reach))
+    samples, normals = _of_surface(surface, given)
+    return replace(samples, report=replace(samples.report, **reach._reported)), normals
+
+
+def _of_surface(
+    surface: Surface | AnySpline, given: Arguments
+) -> tuple[Samples, NDArray[np.float64]]:
+    """Return samples of a surface or a spline."""
+    density, normals = given.request.density, given.request.normals
     if density == "gauss" and normals is not None:
         return _at_normals(surface, normals, given), normals
     if isinstance(surface, NetSpline) and density != "gauss":

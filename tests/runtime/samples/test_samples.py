@@ -132,12 +132,14 @@ class TestReport:
             "apexes": np.int16(1), "index": np.int64(7), "density": "aligned", "faces": np.int32(3),
             "empty_faces": np.uint8(1), "estimated_faces": np.int64(1), "oriented": True,
             "edge_samples": np.int64(2), "reach": (0, np.int8(0), 1, np.float32(60.0)),
+            "edge_error": np.float32(1),
             "unit": np.str_("mm"), "crs": "EPSG:32633", "origin": np.array([1, 2.0, 0]),
         }  # fmt: skip
         report = SamplingReport("s", *numbers, **more)
         assert [type(getattr(report, f.name)) for f in fields(report)] == [
             str, int, int, int, float, int, float, float, int, str, int, int, tuple,
-            float, float, float, int, int, str, int, int, int, bool, int, tuple, str, str, tuple,
+            float, float, float, int, int, str, int, int, int, bool, int, tuple, float, str, str,
+            tuple,
         ]  # fmt: skip
         assert report.undecided == ((0, (0.0, 1.0, 2.0, 3.0), "open", True, None, None),)
         assert report.reach == (0.0, 0.0, 1.0, 60.0)

@@ -42,7 +42,7 @@ def test_faces_that_rays_from_above_meet_are_those_of_the_whole_part():
     assert set(np.asarray(samples.face_index).tolist()) == {0, 1, 2, 3, 5}
     assert gm.Reach._of(above._numbers)._numbers == above._numbers == samples.report.reach
     bottom = box().select(index=[4])
-    refused("no point in reach: .* unobstructed", gm.sample, bottom, 20, reach=above, error=error)
+    refused("no point in reach: unobstructed", gm.sample, bottom, 20, reach=above, error=error)
 
 
 @pytest.mark.slow

@@ -104,6 +104,22 @@ def test_seams_are_no_edges_and_circles_are_exact() -> None:
     assert KDTree(wall).query([1.0, 0.0, 1.0])[0] < samples.coverage()
 
 
+@pytest.mark.parametrize(
+    ("whole", "unit", "least"), [(KINDS, " mm", 1e-6), (box(), " mm", 0.0), ("wavy_graph", "", 0.0)]
+)
+def test_summaries_name_the_reach_and_the_error_of_edges(
+    whole: Any, unit: str, least: float
+) -> None:
+    samples = gm.sample(whole, 60, reach=gm.Reach((0, 0, 2), 170, from_edges=0.05))
+    assert samples.report.reach == (0.0, 0.0, 1.0, 170.0, 0.0, 0.0, 0.0, 0.05)
+    error = samples.report.edge_error
+    assert error is not None
+    assert least <= error < least + 1e-4
+    more = f" + {error:.2g}{unit} (their error)" if least else ""
+    said = f"; in reach: normals within 170° of (0, 0, 1), at least 0.05{unit}{more} from edges"
+    assert said in samples.summary()
+
+
 def test_samples_on_edges_are_not_away_from_them() -> None:
     reach = gm.Reach(from_edges=0.1)
     refused("leave out edges", gm.sample, box(), 100, edges=True, reach=reach)
