@@ -15,7 +15,7 @@ from ..base.errors import GaussmapWarning, InputError, SurfaceError, in_memory
 from ..base.evaluation import returned
 from ..base.progress import busy
 from ..base.scales import not_too_large
-from ..domain.domain import Domain, cells_between, places_in
+from ..domain.domain import cells_between, places_in
 from ..domain.trim import Trim, trimmed
 from ..spline.misfit import Misfit
 from ..spline.missing import known_of, known_of_values
@@ -36,19 +36,17 @@ from ..surface.derivatives import Differentiable
 from ..surface.surface import Surface
 from ..surface.surfaces import named
 from .comparison import Comparison, compare_with_data, probe_of, variation
-from .tolerance import FAR_OFF, Bounds, Tolerance, checked_tolerance, refined
+from .tolerance import FAR_OFF, Tolerance, checked_tolerance, refined
 
 __all__ = ["DEFAULT_CELLS", "check_range", "fit", "spline_of"]
 
 # Without cells or tolerance: the least numbers of cells, and the goal for which they are increased.
 # At creases no number of cells makes normals accurate: the search ends when they no longer improve.
 DEFAULT_CELLS = (64, 64)
-DEFAULT_TOLERANCE = Tolerance(distance=None, relative=1e-4, angle=0.1)
-DEFAULT_BOUNDS = Bounds(most=(1024, 1024), total=2**16, patience=2)
-# If a tolerance is given: the numbers of cells of the first attempt, and the bounds of the search.
+DEFAULT = Tolerance(None, 1e-4, 0.1, poles=False, most=(1024, 1024), total=2**16, patience=2)
+# For a tolerance: the numbers of cells of the first attempt.
 FEWEST_CELLS = (8, 8)
-BOUNDS = Bounds(most=(4096, 4096), total=2**20, patience=9)
-# A callable is called twice at AGAIN parameters: the points have to agree up to SAME times their
+# A callable is called again at AGAIN points: both answers have to agree up to SAME times their
 # extent.
 AGAIN, SAME = 16, 1e-9
 
@@ -188,15 +186,18 @@ def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
     """Return a spline of a surface within a tolerance, or else within the default tolerance."""
     spline = _fitted(surface, DEFAULT_CELLS if asked is None else FEWEST_CELLS)
     probe = probe_of(surface, DEFAULT_CELLS)
-    goal = (asked or DEFAULT_TOLERANCE).goal(probe.diagonal, probe.largest, poles=asked is not None)
-    bounds = _within(surface.domain, DEFAULT_BOUNDS if asked is None else BOUNDS)
+    goal = (asked or DEFAULT).of_size(probe.diagonal, probe.largest)
+    # A domain that is narrow relative to the size of its parameters has fewer cells.
+    most = [
+        min(most, max(int((high - low) / np.spacing(max(-low, high)) / 8.0), 64))
+        for (low, high), most in zip(surface.domain, goal.most, strict=True)
+    ]
     spline, misfit, reached = refined(
-        lambda cells: _fitted(surface, cells),
+        partial(_fitted, surface),
         probe.compare,
         partial(variation, surface),
         spline,
-        goal,
-        bounds,
+        replace(goal, most=(most[0], most[1])),
     )
     if not reached and (asked is not None or misfit.distance > FAR_OFF * (goal.distance or 0.0)):
         _warn(spline, misfit, "the tolerance" if asked else "the accuracy of the default")
@@ -240,7 +241,7 @@ def _fit_data_to(
     if asked.angle is not None:
         raise InputError("normal_tolerance=... is for surfaces; data have no normals.")
     extent = np.nanmax(grid, axis=(0, 1)) - np.nanmin(grid, axis=(0, 1))
-    goal = asked.goal(float(np.hypot.reduce(extent)), float(np.nanmax(np.abs(grid))), poles=True)
+    goal = asked.of_size(float(np.hypot.reduce(extent)), float(np.nanmax(np.abs(grid))))
     most = cells_between(grid.shape, surface.boundary)
 
     def fitted(cells: tuple[int, int]) -> Spline:
@@ -254,8 +255,7 @@ def _fit_data_to(
         compare,
         partial(variation, surface),
         fitted((min(FEWEST_CELLS[0], most[0]), min(FEWEST_CELLS[1], most[1]))),
-        goal,
-        replace(BOUNDS, most=most, total=most[0] * most[1]),
+        replace(goal, most=most, total=most[0] * most[1]),
     )
     if not reached:
         spline = fitted(most)
@@ -267,15 +267,6 @@ def _fit_data_to(
 def _finest(surface: Surface, grid: NDArray[np.float64]) -> Spline:
     """Return the spline with one cell between any four neighbouring points."""
     return fit_grid(grid, surface.domain, surface.boundary, surface.name)
-
-
-def _within(domain: Domain, bounds: Bounds) -> Bounds:
-    """Return bounds, reduced for a domain that is narrow relative to the size of its parameters."""
-    most = [
-        min(most, max(int((high - low) / np.spacing(max(-low, high)) / 8.0), 64))
-        for (low, high), most in zip(domain, bounds.most, strict=True)
-    ]
-    return replace(bounds, most=(most[0], most[1]))
 
 
 def _warn(spline: Spline, misfit: Misfit, what: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..base.checks import positive_number
 from ..base.errors import InputError
@@ -12,7 +12,7 @@ from ..base.tolerances import DATA_ERROR
 from ..spline.spline import Spline
 from .comparison import Comparison, Misfit
 
-__all__ = ["FAR_OFF", "Bounds", "Goal", "Tolerance", "checked_tolerance", "refined"]
+__all__ = ["FAR_OFF", "Tolerance", "checked_tolerance", "refined"]
 
 # A spline is an improvement if at most this part of an error remains. Halving the cells leaves an
 # eighth of an error of order 3, and a half of an error of order 1, as at folds.
@@ -30,31 +30,39 @@ FAR_OFF = 10.0
 
 
 @dataclass(frozen=True)
-class Bounds:
-    """The largest numbers of cells along u and v, and in all.
+class Tolerance:
+    """The errors that a spline may have, and the numbers of cells with which they are sought.
 
-    The search ends after `patience` steps without improvement, unless the distance is far from the
-    goal.
-    """
-
-    most: tuple[int, int]
-    total: int
-    patience: int
-
-
-@dataclass(frozen=True)
-class Goal:
-    """The largest distance (in L) and angle (in degrees, if any) that a spline may have.
-
-    With `poles`, the angle next to poles and other collapsed sides counts, too.
+    The distance is in L, or relative to the diagonal; the angle, in degrees, also counts next to
+    `poles` and other collapsed sides. There are at most `most` cells along u and v, and `total` in
+    all. The search ends after `patience` steps without improvement, unless the distance is far from
+    the goal.
     """
 
     distance: float | None
+    relative: float | None
     angle: float | None
-    poles: bool
+    poles: bool = True
+    most: tuple[int, int] = (4096, 4096)
+    total: int = 2**20
+    patience: int = 9
+
+    def of_size(self, diagonal: float, largest: float) -> Tolerance:
+        """Return the tolerance for a surface with this diagonal and this largest coordinate.
+
+        Raises InputError if its distance is below the rounding of the coordinates.
+        """
+        asked = self.distance if self.relative is None else self.relative * diagonal
+        least = DATA_ERROR * largest
+        if asked is not None and asked < least:
+            raise InputError(
+                f"a tolerance of {asked:.3g} is below the rounding of coordinates as large as "
+                f"{largest:.3g}; choose at least {least:.1g}."
+            )
+        return replace(self, distance=asked)
 
     def excess(self, comparison: Comparison) -> tuple[float, float]:
-        """Return distance and angle relative to the goal: at most 1 if it is reached."""
+        """Return distance and angle relative to the largest allowed: at most 1 if it is reached."""
         misfit = comparison.misfit
         angle = misfit.angle if self.poles else comparison.angle_away
         return (
@@ -65,33 +73,6 @@ class Goal:
     def reached(self, comparison: Comparison) -> bool:
         """Return whether a spline is as accurate as requested."""
         return max(self.excess(comparison)) <= 1.0
-
-
-@dataclass(frozen=True)
-class Tolerance:
-    """The requested accuracy of a spline, from the arguments of `fit`; at least one is not None.
-
-    `distance` is in L, `relative` is a distance relative to the diagonal of the bounding box,
-    `angle` is the angle between normals in degrees.
-    """
-
-    distance: float | None
-    relative: float | None
-    angle: float | None
-
-    def goal(self, diagonal: float, largest: float, poles: bool) -> Goal:
-        """Return the goal for a surface, from its diagonal and its largest coordinate.
-
-        Raises InputError if the distance is below the rounding of the coordinates.
-        """
-        asked = self.distance if self.relative is None else self.relative * diagonal
-        least = DATA_ERROR * largest
-        if asked is not None and asked < least:
-            raise InputError(
-                f"a tolerance of {asked:.3g} is below the rounding of coordinates as large as "
-                f"{largest:.3g}; choose at least {least:.1g}."
-            )
-        return Goal(asked, self.angle, poles)
 
 
 def checked_tolerance(
@@ -120,7 +101,9 @@ def checked_tolerance(
         )
     if [*given] == ["normal_tolerance"]:
         given["relative_tolerance"] = BESIDE_NORMALS
-    return Tolerance(*map(given.get, ("tolerance", "relative_tolerance", "normal_tolerance")))
+    return Tolerance(
+        given.get("tolerance"), given.get("relative_tolerance"), given.get("normal_tolerance")
+    )
 
 
 def refined(
@@ -128,8 +111,7 @@ def refined(
     compare: Callable[[Spline], Comparison],
     variation: Callable[[Spline, Comparison, bool], tuple[float, float]],
     spline: Spline,
-    goal: Goal,
-    bounds: Bounds,
+    goal: Tolerance,
 ) -> tuple[Spline, Misfit, bool]:
     """Return a spline with enough cells for a goal, its misfit, and whether the goal is reached.
 
@@ -141,11 +123,11 @@ def refined(
     best, its_comparison = spline, comparison
     while not goal.reached(comparison):
         distance, angle = goal.excess(comparison)
-        if stalled >= bounds.patience and distance <= FAR_OFF:
+        if stalled >= goal.patience and distance <= FAR_OFF:
             break
         # Derivatives may mislead: the error also varies along u if cells are too long along v.
         u, v = variation(spline, comparison, angle > distance and stalled == 0)
-        finer = _finer(spline.cells, u, v, bounds)
+        finer = _finer(spline.cells, u, v, goal)
         if finer == spline.cells:
             break
         spline = fitted(finer)
@@ -157,21 +139,18 @@ def refined(
     return best, its_comparison.misfit, goal.reached(its_comparison)
 
 
-def _improved(goal: Goal, before: Comparison, after: Comparison) -> bool:
-    """Return whether an error that exceeded the goal decreased to at most IMPROVED times itself."""
+def _improved(goal: Tolerance, before: Comparison, after: Comparison) -> bool:
+    """Return whether one of the errors that exceed the goal decreased."""
     pairs = zip(goal.excess(before), goal.excess(after), strict=True)
     return any(old > 1.0 and new <= IMPROVED * old for old, new in pairs)
 
 
-def _finer(cells: tuple[int, int], u: float, v: float, bounds: Bounds) -> tuple[int, int]:
-    """Return the numbers of cells, doubled along u, along v or along both, within the bounds.
-
-    `u` and `v` are the variations of the error along u and along v.
-    """
-    twice = [min(2 * count, most) for count, most in zip(cells, bounds.most, strict=True)]
+def _finer(cells: tuple[int, int], u: float, v: float, goal: Tolerance) -> tuple[int, int]:
+    """Double the cells along u, v or both, by their errors, within the bounds."""
+    twice = [min(2 * count, most) for count, most in zip(cells, goal.most, strict=True)]
     along_u, along_v = (twice[0], cells[1]), (cells[0], twice[1])
     larger, smaller = (along_u, along_v) if u >= v else (along_v, along_u)
     both = (twice[0], twice[1])
     choices = [larger, smaller] if max(u, v) > DOMINANT * min(u, v) else [both, larger, smaller]
-    fitting = (x for x in choices if x != cells and x[0] * x[1] <= bounds.total)
+    fitting = (x for x in choices if x != cells and x[0] * x[1] <= goal.total)
     return next(fitting, cells)
