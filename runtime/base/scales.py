@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from .errors import SurfaceError
 
@@ -14,8 +14,10 @@ __all__ = [
     "ROUNDING",
     "SAME_POINT",
     "apart",
+    "check_range",
     "extent_of",
     "not_too_large",
+    "power_of_two",
     "scale_to_one",
     "scales_to_one",
 ]
@@ -26,6 +28,11 @@ LARGEST_EXPONENT = 1000
 SAME_POINT = 1e-6
 # Rounding of coordinates, in units of the last place: coordinates result from several operations.
 ROUNDING = 64.0
+
+
+def power_of_two(value: float) -> float:
+    """Return the largest power of two that is not above a positive number."""
+    return math.ldexp(1.0, math.frexp(value)[1] - 1)
 
 
 def scale_to_one(largest: float) -> float:
@@ -68,3 +75,13 @@ def not_too_large(points: NDArray[np.float64], name: str) -> NDArray[np.float64]
             "length, in which they are smaller than 1e301."
         )
     return points
+
+
+def check_range(name: str, largest: float, dtype: DTypeLike) -> None:
+    """Raise SurfaceError if the largest coordinate of a surface is beyond the range of `dtype`."""
+    limits = np.finfo(np.zeros(0, dtype).dtype)
+    if not float(limits.tiny) <= largest <= float(limits.max) and largest > 0.0:
+        raise SurfaceError(
+            f"the coordinates of {name!r} are too {'large' if largest > 1.0 else 'small'} "
+            f"for {limits.dtype}; choose another unit of length or double precision."
+        )

@@ -1,9 +1,8 @@
 """Sets of directions on the sphere and on the circle, subsets of them, and covering radii."""
 
-from .circle import circle
 from .covering import covering_radius
 from .regions import cap, polygon
-from .sets import fibonacci, healpix, icosphere, random
+from .sets import circle, fibonacci, healpix, icosphere, random
 
 __all__ = [
     "cap",

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
 from ..base.advice import about_value
 from ..base.errors import GaussmapWarning, InputError, SurfaceError, in_memory
@@ -30,15 +30,14 @@ from ..spline.quasi_interpolant import (
     values_at,
 )
 from ..spline.spline import Spline, short_label
-from ..surface.closing import close_seams
-from ..surface.collapsed import with_found_sides
 from ..surface.derivatives import Differentiable
+from ..surface.sides import close_seams, with_found_sides
 from ..surface.surface import Surface
 from ..surface.surfaces import named
 from .comparison import Comparison, compare_with_data, probe_of, variation
 from .tolerance import FAR_OFF, Tolerance, checked_tolerance, refined
 
-__all__ = ["DEFAULT_CELLS", "check_range", "fit", "spline_of"]
+__all__ = ["fit", "patches_of", "spline_of"]
 
 # Without cells or tolerance: the least numbers of cells, and the goal for which they are increased.
 # At creases no number of cells makes normals accurate: the search ends when they no longer improve.
@@ -66,16 +65,6 @@ def patches_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) 
 def spline_of(surface: Surface | AnySpline | str, cells: Sequence[int] | None) -> Spline:
     """Return a spline on a grid of cells, see `patches_of`; InputError for a spline of nets."""
     return on_grid(patches_of(surface, cells))
-
-
-def check_range(name: str, largest: float, dtype: DTypeLike) -> None:
-    """Raise SurfaceError if the largest coordinate of a surface is beyond the range of `dtype`."""
-    limits = np.finfo(np.zeros(0, dtype).dtype)
-    if not float(limits.tiny) <= largest <= float(limits.max) and largest > 0.0:
-        raise SurfaceError(
-            f"the coordinates of {name!r} are too {'large' if largest > 1.0 else 'small'} "
-            f"for {limits.dtype}; choose another unit of length or double precision."
-        )
 
 
 @in_memory

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..base.aliases import Array, Indices
+from ..base.scales import power_of_two
 from ..base.threads import over_ranges
 from ..base.tolerances import NORMAL_ERROR, NORMAL_NOISE
 from ..spline.kernels.jets import evaluate_jets
 from ..spline.spline import Spline
-from ..surface.derivatives import power_of_two
 from ..surface.surface import Surface
 from .kernels.refine import (
     CLAMPED,

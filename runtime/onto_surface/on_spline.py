@@ -19,10 +19,10 @@ from numpy.typing import DTypeLike, NDArray
 from ...generated.spline import SCALE
 from ..base.aliases import Array
 from ..base.memory import check_memory
+from ..base.scales import check_range
 from ..base.threads import over_ranges
 from ..directions.regions import Reach
 from ..domain.trim import samples_inside, with_uv
-from ..fitting.fit import check_range
 from ..samples.fields import FLOAT_NAMES, bytes_of, new_field, regular
 from ..samples.report import SamplingReport, UndecidedNormal, sampling_report
 from ..samples.samples import Samples

@@ -13,7 +13,8 @@ from functools import cached_property
 import numpy as np
 
 from ..base.aliases import Array, Flags
-from ..surface.derivatives import differences, power_of_two
+from ..base.scales import power_of_two
+from ..surface.derivatives import differences
 from ..surface.surface import Surface
 from .kernels.refine import chart_jets, jet_of_pole
 

@@ -13,11 +13,10 @@ from numpy.typing import DTypeLike, NDArray
 
 from ..base.kept import kept
 from ..base.memory import check_memory
-from ..base.scales import scale_to_one
+from ..base.scales import check_range, power_of_two, scale_to_one
 from ..base.threads import over_ranges
 from ..directions.regions import Reach
 from ..domain.trim import samples_inside, with_uv
-from ..fitting.fit import check_range
 from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
 from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places
 from ..samples.fields import FLAG_NAMES, Component, bytes_of, dtype_of, regular, row_shape
@@ -26,9 +25,7 @@ from ..samples.samples import Samples
 from ..search.search import developable_patches
 from ..spline.kernels.jets import evaluate_jets
 from ..spline.spline import Spline
-from ..surface.closing import closed_points
-from ..surface.collapsed import with_found_sides
-from ..surface.derivatives import power_of_two
+from ..surface.sides import closed_points, with_found_sides
 from ..surface.surface import Surface
 from ..tape.tapes import jets_of
 from .cut_components import components_in

@@ -16,10 +16,15 @@ from ..base.checks import as_float
 from ..base.errors import GaussmapWarning, InputError, shown
 from ..domain.domain import Boundary, Domain
 from ..domain.inside import extremes_around
-from .ghosts import Border, coefficients_with_ring
 from .kernels.spline import control_nets, patches_at
 from .poles import spread_missing, without_poles
-from .quasi_interpolant import from_grid, from_values, values_at
+from .quasi_interpolant import (
+    Border,
+    coefficients_with_ring,
+    from_grid,
+    from_values,
+    values_at,
+)
 
 __all__ = [
     "Known",

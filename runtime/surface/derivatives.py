@@ -21,7 +21,7 @@ from ...generated.differences import FIRST, FIRST_CHANGE, SECOND, SECOND_CHANGE
 from ..base.aliases import Array, Flags, Indices
 from ..base.errors import SurfaceError
 from ..base.evaluation import returned
-from ..base.scales import scale_to_one
+from ..base.scales import power_of_two, scale_to_one
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside, places_in
 from ..tape.kernels.points import Tape
 
@@ -155,11 +155,6 @@ def normals_of_jets(jets: Array) -> Array:
     normals = np.cross(tangents[:, 0], tangents[:, 1])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     return np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
-
-
-def power_of_two(value: float) -> float:
-    """Return the largest power of two that is not above a positive number."""
-    return math.ldexp(1.0, math.frexp(value)[1] - 1)
 
 
 def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tuple[Array, Array]:

@@ -1,31 +1,42 @@
-"""Reads and checks a user's expressions and conditions, given as texts or SymPy objects.
+"""Reads and checks a user's expressions and conditions, and makes NumPy functions of them.
 
-`symbolic.reading` defines the language of texts. SymPy is imported at first use.
+`symbolic.reading` defines the language of texts. SymPy is imported at first use. Functions are
+pickled as the expressions. Their derivatives are computed from a tape if the expressions have one.
+Otherwise, as for Max(u, v), SymPy differentiates the expressions.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
 from numbers import Number
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..base import bridge
 from ..base.checks import listed
 from ..base.errors import InputError, clipped, shown
+from ..tape.kernels.points import Tape
+from ..tape.tapes import jets_of, tape_of_steps
+from .derivatives import NAMES, Differentiable
 
 if TYPE_CHECKING:
     import sympy
 
 __all__ = [
+    "Expressions",
     "as_condition",
     "as_expression",
-    "as_position",
+    "compiled",
     "numbers",
     "one_symbol",
     "two_symbols",
 ]
+
+PROBES = np.array([0.25, 0.75])  # parameters for a trial of the derivatives; any values do
 
 
 def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tuple[Any, ...]:
@@ -152,3 +163,158 @@ def _read(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401
     except (sp.SympifyError, ValueError, TypeError, RecursionError):
         return None
     return expression
+
+
+# --- callables ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Expressions(Differentiable):
+    """A NumPy function: three expressions in two symbols, or two expressions in one symbol."""
+
+    has_gaps = True  # sin(u)/u
+
+    expressions: tuple[Any, ...]
+    symbols: tuple[sympy.Symbol, ...]
+
+    @property
+    def differentiable(self) -> bool:
+        """Whether derivatives can be computed: from a tape, or by NumPy from SymPy's formulas."""
+        return self._tape is not None or self._derivatives is not None
+
+    def __call__(self, *values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the points (..., 3) or (..., 2) for parameters of one shape."""
+        shape = values[0].shape
+        return np.stack([np.broadcast_to(x, shape) for x in self._position(*values)], axis=-1)
+
+    def jets(self, u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return positions and derivatives (k, 6, 3)."""
+        if self._tape is not None:
+            return jets_of(self._tape, u, v)
+        assert self._derivatives is not None
+        result = np.empty((u.size, 3 * len(NAMES)))
+        with np.errstate(all="ignore"):
+            for column, values in enumerate(self._derivatives(u, v)):
+                result[:, column] = values
+        return result.reshape(-1, len(NAMES), 3)
+
+    def tape(self) -> Tape | None:
+        """Return the tape of a surface; None if the expressions have operations that tapes lack."""
+        return self._tape
+
+    def __getstate__(self) -> dict[str, object]:
+        """Return the pickled state: the expressions without the compiled functions."""
+        return {"expressions": self.expressions, "symbols": self.symbols}
+
+    @cached_property
+    def _position(self) -> Callable[..., Any]:
+        return _lambdified(self.symbols, self.expressions)
+
+    @cached_property
+    def _tape(self) -> Tape | None:
+        steps = bridge.tape_steps(self.expressions, self.symbols)
+        return None if steps is None else tape_of_steps(*steps, {})
+
+    @cached_property
+    def _derivatives(self) -> Callable[..., Any] | None:
+        """The NumPy function of the 18 components of the 2-jet, or None if there is none."""
+        expressions = _jet(self.expressions, self.symbols)
+        if expressions is None:
+            return None
+        try:
+            function = _lambdified(self.symbols, expressions)
+            with np.errstate(all="ignore"):
+                values = [np.asarray(x) for x in function(PROBES, PROBES)]
+        except Exception:  # functions that NumPy lacks, and SymPy's output for them
+            return None
+        return function if all(x.dtype.kind in "fi" for x in values) else None
+
+
+def compiled(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> Expressions:
+    """Return the NumPy function f(u, v) → (..., 3) of three expressions in two symbols.
+
+    For two expressions in one symbol, return f(t) → (..., 2). Raises InputError if the expressions
+    are unusable.
+    """
+    function = Expressions(as_position(position, symbols), tuple(symbols))
+    _ = function._position  # raises InputError if the expressions are unusable
+    return function
+
+
+def _jet(expressions: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> list[Any] | None:
+    """Return the 18 expressions of the 2-jet x, x_u, x_v, x_uu, x_uv, x_vv.
+
+    Returns None if SymPy cannot differentiate the expressions.
+    """
+    import sympy as sp
+
+    if not bridge.reading().is_differentiable(expressions):
+        return None
+    u, v = symbols
+    try:
+        x = [_with_floor(e) for e in expressions]
+        x_u, x_v = ([_derivative(e, by) for e in x] for by in (u, v))
+        x_uu, x_uv = ([_derivative(e, by) for e in x_u] for by in (u, v))
+        x_vv = [_derivative(e, v) for e in x_v]
+    except Exception:  # SymPy may raise anything
+        return None
+    jet = [*x, *x_u, *x_v, *x_uu, *x_uv, *x_vv]
+    if any(e.has(sp.Derivative, sp.Subs, sp.zoo, sp.nan) for e in jet):
+        return None
+    return jet
+
+
+def _with_floor(expression: Any) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Rewrite remainders in terms of floor, whose derivative is known."""
+    import sympy as sp
+
+    written = expression.replace(sp.Mod, lambda x, y: x - y * sp.floor(x / y))
+    return written.replace(sp.frac, lambda x: x - sp.floor(x))
+
+
+def _derivative(expression: Any, by: sympy.Symbol) -> Any:  # noqa: ANN401 - SymPy has no types
+    """Return the derivative of an expression.
+
+    Terms that come from kinks and jumps, such as Dirac deltas, are replaced by 0.
+    """
+    import sympy as sp
+
+    flat = sp.sign, sp.floor, sp.ceiling, sp.Heaviside
+    derivative = sp.diff(expression, by)
+    jumps = {
+        x: sp.S.Zero
+        for x in derivative.atoms(sp.DiracDelta, sp.Derivative, sp.Subs)
+        if isinstance(x, sp.DiracDelta) or isinstance(_differentiated(x), flat)
+    }
+    return derivative.xreplace(jumps)
+
+
+def _differentiated(expression: Any) -> Any:  # noqa: ANN401
+    """Return the function f of an unevaluated derivative f'(g); None if there is none."""
+    return expression.args[0].args[0] if expression.args[0].args else None
+
+
+def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> Callable[..., Any]:
+    """Return a NumPy function of expressions; InputError if they are nested too deeply."""
+    import sympy as sp
+
+    modules: list[Any] = ["numpy"]
+    reading, found = bridge.reading(), list(expressions)
+    if any(isinstance(x, sp.erf | sp.erfc) for e in found for x in reading.parts(e)):
+        # NumPy has no erf and erfc.
+        from scipy.special import erf, erfc
+
+        modules.insert(0, {"erf": erf, "erfc": erfc})
+    common: Any = True
+    try:
+        if reading.is_long(found):
+            definitions, found = reading.with_shared_parts(found)
+            common = partial(_defined, definitions)
+        return sp.lambdify(symbols, found, modules=modules, cse=common, dummify=True)
+    except (RecursionError, MemoryError, SyntaxError):  # SyntaxError: too many brackets
+        raise InputError("position is nested too deeply to be compiled.") from None
+
+
+def _defined(definitions: Any, expressions: Any) -> tuple[Any, Any]:  # noqa: ANN401
+    """Return both arguments; with `definitions` fixed, the option `cse` of SymPy's lambdify."""
+    return definitions, expressions

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -25,14 +27,17 @@ from ..domain.trim import Trim, trimmed_by
 from ..spline.quasi_interpolant import fit_grid
 from .derivatives import Evaluation
 from .moved import IDENTITY, AffineMap, Moved, affine_map, moved_grid
-from .names import label
 from .surface_values import SurfaceValues
 from .traced import traced_condition
 
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["Surface"]
+__all__ = ["Surface", "label"]
+
+# How often each default name was used.
+_used: Counter[str] = Counter()
+_lock = threading.Lock()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -210,8 +215,7 @@ class Surface(SurfaceValues):
         array([3., 0., 0.])
 
         """
-        from .expressions import numbers, two_symbols
-        from .lambdified import compiled
+        from .expressions import compiled, numbers, two_symbols
 
         f = compiled(position, two_symbols(parameters))
         rectangle = checked_domain(numbers(domain, "((u0, u1), (v0, v1))"))
@@ -308,7 +312,7 @@ class Surface(SurfaceValues):
         """Return the surface of points (m, n, 3), in which missing points are NaN."""
         from ..spline.missing import known_of_grid
         from ..spline.point_grid import spline_of_points
-        from .collapsed import closed_grid
+        from .sides import closed_grid
 
         points, boundary = closed_grid(points, boundary, assumed)
         spline = spline_of_points(points, boundary, name, domain)
@@ -578,3 +582,18 @@ def _grid(points: ArrayLike) -> NDArray[np.float64]:
             f"a grid must have the shape (m, n, 3), or (m, n) for elevations, not {array.shape}."
         )
     return array
+
+
+def label(name: str | None, kind: str, function: object = None) -> str:
+    """Return `name` if it is given, or else a default: the name of `function`, or `kind`.
+
+    Default names are distinct in a process: "waves", then "waves 2". Raises InputError if `name` is
+    neither None nor a text.
+    """
+    if name is not None:
+        return text(name, "name")
+    own = getattr(function, "__name__", "")
+    base = own if isinstance(own, str) and own.isidentifier() else kind  # not "<lambda>"
+    with _lock:
+        _used[base] += 1
+        return base if _used[base] == 1 else f"{base} {_used[base]}"

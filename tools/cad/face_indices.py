@@ -15,7 +15,7 @@ from ...runtime.domain.domain import Domain
 from ...runtime.onto_surface.proved import index_of
 from ...runtime.proof.ball import Ball
 from ...runtime.proof.index import KINDS, ProvedIndex, ProvedPlaces, Undecided
-from ...runtime.surface.collapsed import with_found_sides
+from ...runtime.surface.sides import with_found_sides
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.kernels.points import Tape
 from ...runtime.tape.tapes import bounds_over_boxes

@@ -30,8 +30,8 @@ from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, Component, bytes_of, 
 from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.kernels.jets import evaluate_jets
-from ...runtime.surface.collapsed import with_found_sides
 from ...runtime.surface.derivatives import normals_of_jets
+from ...runtime.surface.sides import with_found_sides
 from ...runtime.surface.surface import Surface
 from ..density.piece import Piece, boxes_between
 from .face_indices import GAP, face_index

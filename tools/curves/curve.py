@@ -166,8 +166,7 @@ class Curve:
         array([1., 0.])
 
         """
-        from ...runtime.surface.expressions import numbers, one_symbol
-        from ...runtime.surface.lambdified import compiled
+        from ...runtime.surface.expressions import compiled, numbers, one_symbol
 
         f = compiled(position, one_symbol(parameter))
         return cls.from_callable(f, numbers(domain, "(t0, t1)"), periodic, name=name)

@@ -27,7 +27,7 @@ from ...runtime.base.formula_calls import plane_vector, python_function
 from ...runtime.base.memory import check_memory
 from ...runtime.base.repeats import repeated
 from ...runtime.base.wording import at_normals
-from ...runtime.directions.circle import arc_of_normals, circle
+from ...runtime.directions.sets import arc_of_normals, circle
 from ...runtime.directions.unit import as_normals
 from ...runtime.samples.report import WORTH_A_WARNING
 from .curve import Curve

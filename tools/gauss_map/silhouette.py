@@ -23,7 +23,7 @@ from ...runtime.base.formula_calls import patch, python_function, vector
 from ...runtime.base.later import Later
 from ...runtime.base.threads import thread_count
 from ...runtime.base.tolerances import NORMAL_ERROR
-from ...runtime.directions.circle import circle
+from ...runtime.directions.sets import circle
 from ...runtime.directions.unit import as_normals, perpendicular, unit_vector
 from ...runtime.domain.domain import brought_inside
 from ...runtime.onto_surface.on_spline import OnSpline, on_grids

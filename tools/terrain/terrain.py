@@ -16,8 +16,7 @@ from ...runtime.base.errors import InputError, in_memory
 from ...runtime.base.georeference import Georeference, Origin, checked_origin
 from ...runtime.domain.domain import Boundary, Domain
 from ...runtime.spline.missing import checked_nodata, without_nodata
-from ...runtime.surface.names import label
-from ...runtime.surface.surface import Surface
+from ...runtime.surface.surface import Surface, label
 from ..files.lengths import METRES, unit_named
 from ..files.paths import checked_path
 from ..files.reference_systems import checked_crs, crs_text, projected, target_crs

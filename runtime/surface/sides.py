@@ -1,6 +1,6 @@
-"""Collapsed sides of the domain: poles, where the surface is smooth, and apexes.
+"""The sides of the domain: collapsed ones, which are poles or apexes, and seams that close.
 
-A disk in polar coordinates has one such side, a sphere has two. If boundary conditions are not
+A disk in polar coordinates has one collapsed side, a sphere has two. If boundary conditions are not
 declared, poles are detected from a few points: the side is collapsed, the other parameter is
 smoothly periodic, and each meridian continues the opposite one smoothly. Any other collapsed side
 is an apex: the tip of a cone, the corner of a triangle.
@@ -18,13 +18,14 @@ import numpy as np
 from ...generated import spline as formulas
 from ..base.aliases import Array
 from ..base.errors import SurfaceError
+from ..base.evaluation import returned
 from ..base.formula_calls import python_function
-from ..base.scales import ROUNDING, SAME_POINT, extent_of
-from ..domain.domain import Assumed, Boundary
+from ..base.scales import ROUNDING, SAME_POINT, apart, extent_of, not_too_large
+from ..domain.domain import Assumed, Boundary, closes
+from ..spline.poles import broken_poles
 from .surface_values import SurfaceValues
 
-__all__ = ["closed_grid", "with_found_sides"]
-
+__all__ = ["close_seams", "closed_grid", "closed_points", "with_found_sides"]
 
 Values = TypeVar("Values", bound=SurfaceValues)
 
@@ -38,6 +39,10 @@ LEAST_STEP, MOST_STEP = 1e-4, 1e-2
 # most this part of the step. The relative error of the extrapolation is of second order in the
 # step. KINK_OF_DATA is for grids of points, whose steps are larger.
 KINK, KINK_OF_DATA = 1e-2, 0.3
+
+# If the points at the two bounds of a parameter differ, points are computed this many units in the
+# last place away from the bounds.
+ROUNDINGS = 2.0
 
 
 def with_found_sides(surface: Values) -> tuple[Values, int]:
@@ -176,3 +181,74 @@ class _Sides:
         step = float(np.abs(near[1] - near[0]).max())
         predicted = python_function(formulas.extrapolation)(*near)
         return bool(np.abs(predicted - beyond).max() <= self.kink * step + self.rounding)
+
+
+# --- seams ----------------------------------------------------------------------------------------
+
+
+def closed_points(surface: SurfaceValues, cells: tuple[int, int]) -> Array:
+    """Return points (m + 1, n + 1, 3) of a surface at the corners of m × n cells of its domain.
+
+    Raises the SurfaceErrors of `close_seams`, and one if coordinates are too large to compute with.
+    """
+    u, v = (
+        np.linspace(*ends, count + 1) for ends, count in zip(surface.domain, cells, strict=True)
+    )
+    points = not_too_large(surface.evaluate(u[:, None], v), surface.name)
+    close_seams(surface, points)
+    return points
+
+
+def close_seams(surface: SurfaceValues, vertices: Array) -> None:
+    """Make the two rows of `vertices` (m + 1, n + 1, 3) at a seam equal: the spline then closes.
+
+    Raises SurfaceError if the rows differ by more than rounding, or if a pole is not collapsed.
+    """
+    for axis, (along, ends) in enumerate(zip("uv", surface.boundary, strict=True)):
+        rows = np.swapaxes(vertices, 0, axis)
+        if closes(ends):
+            first = rows[0] if ends[0] == "periodic" else rows[0, ::-1].copy()
+            if apart(rows[-1], first, vertices):
+                how, other = "the same", "the same, mirrored"
+                if ends[0] == "mirrored":
+                    how, other = other, how
+                if apart(rows[-1], first[::-1], vertices):
+                    why = _by_rounding(surface, axis, rows, float(np.abs(rows[-1] - first).max()))
+                else:
+                    word = "mirrored" if ends[0] == "periodic" else "periodic"
+                    why = f'; they are {other}: "{word}" in periodic=(...) says so'
+                raise SurfaceError(
+                    f"surface {surface.name!r} does not close along {along}: its two ends must be "
+                    f"{how}{why}."
+                )
+            rows[-1] = first
+        for end in broken_poles(vertices, surface.boundary, axis):
+            raise SurfaceError(
+                f"surface {surface.name!r} has no pole at {along} = {surface.domain[axis][end]}: "
+                "this side of its domain is not one point."
+            )
+
+
+def _by_rounding(surface: SurfaceValues, axis: int, rows: Array, far: float) -> str:
+    """Return the clause of a message on the distance `far` between the points at both bounds.
+
+    It says whether the rounding error of the parameter explains this distance: 2π, for example, is
+    not a float64 number.
+    """
+    low, high = surface.domain[axis]
+    first, last = rows[0], rows[-1]
+    other = np.linspace(*surface.domain[1 - axis], len(last))
+    moved = 0.0
+    step = ROUNDINGS * float(np.spacing(max(abs(low), abs(high))))
+    for end, row in ((low + step, first), (high - step, last), (high + step, last)):
+        near = np.full(len(last), end)
+        places = (near, other) if axis == 0 else (other, near)
+        points = returned(surface.function, places, (3,), f"surface {surface.name!r}")
+        moved = max(moved, float(np.nanmax(np.abs(points - row))))
+    along = "uv"[axis]
+    if not moved >= 0.5 * far:
+        return f"; they differ by {far:.3g}"
+    return (
+        f"; they differ by {far:.3g}, as much as its rounding changes the points there: "
+        f"compute them at {along} = {low!r} in place of {high!r}"
+    )
