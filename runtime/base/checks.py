@@ -6,9 +6,7 @@ import difflib
 import math
 from collections.abc import Sequence
 from contextlib import suppress
-from fractions import Fraction
 from itertools import islice
-from numbers import Rational
 from typing import Any, SupportsFloat
 
 import numpy as np
@@ -244,22 +242,9 @@ def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
         array = np.asarray(values)
     except Exception:  # objects raise anything: tensors that require gradients RuntimeError
         raise InputError(f"{name} must be an array of real numbers, with equal rows.") from None
-    if _are_fractions(array):
-        try:
-            return array.astype(np.float64)
-        except OverflowError:
-            raise InputError(f"{name} holds a number too large for float64.") from None
     if array.dtype.kind not in "fiub":
         raise InputError(f"{name} must be an array of real numbers, not of type {array.dtype}.")
     return array
-
-
-def _are_fractions(array: NDArray[Any]) -> bool:
-    """Return whether an object array holds only fractions and integers, at least one fraction."""
-    values = array.ravel().tolist() if array.dtype.kind == "O" else []
-    return any(isinstance(x, Fraction) for x in values) and all(
-        isinstance(x, Rational) for x in values
-    )
 
 
 def parameter_arrays(u: ArrayLike, v: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

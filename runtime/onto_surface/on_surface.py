@@ -42,7 +42,7 @@ def place_of_samples(surface: object, on: str | None) -> str:
 
     Raises UnknownNameError for another word, InputError if samples cannot lie on the surface.
     """
-    known = isinstance(surface, Surface) and surface.evaluable
+    known = isinstance(surface, Surface) and surface.grid is None
     if checked_place(on) is None:
         return "surface" if known else "spline"
     if on == "surface" and not known:

@@ -103,20 +103,6 @@ class SurfaceValues(Immutable):
         """The predicate of the parameters where values must be finite; None if everywhere."""
         return None if self.trim is None else self.trim.contains
 
-    @property
-    def evaluable(self) -> bool:
-        """Whether the surface can be evaluated everywhere, and is not given only by points.
-
-        Examples
-        --------
-        >>> import gaussmap as gm
-        >>> import numpy as np
-        >>> gm.surfaces.torus().evaluable, gm.Surface.from_grid(np.ones((4, 4, 3))).evaluable
-        (True, False)
-
-        """
-        return self.grid is None
-
     def derivatives(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.float64]:
         """Return the points and their first and second derivatives.
 
@@ -159,7 +145,7 @@ class SurfaceValues(Immutable):
 
         """
         arrays = parameter_arrays(u, v)
-        if not self.evaluable:
+        if self.grid is not None:
             raise InputError(
                 f"{self.name!r} was given by points and has no derivatives; gm.fit makes a spline "
                 "of it, which has normals and curvatures."

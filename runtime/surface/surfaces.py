@@ -181,14 +181,9 @@ def _maker(name: str) -> Callable[..., Surface]:
     known = CATALOGUE[name]["parameters"]
 
     def make(*values: float, **named: float) -> Surface:
-        if len(values) > len(known):
-            raise InputError(
-                f"{name} takes at most {len(known)} numbers: {', '.join(known)}; not {len(values)}."
-            )
         first = dict(zip(known, values, strict=False))
-        for parameter in first:
-            if parameter in named:
-                raise InputError(f"{name} takes one value of {parameter}, not two.")
+        if len(values) > len(known) or first.keys() & named:
+            raise InputError(f"{name} takes one number for each of {', '.join(known) or 'none'}.")
         return surface(name, **first, **named)
 
     arguments = [

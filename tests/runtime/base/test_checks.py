@@ -97,9 +97,3 @@ def test_parameters_that_do_not_fit_together():
     refused(r"shapes are \(3,\) and \(2,\)", parameter_arrays, [1, 2, 3], [1, 2])
     refused(r"^u must be", parameter_arrays, "a", 1)
     refused(r"^v must be", parameter_arrays, 1, 1j)
-
-
-def test_fractions_are_real_numbers() -> None:
-    values = real_array([[Fraction(1, 3), 2]], "values")
-    np.testing.assert_array_equal(values, [[1 / 3, 2.0]])
-    refused("not of type object", real_array, [[Fraction(1, 3), "2"]], "values")

@@ -124,8 +124,8 @@ def test_signatures_are_those_of_the_catalogue(name):
 
 
 def test_values_that_are_too_many():
-    refused("takes at most 2 numbers: major, minor; not 3", gm.surfaces.torus, 1.0, 0.5, 0.25)
-    refused("torus takes one value of major, not two", gm.surfaces.torus, 1.0, major=2.0)
+    refused("torus takes one number for each of major, minor", gm.surfaces.torus, 1.0, 0.5, 0.25)
+    refused("torus takes one number for each of major, minor", gm.surfaces.torus, 1.0, major=2.0)
 
 
 def test_unknown_attributes():
