@@ -5,19 +5,6 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-__all__ = [
-    "CAD_SUFFIXES",
-    "NO_CLOUDS",
-    "NO_MESHES",
-    "RASTER_SUFFIXES",
-    "about_value",
-    "file_advice",
-    "is_mesh_file",
-    "is_of_geomdl",
-    "is_of_splipy",
-    "is_raster",
-]
-
 CAD_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp", ".rle")
 RASTER_SUFFIXES = (".tif", ".tiff", ".asc")
 _MESH_SUFFIXES = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf", ".3mf", ".vtk", ".vtu", ".vtp")

@@ -12,15 +12,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from ...symbolic import BezierTriangle, Formula
 
-__all__ = [
-    "bezier_triangle",
-    "formulas",
-    "latex_of",
-    "normal_components",
-    "reading",
-    "tape_steps",
-]
-
 
 def array_function(expression: Any, condition: Any = True) -> str:  # noqa: ANN401
     """Return the Python source that evaluates a support function; see `symbolic.expression`."""

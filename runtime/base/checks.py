@@ -16,27 +16,6 @@ from .errors import InputError, UnknownNameError, shown
 from .limits import MOST
 from .memory import check_memory
 
-__all__ = [
-    "as_float",
-    "checked_array",
-    "checked_count",
-    "checked_rows",
-    "finite_array",
-    "finite_number",
-    "known_name",
-    "listed",
-    "pair_of_cells",
-    "parameter_arrays",
-    "positive_number",
-    "real_array",
-    "real_values",
-    "text",
-    "whole_number",
-    "with_gaps",
-    "yes_or_no",
-]
-
-
 # Made once, since a report checks many numbers.
 WHOLE, OF_NUMPY = (int, np.integer), (np.ndarray, np.generic)
 SIMILAR = 0.7  # similarity of a name to the intended one, see difflib

@@ -11,8 +11,6 @@ from contextlib import suppress
 
 from numba.core import event
 
-__all__ = ["NOTICE", "Notice"]
-
 PACKAGE = __name__.partition(".")[0]
 ERASE = "\r\033[K"  # to the start of the line, and clear it
 NOTEBOOKS = "ipykernel."  # whose standard error is no terminal, and shows lines that change

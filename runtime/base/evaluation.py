@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from .checks import real_array
 from .errors import GaussmapError, InputError, SurfaceError
 
-__all__ = ["Needed", "called", "check_finite", "evaluated", "returned"]
-
 Needed = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
 
 

@@ -8,8 +8,6 @@ from typing import Any
 
 from .errors import MissingExtraError
 
-__all__ = ["check_extra", "from_extra", "if_installed"]
-
 
 def check_extra(module: str, extra: str, purpose: str) -> None:
     """Raise MissingExtraError unless a module is installed, without importing it."""

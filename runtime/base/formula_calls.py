@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike
 
 from ...generated.vectors import Patch, PlaneVector, Vector
 
-__all__ = ["patch", "plane_vector", "python_function", "vector"]
-
 
 def python_function(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return the uncompiled function of a kernel; under NUMBA_DISABLE_JIT, the argument itself."""

@@ -14,8 +14,6 @@ from numpy.typing import NDArray
 from .checks import as_float
 from .errors import GaussmapWarning, InputError, shown
 
-__all__ = ["Georeference", "checked_origin", "crs_label", "warn_of_rounding"]
-
 # Rounding to single precision causes a warning if it moves points by more than this part of their
 # spacing.
 ROUNDING = 1e-3

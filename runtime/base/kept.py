@@ -6,8 +6,6 @@ from collections.abc import Callable, Hashable
 from dataclasses import fields
 from typing import Any, TypeVar
 
-__all__ = ["Immutable", "kept"]
-
 Value = TypeVar("Value")
 
 

@@ -6,8 +6,6 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-__all__ = ["Later"]
-
 
 class Later:
     """A descriptor that makes a function of another module a method of a class.

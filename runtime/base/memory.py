@@ -14,8 +14,6 @@ from typing import NamedTuple
 
 from .errors import InputError
 
-__all__ = ["COSTS", "GIB", "Cost", "check_memory", "estimate", "free_memory", "memory_limit"]
-
 GIB = 2.0**30
 # Smaller requests are not checked: the query of free memory takes as long as a small sampling.
 UNCHECKED = 2.0**24

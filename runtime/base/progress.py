@@ -12,8 +12,6 @@ from typing import Any
 from .compiling import NOTICE
 from .threads import seen
 
-__all__ = ["busy", "tell"]
-
 # In seconds: the delay before the line appears, and the interval of its updates.
 PATIENCE, INTERVAL = 1.0, 0.5
 

@@ -6,8 +6,6 @@ import numpy as np
 
 from .aliases import Indices
 
-__all__ = ["repeated"]
-
 
 def repeated(counts: Indices) -> tuple[Indices, Indices]:
     """Return two arrays: each index k of counts (n,) repeated counts[k] times, and a counter.

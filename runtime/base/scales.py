@@ -9,19 +9,6 @@ from numpy.typing import DTypeLike, NDArray
 
 from .errors import SurfaceError
 
-__all__ = [
-    "LARGEST_EXPONENT",
-    "ROUNDING",
-    "SAME_POINT",
-    "apart",
-    "check_range",
-    "extent_of",
-    "not_too_large",
-    "power_of_two",
-    "scale_to_one",
-    "scales_to_one",
-]
-
 # Above this binary exponent, products with a few small integers may overflow.
 LARGEST_EXPONENT = 1000
 # Points that are declared to coincide may be this far apart, relative to the size of the surface.

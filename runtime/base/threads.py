@@ -15,8 +15,6 @@ from typing import TypeVar
 
 from .checks import whole_number, yes_or_no
 
-__all__ = ["counted", "interruptible", "over_ranges", "seen", "shown", "thread_count"]
-
 Result = TypeVar("Result")
 
 # The number of ranges per thread that are computed ahead of use.

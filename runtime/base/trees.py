@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["tree_of", "tree_of_directions"]
-
 # Directions in a tree are distinct when rounded to this number of decimals.
 DIGITS = 9
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["at_normals", "plural"]
-
 
 def plural(count: int, what: str) -> str:
     """Return a number with its noun, such as "1 part" and "2,000 parts"."""

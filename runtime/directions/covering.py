@@ -12,8 +12,6 @@ from ..base.tolerances import CAP_RADIUS_ERROR
 from .regions import angles_between
 from .unit import as_normals
 
-__all__ = ["covering_radius"]
-
 
 def covering_radius(normals: ArrayLike) -> float:
     """Return the largest angle from any direction to the nearest of some normals.

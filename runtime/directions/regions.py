@@ -16,9 +16,6 @@ from ..base.memory import check_memory
 from ..base.tolerances import TRIPLE_PRODUCT_ERROR
 from .unit import as_normals, unit_vector
 
-__all__ = ["Cap", "Condition", "Reach", "angles_between", "cap", "checked_reach", "polygon"]
-
-
 UP = np.array([0.0, 0.0, 1.0])
 # In a row of `Reach._numbers`, this in place of an angle or a distance means unobstructed rays.
 FREE = -1.0

@@ -18,18 +18,6 @@ from ..base.threads import over_ranges
 from .kernels.icosphere import new_line, write_points
 from .unit import PIECE, as_normals, in_pieces, normalized
 
-__all__ = [
-    "arc_of_normals",
-    "circle",
-    "fibonacci",
-    "frequency_within",
-    "healpix",
-    "icosphere",
-    "part_of_fibonacci",
-    "random",
-    "spiral_angle",
-]
-
 GOLDEN = (1 + math.sqrt(5)) / 2
 # The parts of an icosphere that threads compute: all corners (one part), each edge, each face.
 PARTS = 1 + 30 + 20

@@ -15,8 +15,6 @@ from ..base.memory import check_memory
 from ..base.threads import over_ranges
 from .kernels.unit import are_unit
 
-__all__ = ["PIECE", "as_normals", "in_pieces", "normalized", "perpendicular", "unit_vector"]
-
 # The number of normals in one batch, such that their arrays fit into the cache.
 PIECE = 1 << 15
 # The number of vectors in one batch of checks.

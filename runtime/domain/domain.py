@@ -11,28 +11,6 @@ from numpy.typing import NDArray
 from ..base.checks import as_float
 from ..base.errors import InputError, shown
 
-__all__ = [
-    "Assumed",
-    "Boundary",
-    "BoundaryCondition",
-    "BoundaryPair",
-    "Domain",
-    "Interval",
-    "Periodic",
-    "Periodicity",
-    "brought_inside",
-    "cells_between",
-    "checked_boundary",
-    "checked_domain",
-    "checked_interval",
-    "checked_sides",
-    "closes",
-    "domain_text",
-    "less_periods",
-    "places_in",
-    "widened",
-]
-
 # The boundary condition of a side: open, periodic, mirrored (periodic, with the other parameter
 # reversed) or pole.
 BoundaryCondition = Literal["open", "periodic", "mirrored", "pole"]

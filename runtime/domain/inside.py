@@ -12,9 +12,6 @@ from .domain import widened
 from .kernels.trim import to_cells
 from .trim import Trim
 
-__all__ = ["FINEST", "Inside", "extremes_around", "subcentroids"]
-
-
 # A patch is divided into equal triangles, whose centroids are tested: FINEST² triangles for patches
 # at the boundary of the trim. Other patches are one triangle each; they are COARSE² triangles if
 # the trim cannot tell which cells its boundary passes.

@@ -19,9 +19,6 @@ from ..base.threads import over_ranges
 from .domain import Boundary, Domain, closes
 from .kernels import trim as kernels
 
-__all__ = ["Loops", "checked_loops"]
-
-
 # Segments are sorted into a square grid of cells. It has about this many cells for each segment,
 # and at most this many rows.
 CELLS_A_SEGMENT, MOST_ROWS = 8, 2048

@@ -15,18 +15,6 @@ from ..base.evaluation import called
 from .domain import Boundary, Domain, brought_inside, domain_text
 from .loops import Loops, checked_loops
 
-__all__ = [
-    "Predicate",
-    "Trim",
-    "TrimPart",
-    "Turned",
-    "samples_inside",
-    "trimmed",
-    "trimmed_by",
-    "with_uv",
-]
-
-
 POINTS_AT_A_TIME = 1 << 20
 
 

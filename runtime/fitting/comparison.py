@@ -19,8 +19,6 @@ from ..spline.misfit import Misfit
 from ..spline.spline import Spline
 from ..surface.surface import Surface
 
-__all__ = ["Comparison", "Probe", "compare_with_data", "probe_of", "variation"]
-
 POINTS_AT_A_TIME = 1 << 16
 
 

@@ -37,8 +37,6 @@ from ..surface.surfaces import named
 from .comparison import Comparison, compare_with_data, probe_of, variation
 from .tolerance import FAR_OFF, Tolerance, checked_tolerance, refined
 
-__all__ = ["fit", "patches_of", "spline_of"]
-
 # Without cells or tolerance: the least numbers of cells, and the goal for which they are increased.
 # At creases no number of cells makes normals accurate: the search ends when they no longer improve.
 DEFAULT_CELLS = (64, 64)

@@ -12,10 +12,8 @@ from ..base.tolerances import DATA_ERROR
 from ..spline.spline import Spline
 from .comparison import Comparison, Misfit
 
-__all__ = ["FAR_OFF", "Tolerance", "checked_tolerance", "refined"]
-
-# A spline is an improvement if at most this part of an error remains. Halving the cells leaves an
-# eighth of an error of order 3, and a half of an error of order 1, as at folds.
+# A spline is an improvement if at most this part of an error remains. Halved cells leave an eighth
+# for order 3, a half for order 1, as at folds.
 IMPROVED = 0.75
 # Cells are halved along both u and v, or along only one of them if the error varies more than this
 # many times as much along it.

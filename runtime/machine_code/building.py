@@ -34,8 +34,6 @@ from .processors import Level, changed_options, identity, level_here
 from .shipped import SWITCH, Pack, pack_path, write_pack
 from .sources import PACKAGE
 
-__all__ = ["build", "kernel_named"]
-
 # Intel's vector library may exist on the machine that builds, but not on others.
 OPTIONS = {"NUMBA_CPU_FEATURES": "", "NUMBA_DISABLE_INTEL_SVML": "1"}
 # Numba numbers functions in the order in which a process compiles them, and machine code contains

@@ -14,8 +14,6 @@ from ..base.errors import GaussmapWarning
 from . import disk, shipped
 from .entries import entry_of, kernel_of, key_of
 
-__all__ = ["KernelCache", "say_why"]
-
 
 class KernelCache(NullCache):
     """A cache for Numba with the machine code of one kernel, from the package or compiled here."""

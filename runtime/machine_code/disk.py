@@ -25,8 +25,6 @@ from .entries import replace_file
 from .processors import changed_options, identity
 from .sources import PACKAGE, digest
 
-__all__ = ["FileLock", "entries_in", "kept_folder", "load", "lock_of", "save"]
-
 config: Any = numba_config  # Numba creates its attributes at run time
 # Folders of other sources are removed after this many days without use.
 DAYS_KEPT = 30

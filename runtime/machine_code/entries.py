@@ -24,17 +24,6 @@ from numba.core.typing.templates import signature as signature_of
 
 from .signatures import as_json, as_types
 
-__all__ = [
-    "WORD",
-    "entry_of",
-    "kernel_of",
-    "key_of",
-    "opened",
-    "replace_file",
-    "sealed",
-    "signature_in",
-]
-
 CHECKSUM = 32  # bytes of SHA-256
 WORD = 8  # bytes of the size of a head
 

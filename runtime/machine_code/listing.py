@@ -20,8 +20,6 @@ from . import signatures
 from .disk import entries_in, kept_folder
 from .entries import signature_in
 
-__all__ = ["compiled_in", "main", "missing"]
-
 PACKAGE = signatures.__name__.partition(".")[0]  # this module may be __main__
 
 

@@ -11,8 +11,6 @@ import llvmlite
 import llvmlite.binding as llvm
 import numba
 
-__all__ = ["Level", "changed_options", "identity", "level_here", "runs_here"]
-
 SYSTEMS = ("linux", "darwin", "windows")
 # Options of Numba, as environment variables, that change the code or its checks.
 CODE_OPTIONS = (

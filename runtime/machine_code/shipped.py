@@ -23,8 +23,6 @@ from .entries import WORD, opened, replace_file, sealed
 from .processors import changed_options, identity, level_here, runs_here
 from .sources import PACKAGE, digest
 
-__all__ = ["MAGIC", "SWITCH", "WORD", "Pack", "misfit", "open_pack", "pack_path", "write_pack"]
-
 config: Any = numba_config  # Numba creates its attributes at run time
 MAGIC = b"gaussmap kernels 2\n"
 SWITCH = "GAUSSMAP_KERNELS"  # set to 0, the file is neither built nor used

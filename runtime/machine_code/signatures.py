@@ -16,18 +16,6 @@ from typing import Any
 
 from numba import types
 
-__all__ = [
-    "SIGNATURES",
-    "USUAL",
-    "as_json",
-    "as_types",
-    "named",
-    "read",
-    "usual",
-    "write",
-    "write_usual",
-]
-
 SIGNATURES = Path(__file__).with_suffix(".json")
 USUAL = SIGNATURES.with_name("usual.json")
 # A list of signatures, the types of all arguments, for the qualified name of each kernel.

@@ -6,8 +6,6 @@ import hashlib
 from functools import cache
 from pathlib import Path
 
-__all__ = ["PACKAGE", "SOURCES", "digest"]
-
 PACKAGE = Path(__file__).parents[2]
 SOURCES = (
     "generated/*.py",

@@ -32,8 +32,6 @@ from .offset_of import OffsetOf
 from .report import SamplingReport, common_report
 from .whole import Whole
 
-__all__ = ["SampleArrays"]
-
 # The value of a field that was not requested; reading it raises MissingFieldError.
 _NOT_ASKED: Any = None
 # The types of the attributes that are not arrays.

@@ -15,35 +15,6 @@ if TYPE_CHECKING:  # the help of commands lists the names of fields, and is quic
     import numpy as np
     from numpy.typing import DTypeLike, NDArray
 
-__all__ = [
-    "ARRAY_NAMES",
-    "ARRAY_NAMES_OF_PART",
-    "ARRAY_NAMES_ON_SURFACE",
-    "COLUMNS",
-    "DERIVED",
-    "EDGE_NAMES",
-    "FLAG_NAMES",
-    "FLOAT_NAMES",
-    "GIVEN_NAMES",
-    "GRID_NAMES",
-    "INDEX_NAMES",
-    "INTEGER_NAMES",
-    "PART_NAMES",
-    "PROVED_NAMES",
-    "REAL_NAMES",
-    "UNITS",
-    "Component",
-    "bytes_of",
-    "checked_dtype",
-    "checked_fields",
-    "columns_of",
-    "dtype_of",
-    "missing_fields",
-    "new_field",
-    "regular",
-    "row_shape",
-]
-
 
 class Component(IntEnum):
     """The components of the points that have a prescribed normal; each has one sample.

@@ -8,8 +8,6 @@ from ..spline.nets import AnySpline
 from ..surface.surface import Surface
 from .whole import Whole
 
-__all__ = ["OffsetOf"]
-
 
 @dataclass(frozen=True)
 class OffsetOf:

@@ -18,21 +18,7 @@ from ..directions.regions import Reach
 from ..spline.developable import CellMeasure
 from ..spline.nets import AnySpline
 
-__all__ = [
-    "PLACES",
-    "WORTH_A_WARNING",
-    "SamplingReport",
-    "UndecidedNormal",
-    "common_report",
-    "count_infinite",
-    "count_unrefined",
-    "have_large_squares",
-    "joined_proof",
-    "sampling_report",
-    "warn_of",
-]
-
-# A larger share of the area, of the length of a curve, or of the samples causes a warning.
+# A larger share of the area, of the length of a curve, or of samples causes a warning.
 WORTH_A_WARNING = 0.01
 # A requested count is missed if the number of samples differs from it by more than this share of it
 # plus FEW: on a symmetric surface several samples appear or vanish together.

@@ -16,8 +16,6 @@ from .samples_methods import Methods
 from .summary import kinds_of_points, summary_of
 from .whole import Whole
 
-__all__ = ["Samples", "spline_or"]
-
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Samples(SampleArrays, Methods):

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from ..base.later import Later
 
-__all__ = ["Methods"]
-
 DENSITY, TOOLS = "gaussmap.tools.density.methods", "gaussmap.tools.derived"
 OTHERS = "gaussmap.tools.files.of_samples"
 

@@ -14,8 +14,6 @@ from .report import SamplingReport, count_infinite, have_large_squares
 if TYPE_CHECKING:
     from .arrays import SampleArrays
 
-__all__ = ["kinds_of_points", "misfit_clause", "summary_of"]
-
 # The names of special components, in the singular and in the plural.
 SPECIAL = {
     Component.ISOLATED: ("isolated with K = 0",) * 2,

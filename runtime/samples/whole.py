@@ -11,8 +11,6 @@ from numpy.typing import DTypeLike, NDArray
 if TYPE_CHECKING:
     from ..directions.regions import Reach
 
-__all__ = ["FaceColumn", "NormalDeviation", "Whole"]
-
 
 class FaceColumn(NamedTuple):
     """A column of tables with a property of faces: its type, and a value for each face.

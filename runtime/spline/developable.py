@@ -11,8 +11,6 @@ import numpy as np
 from ..base.aliases import Array, Flags
 from ..domain.domain import widened
 
-__all__ = ["CellMeasure"]
-
 # Regions that 10,000 normals would sample count as curved, even with fewer normals.
 LEAST_DENSITY = 10_000 / (4 * math.pi)
 

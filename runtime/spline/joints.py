@@ -15,8 +15,6 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.errors import InputError
 from ..base.trees import tree_of
 
-__all__ = ["EDGES", "Edge", "Joints", "Topology", "linked", "merged_points"]
-
 
 class Edge(NamedTuple):
     """An edge and the control points beside it, as indices in b200, b020, b002, b110, b101, b011.

@@ -26,16 +26,6 @@ from .quasi_interpolant import (
     values_at,
 )
 
-__all__ = [
-    "Known",
-    "checked_nodata",
-    "known_of",
-    "known_of_grid",
-    "known_of_values",
-    "without_nodata",
-]
-
-
 # The usual values of missing elevations.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))
 USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)

@@ -23,8 +23,6 @@ from .patch_spline import PatchSpline
 from .spline import Spline, short_label
 from .spline_methods import NetMethods
 
-__all__ = ["AnySpline", "NetSpline", "from_nets", "on_grid", "vectors_of_nets"]
-
 # Areas and solid angles are sums over the centroids of PARTS² triangles of a patch.
 PARTS = 4
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ..domain.trim import Trim
     from .misfit import Misfit
 
-__all__ = ["PatchSpline"]
-
 
 class PatchSpline(Immutable, ABC):
     """Quadratic patches: a `Spline` on a grid of cells, or a `NetSpline`.

@@ -15,10 +15,7 @@ from .poles import broken_poles
 from .quasi_interpolant import fit_grid
 from .spline import Spline
 
-__all__ = ["checked_spacing", "points_of_elevations", "spline_of_points"]
-
-# If the last row is this close to the first row, relative to the distance between the first two
-# rows, it repeats the first row.
+# A last row this close to the first, relative to the distance of two rows, repeats the first row.
 REPEATED = 1e-3
 
 

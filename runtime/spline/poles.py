@@ -22,9 +22,6 @@ from ..base.formula_calls import python_function
 from ..base.scales import apart
 from ..domain.domain import Boundary, BoundaryPair
 
-__all__ = ["broken_poles", "close_pole", "ring_around", "spread_missing", "without_poles"]
-
-
 # The number of pairs a, b from which the plane closest to the ring is chosen.
 CANDIDATES = 4096
 # The length of a and b is the root of this times the distance of neighbours in the ring. With

@@ -22,23 +22,8 @@ from .kernels import spline as kernels
 from .poles import close_pole
 from .spline import Spline
 
-__all__ = [
-    "Border",
-    "Values",
-    "checked_cells",
-    "coefficients_with_ring",
-    "completed",
-    "continued",
-    "fit_grid",
-    "fit_values",
-    "from_grid",
-    "from_values",
-    "values_at",
-]
-
-
-# Missing values are extrapolated over this many steps, 2 + 1: a patch depends on values two cells
-# away, and the nearest known value may be one cell away from the patch.
+# Missing values are extrapolated over this many steps: a patch depends on values two cells away,
+# and the nearest known value may be one cell away from it.
 FAR = 3
 
 Sides = tuple[Array, Array, Array, Array]

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ..domain.trim import Trim
     from .misfit import Misfit
 
-__all__ = ["Spline", "short_label"]
-
 LONGEST_LABEL = 40
 PATCHES_AT_A_TIME = 1 << 14
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from ..base.later import Later
 
-__all__ = ["Methods", "NetMethods"]
-
 
 class Methods:
     """Constructors of splines other than `fit`."""

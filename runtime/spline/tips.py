@@ -18,9 +18,7 @@ from .joints import EDGES, merged_points
 from .nets import AnySpline, NetSpline
 from .spline import Spline
 
-__all__ = ["Tips", "are_one", "collapsed_sides", "is_point", "tips_of"]
-
-# Points of a surface within this distance, relative to its size, count as one point.
+# Points of a surface within this distance, relative to its size, are one point.
 SAME_POINT = 1e-9
 
 

@@ -15,9 +15,6 @@ from ..base.scales import SAME_POINT, apart
 from ..directions.regions import angles_between
 from .nurbs import Nurbs
 
-__all__ = ["CREASE_ANGLE", "creases", "smoothly_closed"]
-
-
 # The least jump of the normal at a crease, in degrees. Smooth joints of CAD data jump by less.
 CREASE_ANGLE = 0.1
 # The largest ratio of tangent lengths that counts as smooth. At this ratio, splines of surfaces

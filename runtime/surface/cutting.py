@@ -11,8 +11,6 @@ from .derivatives import Differentiable
 from .moved import Moved
 from .surface_values import SurfaceValues
 
-__all__ = ["pieces_of"]
-
 Surface = TypeVar("Surface", bound=SurfaceValues)
 
 

@@ -25,20 +25,6 @@ from ..base.scales import power_of_two, scale_to_one
 from ..domain.domain import Boundary, BoundaryPair, Domain, Interval, brought_inside, places_in
 from ..tape.kernels.points import Tape
 
-__all__ = [
-    "NAMES",
-    "Bounds",
-    "Differences",
-    "Differentiable",
-    "Function",
-    "differences",
-    "jet_function",
-    "nodes_between",
-    "normals_of_jets",
-    "shifts_inside",
-    "weighted",
-]
-
 Function = Callable[[Array, Array], Array]
 Evaluation = Callable[[Array, Array], ArrayLike]
 Bounds = tuple[tuple[float, float], tuple[float, float]]

@@ -26,16 +26,6 @@ from .derivatives import NAMES, Differentiable
 if TYPE_CHECKING:
     import sympy
 
-__all__ = [
-    "Expressions",
-    "as_condition",
-    "as_expression",
-    "compiled",
-    "numbers",
-    "one_symbol",
-    "two_symbols",
-]
-
 PROBES = np.array([0.25, 0.75])  # parameters for a trial of the derivatives; any values do
 
 

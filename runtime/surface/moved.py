@@ -17,8 +17,6 @@ from ..tape.tapes import moved_tape
 from .derivatives import Differences, Differentiable
 from .surface_values import SurfaceValues
 
-__all__ = ["IDENTITY", "AffineMap", "Moved", "affine_map", "moved_grid"]
-
 
 @dataclass(frozen=True, eq=False)
 class AffineMap:

@@ -17,8 +17,6 @@ from ..tape.kernels.points import Tape
 from .derivatives import Differentiable, Lines
 from .nurbs_tape import nurbs_tape
 
-__all__ = ["Nurbs"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Nurbs(Differentiable):

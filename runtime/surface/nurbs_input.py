@@ -13,9 +13,6 @@ from ..base.checks import finite_array, real_array, whole_number
 from ..base.errors import InputError, shown
 from .nurbs import Nurbs
 
-__all__ = ["MOST_DEGREE", "nurbs_of"]
-
-
 # No format for CAD data holds larger degrees.
 MOST_DEGREE = 25
 # Control points whose weight is below this fraction of the largest weight do not affect the centre.

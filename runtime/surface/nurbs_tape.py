@@ -20,9 +20,6 @@ from ..tape.kernels.points import Tape
 from ..tape.kernels.splines import COORDINATES, MOST_COEFFICIENTS, Polynomials
 from ..tape.tapes import TapeWriter
 
-__all__ = ["nurbs_tape"]
-
-
 UNIT = 2.0**-53
 KEPT = 256  # the number of cached bases of spans, which faces of a part often share
 MOST_NUMBERS = 4_000_000  # of the coefficients of all polynomials: 64 MB with their errors

@@ -25,8 +25,6 @@ from ..domain.domain import Assumed, Boundary, closes
 from ..spline.poles import broken_poles
 from .surface_values import SurfaceValues
 
-__all__ = ["close_seams", "closed_grid", "closed_points", "with_found_sides"]
-
 Values = TypeVar("Values", bound=SurfaceValues)
 
 # The number of intervals between points along a side, an even number.

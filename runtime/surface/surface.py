@@ -33,8 +33,6 @@ from .traced import traced_condition
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["Surface", "label"]
-
 # How often each default name was used.
 _used: Counter[str] = Counter()
 _lock = threading.Lock()

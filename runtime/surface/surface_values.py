@@ -22,8 +22,6 @@ from ..tape.kernels.points import Tape
 from .derivatives import NAMES, Differences, Differentiable, Evaluation, Function, jet_function
 from .traced import traced_tape
 
-__all__ = ["SurfaceValues"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SurfaceValues(Immutable):

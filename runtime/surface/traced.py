@@ -20,8 +20,6 @@ from ..domain.domain import Domain, places_in
 from ..tape.kernels.points import Tape
 from ..tape.tapes import TapeWriter, bounds_over_boxes, values_of
 
-__all__ = ["traced_condition", "traced_tape"]
-
 Sides = NDArray[np.int8]
 Function = Callable[..., Any]  # of u and v: arrays, or traced numbers
 

@@ -18,18 +18,6 @@ from .kernels.points import POINT, Tape, points_jets
 from .kernels.rounding import rounding_of_boxes
 from .kernels.splines import COORDINATES, NO_SPLINE, Polynomials
 
-__all__ = [
-    "BINARY",
-    "LEAVES",
-    "NEUTRAL",
-    "TapeWriter",
-    "bounds_over_boxes",
-    "jets_of",
-    "moved_tape",
-    "tape_of_steps",
-    "values_of",
-]
-
 Number = tuple[float, float]  # a value, and a bound of its error
 LEAVES = (codes.U, codes.V, codes.CONSTANT, codes.SPLINE, codes.COORDINATE)
 BINARY = (codes.SUM, codes.PRODUCT)
