@@ -138,13 +138,16 @@ def refined(
 
 
 def _improved(goal: Tolerance, before: Comparison, after: Comparison) -> bool:
-    """Return whether one of the errors that exceed the goal decreased."""
+    """Return whether an error that exceeded the goal decreased to at most IMPROVED times itself."""
     pairs = zip(goal.excess(before), goal.excess(after), strict=True)
     return any(old > 1.0 and new <= IMPROVED * old for old, new in pairs)
 
 
 def _finer(cells: tuple[int, int], u: float, v: float, goal: Tolerance) -> tuple[int, int]:
-    """Double the cells along u, v or both, by their errors, within the bounds."""
+    """Return the numbers of cells, doubled along u, along v or along both, within the bounds.
+
+    `u` and `v` are the variations of the error along u and along v.
+    """
     twice = [min(2 * count, most) for count, most in zip(cells, goal.most, strict=True)]
     along_u, along_v = (twice[0], cells[1]), (cells[0], twice[1])
     larger, smaller = (along_u, along_v) if u >= v else (along_v, along_u)

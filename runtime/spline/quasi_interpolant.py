@@ -196,7 +196,7 @@ class Border:
 
     @classmethod
     def of_values(cls, middles: Sides, g: Array) -> Border:
-        """Return the boundary from values at the midpoints of its edges and at all vertices."""
+        """Return the border from values at midpoints of boundary edges, and at all vertices."""
         rows = g[:, 0], g[:, -1], g[0], g[-1]
         south, north, west, east = (
             python_function(formulas.edge_point)(f, row[:-1], row[1:])
@@ -206,7 +206,7 @@ class Border:
 
     @classmethod
     def of_vertices(cls, ringed: Array) -> Border:
-        """Return the boundary from values at the vertices with one more ring."""
+        """Return the border from values at vertices, with a ring of vertices outside the domain."""
         south, north, west, east = (
             python_function(formulas.edge_point_from_vertices)(
                 row[1:-2], row[2:-1], row[:-3], row[3:]
@@ -218,12 +218,13 @@ class Border:
 
 
 def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> Array:
-    """Return the coefficients (m + 2, n + 2, 3) with one ring outside the inner ones (m, n, 3).
+    """Return the coefficients (m + 2, n + 2, 3): `inner` (m, n, 3) and a ring of ghosts.
 
-    At open sides they follow from the boundary, at periodic ones they are copies. At a pole they
-    are the first inner coefficients mirrored in their mean, so that this side of the spline is
-    exactly one point. The first inner coefficients are moved to one plane, so that the pole has one
-    normal (poles.py).
+    At open sides the ghosts follow from `border`, the boundary of the spline. At periodic and
+    mirrored sides they are copies of inner coefficients. At a pole they are the first inner
+    coefficients reflected in their mean, so that this side of the spline is exactly a point. Before
+    that, these inner coefficients are moved into one plane, so that the pole has one normal
+    (poles.py).
     """
     result = np.pad(inner, [(1, 1), (1, 1), (0, 0)])
     turned = np.swapaxes(result, 0, 1)
@@ -240,17 +241,17 @@ def coefficients_with_ring(inner: Array, border: Border, boundary: Boundary) -> 
 
 
 def _open_rows(rows: Array, boundary: BoundaryPair, sides: tuple[Array, Array]) -> None:
-    """Write the rows outside the open ends of the first axis."""
+    """Write the rows of ghosts, without corners, beyond the open boundaries of the first axis."""
     for end, side, outside, first in zip(boundary, sides, (0, -1), (1, -2), strict=True):
         if end == "open":
             rows[outside, 1:-1] = python_function(formulas.beyond_edge)(side, rows[first, 1:-1])
 
 
 def _close(result: Array, turned: Array, boundary: Boundary) -> None:
-    """Write the rows outside poles and periodic ends.
+    """Write the rows of ghosts beyond poles, then beyond periodic or mirrored boundaries.
 
-    Poles come first. Rows along v precede rows along u if u is open, so that copies include the
-    ring along the other parameter.
+    Whole rows are copied, first beyond the boundaries of v, then of u. So the copies include the
+    ghosts along the other parameter.
     """
     directions = ((turned, boundary[1]), (result, boundary[0]))
     for rows, end in directions:
@@ -264,11 +265,12 @@ def _close(result: Array, turned: Array, boundary: Boundary) -> None:
 
 
 def vertices_with_ring(values: Array, boundary: Boundary) -> Array:
-    """Add the values (m, n, 3) at the vertices one step outside the domain.
+    """Return values (m, n, 3) at vertices, extended by the vertices one step outside the domain.
 
-    Without its repeated last row, a periodic direction gets two rows at the upper end; others get
-    one row at each end. The row beyond a pole is the one before it, shifted by half a period, or
-    extrapolated if half a period is not an integer number of points.
+    A periodic direction, in which the first row is not repeated at the end, gets one row before the
+    first row and two rows after the last one; other directions get one row at each end. The row
+    beyond a pole is the row before the pole, shifted by half a period; it is extrapolated if half a
+    period is not an integer number of points.
     """
     if "pole" in boundary[0]:
         swapped = vertices_with_ring(np.swapaxes(values, 0, 1), (boundary[1], boundary[0]))
@@ -286,10 +288,10 @@ def vertices_with_ring(values: Array, boundary: Boundary) -> Array:
 def _beyond(
     rows: Array, mirrored: Array, opposite: Array, boundary: BoundaryPair
 ) -> tuple[Array, Array]:
-    """Return the rows before the first and after the last one.
+    """Return the rows of values to add before the first row, and after the last row.
 
-    `mirrored` are the same rows with the other parameter reversed, `opposite` the rows shifted by
-    half a period along it.
+    `mirrored` are all rows with the other parameter reversed, `opposite` all rows shifted by half a
+    period of the other parameter.
     """
     if closes(boundary):
         source = rows if boundary[0] == "periodic" else mirrored
