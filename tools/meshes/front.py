@@ -49,7 +49,7 @@ class Front:
     @classmethod
     def of(cls, triangles: Array) -> Front:
         """List triangles in all squares that their bounding boxes meet."""
-        flat, grid = triangles[..., :2], max(1, round(math.sqrt(len(triangles)) / 2))
+        flat, grid = triangles[..., :2], max(1, 2 * round(math.sqrt(len(triangles))))
         low, high = flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
         step = np.where(high > low, high - low, 1.0) / grid
         first, last = (
@@ -123,9 +123,10 @@ class FreeAlong:
 
         Points whose normals face away from the axis are not reached.
         """
-        seen = points @ self.rows.T
-        free = self.below.at(seen[:, :2]) < seen[:, 2] - self.slack
-        return free & (normals @ self.rows[2] >= -BELOW)
+        found = normals @ self.rows[2] >= -BELOW
+        seen = points[found] @ self.rows.T
+        found[found] = self.below.at(seen[:, :2]) < seen[:, 2] - self.slack
+        return found
 
     def may_change(self, points: Array, radii: Array) -> Flags:
         """Return whether balls around points (k, 3) may be partly in, partly outside a shadow."""
