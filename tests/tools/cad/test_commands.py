@@ -48,32 +48,6 @@ def test_sample(saved, capsys, main):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["sample", "part.npz", "--cells", "4", "4", "-o", "o.ply"], "--cells is for surfaces"),
-        (["sample", "part.npz", "--set", "a=1", "-o", "o.ply"], "--set is for surfaces"),
-        (["sample", "part.npz", "--on", "spline", "-o", "o.ply"], "on a spline are of surfaces"),
-        (["sample", "part.npz", "-o", "part.npz"], "'part.npz' is read"),
-        (["mesh", "part.npz", "-o", "o.ply"], "does not say how its edges go around its faces"),
-        (["mesh", "box.npz", "--count", "7", "-o", "o.stl"], "needs at least 8 vertices"),
-        (["sample", "torus", "--edges", "-o", "o.ply"], "edges are sampled of CAD parts"),
-        (["faces", "part.npz", "--name", "slot*"], "no face"),
-        (["faces", "part.npz", "--kind", "hole"], "'hole'"),
-        (["sample", "part.npz", "--faces", "1;2", "-o", "o.ply"], "--faces takes indices"),
-        (["sample", "torus", "--faces", "1", "-o", "o.ply"], "--faces is for CAD parts"),
-        (["faces", "none.npz"], "'none.npz' cannot be read"),
-        (["faces", "part.txt"], "is no STEP, IGES or BREP file"),
-    ],
-)
-@pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
-def test_errors(saved, capsys, arguments, message, main):
-    assert main(arguments) == 2
-    error = capsys.readouterr().err.splitlines()[-1]
-    assert error.startswith("gaussmap: error: ")
-    assert message in error
-
-
-@pytest.mark.parametrize(
     ("name", "content"),
     [
         ("part.step", "ISO-10303-21;"),

@@ -79,6 +79,7 @@ def test_box(request_):
     assert np.array_equal((edge.normals * edge.other_normals).sum(axis=1), np.zeros(len(edge)))
     both_ways(edge, box(*SIZES))
     assert pairs_of(edge) == {x.faces for x in box_edges(*SIZES)}
+    assert f"; {len(edge)} of the samples are on sharp edges" in samples.summary()
     assert np.isnan(samples.other_normals[:count]).all()
     assert np.isnan(samples.other_uv[:count]).all()
     assert (samples.other_face_index[:count] == -1).all()
@@ -214,13 +215,3 @@ def test_some_fields(tmp_path):
 )
 def test_unusable_arguments(surface, arguments, match):
     refused(match, gm.sample, surface, 10, **arguments)
-
-
-def test_command_line(tmp_path, monkeypatch, capsys, main):
-    monkeypatch.chdir(tmp_path)
-    box().save("box.npz")
-    assert main(["sample", "box.npz", "--count", "60", "--edges", "-o", "out.ply"]) == 0
-    assert "40 of the samples are on sharp edges" in capsys.readouterr().out
-    assert (gm.read_samples("out.ply").kind == "edge").sum() == 40
-    fields = ["--fields", "points,normals,other_normals", "--progressive"]
-    assert main(["sample", "box.npz", "--count", "9", "--edges", "-o", "out.npz", *fields]) == 0

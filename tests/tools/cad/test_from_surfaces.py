@@ -415,10 +415,6 @@ def test_units(tmp_path):
     samples.write(tmp_path / "tube.npz")
     gm.read_samples(tmp_path / "tube.npz").write(tmp_path / "again.csv")
     assert (tmp_path / "again.csv").read_text().startswith("x [in],y [in],z [in]")
-    samples.write(tmp_path / "tube.csv")
-    head = (tmp_path / "tube.csv").read_text().splitlines()[0]
-    assert head.startswith("x [in],y [in],z [in]")
-    assert "face_radius [in]" in head
     assert gm.Part(["torus"]).unit == ""
     refused("unit must be one of nm, um, mm", gm.Part, ["torus"], unit="furlong")
 

@@ -41,35 +41,6 @@ def test_a_run_and_the_same_again(capfd: pytest.CaptureFixture[str]) -> None:
     assert len(gm.open_dataset("set")) == 1
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["-o", "set"], "there are no parts"),
-        (["torus"], "missing option '-o' / '--output'"),
-        (["torus", "-o", "set", "--fields", "pints"], "points"),
-        (["torus", "-o", "set", "--workers", "0"], "whole number"),
-        (["torus", "-o", "set", "--time-limit", "-1"], "time_limit"),
-        (["torus", "-o", "set", "--count", "5", "--angle", "3"], "not allowed"),
-        (["torus", "-o", "list.txt"], "is a file"),
-        (["torus", "-o", "."], "new or empty folder"),
-        (["--list", "missing.txt", "-o", "set"], "'missing.txt' cannot be read"),
-        (["*.step", "-o", "set"], "matches no files"),
-        (["folder", "-o", "set"], "has no files of parts"),
-        (["torus", "-o", "set", "--spacing", "1", "1"], "--spacing is for elevations in a file"),
-        (["a.npy", "-o", "set", "--cells", "8", "8", "--tolerance", "1"], "do not go together"),
-    ],
-)
-def test_bad_use(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
-    Path("list.txt").write_text("torus")
-    Path("folder").mkdir()
-    assert main(["batch", *arguments]) == 2
-    err = capsys.readouterr().err
-    assert err.startswith("gaussmap: error: ")
-    assert err.count("\n") == 1
-    assert message in err
-    assert not Path("set").exists()
-
-
 def same_as_sample(data: gm.Dataset, part: int, *arguments: str) -> bool:
     """Say whether a part has the points that `gaussmap sample` writes."""
     options = [x for x in SMALL if x != "--float32"]
