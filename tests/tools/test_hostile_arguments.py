@@ -1,9 +1,11 @@
 """What users may hand over by mistake, and too much of it: one sentence of a GaussmapError."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import gaussmap as gm
+import numpy as np
 import pytest
 
 from ..refusals import refused
@@ -44,6 +46,29 @@ def test_samples_in_the_place_of_normals(samples: gm.Samples) -> None:
         refused(r"not Samples; give its \.normals", call, samples)
 
 
+NEEDED = {
+    "mesh": ("points", "normals", "uv"), "weights": ("points", "normals", "uv"),
+    "coverage": ("points",), "normal_deviation": ("normals",), "plot": (),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("method", NEEDED)
+def test_what_samples_need(method: str, tmp_path: Path) -> None:
+    """Those of a file know no spline: it is given; and some fields are used."""
+    on_spline = gm.sample(gm.fit(TORUS, (8, 8)), 100)
+    on_spline.write(tmp_path / "a.npz")
+    read = gm.read_samples(tmp_path / "a.npz")
+    refused("do not hold the(ir surface| spline)", getattr(read, method))
+    if method != "weights":  # which are those of a mesh
+        found, own = (getattr(x, method)(on_spline.spline) for x in (read, on_spline))
+        if method != "plot":
+            np.testing.assert_array_equal(*(getattr(x, "triangles", x) for x in (found, own)))
+    for name in NEEDED[method]:
+        fields = tuple(x for x in ("points", "normals", "uv") if x != name)
+        few = getattr(gm.sample(TORUS, 100, cells=(8, 8), fields=fields), method)
+        refused(f"'{name}'", few, error=gm.errors.MissingFieldError)
+
+
 def test_long_messages_keep_their_beginning_and_their_end() -> None:
     for kind in (gm.errors.InputError, gm.errors.FileError, gm.errors.MissingExtraError):
         message = str(kind(f"'{'x' * 1000}' is missing; look elsewhere."))
@@ -64,26 +89,3 @@ def test_paths_with_lone_surrogates(name: str, samples: gm.Samples) -> None:
             r"lone surrogates|cannot be read|no file", call, name, error=gm.GaussmapError
         )
         said.encode(errors="backslashreplace")
-
-
-LONE = "\udc80"
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        [LONE], ["sample", LONE], ["sample", LONE, "-o", "x.npz"], ["sample", "torus", "-o", LONE],
-        ["sample", "torus", f"--{LONE}"], ["sample", "torus", "--set", f"minor={LONE}"],
-        ["sample", "torus", "--count", LONE, "-o", "x.npz"], ["surfaces", LONE],
-        ["sample", f"{LONE}.npy", "-o", "x.npz"], ["formulas", LONE], ["mesh", f"{LONE}.npz"],
-        ["sample", "torus", "-o", f"nowhere/{LONE}.ply"],
-    ],
-    ids=lambda x: ascii(" ".join(x)),
-)  # fmt: skip
-def test_lone_surrogates_on_the_command_line(arguments, capsys, main):
-    """A byte that is no UTF-8 arrives as a lone surrogate."""
-    assert main(arguments) == 2
-    message = capsys.readouterr().err
-    assert message.startswith("gaussmap: error: ")
-    assert message.count("\n") == 1
-    assert message.encode()

@@ -5,8 +5,6 @@ import numpy as np
 import pytest
 from gaussmap.runtime.directions.unit import as_normals
 
-from ...refusals import refused
-
 COUNTS = [1, 2, 3, 4, 5, 6, 8, 12, 20, 100, 1001, 4096]
 
 
@@ -29,8 +27,3 @@ def test_mirrored_bit_for_bit(count):
     mirrors = [normals * [1, -1], normals * [-1, 1]] + [normals[:, ::-1]] * (count % 4 == 0)
     for mirrored in mirrors:
         assert set(map(tuple, mirrored.tolist())) == points
-
-
-@pytest.mark.parametrize("count", [0, -1, 2.5, None, True])
-def test_unusable_counts(count):
-    refused("count must be a whole number", gm.directions.circle, count)

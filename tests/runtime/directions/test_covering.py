@@ -10,8 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from ...refusals import refused
-
 Array = NDArray[np.float64]
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
@@ -115,14 +113,3 @@ def test_against_a_search(count: int, seed: int, squeezed: float, shift: float) 
 )
 def test_sets_against_a_search(normals: Array) -> None:
     check(normals)
-
-
-# --- what it is good for --------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("normals", "message"),
-    [([], "shape"), ([[0, 0, 0]], "zero vector"), ([[0, np.nan, 0]], "NaN"), ([1, 0, 0], "shape")],
-)
-def test_normals_that_are_none(normals: Any, message: str) -> None:
-    refused(message, gm.directions.covering_radius, normals)

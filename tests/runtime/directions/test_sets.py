@@ -61,10 +61,11 @@ def test_icosphere_begins_with_vertices_then_edges():
     assert {tuple(x) for x in (edge.round(9) + 0.0).tolist()} == expected
 
 
-MAKERS = [gm.icosphere, gm.fibonacci, gm.directions.healpix, gm.directions.random]
+MAKERS = [gm.icosphere, gm.fibonacci, gm.directions.healpix, gm.directions.random,
+          gm.directions.circle]  # fmt: skip
 
 
-@covering(make=MAKERS, number=[0, 1.0])
+@covering(make=MAKERS, number=[0, -1, 2.5, None, True])
 def test_numbers_that_are_none(make, number):
     refused(r"must be a whole number of at least 1, not ", make, number)
 
@@ -237,5 +238,11 @@ def test_the_array_of_the_user_is_left_alone():
     ],
 )
 def test_directions_that_are_none(directions, complaint):
-    for call in (as_normals, lambda n: gm.sample(gm.surfaces.torus(), normals=n, cells=(4, 4))):
+    sphere = gm.SupportFunction.from_sympy(1)
+    image = gm.gauss_map.GaussianImage.of_patch(np.ones((6, 3)))
+    for call in (
+        *(as_normals, gm.directions.covering_radius, lambda n: gm.convolve(sphere, sphere, n)),
+        lambda n: gm.sample(gm.surfaces.torus(), normals=n, cells=(4, 4)),
+        *(sphere, sphere.branches, sphere.envelope, sphere.sheets, sphere.contains, image.contains),
+    ):
         refused(complaint, call, directions)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import egg_surface
 
 Array = NDArray[Any]
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
@@ -151,19 +152,7 @@ def test_a_cusp_is_fitted_while_that_makes_the_error_smaller() -> None:
 
 
 def test_default_wastes_no_cells_on_folds_and_poles() -> None:
-    egg = gm.Surface.from_callable(
-        lambda u, v: np.stack(
-            [
-                np.cos(v) * np.cos(u) * (1.2 + 0.3 * np.sin(v)),
-                np.cos(v) * np.sin(u) * (0.8 + 0.1 * np.sin(v)),
-                1.4 * np.sin(v) + 0.3 * (np.cos(v) * np.cos(u)) ** 2,
-            ],
-            axis=-1,
-        ),
-        ((0, 2 * np.pi), (-np.pi / 2, np.pi / 2)), ("periodic", "pole"),
-    )  # fmt: skip
-    spline = gm.fit(egg)
-    assert spline.cells == (64, 64)
+    assert gm.fit(egg_surface()).cells == (64, 64)
     roof = gm.fit(graph(lambda u, v: 1e-3 * np.abs(u - 0.4371)))  # flat, with normals 0.1° apart
     assert roof.cells == (64, 64)
 

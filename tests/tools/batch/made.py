@@ -1,6 +1,8 @@
 """Data sets for tests, written without processes."""
 
+import time
 from pathlib import Path
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -57,3 +59,21 @@ def write(folder: Path, counts: tuple[int, ...] = COUNTS, **known) -> gm.Dataset
             write_part(folder, how, row_of(part, count), samples)
         write_manifest(folder, how, range(len(counts)))
     return gm.open_dataset(folder)
+
+
+def waves(seed: int, wait: float = 0.0, log: Path | None = None) -> gm.Surface:
+    """Return a surface; `log` gets a line for each time that it is sampled."""
+
+    def position(u, v):
+        if u.size > 17 * 17 and log is not None:
+            with open(log, "a") as file:
+                file.write(f"{seed}\n")
+        time.sleep(wait)
+        return np.stack([u, v, np.sin(u + seed) * np.cos(v)], axis=-1)
+
+    return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=f"waves {seed}")
+
+
+def data_of(folder: Path) -> dict[str, Any]:
+    """Return the bytes of all files of a data set."""
+    return {str(x.relative_to(folder)): x.read_bytes() for x in folder.rglob("*") if x.is_file()}

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import gaussmap as gm
-import numpy as np
 import pytest
 from gaussmap.tools.batch import making
 from gaussmap.tools.batch.workers import Tally
+
+from .made import data_of, waves
 
 pytest.importorskip("pyarrow")
 distributed = pytest.importorskip("distributed")
@@ -23,23 +24,10 @@ HOW: dict[str, Any] = {
 }  # fmt: skip
 
 
-def waves(seed: int) -> gm.Surface:
-    def position(u, v):
-        time.sleep(0.005)
-        return np.stack([u, v, np.sin(u + seed) * np.cos(v)], axis=-1)
-
-    return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=f"waves {seed}")
-
-
 def free_port() -> int:
     with socket.socket() as place:
         place.bind(("127.0.0.1", 0))
         return place.getsockname()[1]
-
-
-def data_of(folder: Path) -> dict[str, Any]:
-    """Return the bytes of all files of a data set."""
-    return {str(x.relative_to(folder)): x.read_bytes() for x in folder.rglob("*") if x.is_file()}
 
 
 class Cluster:
@@ -80,7 +68,7 @@ def cluster(tmp_path: Path) -> Iterator[Cluster]:
 @pytest.mark.slow
 def test_a_worker_that_is_killed_loses_nothing(tmp_path, cluster, monkeypatch):
     """It is killed when ten parts are done."""
-    parts, killed, watched = [waves(k) for k in range(PARTS)], [], making.watched
+    parts, killed, watched = [waves(k, 0.005) for k in range(PARTS)], [], making.watched
 
     def killing(*arguments: Any) -> Iterator[Tally]:
         done = 0

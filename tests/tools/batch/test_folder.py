@@ -1,7 +1,5 @@
 """The folder of a data set: whose it is, who writes to it, and what kills leave there."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,6 +21,7 @@ from gaussmap.tools.batch.folder import (
 from gaussmap.tools.batch.manifest import FAILED, ManifestRow
 from gaussmap.tools.batch.part_files import row_of, write_part
 
+from ...full_disk import tiny_disk
 from ...refusals import refused
 from . import made
 
@@ -89,25 +88,13 @@ def test_fields_that_some_parts_lack(tmp_path: Path) -> None:
     np.testing.assert_array_equal(data[1].patch_index, np.arange(5))
 
 
-@contextmanager
-def files_of_at_most(size: int) -> Iterator[None]:
-    """Let no process write a larger file: as if the disk were full."""
-    resource = pytest.importorskip("resource")
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
-
-
 def test_a_full_disk_leaves_what_is_done(tmp_path: Path) -> None:
     made.write(tmp_path)
     known, before = read_settings(tmp_path), contents(tmp_path)
     with opened(tmp_path, known):
         for _ in range(2):
             with (
-                files_of_at_most(4_000),
+                tiny_disk(4_000),
                 pytest.raises(gm.errors.FileError, match="what is done is kept") as error,
             ):
                 write_part(tmp_path, known, made.row_of(3, 900), made.samples_of(3, 900))

@@ -16,23 +16,11 @@ from gaussmap.tools.batch.inputs import inputs_of
 from gaussmap.tools.batch.making import limits_of
 
 from ...refusals import refused
+from .made import data_of, waves
 
 pytest.importorskip("pyarrow")
 pytest.importorskip("cloudpickle")
 ASKED: dict[str, Any] = {"density": "uniform", "cells": (8, 8), "dtype": "float32"}
-
-
-def waves(seed: int, wait: float = 0.0, log: Path | None = None) -> gm.Surface:
-    """Return a surface; `log` gets a line for each time that it is sampled."""
-
-    def position(u, v):
-        if u.size > 17 * 17 and log is not None:
-            with open(log, "a") as file:
-                file.write(f"{seed}\n")
-        time.sleep(wait)
-        return np.stack([u, v, np.sin(u + seed) * np.cos(v)], axis=-1)
-
-    return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=f"waves {seed}")
 
 
 def doing(what: str) -> gm.Surface:
@@ -58,11 +46,6 @@ def doing(what: str) -> gm.Surface:
         return u
 
     return gm.Surface.from_callable(position, ((-1, 1), (-1, 1)), name=what)
-
-
-def data_of(folder: Path) -> dict[str, Any]:
-    """Return the bytes of all files of a data set."""
-    return {str(x.relative_to(folder)): x.read_bytes() for x in folder.rglob("*") if x.is_file()}
 
 
 def shared_memory() -> set[Path]:

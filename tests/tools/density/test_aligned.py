@@ -187,12 +187,6 @@ def test_only_aligned_samples_are_on_a_grid():
 
 
 @pytest.mark.compiled
-def test_prescribed_normals_are_never_on_a_grid():
-    with pytest.raises(gm.errors.InputError, match=r"density .aligned. does not go with normals"):
-        gm.sample("torus", normals=gm.icosphere(4), density="aligned")
-
-
-@pytest.mark.compiled
 def test_lines_keep_away_from_jumps_of_curvature():
     """A plane, a quarter of a cylinder and a plane: both joints are breaks."""
 

@@ -170,17 +170,6 @@ def test_parts_make_covers_hardly_worse(name, monkeypatch):
     assert abs(len(parts) - len(whole)) <= 0.08 * len(whole)
 
 
-@pytest.mark.compiled
-def test_arrays_and_splines_are_left_alone():
-    spline = gm.fit(TORUS, (16, 16))
-    before = spline.coefficients.copy()
-    first = gm.sample(spline, count=500)
-    points = first.points.copy()
-    first.points[:] = 0.0
-    assert (spline.coefficients == before).all()
-    assert (gm.sample(spline, count=500).points == points).all()
-
-
 # --- what they hold -------------------------------------------------------------------------------
 
 

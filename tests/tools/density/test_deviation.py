@@ -4,8 +4,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
-from ...refusals import refused
-
 pytestmark = pytest.mark.compiled
 
 CELLS = (24, 24)
@@ -52,17 +50,6 @@ def test_a_known_angle():
     deviation = samples.normal_deviation()
     assert deviation.normal_space == pytest.approx(15.0, abs=0.2)
     assert deviation.space == pytest.approx(15.0, abs=0.2)
-
-
-def test_samples_from_a_file_need_a_spline(tmp_path):
-    spline = gm.fit("torus", CELLS)
-    samples = gm.sample(spline, 100)
-    samples.write(tmp_path / "torus.npz")
-    read = gm.read_samples(tmp_path / "torus.npz")
-    assert read.normal_deviation(spline) == samples.normal_deviation()
-    refused("spline", read.normal_deviation)
-    with pytest.raises(AttributeError, match="normals"):
-        gm.sample(spline, 100, fields=("points",)).normal_deviation()
 
 
 def test_no_samples_are_far_from_everything():

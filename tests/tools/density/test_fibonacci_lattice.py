@@ -6,6 +6,7 @@ import pytest
 from gaussmap.tools.density.fibonacci_lattice import Lattice
 
 from ...products import covering
+from ...shapes import moved
 
 ULP = 2.0**-52
 OPEN_NAMES = ["elliptic_paraboloid", "wavy_graph", "monkey_saddle", "hyperbolic_paraboloid"]
@@ -13,11 +14,7 @@ FULL_NAMES = ["torus", "sphere", "moebius_band", "catenoid", "ellipsoid_patch"]
 
 
 def spline_of(name, turned):
-    surface = gm.surfaces.surface(name)
-    moved = gm.Surface(
-        name, lambda u, v: surface.evaluate(u, v) @ turned.T, surface.domain, surface.boundary
-    )
-    return gm.fit(moved, (16, 16))
+    return gm.fit(moved(gm.surfaces.surface(name), rotation=turned), (16, 16))
 
 
 def rotation(rng):

@@ -14,6 +14,7 @@ from scipy.spatial import KDTree
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import moved
 
 pytestmark = pytest.mark.compiled
 
@@ -35,16 +36,6 @@ def farthest(samples: gm.Samples, points: Array) -> float:
 def widest_angle(samples: gm.Samples, normals: Array) -> float:
     chord = float(KDTree(samples.normals).query(normals)[0].max())
     return math.degrees(2.0 * math.asin(chord / 2.0))
-
-
-def scaled(name: str, factor: float, shift: float = 0.0) -> gm.Surface:
-    surface = gm.surfaces.surface(name)
-    return gm.Surface(
-        name,
-        lambda u, v: factor * (surface.evaluate(u, v) + shift),
-        surface.domain,
-        surface.boundary,
-    )
 
 
 def even(name: str, cells: tuple[int, int]) -> tuple[int, int]:
@@ -88,14 +79,14 @@ def test_the_coverage_of_samples_is_10_percent_off_at_most(name, density):
 @pytest.mark.parametrize("name", ["torus", "cone", "wavy_graph"])
 @pytest.mark.quick_for("torus")
 def test_any_unit_of_length(name, factor):
-    spline = gm.fit(scaled(name, factor), (12, 12))
+    spline = gm.fit(moved(gm.surfaces.surface(name), factor), (12, 12))
     points, normals = places(spline)
     by_coverage = gm.sample(spline, coverage=0.3 * factor)
     assert farthest(by_coverage, points) <= 0.3 * factor
     assert widest_angle(gm.sample(spline, angle=10.0), normals) <= 10.0
     assert len(gm.sample(spline, count=300)) == 300
     if math.frexp(factor)[0] == 0.5:  # a power of two changes no bit
-        plain = gm.sample(scaled(name, 1.0), coverage=0.3, cells=(12, 12), on="spline")
+        plain = gm.sample(name, coverage=0.3, cells=(12, 12), on="spline")
         assert (plain.points * factor == by_coverage.points).all()
         assert plain.report.coverage == (by_coverage.report.coverage or 0.0) / factor
 
@@ -103,7 +94,7 @@ def test_any_unit_of_length(name, factor):
 @pytest.mark.parametrize("name", ["torus", "cylinder", "plane"])
 def test_far_from_the_origin(name):
     """A million times its size away, coordinates are rounded to 1e-10: no more is lost."""
-    spline = gm.fit(scaled(name, 1.0, 1e6), (12, 12))
+    spline = gm.fit(moved(gm.surfaces.surface(name), shift=1e6), (12, 12))
     points, _ = places(spline)
     samples = gm.sample(spline, coverage=0.2)
     assert farthest(samples, points) <= 0.2 + 1e-9
@@ -316,17 +307,6 @@ def test_the_coverage_of_samples_from_normals():
     assert math.sqrt(2) - 1e-3 <= samples.coverage() <= 1.1 * math.sqrt(2) + 1e-3
     assert samples.coverage(threads=1) == samples.coverage(threads=3)
     assert samples[:0].coverage() == math.inf
-
-
-def test_coverage_needs_points_and_the_spline(tmp_path):
-    spline = gm.fit(gm.surfaces.torus(), (8, 8))
-    samples = gm.sample(spline, count=50)
-    samples.write(tmp_path / "a.npz")
-    again = gm.read_samples(tmp_path / "a.npz")
-    assert again.coverage(spline) == samples.coverage()
-    refused("do not hold the spline", again.coverage)
-    with pytest.raises(gm.errors.MissingFieldError, match="'points'"):
-        gm.sample(spline, count=50, fields=("uv",)).coverage()
 
 
 # The normal field vanishes on a line, in a point; the spline is folded along curves.

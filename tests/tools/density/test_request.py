@@ -44,6 +44,7 @@ def test_densities_that_are_unknown():
         ({"density": "uniform", "angle": 5.0}, "count or coverage"),
         ({"density": "uniform", "count": 5, "coverage": 1.0}, "count or coverage"),
         ({"density": "uniform", "normals": [[0, 0, 1]]}, "count or coverage"),
+        ({"density": "aligned", "normals": [[0, 0, 1]]}, "count or angle or coverage"),
         ({"density": 0.5, "coverage": 0.1}, "count"),
         ({"density": 0.5, "normals": [[0, 0, 1]]}, "count"),
     ],

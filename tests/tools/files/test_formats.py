@@ -11,8 +11,6 @@ import stat
 import sys
 import tempfile
 import zipfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
@@ -30,6 +28,8 @@ from gaussmap.tools.files.formats import (
     write_samples,
 )
 from gaussmap.tools.files.paths import atomic_path, check_target
+
+from ...full_disk import tiny_disk
 
 COLUMNS = [
     *("x", "y", "z", "nx", "ny", "nz", "u", "v", "support"),
@@ -111,28 +111,13 @@ def litter(folder: Path, *expected: str) -> list[str]:
     return sorted(set(os.listdir(folder)) - set(expected))
 
 
-@contextmanager
-def tiny_disk(most: int = 500) -> Iterator[None]:
-    """No file can grow beyond some bytes: the closest to a full disk that needs no real one.
-
-    Keep it round the one call that must fail: pytest's own log is a file too.
-    """
-    resource = pytest.importorskip("resource")
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (most, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-
-
 # --- what is written is read ----------------------------------------------------------------------
 
 ON_SURFACE = replace(
     make().report, on="surface", unrefined=4, fit_distance=1e-5, fit_rms=6e-6, fit_angle=0.03
 )
 SAMPLES: dict[str, gm.Samples] = {
-    **{f"{count}": make(count) for count in (0, 1, 2, 12, 5000)},
+    **{f"{count}": make(count) for count in (0, 1, 2, 12, 4095, 4096, 4097, 12289)},
     "any label": make(label=LABEL),
     "unknown numbers": make(report=SamplingReport("s", None, 12, None, None, None)),
     "on the surface": make(on_surface=np.arange(12) % 3 > 0, report=ON_SURFACE),
@@ -817,8 +802,3 @@ def test_an_interruption_leaves_the_older_file(tmp_path, monkeypatch, capsys, ma
     assert main(["sample", "torus", "--count", "60", "--cells", "8", "8", "-o", "a.npz"]) == 130
     assert capsys.readouterr() == ("", "gaussmap: interrupted\n")
     assert [path.read_text() for path in Path().iterdir()] == ["old"]
-
-
-def test_every_error_is_a_gaussmap_error():
-    for name in ("FileError", "InputError", "MissingExtraError", "UnknownNameError"):
-        assert issubclass(getattr(gm.errors, name), gm.GaussmapError)

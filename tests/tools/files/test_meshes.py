@@ -63,10 +63,6 @@ class TestFiles:
         with pytest.raises(gm.errors.UnknownNameError, match=r"use one of \.ply, \.obj, \.stl"):
             square().write(tmp_path / name)
 
-    def test_a_folder_that_is_not_there(self, tmp_path):
-        with pytest.raises(gm.errors.FileError, match="create the folder first"):
-            square().write(tmp_path / "no" / "square.ply")
-
     def test_no_triangles(self, tmp_path):
         empty = square(triangles=np.empty((0, 3), dtype=np.int64))
         refused("has no triangles", empty.write, tmp_path / "square.ply")

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.samples.report import SamplingReport
 
 from ...refusals import refused
 
@@ -19,21 +17,6 @@ FIELDS = "comment gaussmap fields points"
 def write(path: Path, *lines: str, body: bytes = b"", end: str = "\n") -> None:
     header = ["ply", "format binary_little_endian 1.0", *lines, "end_header", ""]
     path.write_bytes(end.join(header).encode() + body)
-
-
-def samples(count: int, **changes: Any) -> gm.Samples:
-    points = np.random.default_rng(count).normal(size=(count, 3))
-    arrays = {"points": points, "normal_index": np.arange(count)} | changes
-    return gm.Samples(**arrays, report=SamplingReport("noise", count, count, 1, 0.0, 0))
-
-
-@pytest.mark.parametrize("count", [4095, 4096, 4097, 12289])
-def test_rows_are_packed_in_parts(tmp_path, count):
-    written = samples(count)
-    written.write(tmp_path / "a.ply")
-    read = gm.read_samples(tmp_path / "a.ply")
-    assert read.points.tobytes() == written.points.tobytes()
-    assert read.normal_index.tobytes() == written.normal_index.tobytes()
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])

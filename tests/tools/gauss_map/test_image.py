@@ -331,14 +331,6 @@ def test_bad_control_points(points) -> None:
         refused("control_points", call, points)
 
 
-@pytest.mark.parametrize(
-    "normals", [[], [[0, 0, 0]], [[np.nan, 0, 1]], [1, 2, 3], [[1, 2]], "n", [[1j, 0, 0]]]
-)
-def test_bad_normals(normals) -> None:
-    image = gm.gauss_map.GaussianImage.of_patch(OCTANT)
-    refused("normals", image.contains, normals)
-
-
 def test_other_bad_input() -> None:
     spline = gm.fit(gm.surfaces.torus(), (4, 4))
     images = gm.gauss_map.GaussianImages.of_spline(spline)

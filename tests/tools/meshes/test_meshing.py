@@ -597,27 +597,13 @@ class TestInput:
         samples = gm.sample(gm.surfaces.plane(), count=100)
         refused("there are no samples", samples[:0].mesh)
 
-    def test_samples_of_a_file_need_their_spline(self, tmp_path):
-        spline = gm.fit(gm.surfaces.torus())
-        samples = gm.sample(spline, count=300)
-        samples.write(tmp_path / "torus.npz")
-        again = gm.read_samples(tmp_path / "torus.npz")
-        refused(r"give it, as in samples\.mesh\(gm\.fit\(surface\)", again.mesh)
-        np.testing.assert_array_equal(again.mesh(spline).triangles, samples.mesh().triangles)
-        refused("spline must be a Spline, not Surface", again.mesh, gm.surfaces.torus())
-
     def test_a_spline_with_another_domain(self):
         samples = gm.sample(gm.surfaces.wavy_graph(), count=100)
         square = gm.Surface.from_callable(
             lambda u, v: np.stack([u, v, u * v], axis=-1), ((0, 1), (0, 1))
         )
         refused("lies outside the domain", samples.mesh, gm.fit(square))
-
-    @pytest.mark.parametrize("lacking", ["points", "normals", "uv"])
-    def test_fields_that_lack(self, lacking):
-        fields = [name for name in ("points", "normals", "uv") if name != lacking]
-        with pytest.raises(gm.errors.MissingFieldError, match=lacking):
-            gm.sample(gm.surfaces.torus(), count=100, fields=fields).mesh()
+        refused("spline must be a Spline, not Surface", samples.mesh, square)
 
 
 def samples_on(surface: gm.Surface, **options: Any) -> gm.Samples:

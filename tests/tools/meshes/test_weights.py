@@ -101,9 +101,3 @@ def test_a_part_of_a_surface_needs_an_angle() -> None:
     samples = gm.sample(TORUS, count=2_000)
     half = samples[samples.points[:, 0] > 0.0]
     assert half.weights(angle=30.0).sum() == pytest.approx(samples.weights().sum() / 2.0, rel=0.1)
-
-
-@pytest.mark.compiled
-def test_what_is_needed() -> None:
-    with pytest.raises(gm.errors.MissingFieldError, match="'uv'"):
-        gm.sample(TORUS, count=100, fields=("points", "normals")).weights()

@@ -196,13 +196,8 @@ def test_surfaces_of_several_pieces(tmp_path: Path) -> None:
     assert path.stat().st_size > 10_000
 
 
-def test_bad_arguments(torus: gm.Spline, tmp_path: Path) -> None:
-    path = tmp_path / "a.png"
-    refused("already has its cells", plotted, torus, path, count=50, cells=(8, 8))
-    refused("say how many samples", plotted, torus, path)
+def test_no_samples(torus: gm.Spline) -> None:
     refused("no samples to draw", gm.sample(torus, normals=[[0, 0, 1]])[:0].plot)
-    refused("too few normals", gm.sample(torus, count=50).plot, normals=[(0, 0, 1)])
-    assert not path.exists()
 
 
 def test_without_matplotlib(tmp_path, monkeypatch, capsys, main):

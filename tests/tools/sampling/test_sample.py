@@ -1,6 +1,7 @@
 """From a surface to its samples: how many, where, in which order, and what is said about it."""
 
 import math
+from typing import Any
 
 import gaussmap as gm
 import numpy as np
@@ -289,18 +290,20 @@ def test_opposite_normals_see_the_other_side():
 
 
 @pytest.mark.compiled
-def test_arrays_and_surfaces_are_left_alone():
+@pytest.mark.parametrize("count", [None, 500])
+def test_arrays_and_surfaces_are_left_alone(count):
     normals = np.array([[0.0, 0.0, 2.0], [0.0, 3.0, 0.0], [1.0, 1.0, 1.0]])
     normals.setflags(write=False)
     spline = gm.fit(TORUS, (8, 8))
+    asked: dict[str, Any] = {"count": count} if count else {"normals": normals}
     before = spline.coefficients.copy()
-    samples = gm.sample(spline, normals=normals)
+    samples = gm.sample(spline, **asked)
     assert (spline.coefficients == before).all()
-    again = gm.sample(spline, normals=normals)
+    again = gm.sample(spline, **asked)
     samples.points[:] = 0.0
     samples.normals[:] = 0.0
     assert np.abs(again.points).max() > 1.0
-    np.testing.assert_array_equal(gm.sample(spline, normals=normals).points, again.points)
+    np.testing.assert_array_equal(gm.sample(spline, **asked).points, again.points)
 
 
 @pytest.mark.compiled

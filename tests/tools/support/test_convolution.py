@@ -302,9 +302,6 @@ def test_one_normal() -> None:
     [
         ((ELLIPSOID, 3, NORMALS), "two of Surface, Spline and SupportFunction, not int"),
         ((NORMALS, ELLIPSOID, NORMALS), "SupportFunction, not ndarray"),
-        ((ELLIPSOID, ELLIPSOID, [[0, 0, 0]]), r"normals\[0\] is the zero vector"),
-        ((ELLIPSOID, ELLIPSOID, []), "normals must have the shape"),
-        ((ELLIPSOID, ELLIPSOID, [[np.nan, 0, 0]]), r"normals\[0\] holds NaN"),
     ],
 )
 def test_what_is_refused(arguments: Any, message: str) -> None:

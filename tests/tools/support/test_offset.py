@@ -312,14 +312,3 @@ def test_no_samples_and_other_ways_to_get_them() -> None:
     assert len(exact_torus()[:0].offset(-9.0)) == 0
     moved = pickle.loads(pickle.dumps(exact_torus().offset(0.5)))[[1, 2]]
     assert moved.report.surface == "torus offset by 0.5"
-
-
-@pytest.mark.compiled
-def test_offsets_add_up_in_meshes() -> None:
-    samples = gm.sample("torus", 300, cells=(16, 16))
-    once, twice = samples.offset(0.3).mesh(), samples.offset(0.1).offset(0.2).mesh()
-    np.testing.assert_array_equal(once.triangles, twice.triangles)
-    np.testing.assert_allclose(once.vertices, twice.vertices, atol=1e-14)
-    of = samples.offset(0.1).offset(0.2).offset_of
-    assert of is not None
-    assert abs(of.distance - 0.3) < 1e-15
