@@ -34,7 +34,7 @@ CONTROL_POINTS = b20, b11, b02 = plane_vectors(("b20", "b11", "b02"))
 
 
 def _power_form() -> Formula:
-    """Take the derivatives of the Bernstein form at t = 0."""
+    """Return the formula of the point (c) and the derivatives (b, a) of an arc at t = 0."""
     point = sp.S.Zero
     for control_point in CONTROL_POINTS:
         i, j = (int(x) for x in control_point.name[1:])

@@ -255,7 +255,10 @@ def replaced(expression: Any, rules: Mapping[Any, Any]) -> Any:  # noqa: ANN401 
 def with_shared_parts(
     expressions: Iterable[Any],
 ) -> tuple[list[tuple[sp.Symbol, Any]], list[Any]]:
-    """Return definitions of parts that are used several times, and the expressions in these."""
+    """Return definitions of symbols for parts that are used several times, and the expressions.
+
+    Symbols replace these parts in the expressions, and in the definitions.
+    """
     expressions = list(expressions)
     uses = Counter(y for x in {y for e in expressions for y in parts(e)} for y in x.args)
     uses.update(expressions)
@@ -466,7 +469,7 @@ class _Reader:
         return sp.Piecewise(*pairs)
 
     def _finite(self, node: ast.Call, name: str) -> Any:  # noqa: ANN401
-        """Return a sum or product over integers, as in Sum(u**k, (k, 0, 3)), term by term."""
+        """Return a sum or product such as Sum(u**k, (k, 0, 3)), with its terms written out."""
         if len(node.args) != 2 or not isinstance(limits := node.args[1], ast.Tuple):
             _refuse_syntax()
         if len(limits.elts) != 3 or not isinstance(index := limits.elts[0], ast.Name):

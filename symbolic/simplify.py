@@ -19,7 +19,7 @@ __all__ = ["StraightLine", "straight_line"]
 
 @dataclass(frozen=True)
 class StraightLine:
-    """Assignments in order, and the numbers of operations as written and as run."""
+    """Assignments in order, and the numbers of operations before and after simplification."""
 
     assignments: tuple[Definition, ...]
     operations_before: int

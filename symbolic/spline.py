@@ -315,7 +315,10 @@ def _functional(
     orbits: Mapping[str, Sequence[Point]],
     moments: Moments = functional_moments,
 ) -> Formula:
-    """Return the formula of a functional of values at orbits of points, named as in `orbits`."""
+    """Return the formula of a functional from values at points, which `orbits` names.
+
+    The points of one orbit have the same weight.
+    """
     symbols = [
         scalar(f"{letter}{k}" if len(points) > 1 else letter)
         for letter, points in orbits.items()

@@ -26,7 +26,7 @@ __all__ = ["FORMULAS"]
 Coefficients = dict[str, Any]
 Symbols = Mapping[sp.Symbol, sp.Symbol]
 
-# The letters of names for absolute values increased by their errors: s, t, F for a, b, f.
+# The largest absolute values of a, b, f, with their errors, are called s, t, F.
 LARGEST = str.maketrans("abf", "stF")
 
 s, t = sp.symbols("s t")  # u and v relative to the point
