@@ -24,7 +24,7 @@ HEAD = """\
 # How well samples represent a surface, measured
 
 Written by `make quality`: do not edit. Points **with normals**, and meshes through them, of
-{surfaces} surfaces, by the densities of gaussmap and by others.
+{surfaces} surfaces, by the densities of gaussmap and by other tools.
 """
 
 COLUMNS = """\

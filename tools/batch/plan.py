@@ -108,7 +108,7 @@ def plan_of(
 
 
 def _known_fields(fields: Sequence[str], given: bool) -> tuple[str, ...]:
-    """Return the requested fields, which may be fields that only CAD parts or only grids have."""
+    """Return the requested fields; fields that only CAD parts or only grids have are allowed."""
     names = listed(fields)
     if names is None:
         return checked_fields(fields)  # which raises

@@ -44,7 +44,7 @@ def run(options: SimpleNamespace) -> None:
 
 
 def completed(program: click.Command) -> int | None:
-    """Answer a shell that requests completions; return the exit code, None if no shell does."""
+    """Answer a shell that requests completions, and return the exit code; else return None."""
     if VARIABLE not in os.environ:
         return None
     return shell_complete(program, {}, PROGRAM, VARIABLE, os.environ[VARIABLE])

@@ -1,7 +1,7 @@
 """The command line: commands and their options; shared options are declared once.
 
-Nothing here needs NumPy or Numba, so that help and completion are quick. The function `run` in the
-module named like the command does its work, see `options.Command`.
+Nothing here needs NumPy or Numba, so that help and completion are quick. Each command calls the
+function `run` of the module that has the command's name, see `options.Command`.
 """
 
 from __future__ import annotations

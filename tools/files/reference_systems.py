@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 # The latitude beyond which UPS replaces UTM, and the EPSG codes of the two zones of UPS, north and
 # south.
 LAST_LATITUDE, POLAR = 84.0, (32661, 32761)
-# The largest range of longitude, in degrees, for one zone of UTM: beyond, the scale is wrong by a
-# percent.
+# The largest range of longitude, in degrees, for one zone of UTM: in a wider range, the scale is
+# wrong by a percent.
 WIDEST_ZONE = 12.0
 # The number of points that are projected at a time.
 AT_A_TIME = 1 << 17

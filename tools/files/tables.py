@@ -77,7 +77,7 @@ def _formatted(line: str, columns: Sequence[NDArray[Any]]) -> Iterator[bytes]:
 
 
 def _table(polars: Any, words: Sequence[str], columns: Sequence[NDArray[Any]]) -> Any:  # noqa: ANN401
-    """Return a Polars table with a column of texts or numbers for each word of `line`."""
+    """Return a Polars table with a column for each word: a format, filled from `columns`."""
     waiting = iter(f"n{k}" for k in range(len(columns)))
     numbers = {
         f"n{k}": x.tolist() if x.dtype == object else np.ascontiguousarray(x)

@@ -260,7 +260,7 @@ def _checked_normals(samples: Samples, normals: ArrayLike) -> NDArray[np.float64
 
 
 def _checked_axes(axes: Axes | Sequence[Axes] | None) -> tuple[Any, ...]:
-    """Return the given axes as a tuple: none, those of the surface, or of surface and sphere."""
+    """Return a tuple of the given axes: none, one for the surface, or also one for the sphere."""
     if axes is None:
         return ()
     from matplotlib.axes import Axes as AnyAxes
@@ -396,6 +396,6 @@ def write_figure(figure: Figure, path: paths.PathLike) -> None:
 
 
 def check_target(path: paths.PathLike) -> None:
-    """Raise the errors that writing would raise later, for the path or without Matplotlib."""
+    """Raise now the errors that writing would raise later: for its path, or without Matplotlib."""
     paths.check_target(path, SUFFIXES)
     check_extra("matplotlib", "plot", "a picture")

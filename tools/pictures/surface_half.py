@@ -147,8 +147,8 @@ def _frame(
         flat = extent[k] < FLAT * extent.max()
         step = 10.0 ** np.floor(np.log10(np.ptp(limits[:, k]) / 4.0))
         middle = FixedLocator([step * np.round(limits[:, k].mean() / step)])
-        # Labels along short axes would overlap, and so would long labels. No label is relative to
-        # an offset.
+        # There are fewer labels if they are long or the axis is short, since they would overlap.
+        # Labels are complete numbers, not differences from an offset.
         long = np.abs(limits[:, k]).max() >= LONG or extent[k] < SHORT * extent.max()
         axis.set_major_locator(middle if flat else MaxNLocator(2 if long else 4, prune="both"))
         axis.set_major_formatter(lambda value, _: f"{value:.7g}".replace("-", "−"))

@@ -130,7 +130,7 @@ def check_count(count: int) -> None:
 
 
 def check_target(path: str | os.PathLike[str]) -> None:
-    """Raise the errors that `view` would raise later, for its path or without Plotly."""
+    """Raise now the errors that `view` would raise later: for its path, or without Plotly."""
     paths.check_target(path, SUFFIXES)
     check_extra("plotly", "view", "a page with a picture to turn")
 
@@ -219,7 +219,7 @@ def _data(
 def _data_of_part(
     part: Part, of_triangles: NDArray[np.int64], of_samples: NDArray[np.int64], edges: Array
 ) -> dict[str, Any]:
-    """Return the faces of triangles and samples, the text of each face, and the edges."""
+    """Return the face indices of triangles and samples, colour and text of each face, and edges."""
     return {
         "of_triangles": _encoded(of_triangles, np.int32),
         "of_samples": _encoded(of_samples, np.int32),
