@@ -21,4 +21,4 @@ class Methods:
     plot = Later("gaussmap.tools.pictures.gauss_map_plot")
     support = Later("gaussmap.tools.support_points")
 
-    _conditions_of = Later("gaussmap.tools.edge_distance", "conditions_of")
+    _conditions_of = Later("gaussmap.tools.cad.reached", "conditions_of")

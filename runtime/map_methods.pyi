@@ -1,7 +1,7 @@
 """The methods of `GaussMap` that are defined in tools/; `map_methods.py` loads them."""
 
 class Methods:
-    from ..tools.edge_distance import conditions_of as _conditions_of
+    from ..tools.cad.reached import conditions_of as _conditions_of
     from ..tools.gauss_map.image_curves import border_image as border_image
     from ..tools.gauss_map.image_curves import folds as folds
     from ..tools.gauss_map.image_curves import margin as margin

@@ -14,19 +14,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..runtime.base.aliases import Array, Flags, Indices
-from ..runtime.base.errors import InputError
 from ..runtime.base.repeats import repeated
 from ..runtime.base.trees import tree_of
-from ..runtime.directions.regions import Condition, Reach
-from ..runtime.map import GaussMap
-from ..runtime.onto_surface.on_spline import on_grids
 from .density.cells import grouped
-from .support_points import Segments, lines_of
+from .support_points import Segments
 
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["AwayFrom", "conditions_of"]
+__all__ = ["AwayFrom"]
 
 # The length of an arc is about the distance divided by ARCS_A_DISTANCE; there are about MOST_ARCS
 # arcs at most.
@@ -153,17 +149,3 @@ def _lengths(part: Segments) -> Array:
     points = part.at(rows, np.tile(t, count))[1].reshape(count, CHORDS + 1, 3)
     found = np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1)
     return np.where(np.isfinite(found), found, 0.0)
-
-
-def conditions_of(self: GaussMap, reach: Reach) -> list[Condition]:
-    """Return the conditions that a reach sets on points of a surface, besides those on normals."""
-    if reach._along is not None:
-        raise InputError(
-            "what obstructs a ray is known of CAD parts: make one, as in gm.Part([surface])."
-        )
-    if reach._from_edges is None:
-        return []
-    lines = [y for x in on_grids(self._fitted) for y in lines_of(x)]
-    borders = [x for x in lines if isinstance(x, Segments) and x.border]
-    away = AwayFrom.of(borders, reach._from_edges)
-    return [] if away is None else [away]

@@ -80,9 +80,9 @@ class Reach:
         boundary of a surface: the boundary of its trim, and the open sides of its domain. A smooth
         seam of one face is no edge. Creases between the pieces of a surface are edges.
     unobstructed : bool, default False
-        For a CAD part: only points that a ray from outside along the axis reaches before it meets
-        the part elsewhere. This is tested with a mesh of the part, as in `Samples.unobstructed`.
-        Faces that were selected from a part are tested with the whole part.
+        For CAD parts and closed surfaces: only points that a ray from outside along the axis
+        reaches before it meets the part or surface elsewhere. This is tested with a mesh, as in
+        `Samples.unobstructed`. Faces that were selected from a part are tested with the whole part.
 
     Raises
     ------

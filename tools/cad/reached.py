@@ -13,12 +13,15 @@ from ...runtime.base.errors import InputError, MissingFieldError
 from ...runtime.base.kept import kept
 from ...runtime.base.trees import tree_of
 from ...runtime.directions.regions import Condition, Reach
+from ...runtime.map import GaussMap
+from ...runtime.onto_surface.on_spline import on_grids
 from ...runtime.samples.samples import Samples
+from ...runtime.surface.surface import Surface
 from ..density.cells import AREA, by_piece
 from ..density.kernels.sizing import TargetDensity
 from ..edge_distance import AwayFrom
 from ..meshes.front import FreeAlong
-from ..support_points import Segments
+from ..support_points import Segments, lines_of
 from .edges import sides_at
 from .face_pieces import FacePiece
 from .faces import own_parameters
@@ -46,21 +49,39 @@ def reached(
 
 def _conditions(part: Part, reach: Reach) -> list[Condition]:
     """Return the conditions of a reach on the points of a part."""
-    found, distance, axis = list[Condition](), reach._from_edges, reach._along
+    found, distance = list[Condition | None](), reach._from_edges
     if distance is not None:
         borders = kept(part, borders_of, lambda: borders_of(part))
-        away = kept(part, (AwayFrom, distance), lambda: AwayFrom.of(borders, distance))
-        found += [] if away is None else [away]
-    if axis is not None:
-        mesh = obstacle_of(part)
-        if len(mesh.boundary_edges):
-            raise InputError(
-                "what obstructs a ray needs a closed part, and this one is open; faces of a closed "
-                "part are chosen with part.select, or --faces."
-            )
-        key = FreeAlong, *axis.tolist()
-        found.append(kept(part, key, lambda: FreeAlong.of(mesh, axis)))
-    return found
+        found.append(kept(part, (AwayFrom, distance), lambda: AwayFrom.of(borders, distance)))
+    if reach._along is not None:
+        found.append(_free_along(part, reach._along))
+    return [x for x in found if x is not None]
+
+
+def conditions_of(self: GaussMap, reach: Reach) -> list[Condition]:
+    """Return the conditions that a reach sets on points of a surface, besides those on normals."""
+    found, surface = list[Condition | None](), self.surface
+    if reach._from_edges is not None:
+        lines = [y for x in on_grids(self._fitted) for y in lines_of(x)]
+        borders = [x for x in lines if isinstance(x, Segments) and x.border]
+        found.append(AwayFrom.of(borders, reach._from_edges))
+    if reach._along is not None:
+        if not isinstance(surface, Surface):
+            raise InputError("what obstructs a ray is not known of splines: give the surface.")
+        part = kept(surface, Part, lambda: Part([surface], name=surface.name))
+        found.append(_free_along(part, reach._along))
+    return [x for x in found if x is not None]
+
+
+def _free_along(part: Part, axis: Array) -> FreeAlong:
+    """Return the condition that a ray reaches a point of a part; InputError if it is open."""
+    mesh = obstacle_of(part)
+    if len(mesh.boundary_edges):
+        raise InputError(
+            "what obstructs a ray needs a closed part or surface, and this one is open; faces of a "
+            "closed part are chosen with part.select, or --faces."
+        )
+    return kept(part, (FreeAlong, *axis.tolist()), lambda: FreeAlong.of(mesh, axis))
 
 
 def borders_of(part: Part) -> list[Segments]:

@@ -459,8 +459,8 @@ def _distribution() -> list[Option]:
         ),
         Option(
             "--unobstructed",
-            "Only points of a CAD part that a ray against the direction of --reach (default: "
-            "+z) meets first.",
+            "Only points of a CAD part or a closed surface that a ray against the direction of "
+            "--reach (default: +z) meets first.",
             group="how dense",
         ),
         Option(

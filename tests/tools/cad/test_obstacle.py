@@ -33,7 +33,8 @@ def test_of_saved_faces_the_whole_part_is_not_known(tmp_path):
     some = gm.read_part(tmp_path / "some.npz")
     refused(r"give the whole part, .* by=part\)", gm.sample(some, 20).unobstructed, 1.0)
     refused("needs a closed part", gm.sample, some, 20, reach=ALONG)
-    refused("is known of CAD parts", gm.sample, "torus", 20, reach=ALONG)
+    refused("needs a closed part or surface", gm.sample, "wavy_graph", 20, reach=ALONG)
+    refused("not known of splines", gm.sample, gm.fit("torus", (8, 8)), 20, reach=ALONG)
 
 
 def test_faces_that_rays_from_above_meet_are_those_of_the_whole_part():
@@ -46,17 +47,18 @@ def test_faces_that_rays_from_above_meet_are_those_of_the_whole_part():
 
 
 @pytest.mark.slow
-def test_points_that_a_ray_reaches(monkeypatch):
+@pytest.mark.parametrize("whole", [gm.Part(["torus"]), gm.surfaces.torus()])
+def test_points_that_a_ray_reaches(monkeypatch, whole):
     """Through the hole of a torus, rays meet the near side before the far one."""
     monkeypatch.setattr(obstacle, "VERTICES", 3_000)
-    part, steps = gm.Part(["torus"]), np.linspace(0.05, 3.0, 300)[:, None]
+    steps = np.linspace(0.05, 3.0, 300)[:, None]
 
     def deepest(samples):
         x, y, z = np.moveaxis(samples.points[:, None] + steps * AXIS, 2, 0)
         return 0.35 - np.hypot(np.hypot(x, y) - 1.0, z).min(axis=1)
 
-    samples = gm.sample(part, 150, reach=ALONG)
-    cap = gm.sample(part, 150, reach=((1, 0, 0.2), 70))
+    samples = gm.sample(whole, 150, reach=ALONG)
+    cap = gm.sample(whole, 150, reach=((1, 0, 0.2), 70))
     assert len(samples) == 150
     assert (samples.normals @ AXIS).min() >= np.cos(np.radians(70.0)) - 1e-9
     assert deepest(samples).max() < 0.02 < 0.2 < deepest(cap).max()
