@@ -16,7 +16,7 @@ from .errors import InputError, UnknownNameError, shown
 from .limits import MOST
 from .memory import check_memory
 
-# Made once, since a report checks many numbers.
+# Tuples of types, made once: a report checks many numbers.
 WHOLE, OF_NUMPY = (int, np.integer), (np.ndarray, np.generic)
 SIMILAR = 0.7  # similarity of a name to the intended one, see difflib
 # The largest number of entries of a sequence that is not an array: if entries are checked one by
@@ -136,7 +136,7 @@ def text(value: object, name: str) -> str:
 
 
 def yes_or_no(value: object, name: str) -> bool:
-    """Return the truth value; InputError, with `name`, if there is none, as for arrays."""
+    """Return the truth value of a value; InputError, with `name`, if it has none, as an array."""
     try:
         return bool(value)
     except Exception:

@@ -34,7 +34,7 @@ class Notice(event.Listener):
         self.line = ""
 
     def on_start(self, event: event.Event) -> None:
-        """Record the kernel that begins; update the line."""
+        """Record the kernel whose compilation begins; update the line."""
         if event.kind == "numba:compile" and event.data is not None:
             function = event.data["dispatcher"].py_func
             if self.kernels or str(function.__module__).startswith(f"{PACKAGE}."):

@@ -37,7 +37,7 @@ class Cost(NamedTuple):
 
 FEWER = "use fewer; a stream yields samples at normals in chunks"
 LARGER = "ask for fewer samples, or a larger angle or coverage"
-# Measured; tests/runtime/base/test_memory.py measures again.
+# Measured values; tests/runtime/base/test_memory.py measures them again.
 COSTS: dict[str, Cost] = {
     "icosphere": Cost("normals", 24.0, 0.0, FEWER),
     "normals": Cost("normals", 24.0, 0.0, FEWER),
@@ -47,7 +47,7 @@ COSTS: dict[str, Cost] = {
     "cap": Cost("normals", 96.0, 0.0, "use fewer"),
     "polygon": Cost("normals", 24.0, 1.0, "use fewer"),
     "numbers": Cost("numbers", 9.0, 0.0, "use fewer"),
-    # Normals in bins, and one sample per normal.
+    # The memory of normals that are sorted into bins, and of one sample for each normal.
     "search": Cost("normals", 52.0, 0.0, FEWER),
     "stored": Cost("samples", 0.0, 1.0, "use fewer normals, fewer fields or float32"),
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or a stream"),
@@ -58,7 +58,7 @@ COSTS: dict[str, Cost] = {
     "candidates": Cost("candidates for samples", 600.0, 0.0, LARGER),
     "part": Cost("samples", 4.6e3, 0.0, "use fewer"),
     "curve": Cost("samples", 420.0, 0.0, "use fewer"),
-    # 450 bytes in arrays, the rest in Qhull.
+    # Of these 600 bytes, 450 are in arrays, and the rest in Qhull.
     "mesh": Cost("vertices of a mesh", 600.0, 0.0, "use fewer samples, or parts of patches"),
     "cells": Cost("cells", 120.0, 0.0, "use fewer, or give a tolerance, which chooses them"),
     "heights": Cost(
@@ -120,7 +120,7 @@ def _limits_of_group(path: str) -> Iterator[tuple[float, float]]:
         with suppress(OSError, ValueError):  # "max", or no such group
             most = float(int((each / "memory.max").read_text(encoding="ascii")))
             used = float(int((each / "memory.current").read_text(encoding="ascii")))
-            # The system can drop cached files.
+            # Cached files do not count as used: the system can drop them.
             yield most, used - _line(each / "memory.stat", "inactive_file", 0.0)
         if each == CONTROL_GROUPS:
             return

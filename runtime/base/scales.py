@@ -23,12 +23,12 @@ def power_of_two(value: float) -> float:
 
 
 def scale_to_one(largest: float) -> float:
-    """Return a power of two that brings a number to about 1."""
+    """Return the power of two by which a number has to be multiplied to be about 1."""
     return math.ldexp(1.0, min(-math.frexp(largest)[1], LARGEST_EXPONENT)) if largest else 1.0
 
 
 def scales_to_one(largest: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return powers of two that bring numbers to about 1; 1 for zero, infinity and NaN."""
+    """Return the powers of two that scale numbers to about 1; 1 for zero, infinity and NaN."""
     return np.ldexp(1.0, np.minimum(-np.frexp(largest)[1], LARGEST_EXPONENT))
 
 

@@ -1,4 +1,4 @@
-"""Wording of summaries."""
+"""Numbers with their nouns, for summaries."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ def plural(count: int, what: str) -> str:
 
 
 def at_normals(used: int, requested: int) -> str:
-    """Return the number of prescribed normals that have samples, in words."""
+    """Return a phrase such as "at 3 of 5 prescribed normals", where 3 of 5 have samples."""
     part = "" if used == requested else f"{used:,} of "
     return f"at {part}{plural(requested, 'prescribed normal')}"

@@ -1,4 +1,4 @@
-"""The covering radius of a set: the largest angle of any direction to the nearest in the set."""
+"""The covering radius: the largest angle between any direction and the nearest one in a set."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .unit import as_normals
 
 
 def covering_radius(normals: ArrayLike) -> float:
-    """Return the largest angle from any direction to the nearest of some normals.
+    """Return the largest angle between any direction and the nearest one of the normals.
 
     If the normals cover the Gaussian image of a surface, every normal of the surface is within this
     angle of the normal of a sample.

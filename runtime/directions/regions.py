@@ -179,12 +179,12 @@ class Reach:
 
     @property
     def _reported(self) -> dict[str, Any]:
-        """The entries of a report; the error of edges is known with the conditions on a surface."""
+        """The entries of a report on the reach: its `_numbers`, and the error of edges in L."""
         error = max((x.error for x in self._conditions), default=0.0)
         return {"reach": self._numbers, "edge_error": error if self._from_edges else None}
 
     def _said(self, unit: str | None = None, error: float | None = None) -> str:
-        """Return the conditions in words; the error of edges is named unless it is of rounding."""
+        """Return the conditions in words; an `error` of edges is named if it exceeds rounding."""
         said = [
             f"normals within {cap.angle:g}° of ({', '.join(f'{x + 0.0:.3g}' for x in cap.axis)})"
             for cap in self._caps
@@ -215,9 +215,9 @@ def _pair(values: Sequence[float], name: str, most: float) -> tuple[float, float
 
 
 def checked_reach(reach: Any) -> Reach | None:  # noqa: ANN401
-    """Return the `Reach` of a user: a Reach, a pair of an axis and an angle, or None for none.
+    """Return the `Reach` that a user gives, as a Reach or as a pair of an axis and an angle.
 
-    Raises InputError for any other value.
+    Returns None for None, and raises InputError for any other value.
     """
     if reach is None or isinstance(reach, Reach):
         return reach

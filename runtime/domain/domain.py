@@ -66,7 +66,7 @@ def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
 def checked_sides(periodic: Periodic) -> Boundary:
     """Return the boundary conditions that `periodic` means; InputError if they are unknown.
 
-    A pole does not need the other parameter to be periodic.
+    Unlike `checked_boundary`, this allows a pole although the other parameter is not periodic.
     """
     along_u, along_v = _entries(periodic)
     return _pair(along_u, "u"), _pair(along_v, "v")

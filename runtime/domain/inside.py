@@ -57,7 +57,7 @@ class Inside:
 
 
 def subcentroids(parts: int) -> Array:
-    """Return the centroids (parts², 2) of equal triangles that fill (0, 0), (1, 0), (0, 1).
+    """Return the centroids (parts², 2) of equal parts of the triangle (0, 0), (1, 0), (0, 1).
 
     No centroid lies on a line through points whose coordinates are binary fractions.
     """

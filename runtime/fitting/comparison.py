@@ -57,7 +57,7 @@ PLASTIC = 0.7548776662466927
 SHORTEST_STEP, LONGEST_STEP = 2.0**-17, 2.0**-11
 # Normals of the surface with a larger error than this (radians), near singular points, are ignored.
 NORMAL_ERROR = 1e-4
-# Rounding of the difference of two coordinates, relative to the largest: eight roundings.
+# The rounding error of a difference of two coordinates, relative to the largest one: 8 roundings.
 DIFFERENCE = 2.0**-49
 # The surface is evaluated again at AROUND points around each of the WORST test points, within a
 # cell, and its normal at every EACH_AROUND-th of them. At most one of the WORST is in each of

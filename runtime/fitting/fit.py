@@ -41,9 +41,9 @@ from .tolerance import FAR_OFF, Tolerance, checked_tolerance, refined
 # At creases no number of cells makes normals accurate: the search ends when they no longer improve.
 DEFAULT_CELLS = (64, 64)
 DEFAULT = Tolerance(None, 1e-4, 0.1, poles=False, most=(1024, 1024), total=2**16, patience=2)
-# For a tolerance: the numbers of cells of the first attempt.
+# The numbers of cells of the first attempt if a tolerance is given.
 FEWEST_CELLS = (8, 8)
-# A callable is called again at AGAIN points: both answers have to agree up to SAME times their
+# A callable is called twice at AGAIN parameters: the points have to agree up to SAME times their
 # extent.
 AGAIN, SAME = 16, 1e-9
 
@@ -278,7 +278,7 @@ def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
     domain, boundary, trim = surface.domain, surface.boundary, surface.trim
     if trim is None or all(np.isfinite(x).all() for x in values[:2]):
         return fit_values(values, domain, boundary, surface.name)
-    # The callable has no values somewhere outside of its trim.
+    # Somewhere outside of the trim, the callable has no values.
     values = values.filled_by(continued)
     known = known_of(*from_values(values), domain, boundary)
     spline = fit_values(values.filled_by(completed), domain, boundary, surface.name)

@@ -12,8 +12,8 @@ from ..base.tolerances import DATA_ERROR
 from ..spline.spline import Spline
 from .comparison import Comparison, Misfit
 
-# A spline is an improvement if at most this part of an error remains. Halved cells leave an eighth
-# for order 3, a half for order 1, as at folds.
+# A spline is an improvement if at most this part of an error remains. Halving the cells leaves an
+# eighth of an error of order 3, and a half of an error of order 1, as at folds.
 IMPROVED = 0.75
 # Cells are halved along both u and v, or along only one of them if the error varies more than this
 # many times as much along it.
@@ -29,12 +29,13 @@ FAR_OFF = 10.0
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The errors that a spline may have, and the numbers of cells with which they are sought.
+    """The largest errors that a spline may have, and bounds of the search for enough cells.
 
-    The distance is in L, or relative to the diagonal; the angle, in degrees, also counts next to
-    `poles` and other collapsed sides. There are at most `most` cells along u and v, and `total` in
-    all. The search ends after `patience` steps without improvement, unless the distance is far from
-    the goal.
+    The errors are a `distance` in L, or a `relative` one in units of the diagonal of the bounding
+    box, and an `angle` between normals in degrees. With `poles`, angles next to poles and other
+    collapsed sides count as well. There are at most `most` cells along u and along v, and `total`
+    cells in all. The search ends after `patience` steps without improvement, unless the distance is
+    far from the goal.
     """
 
     distance: float | None
@@ -60,7 +61,7 @@ class Tolerance:
         return replace(self, distance=asked)
 
     def excess(self, comparison: Comparison) -> tuple[float, float]:
-        """Return distance and angle relative to the largest allowed: at most 1 if it is reached."""
+        """Return distance and angle relative to the largest allowed ones: at most 1 if reached."""
         misfit = comparison.misfit
         angle = misfit.angle if self.poles else comparison.angle_away
         return (
@@ -76,7 +77,7 @@ class Tolerance:
 def checked_tolerance(
     cells: object, distance: object, relative: object, angle: object
 ) -> Tolerance | None:
-    """Return the tolerances of `fit`, None without any; InputError if they are invalid."""
+    """Return the tolerance from the arguments of `fit`, or None; InputError if it is invalid."""
     given = {
         name: positive_number(value, name, unit, most)
         for name, value, unit, most in (

@@ -80,7 +80,7 @@ def save(folder: Path, key: str, processor: object, entry: bytes) -> None:
 
 
 def lock_of(folder: Path, key: str, processor: object) -> FileLock:
-    """Return the lock of the processes that compile an entry."""
+    """Return the lock that a process takes to compile an entry."""
     return FileLock(_path(folder, key, processor).with_suffix(".lock"))
 
 

@@ -100,12 +100,12 @@ def signature_in(entry: bytes) -> tuple[str, list[Any]] | None:
 
 
 def sealed(data: bytes) -> bytes:
-    """Return data behind a checksum."""
+    """Return data with their checksum in front."""
     return hashlib.sha256(data).digest() + data
 
 
 def opened(content: bytes) -> bytes | None:
-    """Return the data behind a checksum; None if they are damaged."""
+    """Return the data that follow a checksum; None if they are damaged."""
     checksum, data = content[:CHECKSUM], content[CHECKSUM:]
     return data if hashlib.sha256(data).digest() == checksum else None
 

@@ -77,6 +77,6 @@ def as_types(kind: Any) -> Any:
 
 
 def named(name: str) -> Any:
-    """Return the object of a name such as "gaussmap.runtime.tape.kernels.points.Tape"."""
+    """Return the object with a name such as "gaussmap.runtime.tape.kernels.points.Tape"."""
     module, _, name = name.rpartition(".")
     return getattr(import_module(module), name)

@@ -171,7 +171,7 @@ class SampleArrays:
         found: dict[str, NDArray[Any]] = {}
         for name in COLUMNS:
             with suppress(AttributeError):
-                # Not by __getattr__, which calls this method.
+                # Not with getattr: it would call __getattr__, which calls this method.
                 array = object.__getattribute__(self, name)
                 if array is not None:
                     found[name] = array

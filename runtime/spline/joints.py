@@ -38,7 +38,7 @@ CORNER_NORMALS = (0, 3, 5)
 EDGE_NORMALS = ((3, 4, 5), (5, 2, 0), (0, 1, 3))
 # Parameters of an edge at which the normals of its patches are compared.
 PLACES = np.linspace(0.0, 1.0, 9)
-# Points closer than this, relative to the largest coordinate, are the same point.
+# Points that are closer than this, relative to the largest coordinate, count as the same point.
 SAME_POINT = 2.0**-36
 # The nearest point of an edge to a corner is the nearest of this many points of the edge, improved
 # by this many Newton steps.
@@ -346,7 +346,7 @@ def _normals_along(normals: Array, edges: Indices) -> Array:
 
 
 def _largest_angles(left: Array, right: Array) -> Array:
-    """Return the largest angle (J,) between vectors (J, k, 3), in radians; 0 has no angle."""
+    """Return the largest angle (J,), in radians, between nonzero vectors (J, k, 3)."""
     left, right = _unit(left), _unit(right)
     known = left.any(axis=-1) & right.any(axis=-1)
     chord = np.where(known, np.linalg.norm(left - right, axis=-1), 0.0)

@@ -132,7 +132,7 @@ class NetSpline(PatchSpline, NetMethods):
 
     @property
     def extent(self) -> tuple[float, int]:
-        """The diagonal of the bounding box, and the root of the number of patches."""
+        """The diagonal of the bounding box, and the square root of the number of patches."""
         points = self.control_nets.reshape(-1, 3)
         return math.hypot(*np.ptp(points, axis=0)), math.isqrt(self.patches)
 

@@ -15,7 +15,8 @@ from .poles import broken_poles
 from .quasi_interpolant import fit_grid
 from .spline import Spline
 
-# A last row this close to the first, relative to the distance of two rows, repeats the first row.
+# If the last row is this close to the first row, relative to the distance between the first two
+# rows, it repeats the first row.
 REPEATED = 1e-3
 
 

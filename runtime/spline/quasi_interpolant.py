@@ -22,8 +22,8 @@ from .kernels import spline as kernels
 from .poles import close_pole
 from .spline import Spline
 
-# Missing values are extrapolated over this many steps: a patch depends on values two cells away,
-# and the nearest known value may be one cell away from it.
+# Missing values are extrapolated over this many steps, 2 + 1: a patch depends on values two cells
+# away, and the nearest known value may be one cell away from the patch.
 FAR = 3
 
 Sides = tuple[Array, Array, Array, Array]

@@ -18,7 +18,7 @@ from .joints import EDGES, merged_points
 from .nets import AnySpline, NetSpline
 from .spline import Spline
 
-# Points of a surface within this distance, relative to its size, are one point.
+# Points of a surface within this distance, relative to its size, count as one point.
 SAME_POINT = 1e-9
 
 

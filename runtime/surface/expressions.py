@@ -68,7 +68,7 @@ def numbers(domain: Sequence[Any], form: str) -> Any:  # noqa: ANN401
 
 
 def _coordinates(position: Sequence[Any], parameters: int) -> tuple[Any, ...]:
-    """Return the entries of a position; InputError unless there is one more than parameters."""
+    """Return the coordinates in a position; InputError unless there are `parameters` + 1."""
     names = "(x, y, z)" if parameters == 2 else "(x, y)"
     coordinates = tuple(listed(position) or ())
     if len(coordinates) != parameters + 1:
