@@ -30,7 +30,7 @@ from ..tape.tapes import jets_of
 from .on_spline import OnPatches, OnSpline
 from .proved import ProvedSurface
 
-__all__ = ["Pinch", "Tip", "Tipped", "tip_degrees", "tips_on"]
+__all__ = ["Fan", "Pinch", "Tip", "Tipped", "tip_degrees", "tips_of_fans", "tips_on"]
 
 Jets = Callable[[Array, Array], Array]
 
@@ -41,18 +41,20 @@ RAYS = 1 << 11
 PARTS, TIMES = 32, 4
 PRODUCTS_AT_A_TIME = 1 << 20
 ROUNDING = 1e-9
+# Rays that differ by less are one ray.
+SAME_RAY = 1e-6
 # A side is collapsed if this number of its points coincide.
 ALONG = 65
 # A tip is inside a trim if the parameter line at this distance from it is, relative to the domain.
 BESIDE = 1e-6
 
 
-class Tip(NamedTuple):
-    """A tip of a surface: its position, one of its parameter pairs, and its rays (k, 3).
+class Fan(NamedTuple):
+    """Rays (k, 3) from a point of one surface or patch, in anticlockwise order.
 
-    The rays are in anticlockwise order. `bends` (k,) are the lengths of their second differences;
-    `ray_at` returns the rays at fractional indices (m,). All normals n with n·axis < cosine have
-    the degree `outside`. The parameters of nets are those in a `patch`.
+    `bends` (k,) are the lengths of their second differences, or 0 if the fan is flat between rays;
+    `ray_at` returns the rays at fractional indices (m,). `uv` is one of the parameter pairs of the
+    point, for nets in the patch `patch`.
     """
 
     point: Array
@@ -60,17 +62,43 @@ class Tip(NamedTuple):
     rays: Array
     bends: Array
     ray_at: Callable[[Array], Array]
+    patch: int = -1
+
+
+class Tip(NamedTuple):
+    """A tip of a surface: its position, one of its parameter pairs, and its rays (k, 3).
+
+    The rays, `bends` and `ray_at` are those of a `Fan` all around the tip. All normals n with
+    n·axis < cosine have the degree `outside`.
+    """
+
+    point: Array
+    uv: Array
+    patch: int
+    rays: Array
+    bends: Array
+    ray_at: Callable[[Array], Array]
     axis: Array
     cosine: float
     outside: int
-    patch: int = -1
 
     @classmethod
-    def of(
-        cls, point: Array, uv: Array, rays: Array, bends: Array, ray_at: Callable[[Array], Array],
-        patch: int = -1,
-    ) -> Tip | None:  # fmt: skip
-        """Return the tip with the given rays; None if they are in a plane."""
+    def of(cls, fans: Sequence[Fan]) -> Tip | None:
+        """Return the tip of fans that begin where the one before ends; None if all are coplanar."""
+        rays = np.concatenate([x.rays[:-1] for x in fans])
+        bends = np.concatenate([x.bends[:-1] for x in fans])
+        starts = np.cumsum([0, *(len(x.rays) - 1 for x in fans)])
+
+        def ray_at(numbers: Array) -> Array:
+            numbers = numbers % starts[-1]
+            which, found = (
+                np.searchsorted(starts, numbers, "right") - 1,
+                np.empty((len(numbers), 3)),
+            )
+            for k in np.unique(which).tolist():
+                found[which == k] = fans[k].ray_at(numbers[which == k] - starts[k])
+            return found
+
         normals = _unit(np.cross(rays, np.roll(rays, -1, axis=0)))
         normals = normals[normals.any(axis=1)]
         mean = _unit(normals.sum(axis=0)[None])
@@ -80,7 +108,8 @@ class Tip(NamedTuple):
         # Only a cap smaller than a half-sphere contains the arcs between the normals in it, too.
         cosine = cosine if cosine > 0.0 else -math.inf
         outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
-        return cls(point, uv, rays, bends, ray_at, mean[0], cosine, outside, patch)
+        point, uv, patch = fans[0].point, fans[0].uv, fans[0].patch
+        return cls(point, uv, patch, rays, bends, ray_at, mean[0], cosine, outside)
 
     def degrees(self, normals: Array) -> NDArray[np.int64]:
         """Return the degree of the tip at each of the unit normals (S, 3)."""
@@ -161,7 +190,7 @@ def tip_degrees(geometry: OnPatches | ProvedSurface, normals: Array) -> NDArray[
     return found
 
 
-def tips_on(geometry: OnPatches | ProvedSurface) -> list[Tip | Pinch]:
+def tips_on(geometry: OnPatches | ProvedSurface) -> Sequence[Tip | Pinch]:
     """Return the tips of a geometry; they are cached with its spline or index."""
     if isinstance(geometry, ProvedSurface):
         surface, index = geometry.surface, geometry.index
@@ -176,7 +205,7 @@ def tips_on(geometry: OnPatches | ProvedSurface) -> list[Tip | Pinch]:
         return []
     nets = geometry.spline
     if isinstance(nets, NetSpline):
-        return kept(nets, "tips", lambda: list(_tips_of_nets(nets)))
+        return kept(nets, "tips", lambda: _tips_of_nets(nets))
     assert isinstance(geometry, OnSpline)
     whole = geometry.whole or geometry
     spline = whole.spline
@@ -217,21 +246,23 @@ class Tipped(NamedTuple):
         self, sides: Sequence[tuple[int, int]], lines: Sequence[tuple[int, float]] = ()
     ) -> list[Tip | Pinch]:
         """Return the tips at collapsed sides (axis, end) and at collapsed lines (axis, value)."""
-        found: list[Tip | Pinch | None] = [
-            self._tip(axis, self.domain[axis][end], end) for axis, end in sides
-        ]
+        found: list[Tip | Pinch] = [x for _, x in tips_of_fans(self.fans(sides), 0.0)]
         for axis, place in lines:
-            above, below = (self._tip(axis, place, end) for end in (0, 1))
-            found.append(Pinch(above, below) if above and below else None)
+            fans = [x for x in (self._fan(axis, place, end) for end in (0, 1)) if x]
+            cones = [x for _, x in tips_of_fans(fans, 0.0)]
+            found += [Pinch(*cones)] if len(cones) == 2 else []
+        return found
+
+    def fans(self, sides: Sequence[tuple[int, int]]) -> list[Fan]:
+        """Return the fans at collapsed sides (axis, end)."""
+        found = (self._fan(axis, self.domain[axis][end], end) for axis, end in sides)
         return [x for x in found if x is not None]
 
-    def _tip(self, axis: int, place: float, end: int) -> Tip | None:
-        """Return the tip at the line where a parameter is `place`; None without rays all around it.
+    def _fan(self, axis: int, place: float, end: int) -> Fan | None:
+        """Return the fan at the line where a parameter is `place`; None if it is not in the trim.
 
         On the surface this parameter is larger than `place` if `end` is 0, and smaller if it is 1.
         """
-        if self.boundary[1 - axis][0] != "periodic":
-            return None
         parts, (low, high), way = self.parts[1 - axis], self.domain[1 - axis], (1.0, -1.0)[end]
 
         def uv_at(numbers: Array, away: float = 0.0) -> Array:
@@ -239,62 +270,74 @@ class Tipped(NamedTuple):
 
             Their distance from the line is `away`, relative to the domain.
             """
-            turns = (numbers if axis == end else parts - 1.0 - numbers) / parts
-            along = low + (high - low) * (turns % 1.0)
+            turns = (numbers if axis == end else parts - numbers) / parts
+            along = low + (high - low) * turns
             fixed = np.full_like(along, place + way * away * np.ptp(self.domain[axis]))
             return np.stack((fixed, along) if axis == 0 else (along, fixed), axis=1)
 
         def ray_at(numbers: Array) -> Array:
             return _unit(self.jets(*uv_at(numbers).T.copy())[:, 1 + axis] * way)
 
-        numbers = np.arange(parts, dtype=np.float64)
-        if self.trim is not None and not self.trim.contains(uv_at(numbers, BESIDE)).all():
+        numbers = np.arange(parts + 1.0)
+        if self.trim is not None and not self.trim.contains(uv_at(numbers[1:-1], BESIDE)).all():
             return None
         rays = ray_at(numbers)
         if not rays.any(axis=1).all():
             return None
-        second = np.roll(rays, 1, axis=0) - 2.0 * rays + np.roll(rays, -1, axis=0)
-        uv = uv_at(np.zeros(1) if axis == end else np.full(1, parts - 1.0))
+        bends = np.linalg.norm(rays[:-2] - 2.0 * rays[1:-1] + rays[2:], axis=1)
+        uv = uv_at(np.array([0.0 if axis == end else parts]))
         point = self.jets(*uv.T.copy())[0, 0]
-        return Tip.of(point, uv[0], rays, np.linalg.norm(second, axis=1), ray_at)
+        return Fan(point, uv[0], rays, np.pad(bends, 1, "edge"), ray_at)
 
 
-def _tips_of_nets(spline: NetSpline) -> Iterator[Tip]:
-    """Yield the tips of nets; the rays of a tip are the tangents of the edges that meet there."""
-    tips, nets = tips_of(spline), spline.control_nets
-    beside = np.full(3 * spline.patches, -1)
-    for one, other in (spline.topology.pairs.T, spline.topology.pairs.T[::-1]):
-        beside[one] = other
-    if tips is None:
+def tips_of_fans(fans: Sequence[Fan], same: float) -> Iterator[tuple[list[int], Tip]]:
+    """Yield the indices of fans that are a cone all around a tip, and the tip.
+
+    Points within the distance `same` are one point.
+    """
+    if not fans:
         return
-    for point in tips.points:
-        at = np.linalg.norm(nets[:, :3] - point, axis=2) <= tips.same
-        # Edge j runs from corner j + 1 to corner j + 2.
-        starts, ends = np.roll(at, -1, axis=1), np.roll(at, -2, axis=1)
-        first, last = (starts & ~ends).argmax(axis=1), (ends & ~starts).argmax(axis=1)
-        left = set(np.flatnonzero((starts & ~ends).any(axis=1)).tolist())
-        while left:
-            around, patch = list[int](), min(left)
-            while patch in left:
-                left.remove(patch)
-                around.append(patch)
-                patch = int(beside[3 * patch + last[patch]]) // 3
-            if patch != around[0]:
-                continue  # on the boundary
-            corners, middles = np.array([EDGES[k][:2] for k in first[around]]).T
-            rays = _unit(nets[around, middles] - nets[around, corners])
-            rays = rays[np.linalg.norm(rays - np.roll(rays, 1, axis=0), axis=1) > ROUNDING]
-            uv, bends = np.eye(3)[corners[0], :2], np.zeros(len(rays))
-            tip = Tip.of(point, uv, rays, bends, partial(_between, rays), around[0])
-            if tip is not None:
-                yield tip
+    first, last = (np.array([x.rays[k] for x in fans]) for k in (0, -1))
+    points = np.array([x.point for x in fans])
+    joined = np.linalg.norm(last[:, None] - first, axis=2) <= SAME_RAY
+    joined &= np.linalg.norm(points[:, None] - points, axis=2) <= same
+    following = np.where(joined.any(axis=1), joined.argmax(axis=1), -1).tolist()
+    left = set(range(len(fans)))
+    while left:
+        around, k = list[int](), min(left)
+        while k in left:
+            left.remove(k)
+            around.append(k)
+            k = following[k]
+        tip = Tip.of([fans[x] for x in around]) if k == around[0] else None
+        if tip is not None:
+            yield around, tip
 
 
-def _between(rays: Array, places: Array) -> Array:
-    """Return unit rays (m, 3) at fractional indices of a closed cone that is flat between rays."""
-    low = np.floor(places).astype(int)
-    share = (places - low)[:, None]
-    return _unit((1.0 - share) * rays[low % len(rays)] + share * rays[(low + 1) % len(rays)])
+def _tips_of_nets(spline: NetSpline) -> list[Tip]:
+    """Return the tips of nets; between the tangents of its edges, a patch is flat at the tip."""
+    tips, nets, found = tips_of(spline), spline.control_nets, list[Fan]()
+    if tips is None:
+        return []
+    at = tips.hold(nets[:, :3].reshape(-1, 3)).reshape(-1, 3)
+    # Edge j runs from corner j + 1 to corner j + 2.
+    starts, ends = np.roll(at, -1, axis=1), np.roll(at, -2, axis=1)
+    for patch in np.flatnonzero(tips.touching & ~at.all(axis=1)).tolist():
+        leaving = EDGES[int((starts & ~ends)[patch].argmax())]
+        coming = EDGES[int((ends & ~starts)[patch].argmax())]
+        net, corners = nets[patch], [leaving.start, coming.end]
+        rays = _unit(net[[leaving.middle, coming.middle]] - net[corners])
+        if np.linalg.norm(rays[1] - rays[0]) > SAME_RAY:
+            uv = np.eye(3)[corners[0], :2]
+            found.append(
+                Fan(net[corners[0]], uv, rays, np.zeros(2), partial(_between, rays), patch)
+            )
+    return [x for _, x in tips_of_fans(found, tips.same)]
+
+
+def _between(rays: Array, shares: Array) -> Array:
+    """Return the unit rays (m, 3) between two rays, for shares of the way from one to the other."""
+    return _unit(rays[0] + shares[:, None] * (rays[1] - rays[0]))
 
 
 def _unit(vectors: Array) -> Array:

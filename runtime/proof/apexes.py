@@ -14,6 +14,7 @@ import numpy as np
 
 from ..base.aliases import Array, Flags, Indices
 from ..domain.domain import Domain
+from ..spline.tips import SAME_POINT
 from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
 from .components import Undecided
@@ -22,9 +23,9 @@ from .kernels.cell_bounds import SMOOTH
 
 __all__ = ["Apex", "apexes_of"]
 
-# A side of the domain is collapsed if PLACES points along it agree up to ROUNDINGS units in the
-# last place of the largest coordinate of all sides. The coordinates of the point itself are no
-# scale: near the origin they are small, but their rounding errors are not.
+# A side of the domain is collapsed if PLACES points along it agree up to SAME_POINT, relative to
+# the size, plus ROUNDINGS units in the last place of the largest coordinate of all sides: files
+# cut surfaces at tips with 12 digits.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the index of the Taylor coefficient of u v; those of u and v are 1 and 2
 BOXES_AT_A_TIME = 1 << 14  # 8 MB of bounds
@@ -151,6 +152,8 @@ def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
     points = np.stack([_jets_on(tape, domain, axis, np.array([x]))[0, :, 0] for axis, x in lines])
     slack = ROUNDINGS * np.spacing(np.fmax.reduce(np.abs(points), axis=None))
     with np.errstate(invalid="ignore"):  # infinity minus infinity
+        size = np.fmax.reduce(points, axis=(0, 1)) - np.fmin.reduce(points, axis=(0, 1))
+        slack += SAME_POINT * size.max()
         is_point = np.ptp(points, axis=1).max(axis=1) <= slack
     errors = [ROUNDINGS * float(np.spacing(np.abs(x).max())) for x in domain]
     found = [

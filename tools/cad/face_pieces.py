@@ -6,6 +6,7 @@ import itertools
 import math
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -25,7 +26,7 @@ from ...runtime.onto_surface.on_spline import OnSpline, on_grids
 from ...runtime.onto_surface.on_surface import geometry_of
 from ...runtime.onto_surface.proved import CODE, proof_of, with_components
 from ...runtime.onto_surface.reach import in_reach
-from ...runtime.onto_surface.tip_degrees import Pinch, Tip, Tipped
+from ...runtime.onto_surface.tip_degrees import Fan, Tip, Tipped, tips_of_fans
 from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, Component, bytes_of, dtype_of
 from ...runtime.samples.report import SamplingReport
 from ...runtime.samples.samples import Samples
@@ -52,6 +53,8 @@ ANGLE = 0.25
 PARTS_OF_SPAN, MOST_PARTS = 2, 64
 # Dividing lines closer to one another than this fraction of the domain count as one line.
 SAME_LINE = 1e-9
+# Points of faces within this distance, relative to the size of the largest face, are one tip.
+SAME_TIP = 1e-6
 # The number of parts along each parameter of a surface with an unknown function.
 PARTS_OF_SURFACE = 16
 # Curvatures at a pole are taken at this distance from it, relative to the domain.
@@ -172,17 +175,10 @@ class FacePiece(Piece):
         return [] if nothing else [self._samples(normals, found)]
 
     @property
-    def tips(self) -> Sequence[Tip | Pinch]:
-        """The tips of the face: points to which open sides of its domain are collapsed."""
-        if not any(self.surface.assumed_open):
-            return ()
-
-        def found() -> Sequence[Tip | Pinch]:
-            surface = with_found_sides(self.surface)[0]
-            around = Tipped(self.jets, surface.domain, surface.boundary, surface.trim)
-            return around.tips(around.sides())
-
-        return kept(self.surface, Tipped, found)
+    def tips(self) -> Sequence[Tip]:
+        """The tips of the part that are counted with this face."""
+        part = self.face.part
+        return kept(part, Tip, lambda: _tips_of(part.faces)).get(self.face.index, ())
 
     def component_degrees(self, normals: Array) -> Indices:
         """Return, for each normal, the sum of the degrees of its components.
@@ -309,6 +305,26 @@ class FacePiece(Piece):
         return {
             x: y.astype(dtype_of(x, dtype), copy=False) for x, y in found.items() if x in fields
         }
+
+
+def _tips_of(faces: tuple[Face, ...]) -> dict[int, list[Tip]]:
+    """Return the tips at collapsed sides of faces, by the index of the first face around each."""
+    fans, owners, size = list[Fan](), list[int](), 0.0
+    for face in faces:
+        with suppress(GaussmapError):  # a face that cannot be used
+            if any(face.surface.assumed_open):
+                surface = with_found_sides(face.surface)[0]
+                tipped = Tipped(
+                    lambda u, v, x=surface: x.unchecked_jets(*np.array([u, v])),
+                    surface.domain, surface.boundary, surface.trim,
+                )  # fmt: skip
+                fans += tipped.fans(tipped.sides())
+                owners += [face.index] * (len(fans) - len(owners))
+                size = max(size, face.area)
+    found: dict[int, list[Tip]] = {}
+    for around, tip in tips_of_fans(fans, SAME_TIP * math.sqrt(size)):
+        found.setdefault(owners[around[0]], []).append(tip)
+    return found
 
 
 def _any_inside(trim: Trim, places: Array) -> Flags:

@@ -19,12 +19,18 @@ WAVES = {
 }
 
 
-def lemon(name: str, along_u: bool) -> gm.Surface:
-    """Return a closed surface that ends in two tips, at the ends of v or of u."""
+def lemon(name: str, along_u: bool, turn: tuple[str, str] | None = None) -> gm.Surface:
+    """Return a closed surface that ends in two tips, at the ends of v or of u, or a part of it.
+
+    The part is over u in `turn`; its ends are rounded to 13 digits, as those in files.
+    """
     wave, number, lean = WAVES[name]
     r = f"(2*cos(v) - 1)*(1 + {wave}*cos({number}*u))"
     texts = f"{r}*cos(u)", f"{r}*sin(u)", f"2*sin(v) + {lean}*(2*cos(v) - 1)*cos(u)"
-    turn, ends = (0, "2*pi"), ("-pi/3", "pi/3")
+    if turn is not None:
+        ends = ("-1.0471975511965", "1.0471975511965")
+        return gm.Surface.from_sympy(texts, ("u", "v"), (turn, ends), (False, False))
+    turn, ends = ("0", "2*pi"), ("-pi/3", "pi/3")
     if along_u:  # normals point inwards
         return gm.Surface.from_sympy(texts, ("v", "u"), (ends, turn), (False, True))
     return gm.Surface.from_sympy(texts, ("u", "v"), (turn, ends), (True, False))
@@ -94,15 +100,18 @@ def test_lines_inside_of_the_domain_are_tips(along_u: bool) -> None:
 @pytest.mark.compiled
 def test_faces_and_trimmed_surfaces_have_tips() -> None:
     surface, n = lemon("star", False), directions()[:50]
-    part = gm.GaussMap(gm.Part([surface]))
-    np.testing.assert_array_equal(part.degree(n), 1)
-    found = []
-    for points in (part.points(n), gm.GaussMap(surface).points(n)):
+    found, halves = [], [lemon("star", False, x) for x in (("0", "pi"), ("pi", "2*pi"))]
+    for shape in (surface, gm.Part([surface]), gm.Part(halves)):
+        image = gm.GaussMap(shape)
+        np.testing.assert_array_equal(image.degree(n), 1)
+        points = image.points(n)
+        assert (points.report.proved, points.report.undecided) == (len(n), ())
         rows = np.column_stack([
             points.normal_index, np.asarray(points.component), points.points
         ])  # fmt: skip
         found.append(rows[np.lexsort(rows.round(9).T)])
     np.testing.assert_allclose(found[0], found[1], rtol=0.0, atol=1e-13)
+    np.testing.assert_allclose(found[0], found[2], rtol=0.0, atol=1e-12)
     for low, tips in ((-9.0, True), (0.1, False)):  # with a slit
         cut = surface.trimmed([[(low, 0.5), (6.2, 0.5), (6.2, 9.0), (low, 9.0)]])
         components = np.unique(np.asarray(gm.GaussMap(cut).points(n).component))
