@@ -11,17 +11,15 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
-from gaussmap.runtime.tape.kernels.balls import BALL, bounds_of_boxes
-from gaussmap.runtime.tape.kernels.points import LANES, POINT, Tape, points_jets
-from gaussmap.runtime.tape.kernels.rounding import rounding_of_boxes
+from gaussmap.runtime.tape.kernels.points import LANES, Tape
 from gaussmap.symbolic.elementary import LIBRARY
 from gaussmap.symbolic.surfaces import CATALOGUE
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from ...products import covering
+from .made import ORDERS, balls_on, boxes, errors_on, jets_at
 
-ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
 DIGITS = 32
 # Half widths of boxes relative to the domain: cells of a search, smaller ones, points.
 WIDTHS = (1 / 32, 1e-3, 1e-9, 0.0)
@@ -58,44 +56,10 @@ def of_catalogue(name: str) -> Callable[..., Any]:
     return exact_coefficients(position, surface.u, surface.v)
 
 
-def registers(tape: Tape) -> np.ndarray:
-    return np.empty(BALL * (len(tape.operations) + 1))
-
-
-def jets_at(tape: Tape, places: np.ndarray) -> np.ndarray:
-    """Return the Taylor coefficients (k, 6, 3) at places (k, 2)."""
-    jets = np.empty((len(places), 6, 3))
-    u_values, v_values = (np.ascontiguousarray(x) for x in places.T)
-    points_jets(tape, u_values, v_values, np.empty(POINT * len(tape.operations)), jets)
-    return jets / np.array([1, 1, 1, 2, 1, 2])[:, None]
-
-
-def balls_on(tape: Tape, centres: np.ndarray, widths: np.ndarray, order: int = 3) -> np.ndarray:
-    """Return midpoints and radii (k, 2, 10, 3) of the Taylor coefficients on boxes."""
-    bounds = np.empty((len(centres), 2, 10 if order == 3 else 6, 3))
-    ends = np.empty((2, 4))
-    bounds_of_boxes(tape, order, centres, widths, registers(tape), registers(tape), ends, bounds)
-    return bounds
-
-
-def errors_on(tape: Tape, centres: np.ndarray, widths: np.ndarray) -> np.ndarray:
-    """Return bounds (k, 6, 3) of the rounding errors of coefficients at points of boxes."""
-    bounds, ends = np.empty((len(centres), 6, 3)), np.empty((2, 4))
-    middles, radii, errors = (registers(tape) for _ in range(3))
-    rounding_of_boxes(tape, centres, widths, middles, radii, errors, ends, bounds)
-    return bounds
-
-
-def boxes(surface: gm.Surface, count: int, width: float, seed: int) -> tuple[np.ndarray, ...]:
-    """Return centres and half widths of boxes (k, 2), and a place in each, often a corner."""
-    generator = np.random.default_rng(seed)
+def boxes_of(surface: gm.Surface, count: int, width: float, seed: int) -> tuple[np.ndarray, ...]:
+    """Return boxes in a domain, whose half widths are relative to it, and a place in each."""
     low, high = np.array(surface.domain).T
-    centres = generator.uniform(low, high, (count, 2))
-    widths = np.broadcast_to(width * (high - low), (count, 2)).copy()
-    shares = generator.uniform(-1.0, 1.0, (count, 2))
-    shares = np.where(generator.random((count, 2)) < 0.5, np.sign(shares), shares)
-    # One unit of the last place inwards, as rounding could take a place out of its box.
-    return centres, widths, np.nextafter(centres + shares * widths, centres)
+    return boxes(low, high, width * (high - low), count, seed)
 
 
 def check(tape: Tape, exact: Callable[..., Any], found: tuple[np.ndarray, ...]) -> None:
@@ -123,14 +87,14 @@ def tape_of(name: str) -> Tape:
 @covering(name=gm.surfaces.names(), width=WIDTHS)
 def test_bounds_contain_exact_values(name, width):
     surface = gm.surfaces.surface(name)
-    check(tape_of(name), of_catalogue(name), boxes(surface, 50, width, 1))
+    check(tape_of(name), of_catalogue(name), boxes_of(surface, 50, width, 1))
 
 
 @pytest.mark.parametrize("name", ["torus", "sphere", "catenoid", "wavy_graph", "moebius_band"])
 def test_bounds_of_third_derivatives_are_attained(name):
     """A tenth less would be wrong: the largest error at corners of boxes is the radius."""
     surface = gm.surfaces.surface(name)
-    centres, widths, _ = boxes(surface, 40, 1e-3, 4)
+    centres, widths, _ = boxes_of(surface, 40, 1e-3, 4)
     balls = balls_on(tape_of(name), centres, widths)
     used = np.zeros(balls[:, 1].shape)
     for signs in product((-1, 1), repeat=2):
@@ -143,7 +107,7 @@ def test_bounds_of_third_derivatives_are_attained(name):
 @EACH
 def test_bounds_of_rounding_are_a_few_units_for_each_operation(name):
     surface = gm.surfaces.surface(name)
-    centres, widths, _ = boxes(surface, 40, 1 / 32, 5)
+    centres, widths, _ = boxes_of(surface, 40, 1 / 32, 5)
     sizes = np.abs(balls_on(tape_of(name), centres, widths)[:, :, :6]).sum(axis=1)
     few = 4.0 * len(tape_of(name).operations) * 2.0**-53
     assert (errors_on(tape_of(name), centres, widths) <= few * sizes.max()).all()
@@ -153,7 +117,7 @@ def test_a_tile_has_the_bits_of_its_boxes():
     """What is computed for a box does not depend on what is computed with it."""
     surface = gm.surfaces.dupin_cyclide()
     tape = tape_of("dupin_cyclide")
-    centres, widths, places = boxes(surface, 2 * LANES + 5, 1 / 32, 6)
+    centres, widths, places = boxes_of(surface, 2 * LANES + 5, 1 / 32, 6)
     balls, errors = balls_on(tape, centres, widths), errors_on(tape, centres, widths)
     jets = jets_at(tape, places)
     for k in range(len(centres)):
@@ -164,7 +128,7 @@ def test_a_tile_has_the_bits_of_its_boxes():
 
 
 def test_bounds_of_order_two_are_those_of_order_three():
-    centres, widths, _ = boxes(gm.surfaces.torus(), 50, 1 / 32, 7)
+    centres, widths, _ = boxes_of(gm.surfaces.torus(), 50, 1 / 32, 7)
     second, third = (balls_on(tape_of("torus"), centres, widths, order) for order in (2, 3))
     assert (second == third[:, :, :6]).all()
 

@@ -6,11 +6,10 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.tape.kernels.balls import BALL, bounds_of_boxes
-from gaussmap.runtime.tape.kernels.points import POINT, Tape, points_jets
-from gaussmap.runtime.tape.kernels.rounding import rounding_of_boxes
+from gaussmap.runtime.tape.kernels.points import Tape
 
-ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
+from .made import ORDERS, balls_on, boxes, errors_on, graph, jets_at
+
 KNOTS = (0.25, 0.6, 1.1, 1.3)
 
 
@@ -83,53 +82,16 @@ def exact_coefficients(nurbs: Any, u: float, v: float) -> np.ndarray:
 # --- surfaces -------------------------------------------------------------------------------------
 
 
-def graph(degrees: tuple[int, int], knots: tuple[float, ...], rational: bool) -> gm.Surface:
-    """Return a NURBS graph with random heights over [0, 2] × [0, 2]."""
-    random = np.random.default_rng(3)
-    vectors = [[0.0] * (p + 1) + [*knots] + [2.0] * (p + 1) for p in degrees]
-    m, n = (len(knots) + p + 1 for p in degrees)
-    x, y = np.meshgrid(np.linspace(0, 2, m), np.linspace(0, 1, n), indexing="ij")
-    points = np.stack([x, y, 0.2 * random.normal(size=x.shape)], axis=-1) + 3.0
-    weights = random.uniform(0.5, 2.0, (m, n)) if rational else None
-    return gm.Surface.from_nurbs(degrees, vectors, points, weights)
-
-
 def tape_of(surface: gm.Surface) -> Tape:
     assert surface.tape is not None
     return surface.tape
 
 
-def bounds(tape: Tape, centres: np.ndarray, widths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return balls (k, 2, 10, 3) of Taylor coefficients on boxes, and errors (k, 6, 3) in them."""
-    middles, radii, errors = (np.empty(BALL * (len(tape.operations) + 1)) for _ in range(3))
-    balls, ends = np.empty((len(centres), 2, 10, 3)), np.empty((2, 4))
-    bounds_of_boxes(tape, 3, centres, widths, middles, radii, ends, balls)
-    rounding = np.empty((len(centres), 6, 3))
-    rounding_of_boxes(tape, centres, widths, middles, radii, errors, ends, rounding)
-    return balls, rounding
-
-
-def jets(tape: Tape, places: np.ndarray) -> np.ndarray:
-    """Return the Taylor coefficients (k, 6, 3) at places (k, 2)."""
-    found = np.empty((len(places), 6, 3))
-    u, v = (np.ascontiguousarray(x) for x in places.T)
-    points_jets(tape, u, v, np.empty(POINT * len(tape.operations)), found)
-    return found / np.array([1, 1, 1, 2, 1, 2])[:, None]
-
-
-def boxes(count: int, width: float, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return centres and half widths of boxes in [0, 2] × [0, 2], and a place in each."""
-    random = np.random.default_rng(seed)
-    centres, widths = random.uniform(width, 2.0 - width, (count, 2)), np.full((count, 2), width)
-    shares = random.uniform(-1.0, 1.0, (count, 2))
-    shares = np.where(random.random((count, 2)) < 0.5, np.sign(shares), shares)
-    return centres, widths, np.nextafter(centres + shares * widths, centres)
-
-
-def check(surface: gm.Surface, found: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
+def check(surface: gm.Surface, found: tuple[np.ndarray, ...]) -> None:
     centres, widths, places = found
-    balls, errors = bounds(tape_of(surface), centres, widths)
-    computed = jets(tape_of(surface), places)
+    tape = tape_of(surface)
+    balls, errors = balls_on(tape, centres, widths), errors_on(tape, centres, widths)
+    computed = jets_at(tape, places)
     for k, place in enumerate(places.tolist()):
         exact = exact_coefficients(surface.function, *place)
         for order in range(10):
@@ -158,7 +120,7 @@ CASES = [
 @pytest.mark.parametrize("width", [0.2, 0.02, 1e-6, 0.0])
 @pytest.mark.parametrize(("degrees", "knots", "rational"), CASES)
 def test_bounds_contain_exact_values(degrees, knots, rational, width):
-    check(graph(degrees, knots, rational), boxes(12, width, 1))
+    check(graph(degrees, knots, rational), boxes(width, 2.0 - width, width, 12, 1))
 
 
 def test_radii_are_finite_between_knots_up_to_their_ends():
@@ -167,7 +129,7 @@ def test_radii_are_finite_between_knots_up_to_their_ends():
     middles, halves = (ends[1:] + ends[:-1]) / 2, np.diff(ends) / 2
     centres = np.stack(np.meshgrid(middles, middles), axis=-1).reshape(-1, 2)
     widths = np.stack(np.meshgrid(halves, halves), axis=-1).reshape(-1, 2)
-    balls, _ = bounds(tape_of(surface), centres, widths)
+    balls = balls_on(tape_of(surface), centres, widths)
     assert np.isfinite(balls).all()
 
 
@@ -184,7 +146,8 @@ def test_radii_are_infinite_where_derivatives_are_not_bounded(degree, knots, ord
     random = np.random.default_rng(5)
     points = random.normal(size=(degree + 1 + len(knots), 4, 3))
     tape = tape_of(gm.Surface.from_nurbs((degree, 3), vectors, points))
-    balls, errors = bounds(tape, np.array([[0.6, 1.0]]), np.array([[0.1, 0.1]]))
+    box = np.array([[0.6, 1.0]]), np.array([[0.1, 0.1]])
+    balls, errors = balls_on(tape, *box), errors_on(tape, *box)
     unbounded = [k for k in range(10) if np.isinf(balls[0, 1, k]).all()]
     assert unbounded == orders
     assert np.isfinite(errors).all()
@@ -193,8 +156,8 @@ def test_radii_are_infinite_where_derivatives_are_not_bounded(degree, knots, ord
 def test_bounds_of_single_polynomials_are_attained():
     """A tenth less would be wrong: at corners of small boxes the error is the radius."""
     surface = graph((3, 3), (), False)
-    centres, widths, _ = boxes(20, 0.01, 4)
-    balls, _ = bounds(tape_of(surface), centres, widths)
+    centres, widths, _ = boxes(0.01, 1.99, 0.01, 20, 4)
+    balls = balls_on(tape_of(surface), centres, widths)
     used = np.zeros(balls[:, 1].shape)
     for signs in ((-1, -1), (-1, 1), (1, -1), (1, 1)):
         for k, place in enumerate((centres + np.array(signs) * widths).tolist()):

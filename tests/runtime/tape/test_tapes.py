@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from gaussmap.runtime.tape.tapes import jets_of, values_of
 
+from .made import graph
+
 SQUARE = ((-1.0, 1.0), (0.5, 2.0))
 generator = np.random.default_rng(0)
 TURN = np.array([[0.6, -0.8, 0.0, 3.0], [0.8, 0.6, 0.0, -2.0], [0.0, 0.0, 1.5, 7.0], [0, 0, 0, 1]])
@@ -212,18 +214,8 @@ def test_values_that_differ_from_the_tape_are_noticed():
 # --- NURBS ----------------------------------------------------------------------------------------
 
 
-def nurbs(degrees: tuple[int, int], knots: int, rational: bool, seed: int = 1) -> gm.Surface:
-    """Return a NURBS graph with random heights, and some knots inside."""
-    random = np.random.default_rng(seed)
-    vectors = [
-        np.concatenate([np.zeros(p + 1), np.sort(random.uniform(0, 2, knots)), np.full(p + 1, 2.0)])
-        for p in degrees
-    ]
-    m, n = (knots + p + 1 for p in degrees)
-    x, y = np.meshgrid(np.linspace(0, 2, m), np.linspace(0, 1, n), indexing="ij")
-    points = np.stack([x, y, 0.2 * random.normal(size=x.shape)], axis=-1) + 3.0
-    weights = random.uniform(0.5, 2.0, (m, n)) if rational else None
-    return gm.Surface.from_nurbs(degrees, vectors, points, weights)
+def nurbs(degrees: tuple[int, int], knots: int, rational: bool) -> gm.Surface:
+    return graph(degrees, tuple(np.sort(np.random.default_rng(1).uniform(0, 2, knots))), rational)
 
 
 @pytest.mark.parametrize("rational", [False, True])
