@@ -47,6 +47,11 @@ def moved(
     return gm.Surface(surface.name, evaluate, surface.domain, surface.boundary)
 
 
+def broken(u: Any, v: Any) -> Any:
+    raise RuntimeError("no such surface")
+
+
+BROKEN = gm.Surface.from_callable(broken, ((0.0, 1.0), (0.0, 1.0)), name="broken")
 # Control points and weights of a circle of four conics.
 CIRCLE = np.array(
     [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)], np.float64

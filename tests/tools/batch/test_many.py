@@ -8,15 +8,9 @@ import numpy as np
 import pytest
 
 from ...refusals import refused
+from ...shapes import BROKEN
 
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
-
-
-def broken(u, v):
-    raise RuntimeError("no such surface")
-
-
-BROKEN = gm.Surface.from_callable(broken, ((0.0, 1.0), (0.0, 1.0)), name="broken")
 
 
 def many(*arguments: Any, **named: Any) -> list[Any]:

@@ -48,34 +48,39 @@ def test_constant_expressions_and_scalars():
     assert gm.curves.fit(curve).evaluate(0.5).shape == (2,)
 
 
-@pytest.mark.parametrize(
-    ("position", "complaint"),
-    [(("t",), "two SymPy expressions"), (("t", "t", "t"), "two SymPy expressions"),
-     ("tt", "two SymPy expressions"), (None, "two SymPy expressions"), (("t", "s"), "symbols .*s"),
-     (("t", "("), "not a SymPy expression"), (("t", "zoo"), "not a real number")],
-)  # fmt: skip
-def test_unusable_expressions(position, complaint):
-    refused(complaint, gm.curves.Curve.from_sympy, position, "t", (0, 1))
-
-
-@pytest.mark.parametrize("parameter", ["", "2t", 3, None, ("t",)])
-def test_unusable_parameters(parameter):
-    refused("symbol such as t", gm.curves.Curve.from_sympy, ("t", "t"), parameter, (0, 1))
-
-
-@pytest.mark.parametrize(
-    "domain", [(0,), (0, 1, 2), (1, 0), (0, 0), (0, np.inf), (np.nan, 1), None, "ab", (0, 1 + 1j)]
+POINTS, CALLABLE, SYMPY = (
+    getattr(gm.curves.Curve, f"from_{x}") for x in ("points", "callable", "sympy")
 )
-def test_unusable_domains(domain):
-    refused("domain", gm.curves.Curve.from_callable, ellipse, domain)
-    refused("domain", gm.curves.Curve.from_sympy, ("t", "t"), "t", domain)
+NO_DOMAIN = [(0,), (0, 1, 2), (1, 0), (0, 0), (0, np.inf), (np.nan, 1), None, "ab", (0, 1 + 1j)]
 
 
-def test_unusable_arguments():
-    refused("callable as f", gm.curves.Curve.from_callable, 3, (0, 1))
-    for word in ("periodic", None, 1, (True, True)):
-        refused("True or False", gm.curves.Curve.from_callable, ellipse, (0, 1), word)
-        refused("True or False", gm.curves.Curve.from_points, np.eye(4, 2), word)
+@pytest.mark.parametrize(
+    ("call", "arguments", "complaint"),
+    [
+        *((SYMPY, (x, "t", (0, 1)), "two SymPy expressions")
+          for x in (("t",), ("t", "t", "t"), "tt", None)),
+        (SYMPY, (("t", "s"), "t", (0, 1)), "symbols .*s"),
+        (SYMPY, (("t", "("), "t", (0, 1)), "not a SymPy expression"),
+        (SYMPY, (("t", "zoo"), "t", (0, 1)), "not a real number"),
+        *((SYMPY, (("t", "t"), x, (0, 1)), "symbol such as t")
+          for x in ("", "2t", 3, None, ("t",))),
+        *((SYMPY, (("t", "t"), "t", x), "domain") for x in NO_DOMAIN),
+        *((CALLABLE, (ellipse, x), "domain") for x in NO_DOMAIN),
+        (CALLABLE, (3, (0, 1)), "callable as f"),
+        *((CALLABLE, (ellipse, (0, 1), x), "True or False") for x in ("periodic", None, 1)),
+        *((POINTS, (np.eye(4, 2), x), "True or False") for x in ("periodic", None, (True, True))),
+        (POINTS, (np.zeros((5, 3)),), r"\(m, 2\), not \(5, 3\)"),
+        *((POINTS, (x,), "shape") for x in (np.zeros(4), [])),
+        (POINTS, (np.eye(2),), "at least 3 points"),
+        (POINTS, ([["a", "b"]] * 4,), "real numbers"),
+        (POINTS, ([[0, 0], [1, np.nan], [2, 0], [3, np.inf]],), r"2 points with NaN .*, .* \[1\]"),
+        (POINTS, (np.ma.masked_equal(np.eye(4, 2), 1),), "masked"),
+        *((gm.curves.fit, (ELLIPSE, x), "pieces must be") for x in (0, -3, 2.0, True)),
+        (gm.curves.fit, (ELLIPSE, 2), "at least 3 pieces"),
+    ],
+)  # fmt: skip
+def test_unusable_arguments(call, arguments, complaint):
+    refused(complaint, call, *arguments)
 
 
 @pytest.mark.parametrize(
@@ -116,17 +121,6 @@ def test_points_can_be_fitted_with_other_pieces():
     assert spline.turning_number == 1
     places = np.linspace(0, 50, 77)
     assert np.abs(spline.evaluate(places) - curve.evaluate(places)).max() < 1e-4
-
-
-@pytest.mark.parametrize(
-    ("points", "complaint"),
-    [(np.zeros((5, 3)), r"\(m, 2\), not \(5, 3\)"), (np.zeros(4), "shape"), ([], "shape"),
-     (np.eye(2), "at least 3 points"), ([["a", "b"]] * 4, "real numbers"),
-     ([[0, 0], [1, np.nan], [2, 0], [3, np.inf]], r"2 points with NaN or infinity, .* \[1\]"),
-     (np.ma.masked_equal(np.eye(4, 2), 1), "masked")],
-)  # fmt: skip
-def test_unusable_points(points, complaint):
-    refused(complaint, gm.curves.Curve.from_points, points)
 
 
 @pytest.mark.parametrize(("part", "repeats"), [(0.5e-3, True), (2e-3, False)])
@@ -204,15 +198,6 @@ def test_closed_splines_wrap():
         np.testing.assert_allclose(moved, spline.evaluate(t), rtol=0, atol=64 * ULP)
     assert (spline.joint_normals[0] == spline.joint_normals[-1]).all()
     assert (spline.coefficients[:2] == spline.coefficients[-2:]).all()
-
-
-@pytest.mark.parametrize(
-    ("pieces", "complaint"),
-    [(0, "pieces must be"), (-3, "pieces must be"), (2.0, "pieces must be"), (True, "pieces must"),
-     (2, "at least 3 pieces")],
-)  # fmt: skip
-def test_unusable_pieces(pieces, complaint):
-    refused(complaint, gm.curves.fit, ELLIPSE, pieces)
 
 
 def test_what_cannot_be_fitted():

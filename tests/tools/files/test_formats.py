@@ -30,37 +30,18 @@ from gaussmap.tools.files.formats import (
 from gaussmap.tools.files.paths import atomic_path, check_target
 
 from ...full_disk import tiny_disk
+from .made import FIELDS, make
 
 COLUMNS = [
     *("x", "y", "z", "nx", "ny", "nz", "u", "v", "support"),
     *("gaussian_curvature", "mean_curvature", "normal_index", "patch_index"),
 ]
-FIELDS = (
-    "points", "normals", "uv", "support", "gaussian_curvature", "mean_curvature", "normal_index",
-    "patch_index",
-)  # fmt: skip
 # Labels that a careless format would break: line ends, quotes, other alphabets, trailing spaces.
 LABEL = ' x²\r\n"y" <&> \\ \u2028 \U0001f369 ' + 300 * " " + "end_header\ncomment "
 
 every_suffix = pytest.mark.parametrize("suffix", SUFFIXES)
 every_readable = pytest.mark.parametrize("suffix", READABLE_SUFFIXES)
 posix = pytest.mark.skipif(os.name != "posix", reason="needs POSIX permissions and links")
-
-
-def make(count: int = 12, label: str = "torus", **changes: Any) -> gm.Samples:
-    """Random numbers of all sizes, signed zeros and non-finite values among the curvatures."""
-    rng = np.random.default_rng(count)
-    # Not beyond 1e140: VTK's reader warns if it finds vectors whose squared length overflows.
-    arrays: dict[str, Any] = {
-        name: rng.standard_normal((count, *tail)) * 10.0 ** rng.integers(-300, 140, (count, *tail))
-        for name, tail in [("points", (3,)), ("normals", (3,)), ("uv", (2,)), ("support", ())]
-    }
-    special = np.resize([-0.0, 0.0, np.inf, -np.inf, np.nan, 5e-324, -1.1, 0.1], count)
-    arrays |= {"gaussian_curvature": special, "mean_curvature": special[::-1].copy()}
-    arrays["normal_index"] = rng.integers(0, 2**31, count)
-    arrays["patch_index"] = rng.integers(0, 99, count)
-    arrays["report"] = SamplingReport(label, 8, count, 99, 1.0 / 3.0, 1)
-    return gm.Samples(**(arrays | changes))
 
 
 def columns_of(samples: gm.Samples) -> dict[str, np.ndarray]:

@@ -10,7 +10,7 @@ import sympy as sp
 from gaussmap.symbolic.surfaces import CATALOGUE
 
 from ...refusals import refused
-from ...shapes import moved
+from ...shapes import BROKEN, moved
 
 DEVELOPABLE = ("plane", "cylinder", "cone")
 CURVED = [name for name in gm.surfaces.names() if name not in DEVELOPABLE]
@@ -18,13 +18,6 @@ SQUARE = ((0.0, 1.0), (0.0, 1.0))
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 # The corners of the triangles south, east, north, west of a cell, from its centre.
 CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
-
-
-def broken(u, v):
-    raise RuntimeError("no such surface")
-
-
-BROKEN = gm.Surface.from_callable(broken, SQUARE, name="broken")
 
 
 # --- how many -------------------------------------------------------------------------------------

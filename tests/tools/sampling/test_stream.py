@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from gaussmap.tools.sampling import stream
 
-from ...shapes import same
+from ...shapes import BROKEN, same
 
 TORUS = gm.fit(gm.surfaces.torus(), (12, 8))
 
@@ -121,10 +121,6 @@ def test_reports_count_their_chunk():
     assert f"50 samples at {used} of 162 prescribed normals" in chunks[0].summary()
 
 
-def broken(u, v):
-    raise RuntimeError("no such surface")
-
-
 @pytest.mark.parametrize(
     ("arguments", "error"),
     [
@@ -137,10 +133,7 @@ def broken(u, v):
         ({"count": 5, "chunk": "many"}, gm.errors.InputError),
         ({"count": 5, "threads": 0}, gm.errors.InputError),
         ({"count": 5, "cells": (4, 4)}, gm.errors.InputError),
-        (
-            {"count": 5, "surface": gm.Surface.from_callable(broken, ((0, 1), (0, 1)))},
-            gm.errors.SurfaceError,
-        ),
+        ({"count": 5, "surface": BROKEN}, gm.errors.SurfaceError),
     ],
 )
 def test_errors_come_at_once(arguments, error):

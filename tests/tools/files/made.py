@@ -1,0 +1,37 @@
+"""Samples of numbers that are on no surface: files and other libraries only carry them."""
+
+from typing import Any
+
+import gaussmap as gm
+import numpy as np
+from gaussmap.runtime.samples.report import SamplingReport
+
+FIELDS = (
+    "points", "normals", "uv", "support", "gaussian_curvature", "mean_curvature", "normal_index",
+    "patch_index",
+)  # fmt: skip
+
+
+def make(
+    count: int = 12,
+    label: str = "torus",
+    dtype: Any = np.float64,
+    fields: Any = FIELDS,
+    **changes: Any,
+) -> gm.Samples:
+    """Random numbers of all sizes, signed zeros and non-finite values among the curvatures."""
+    rng = np.random.default_rng(count)
+    # Not beyond 1e140: VTK's reader warns if it finds vectors whose squared length overflows.
+    sizes = (-300, 140) if dtype == np.float64 else (-40, 15)
+    arrays: dict[str, Any] = {
+        name: rng.standard_normal((count, *tail)) * 10.0 ** rng.integers(*sizes, (count, *tail))
+        for name, tail in [("points", (3,)), ("normals", (3,)), ("uv", (2,)), ("support", ())]
+    }
+    special = np.resize([-0.0, 0.0, np.inf, -np.inf, np.nan, 5e-324, -1.1, 0.1], count)
+    arrays |= {"gaussian_curvature": special, "mean_curvature": special[::-1].copy()}
+    arrays = {name: x.astype(dtype) for name, x in arrays.items()}
+    arrays["normal_index"] = rng.integers(0, 2**31, count)
+    arrays["patch_index"] = rng.integers(0, 99, count)
+    arrays = {name: x for name, x in arrays.items() if name in fields}
+    arrays["report"] = SamplingReport(label, 8, count, 99, 1.0 / 3.0, 1)
+    return gm.Samples(**(arrays | changes))
