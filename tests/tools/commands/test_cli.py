@@ -19,6 +19,7 @@ import click
 import gaussmap as gm
 import numpy as np
 import pytest
+import rasterio
 from gaussmap.tools.commands import sampled
 from gaussmap.tools.commands.cli import main
 
@@ -87,6 +88,10 @@ def files(parts: ModuleType) -> None:
     Path("folder").mkdir()
     Path("part.txt").write_text("1 2 3")
     parts.box().save("box.npz")
+    Path("folder/link.ply").symlink_to("../two.npz")
+    profile = {"driver": "GTiff", "count": 1, "height": 7, "width": 9, "dtype": "float64"}
+    with rasterio.open("dem.tif", "w", transform=rasterio.Affine.scale(30.0), **profile) as file:
+        file.write(heights, 1)
 
 
 # ── What it does ─────────────────────────────────────────────────────────────────────────────────
@@ -393,6 +398,17 @@ HOSTILE = [
         (["sample", "heights.npy", *HEIGHTS, "--nodata", "x"], "--nodata: it must be a number"),
         (["sample", "torus", "--nodata", "1", *TO], "--nodata is for grids in a file"),
         (["sample", "torus", "--crs", "EPSG:32617", *TO], "--crs is for elevations"),
+        (["sample", "torus", "--origin", "1", "1", *TO], "--origin is for elevations"),
+        (["sample", "torus", "--source-crs", "EPSG:4326", *TO], "--source-crs is for elevations"),
+        (["sample", "missing.tif", *TO], "cannot be read"),
+        (["sample", "dem.tif", "--x", "x", *TO], "--x is for .npz files"),
+        (["sample", "dem.tif", "--band", "2", *TO], "has 1 band, and no band 2"),
+        (["sample", "dem.tif", "--periodic", "u", *TO], "--periodic is for grids of points"),
+        (["sample", "dem.tif", *HEIGHTS], "has its own coordinates"),
+        (["sample", "two.npz:heights", "--x", "x", *TO], "--x and --y go together"),
+        (["sample", "two.npz:heights", "--x", "points", "--y", "z", *TO], "no array"),
+        (["sample", "two.npz:heights", "--band", "1", *HEIGHTS], "--band is for GeoTIFF"),
+        (["sample", "two.npz:heights", *TO], "add --spacing DX DY, or --x and --y"),
         (["sample", "missing.txt", *TO], "does not exist"),
         (["sample", "missing.step", "--cells", "8", "8", *TO], "--cells is for surfaces"),
         (["sample", "torus", "--reach", "0", "0", "0", "25", *TO], "the axis of reach"),
@@ -418,6 +434,7 @@ HOSTILE = [
         (["sample", "torus", "-o", "missing/a.npz"], "'.*missing' does not exist"),
         (["sample", "torus", "-o", "heights.txt/a.npz"], "not a folder"),
         (["sample", "two.npz:points", "-o", "two.npz"], "'two.npz' is read; write to another"),
+        (["sample", "two.npz:points", "-o", "folder/link.ply"], "is read; write to another file"),
         (["sample", "torus", "--normals", "two.npz:points", "-o", "./two.npz"], "is read; write"),
         (["plot", "torus", "-o", "a.npz"], "'a.npz' has the suffix '.npz'; use one of .png"),
         (["view", "torus", "-o", "a.png"], "'a.png' has the suffix '.png'; use one of .html"),

@@ -1,4 +1,4 @@
-"""Samples of terrain as point clouds, read again by laspy; and elevations on the command line."""
+"""Samples of terrain as point clouds, read again by laspy."""
 
 import json
 from pathlib import Path
@@ -10,7 +10,6 @@ import pytest
 laspy = pytest.importorskip("laspy")
 rasterio = pytest.importorskip("rasterio")
 
-from affine import Affine  # noqa: E402
 
 SHAPE = 14, 17
 ROWS, COLUMNS = np.indices(SHAPE)
@@ -55,55 +54,6 @@ def test_other_point_clouds(tmp_path: Path) -> None:
     np.testing.assert_allclose(laspy.read(tmp_path / "x.las").xyz, torus.points[:1], atol=1e-3)
     with pytest.raises(gm.errors.InputError, match=r"a \.las file needs 'points'"):
         gm.sample("torus", 60, cells=(8, 8), fields=("normals",)).write(tmp_path / "y.las")
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with a GeoTIFF and an .npz file."""
-    folder = tmp_path_factory.mktemp("terrain")
-    transform = Affine(30.0, 0.0, X[0] - 15.0, 0.0, -30.0, Y[0] + 15.0)
-    with rasterio.open(
-        folder / "dem.tif", "w", driver="GTiff", count=1, height=14, width=17, dtype="float64",
-        crs="EPSG:32617", transform=transform,
-    ) as file:  # fmt: skip
-        file.write(HEIGHTS, 1)
-    np.savez(
-        folder / "dem.npz", heights=HEIGHTS, x=X, y=Y,
-        lon=-84.4 + 1e-3 * np.arange(17), lat=36.7 - 1e-3 * np.arange(14),
-    )  # fmt: skip
-    return folder
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        (("{tif}", "--x", "x"), "--x is for .npz files"),
-        (("{tif}", "--band", "2"), "has 1 band, and no band 2"),
-        (("{tif}", "--periodic", "u"), "--periodic is for grids of points"),
-        (("{tif}", "--spacing", "1", "1"), "has its own coordinates"),
-        (("{npz}:heights", "--x", "x"), "--x and --y go together"),
-        (("{npz}:heights", "--x", "x", "--y", "z"), "no array"),
-        (("{npz}:heights", "--band", "1", "--spacing", "1", "1"), "--band is for GeoTIFF"),
-        (("{npz}:heights",), "add --spacing DX DY, or --x and --y"),
-        (("torus", "--origin", "1", "1"), "--origin is for elevations"),
-        (("torus", "--source-crs", "EPSG:4326"), "--source-crs is for elevations"),
-        (("missing.tif",), "cannot be read"),
-    ],
-)
-def test_commands_that_are_refused(folder, capsys, main, arguments, said):
-    names = {"tif": folder / "dem.tif", "npz": folder / "dem.npz"}
-    command = [x.format(**names) for x in arguments]
-    assert main(["sample", *command, "-o", str(folder / "no.ply")]) == 2
-    text = capsys.readouterr().err
-    assert said in text
-    assert text.count("\n") == 1
-
-
-def test_files_that_are_read_are_spared(folder, capsys, main):
-    link = folder / "dem.ply"
-    link.symlink_to(folder / "dem.tif")
-    assert main(["sample", str(folder / "dem.tif"), "-o", str(link)]) == 2
-    assert "is read; write to another file" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("suffix", [".gpkg", ".geojson"])
