@@ -54,10 +54,14 @@ class TapeWriter:
         """Return the row of a constant `value` with an error of at most `distance`."""
         return self.row(codes.CONSTANT, number=(value, distance))
 
-    def spline(self, polynomials: Polynomials) -> int:
-        """Write a spline as four rows, its x, y, z and weight, and return the first row."""
+    def spline(self, polynomials: Polynomials, turned: int = 0, number: Number = (0.0, 0.0)) -> int:
+        """Write a spline as four rows, its x, y, z and weight, and return the first row.
+
+        If `turned`, the spline is evaluated at total − u in place of u; `number` is the total and
+        a bound of its error.
+        """
         self._spline = polynomials
-        row = self.row(codes.SPLINE)
+        row = self.row(codes.SPLINE, last=turned, number=number)
         for coordinate in range(1, COORDINATES):
             self.row(codes.COORDINATE, last=coordinate)
         return row
