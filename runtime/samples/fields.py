@@ -34,7 +34,8 @@ class Component(IntEnum):
         A tip of the surface, such as that of a cone, whose normal cone contains the normal.
     CREASE
         A point of a crease, where the normal is between those of both sides, or a corner where two
-        creases cross, whose normal cone contains the normal.
+        creases cross, whose normal cone contains the normal. Splines end at creases: with
+        ``on="spline"`` there are no such samples.
 
     Examples
     --------

@@ -94,7 +94,8 @@ def sample(
         The numbers of cells along u and v of the spline that approximates the surface, see `fit`.
     on : {"surface", "spline"}, optional
         Whether samples lie on the surface itself, or on its spline. By default they lie on the
-        surface, unless it is given by points or as a spline.
+        surface, unless it is given by points or as a spline. Splines end at the creases of NURBS:
+        on them, points of creases have no samples.
     fields : sequence of str, optional
         The arrays of `Samples` that are computed and stored, such as ``("points", "normals")``; all
         by default.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
+from ...runtime.base.aliases import Array
 from ...runtime.base.checks import whole_number, yes_or_no
 from ...runtime.base.errors import InputError
 from ...runtime.base.threads import shown
-from ...runtime.map import kept_map
+from ...runtime.map import GaussMap, kept_map
 from ...runtime.onto_surface.at_tips import samples_in_turn
-from ...runtime.onto_surface.on_spline import OnPatches
+from ...runtime.onto_surface.on_spline import OnPatches, in_turn
 from ...runtime.onto_surface.on_surface import place_of_samples
 from ...runtime.onto_surface.proved import ProvedSurface
 from ...runtime.onto_surface.smooth_pieces import geometries_of, pieces_to_sample
@@ -108,20 +109,19 @@ def sample_stream(
         )
     if request.normals is not None:  # the caller may change them before the last chunk
         request = replace(request, normals=request.normals.copy())
-    if request.normals is None:
-        pieces = geometries_of(surface, cells, on)
-    else:
-        pieces = kept_map(surface, cells, on)._pieces
+    known = None if request.normals is None else kept_map(surface, cells, on)
+    pieces = known._pieces if known else geometries_of(surface, cells, on)
     geometry = pieces[0].used(number, threads)
     proved = isinstance(geometry, ProvedSurface)
     wanted = checked_fields(fields, is_on_surface, proved, given=given)
     shows = yes_or_no(progress, "progress")
-    return _Stream(geometry, request, size, wanted, number, shows).chunks()
+    return _Stream(geometry, known, request, size, wanted, number, shows).chunks()
 
 
 @dataclass(frozen=True, eq=False)
 class _Stream:
     geometry: OnPatches | ProvedSurface
+    known: GaussMap | None
     request: Request
     size: int
     fields: tuple[str, ...]
@@ -145,6 +145,8 @@ class _Stream:
         came, unrefined, last, chunk = 0, 0, None, None
         left, listed = list[UndecidedNormal](), self.request.count is None
         search = partial(samples_in_turn, geometry) if listed else geometry.samples_in_turn
+        if self.known is not None and self.known._creases is not None:
+            search = self._with_creases
         for first in shown(iter(starts), len(starts), self.progress and not alone):
             end = min(first + NORMALS_AT_A_TIME, total)
             normals = chosen.part(first, end, geometry.threads)
@@ -165,6 +167,15 @@ class _Stream:
         report = replace(last, samples=came, developable_patches=developable, unrefined=unrefined)
         report = replace(report, undecided=tuple(left) if listed else None)
         warn_of(report, self.request.count, stacklevel=3)
+
+    def _with_creases(
+        self, normals: Array, fields: Sequence[str], dtype: DTypeLike, size: int, progress: bool,
+        density: float,
+    ) -> Iterator[Samples]:  # fmt: skip
+        """Yield at most `size` of the samples at normals at a time, including those on creases."""
+        assert self.known is not None
+        found = self.known._points(normals, fields, dtype, self.geometry.threads, progress)
+        return in_turn(self.geometry.with_fit(found, density), size)
 
 
 def _chunk(found: Samples, start: int, total: int, listed: bool) -> Samples:

@@ -180,6 +180,10 @@ def check_creases(name: str, normals: Array) -> None:
     along = net.surface.jets(*points.uv.T)[:, 2]
     assert (np.abs((along * n).sum(axis=1)) < 1e-8 * np.linalg.norm(along, axis=1)).all()
     np.testing.assert_array_equal(points.gaussian_curvature, 0.0)
+    if len(net.surface.pieces()) == 1:  # others have no streams
+        streamed = gm.Samples.concatenate(gm.sample_stream(net.surface, normals=normals, chunk=100))
+        np.testing.assert_array_equal(streamed.component, found.component)
+        np.testing.assert_array_equal(streamed.points, found.points)
 
 
 def test_creases_have_the_normals_between_those_of_both_sides() -> None:
