@@ -24,6 +24,15 @@ def egg_surface() -> gm.Surface:
     return gm.Surface.from_callable(egg, (TURN, LATITUDES), periodic=(True, "pole"), name="egg")
 
 
+def saddle(u: Any, v: Any) -> Any:
+    return np.stack([u, v, u * v + u * u], axis=-1)
+
+
+def tube(u: Any, v: Any) -> Any:
+    """Return points of the torus of radii 2 and 1."""
+    return np.stack([(2 + np.cos(v)) * np.cos(u), (2 + np.cos(v)) * np.sin(u), np.sin(v)], axis=-1)
+
+
 def klein(u: Any, v: Any) -> Any:
     """Return points of the figure-8 Klein bottle: v is mirrored after a turn of u."""
     ring = 2.0 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)

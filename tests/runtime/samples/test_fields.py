@@ -234,12 +234,11 @@ def test_out_that_does_not_fit_is_left_alone():
         assert again.points.tobytes() == FULL.points.tobytes()
 
 
-def test_out_is_refused_where_it_would_not_be_used():
-    torus = gm.GaussMap("torus")
-    with pytest.raises(gm.errors.InputError, match=r"out=.* holds samples of one spline"):
-        torus.points(NORMALS[:1], out=torus.points(NORMALS[:1]))
-
-
-def test_out_must_be_samples():
-    with pytest.raises(gm.errors.InputError, match="out must be Samples of an earlier call, not 3"):
-        gm.GaussMap(SPLINE).points(NORMALS, out=3)  # pyright: ignore[reportArgumentType]
+@pytest.mark.parametrize("of", ["torus", "part", "spline"])
+def test_out_is_refused_where_it_would_not_be_used(of, parts):
+    """Samples of a surface or a part are not of one spline; what is no samples is never."""
+    known = gm.GaussMap({"torus": "torus", "part": parts.box(), "spline": SPLINE}[of])
+    out, said = known.points([[0, 0, 1]]), "out=.* holds samples of one spline"
+    if of == "spline":
+        out, said = 3, "out must be Samples of an earlier call, not 3"
+    refused(said, known.points, NORMALS[:1], out=out)

@@ -8,6 +8,7 @@ from gaussmap.runtime.surface.derivatives import NAMES
 from gaussmap.symbolic.surfaces import CATALOGUE
 
 from ...refusals import refused
+from ...shapes import saddle
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
 
@@ -139,10 +140,6 @@ def test_symbolic_derivatives_are_filled_by_numerical_ones():
     np.testing.assert_allclose(
         surface.derivatives(0.0, 0.5)[:, 2], [1, 0, 0, -1 / 3, 0, 0], rtol=0, atol=1e-10
     )
-
-
-def saddle(u, v):
-    return np.stack([u, v, u * v + u * u], axis=-1)
 
 
 def saddle_derivatives(u, v):

@@ -6,12 +6,9 @@ import pytest
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import saddle
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
-
-
-def saddle(u, v):
-    return np.stack([u, v, u * v + u * u], axis=-1)
 
 
 ROTATION = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]

@@ -10,12 +10,9 @@ import pytest
 import sympy as sp
 
 from ...products import covering
+from ...shapes import tube
 
 TURN = ((0.0, 2 * np.pi), (0.0, 2 * np.pi))
-
-
-def tube(u, v):
-    return np.stack([(2 + np.cos(v)) * np.cos(u), (2 + np.cos(v)) * np.sin(u), np.sin(v)], axis=-1)
 
 
 def plane(u, v):

@@ -10,17 +10,10 @@ from gaussmap.symbolic.reading import FUNCTIONS
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import saddle, tube
 
 SQUARE = ((0.0, 1.0), (0.0, 1.0))
 TURN = ((0.0, 2 * np.pi), (0.0, 2 * np.pi))
-
-
-def saddle(u, v):
-    return np.stack([u, v, u * v + u * u], axis=-1)
-
-
-def tube(u, v):
-    return np.stack([(2 + np.cos(v)) * np.cos(u), (2 + np.cos(v)) * np.sin(u), np.sin(v)], axis=-1)
 
 
 def bowl(u, v):

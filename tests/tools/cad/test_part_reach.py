@@ -65,11 +65,6 @@ def test_edges_are_reached_if_both_faces_are() -> None:
     assert angles(sides.other_normals[on_edge], (1, 1, 0)).max() <= 50.0 + ROUNDING
 
 
-def test_memory_for_samples_of_a_part_is_refused() -> None:
-    known, normal = gm.GaussMap(KINDS), [[0, 0, 1]]
-    refused("out=.* holds samples of one spline", known.points, normal, out=known.points(normal))
-
-
 @pytest.mark.parametrize("reach", [((1, 1, 1), 10.0), gm.Reach(from_edges=1.0)])
 def test_a_part_without_points_in_reach_is_refused(reach: Any) -> None:
     error = gm.errors.SurfaceError
