@@ -18,6 +18,7 @@ from gaussmap.tools.pictures.plot import check_target, write_figure
 pytest.importorskip("matplotlib")
 from matplotlib import colors, image
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from ...refusals import refused
 
@@ -82,21 +83,21 @@ def test_normals_without_samples_are_grey(tmp_path: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
-def test_terrain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_terrain(tmp_path: Path) -> None:
     x, y = np.meshgrid(np.linspace(-2, 2, 30), np.linspace(-2, 2, 20))
     hill = gm.Surface.from_grid(np.exp(-x * x - y * y), spacing=(100.0, 100.0))
-    labels = texts_of(hill, tmp_path / "a.png", monkeypatch)
+    labels = texts_of(hill, tmp_path / "a.png")
     assert "z (exaggerated 500×)" in labels
     assert any("10^{-" in label and "length²" in label for label in labels)
 
 
-def test_what_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_written(tmp_path: Path) -> None:
     waves = gm.Surface.from_callable(
         lambda u, v: np.stack([u, v, 0.3 * np.sin(3 * u) * v], axis=-1),
         ((-1, 1), (-1, 1)),
         name="$x$ and\nsome 中文\udc80\x1b" + 100 * "x",
     )
-    labels = texts_of(waves, tmp_path / "a.png", monkeypatch)
+    labels = texts_of(waves, tmp_path / "a.png")
     assert {"x", "y", "z"} <= labels
     (name,) = (label for label in labels if label.startswith("$x$ and some 中文"))
     assert name.startswith(r"$x$ and some 中文\udc80\x1bxxx")
@@ -108,23 +109,11 @@ def test_what_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert "Gaussian curvature $K$ (1/length²)" in labels
 
 
-def texts_of(surface: gm.Surface, path: Path, monkeypatch: pytest.MonkeyPatch) -> set[str]:
-    from matplotlib.text import Text
-
-    figures = []
-    save = Figure.savefig
-
-    def spy(figure: Figure, *arguments: object, **options: object) -> None:
-        figures.append(figure)
-        save(figure, *arguments, **options)  # pyright: ignore[reportArgumentType]
-
-    monkeypatch.setattr(Figure, "savefig", spy)
-    plotted(surface, path, count=100)
-    return {
-        text.get_text()
-        for text in figures[0].findobj(Text)
-        if text.get_visible()  # pyright: ignore[reportAttributeAccessIssue]
-    }
+def texts_of(surface: gm.Surface, path: Path) -> set[str]:
+    figure = gm.sample(surface, 100).plot()
+    write_figure(figure, path)
+    texts: Any = figure.findobj(Text)
+    return {text.get_text() for text in texts if text.get_visible()}
 
 
 @pytest.mark.parametrize("suffix", [".pdf", ".svg", ".PNG"])
