@@ -21,8 +21,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-__all__ = ["CALLS", "COMMANDS", "Cost", "cost", "main"]
-
 # The most seconds of processor time that a first call may take beyond its repetition, and the most
 # of a call that imports SymPy and computes derivatives.
 MOST, MOST_OF_SYMPY = 1.5, 3.0

@@ -26,8 +26,6 @@ from llvmlite.binding import get_host_cpu_name
 
 from .writing import Arrays, Writers, new_arrays
 
-__all__ = ["CASES", "RECORD", "compared", "main", "quotient"]
-
 RECORD = Path(__file__).parent / "recorded.json"
 ROUNDS = 15
 TRIES = 10

@@ -15,8 +15,6 @@ from time import perf_counter
 import gaussmap as gm
 import numpy as np
 
-__all__ = ["LAST", "STREAMED", "Series", "measure", "slope"]
-
 SIZES = tuple(10**k for k in range(3, 9))
 STREAMED = 10**7
 LAST = 3  # the number of the largest sizes for the second slope

@@ -12,8 +12,6 @@ import numba
 import numpy as np
 from gaussmap.runtime.base.threads import thread_count
 
-__all__ = ["Arrays", "Writers", "new_arrays"]
-
 Arrays = tuple[np.ndarray, ...]
 
 

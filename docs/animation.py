@@ -25,8 +25,6 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.spatial import KDTree
 
-__all__ = ["DARK", "FILE", "HOLD", "MOVE", "draw", "palette_of", "reduced", "with_palette"]
-
 FILE = Path(__file__).parent / "figures" / "normals.gif"
 DARK = FILE.with_name("normals_dark.gif")
 NORMALS = 1_000

@@ -17,8 +17,6 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-__all__ = ["figure_4", "figure_5"]
-
 t = sp.Symbol("t", real=True)
 # A circle with one sharp corner and two concave arcs next to it, in polar coordinates.
 RADIUS = 1 + sp.sin(2 * t) / 6 + sp.Rational(4, 5) * sp.exp(24 * (sp.cos(t) - 1))

@@ -10,8 +10,6 @@ from gaussmap.tools.pictures.palette import MARK
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-__all__ = ["BACKGROUND", "dark"]
-
 BACKGROUND = "#0d1117"  # of dark pages of GitHub
 # Hues turned by 180°: the reflection of colours at the greys that have their luminance, with the
 # weights of the colours in the luminance that the filter hue-rotate of CSS has.

@@ -15,8 +15,6 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-__all__ = ["HALO", "MESH", "TINTS", "Floats", "Globe", "Picture", "panels"]
-
 Floats = NDArray[np.float64]
 
 MESH = 96  # quadrangles along each side of a surface

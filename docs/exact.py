@@ -9,8 +9,6 @@ import sympy as sp
 from gaussmap.symbolic.surfaces import ParametricSurface
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["angles", "derivatives_of", "lengths"]
-
 Array = NDArray[np.float64]
 
 

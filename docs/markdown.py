@@ -7,8 +7,6 @@ import re
 import textwrap
 from collections.abc import Iterable, Sequence
 
-__all__ = ["above", "code", "listed", "markdown", "number", "wrapped"]
-
 
 def markdown(header: Sequence[str], rows: Iterable[Sequence[str]], others: str = "--:") -> str:
     """Return a table in Markdown, its first column aligned left and the others right."""

@@ -10,8 +10,6 @@ from IPython.core.getipython import get_ipython
 from matplotlib.figure import Figure
 from PIL import Image
 
-__all__ = ["prepare"]
-
 INCH = 75  # pixels of the page; pictures have twice as many, for sharp screens
 COLOURS = 96
 

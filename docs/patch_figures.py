@@ -19,8 +19,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
-__all__ = ["figure_2", "figure_3"]
-
 INDICES = ("200", "020", "002", "110", "101", "011")
 LEGS = ((0, 3), (3, 1), (1, 5), (5, 2), (2, 4), (4, 0), (3, 4), (3, 5), (4, 5))  # of the net
 # The edges by their equations: which control points they have, and their colour. With any kind of

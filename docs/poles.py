@@ -15,8 +15,6 @@ from gaussmap.docs.markdown import code, markdown, number
 from gaussmap.symbolic.surfaces import CATALOGUE, ParametricSurface, u, v
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["EGG", "REGIONS", "PoleErrors", "measured", "surfaces", "table"]
-
 Array = NDArray[np.float64]
 
 SPHERE = CATALOGUE["sphere"]

@@ -15,8 +15,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-__all__ = ["search_figure"]
-
 CELLS = (10, 8)
 NORMALS = 1500
 # The direction of the bin.

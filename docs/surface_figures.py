@@ -13,9 +13,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-__all__ = ["figure_6", "figure_7"]
-
-
 ELLIPSOID = gm.Surface.from_sympy(
     ("1.6*cos(u)*cos(v)", "1.2*sin(u)*cos(v)", "0.8*sin(v)"),
     ("u", "v"),

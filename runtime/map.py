@@ -29,8 +29,6 @@ from .spline.nets import AnySpline
 from .surface.surface import Surface
 from .surface.surfaces import named
 
-__all__ = ["GaussMap", "check_part", "kept_map"]
-
 # The number of surfaces whose maps are cached; splines and indices take some MB each.
 KEPT = 8
 # The fields that the comparison of samples with points of creases needs.

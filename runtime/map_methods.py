@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from .base.later import Later
 
-__all__ = ["Methods"]
-
 CURVES = "gaussmap.tools.gauss_map.image_curves"
 
 

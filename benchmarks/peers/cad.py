@@ -19,15 +19,6 @@ from .peer import Points, Work, tuned
 from .splines import NET, net
 from .untuned import Boss
 
-__all__ = [
-    "gmsh_by_curvature",
-    "gmsh_mesher",
-    "opencascade_by_angle",
-    "opencascade_faces",
-    "opencascade_mesher",
-    "opencascade_shape",
-]
-
 Mesher = Callable[[float], Points]
 
 MULTIPLICITIES = [4, *[1] * (NET - 4), 4]

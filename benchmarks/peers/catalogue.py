@@ -15,8 +15,6 @@ from .peer import Peer, Work
 from .recipe import by_curvature, by_grid
 from .splines import geomdl_by_grid, splipy_by_curvature, splipy_by_grid
 
-__all__ = ["GMSH", "MILLION", "PEERS", "RECIPE", "SPLIPY_RECIPE"]
-
 
 def _grid(form: ClosedForm, count: int) -> Work:
     return lambda: by_grid(form, count)

@@ -16,8 +16,6 @@ from gaussmap.docs.markdown import markdown, wrapped
 from .forms import FORMS
 from .recipe import by_grid
 
-__all__ = ["Duration", "durations", "measure_durations"]
-
 COUNTS = (10**4, 10**6, 10**8)
 STREAMED = 10**7
 FIRST = COUNTS[0]

@@ -11,8 +11,6 @@ import gaussmap as gm
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["FORMS", "Array", "ClosedForm", "Torus"]
-
 Array = NDArray[np.floating[Any]]
 
 

@@ -10,8 +10,6 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from time import monotonic
 
-__all__ = ["machine"]
-
 PACKAGES = (
     "numpy", "numba", "scipy", "splipy", "trimesh", "open3d", "pymeshlab", "gmsh",
     "cadquery-ocp-novtk", "geomdl",

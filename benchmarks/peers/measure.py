@@ -17,8 +17,6 @@ from .metrics import Places, both, nearest_by_tree
 from .peer import Peer, in_turns, timed
 from .splines import surface_of_net
 
-__all__ = ["JUDGED", "Measured", "Own", "judge_own", "measure", "measure_own"]
-
 JUDGED = 10_000
 OWN_ROUNDS = 7
 

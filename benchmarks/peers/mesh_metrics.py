@@ -15,8 +15,6 @@ from .forms import Array, ClosedForm
 from .metrics import Places, angles
 from .triangles import Triangles
 
-__all__ = ["FEW", "PARTS", "Quality", "quality", "to_surface"]
-
 PARTS = 6  # every triangle is compared at the barycentric lattice of step 1/PARTS
 FEW = 0.05  # the share of triangles with a smallest angle below `Quality.small`
 STEPS = 12

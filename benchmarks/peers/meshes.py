@@ -17,9 +17,6 @@ import numpy as np
 from .forms import Array, ClosedForm
 from .peer import Points, Work, tuned
 
-__all__ = ["open3d_by_area", "open3d_farthest", "open3d_poisson", "pymeshlab_poisson",
-           "trimesh_by_area", "trimesh_by_curvature"]  # fmt: skip
-
 CELLS = 320**2
 CHOICE = 10  # random points for each of which farthest points are taken
 

@@ -13,8 +13,6 @@ import numpy as np
 from .forms import Array, ClosedForm
 from .recipe import draw
 
-__all__ = ["Errors", "Places", "both", "errors", "nearest_by_tree", "worst_in_normal"]
-
 PLACES = 200_000
 # samples (N, 3), places (M, 3) → which sample is nearest to each place, (M,)
 Nearest = Callable[[Array, Array], np.ndarray]

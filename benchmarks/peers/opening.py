@@ -6,8 +6,6 @@ import re
 
 from gaussmap.docs.markdown import listed, markdown, wrapped
 
-__all__ = ["TITLE", "opening", "tables"]
-
 TITLE = "## Where gaussmap wins, where it does not"
 
 SPEED = "gaussmap, 10⁶"

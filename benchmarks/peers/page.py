@@ -17,8 +17,6 @@ from .metrics import PLACES
 from .opening import opening
 from .splines import NET
 
-__all__ = ["OnSurface", "page"]
-
 
 @dataclass(frozen=True)
 class OnSurface:

@@ -11,8 +11,6 @@ from typing import TypeVar
 
 from .forms import Array, ClosedForm
 
-__all__ = ["Peer", "Points", "Turns", "Work", "in_turns", "timed", "tuned"]
-
 Result = TypeVar("Result")
 Points = tuple[Array, Array]  # and normals, each (N, 3)
 Work = Callable[[], Points]

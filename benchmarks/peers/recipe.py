@@ -8,8 +8,6 @@ import numpy as np
 
 from .forms import Array, ClosedForm
 
-__all__ = ["by_curvature", "by_grid", "draw"]
-
 
 def by_grid(form: ClosedForm, count: int) -> tuple[Array, Array]:
     """Return points and normals on a grid of parameters."""

@@ -15,15 +15,6 @@ from .forms import Array, ClosedForm
 from .meshes import unit
 from .peer import Points, Work
 
-__all__ = [
-    "NET",
-    "geomdl_by_grid",
-    "net",
-    "splipy_by_curvature",
-    "splipy_by_grid",
-    "surface_of_net",
-]
-
 NET = 61
 GRID = 512
 AT_A_TIME = 10_000  # Splipy makes a full matrix of all places and all coefficients

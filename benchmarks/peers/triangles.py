@@ -17,8 +17,6 @@ from .forms import Array, ClosedForm
 from .meshes import triangles
 from .peer import Points, tuned
 
-__all__ = ["Triangles", "by_grid", "gmsh_triangles", "joined", "opencascade_triangles"]
-
 Triangles = tuple[Array, np.ndarray]  # vertices (M, 3), corners of triangles as indices (T, 3)
 SAME = 1e-9  # the forms have the size 1
 

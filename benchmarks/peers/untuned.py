@@ -10,8 +10,6 @@ import numpy as np
 
 from .forms import Array, ClosedForm, stacked
 
-__all__ = ["UNTUNED", "Boss", "MonkeySaddle"]
-
 
 @dataclass(frozen=True)
 class MonkeySaddle(ClosedForm):

@@ -15,8 +15,6 @@ from ..peers.peer import Peer, Points, in_turns
 from .meshers import Mesher
 from .ways import BALANCED, POISSON
 
-__all__ = ["COUNTS", "LAST", "Found", "OnSurface", "measured"]
-
 COUNTS = (2_000, 10_000)
 LAST = COUNTS[-1]
 

@@ -13,8 +13,6 @@ from ..peers.peer import Peer
 from ..peers.triangles import Triangles, by_grid, gmsh_triangles, opencascade_triangles
 from .ways import GMSH, OPENCASCADE, PERFECT
 
-__all__ = ["MESHERS", "Mesher"]
-
 Prefer = Literal["shape", "normals"]
 
 

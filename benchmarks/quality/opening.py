@@ -8,8 +8,6 @@ from gaussmap.docs.markdown import listed, markdown, wrapped
 
 from ..peers.opening import TITLE, tables
 
-__all__ = ["beside_gmsh", "opening"]
-
 # What is small where samples are good: the column of points, or of meshes, and its meaning.
 OF_POINTS = {
     "E": "the largest error of a normal, at the nearest sample in space",

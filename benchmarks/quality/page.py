@@ -16,8 +16,6 @@ from .meshers import MESHERS
 from .opening import opening
 from .ways import ROUNDS, WAYS
 
-__all__ = ["page"]
-
 BUSY = 0.5  # of the cores
 
 HEAD = """\

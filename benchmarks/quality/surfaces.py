@@ -12,8 +12,6 @@ import numpy as np
 from ..peers.forms import FORMS, Array, ClosedForm, Torus, stacked
 from ..peers.untuned import UNTUNED, Boss
 
-__all__ = ["JUDGED", "BentPipe", "Hills", "ShearedTorus", "SmallFillets"]
-
 
 @dataclass(frozen=True)
 class SmallFillets(Boss):

@@ -14,19 +14,6 @@ from ..peers.forms import Array, ClosedForm
 from ..peers.meshes import open3d_farthest, open3d_poisson, pymeshlab_poisson
 from ..peers.peer import Peer, Points, Work
 
-__all__ = [
-    "ALIGNED",
-    "BALANCED",
-    "DENSITIES",
-    "GAUSS",
-    "GMSH",
-    "OPENCASCADE",
-    "PERFECT",
-    "POISSON",
-    "ROUNDS",
-    "WAYS",
-]
-
 ROUNDS = 3  # of timing, and of judging Poisson disks; what takes long is timed once
 
 

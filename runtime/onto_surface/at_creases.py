@@ -26,8 +26,6 @@ from ..surface.surface import Surface
 from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
 
-__all__ = ["Creases", "OnCreases"]
-
 # Intervals of w in which n·x_w may have several zeros are halved at most DEEPEST times, or until a
 # normal has more than MANY intervals, as on a straight crease. An interval with at most one zero
 # takes STEPS steps of Newton's method.

@@ -19,8 +19,6 @@ from .on_spline import Fields, OnPatches, OnSpline, in_turn
 from .proved import ProvedSurface
 from .tip_degrees import Pinch, Tip, tips_on
 
-__all__ = ["samples_at", "samples_in_turn", "with_creases"]
-
 Geometry = OnPatches | ProvedSurface
 
 

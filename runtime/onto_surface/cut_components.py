@@ -16,10 +16,9 @@ from ..base.aliases import Array, Flags, Indices
 from ..base.trees import tree_of
 from ..domain.domain import brought_inside
 from ..domain.trim import Trim
-from ..proof.index import KINDS, Undecided
+from ..proof.index import Undecided
+from ..proof.kernels.answers import KINDS
 from ..spline.joints import linked
-
-__all__ = ["components_in"]
 
 Jets = Callable[[Array, Array], Array]
 

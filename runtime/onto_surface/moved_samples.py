@@ -19,8 +19,6 @@ from .kernels.refine import FOUND, Target
 from .newton import refine
 from .on_spline import Fields, FieldsOfSamples
 
-__all__ = ["as_fields", "moved_samples", "part_of", "unmoved"]
-
 # The fields that are computed for samples to be moved; other fields are computed from these.
 NEEDED = (
     *("points", "normals", "uv", "gaussian_curvature", "mean_curvature"),

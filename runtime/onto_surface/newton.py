@@ -33,8 +33,6 @@ from .kernels.refine import (
 )
 from .pole_charts import PoleChart, pole_charts
 
-__all__ = ["FOUND", "Target", "evaluate_on_surface", "near_poles", "refine"]
-
 Jets = Callable[[Array, Array], Array]
 
 ROWS_AT_A_TIME = 4096

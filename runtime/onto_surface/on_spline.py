@@ -38,17 +38,6 @@ from ..spline.tips import tips_of
 from ..surface.surface import Surface
 from .reach import reached
 
-__all__ = [
-    "Fields",
-    "FieldsOfSamples",
-    "OnPatches",
-    "OnSpline",
-    "count_of",
-    "grouped",
-    "in_turn",
-    "on_grids",
-]
-
 Fields = dict[str, NDArray[Any]]
 
 AT_A_TIME = 1 << 12

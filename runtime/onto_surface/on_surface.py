@@ -29,8 +29,6 @@ from .on_spline import Array, Fields, FieldsOfSamples, OnPatches, OnSpline, coun
 from .pole_charts import PoleChart, pole_charts
 from .repeats import kept_once
 
-__all__ = ["OnSurface", "checked_place", "geometry_of", "place_of_samples"]
-
 # In streams, samples are moved, and tested for repeats, in groups of about this number.
 TOGETHER = 1 << 17
 # The share of hits that become samples is estimated from about this number of hits.

@@ -18,9 +18,6 @@ from ..surface.derivatives import differences
 from ..surface.surface import Surface
 from .kernels.refine import chart_jets, jet_of_pole
 
-__all__ = ["PoleChart", "pole_charts"]
-
-
 # Samples of the spline are moved in the chart if they are within this number of cells of the pole.
 # Within four cells the spline is inaccurate and may have folds; its samples are up to a cell away
 # from those of the surface. For 1 cell, samples are lost; above 3, only rounding errors change.

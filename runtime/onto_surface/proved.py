@@ -17,7 +17,8 @@ from ..base.scales import check_range, power_of_two, scale_to_one
 from ..base.threads import over_ranges
 from ..directions.regions import Reach
 from ..domain.trim import samples_inside, with_uv
-from ..proof.index import CELLS, KINDS, ProvedIndex, ProvedPlaces, Undecided
+from ..proof.index import CELLS, ProvedIndex, ProvedPlaces, Undecided
+from ..proof.kernels.answers import KINDS
 from ..proof.kernels.samples import CURVATURES, SampleFields, fill_places
 from ..samples.fields import FLAG_NAMES, Component, bytes_of, dtype_of, regular, row_shape
 from ..samples.report import SamplingReport, UndecidedNormal, count_infinite
@@ -34,8 +35,6 @@ from .on_spline import Fields, count_of, in_turn
 from .on_surface import OnSurface, geometry_of
 from .pole_charts import pole_charts
 from .reach import with_conditions
-
-__all__ = ["CODE", "Proof", "ProvedSurface", "index_of", "proof_of", "with_components"]
 
 PLACES_AT_A_TIME = 1 << 14
 # Curvatures at a collapsed side are evaluated at this distance from it, relative to the domain.

@@ -18,8 +18,6 @@ from ..spline.spline import Spline
 from ..surface.derivatives import normals_of_jets
 from ..surface.surface import Surface
 
-__all__ = ["in_reach", "reached", "with_conditions"]
-
 Whole = TypeVar("Whole", Spline, Surface)
 Evaluated = Callable[[Array, Array], Array]
 

@@ -19,8 +19,6 @@ from ..spline.kernels.spline import mark_left
 from ..spline.spline import Spline
 from .on_spline import Fields
 
-__all__ = ["kept_once", "left_patch"]
-
 
 def kept_once(spline: Spline, arrays: Fields, at_pole: Flags) -> Flags:
     """Return a mask (k,) of the samples to keep, so that none on the surface is repeated.

@@ -24,18 +24,6 @@ from .on_spline import OnPatches, OnSpline, on_grids
 from .on_surface import geometry_of, place_of_samples
 from .proved import ProvedSurface
 
-__all__ = [
-    "LEAST_IMAGE",
-    "cells_of_piece",
-    "geometries_of",
-    "pieces_to_sample",
-    "proved_or_fitted",
-    "report_of",
-    "samples_of_pieces",
-    "with_area",
-]
-
-
 # The largest number of pieces: each takes 20 ms to be fitted and searched.
 MOST_PIECES = 2000
 FEWEST_CELLS = 4

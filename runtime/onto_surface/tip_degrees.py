@@ -30,8 +30,6 @@ from ..tape.tapes import jets_of
 from .on_spline import OnPatches, OnSpline
 from .proved import ProvedSurface
 
-__all__ = ["Fan", "Pinch", "Tip", "Tipped", "tip_degrees", "tips_of_fans", "tips_on"]
-
 Jets = Callable[[Array, Array], Array]
 
 # A tip of a surface is represented by at least this number of rays.

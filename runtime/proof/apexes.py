@@ -21,8 +21,6 @@ from .components import Undecided
 from .kernels.answers import OPEN_BOX
 from .kernels.cell_bounds import SMOOTH
 
-__all__ = ["Apex", "apexes_of"]
-
 # A side of the domain is collapsed if PLACES points along it agree up to SAME_POINT, relative to
 # the size, plus ROUNDINGS units in the last place of the largest coordinate of all sides: files
 # cut surfaces at tips with 12 digits.

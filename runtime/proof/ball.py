@@ -8,9 +8,6 @@ import numpy as np
 
 from ..base.aliases import Array
 
-__all__ = ["Ball"]
-
-
 # UNIT bounds the relative rounding error of a midpoint; WIDER is a factor for radii that covers the
 # rounding errors of the few operations by which they are computed.
 UNIT, WIDER = 2.0**-53, 1.0 + 2.0**-48

@@ -19,8 +19,6 @@ from .kernels.answers import CURVE, ISOLATED, OPEN_BOX, WHERE, Answers
 from .kernels.degree import LARGEST
 from .kernels.sorting import Sorted
 
-__all__ = ["Undecided", "boxes_of", "components_of", "with_kinds"]
-
 # Two boxes touch if their distance is at most the larger of their widths, or at most this share of
 # the domain.
 NEAR = 3e-6

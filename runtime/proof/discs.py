@@ -32,9 +32,6 @@ from .kernels.discs import Disc
 from .polar_tapes import PolarTapes, polar_tapes
 from .spline_quotient import mapped_spline
 
-__all__ = ["PoleDisc", "pole_disc"]
-
-
 SECTORS = 512
 # If bounds over SECTORS sectors are too wide, NARROW times as many are used. Quotients of splines
 # need these always, since they contain powers of u in each knot span. Bounds are taken over RINGS

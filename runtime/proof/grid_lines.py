@@ -15,8 +15,6 @@ from ..tape.kernels.spline_bounds import SLACK
 from ..tape.tapes import jets_of
 from .kernels.cell_bounds import SMOOTH
 
-__all__ = ["PLACES", "creases_of", "joints_of", "jumps_of", "lines_of"]
-
 # The normals on both sides of a line are compared at about this number of points.
 PLACES = 64
 

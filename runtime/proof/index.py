@@ -33,7 +33,6 @@ from .grid_lines import joints_of, lines_of
 from .kernels.answers import (
     BORDER,
     BOX,
-    KINDS,
     Answers,
     merge_places,
 )
@@ -44,9 +43,6 @@ from .kernels.evaluated_pairs import Index, Joints, Outcome, Tiles, evaluate_pai
 from .kernels.places import Boxes, decide_normals
 from .kernels.sorting import Sorted, count_places, order_places, put_places, start_normals
 from .poles import Cap, poles_of
-
-__all__ = ["CELLS", "KINDS", "ProvedIndex", "ProvedPlaces", "Undecided"]
-
 
 # Irregular cells are cut into four at most LEVELS times. Cells without a narrow cone of normals are
 # cut up to ROUNDS times more, as long as this adds at most MOST cells per cell of the grid. For the

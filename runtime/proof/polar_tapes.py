@@ -18,8 +18,6 @@ from ..tape.kernels.points import Tape
 from ..tape.tapes import TapeWriter
 from .spline_quotient import spline_quotient
 
-__all__ = ["PolarTapes", "polar_tapes"]
-
 NAMES = {code: name.lower() for name, code in vars(elementary).items() if isinstance(code, int)}
 PARTNERS = {"sin": "cos", "cos": "sin", "sinh": "cosh", "cosh": "sinh"}
 

@@ -20,8 +20,6 @@ from .ball import Ball
 from .discs import NARROW, SECTORS, PoleDisc, pole_disc
 from .kernels.answers import CURVE, OPEN_BOX, Answers
 
-__all__ = ["Cap", "Poles", "poles_of"]
-
 # The largest half angle of the cone of a cap, in radians; and the smallest size of a cap, relative
 # to a row of cells.
 WIDEST, SMALLEST = 0.05, 2.0**-8

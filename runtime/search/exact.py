@@ -28,8 +28,6 @@ from ..spline.spline import Spline
 from .kernels.decide import Decided, decide_exactly
 from .long_integers import forms_of_pairs
 
-__all__ = ["Decision", "decide", "decided_forms", "uncancelled"]
-
 PAIRS_AT_A_TIME = 1 << 10
 # The number of pairs that are decided together on Python integers. It bounds the memory: a pair has
 # many such integers, each of about a hundred bytes.

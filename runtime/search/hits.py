@@ -20,8 +20,6 @@ from .in_nets import fields_in_nets
 from .kernels.hits import fill_known, fill_samples, new_tile
 from .kernels.lists import NUMBER
 
-__all__ = ["Hits", "fill", "fill_hits"]
-
 SAMPLES_AT_A_TIME = 1 << 16
 
 

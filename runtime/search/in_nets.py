@@ -39,15 +39,6 @@ from .long_integers import (
     sign,
 )
 
-__all__ = [
-    "decide_in_nets",
-    "edge_signs",
-    "errors_of",
-    "fields_in_nets",
-    "flat_nets",
-    "rounding_of",
-]
-
 ALL = slice(None)
 # For each of the edges u = 0, v = 0, w = 0, the permutation of the six control points of a patch
 # after which this edge is the edge v = 0.

@@ -15,8 +15,6 @@ from ..base.formula_calls import python_function, vector
 from ..spline.nets import NetSpline
 from .in_nets import rounding_of
 
-__all__ = ["beside_lines", "have_lines", "places_at"]
-
 # The displacement is this multiple of the rounding of coordinates, which turns normals by about as
 # much. It is in no plane of symmetry.
 BESIDE, DIRECTION = 64.0, np.array([1.0, 1e-2, 1e-4])

@@ -15,20 +15,6 @@ from ...generated.spline import NEIGHBOURS, TRIANGLE_NEIGHBOURS, triangle
 from ..base.formula_calls import patch, python_function, vector
 from ..spline.spline import Spline
 
-__all__ = [
-    "Integers",
-    "displaced_forms",
-    "exact_forms",
-    "forms_of_pairs",
-    "integers",
-    "integers_by_row",
-    "leading_sign",
-    "monomials_of_forms",
-    "patch_vectors",
-    "ratio",
-    "sign",
-]
-
 Integers = NDArray[np.object_]
 MANTISSA = 53
 

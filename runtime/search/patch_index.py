@@ -29,8 +29,6 @@ from .kernels.lists import (
 )
 from .kernels.pieces import BOUND, CHORD, Coefficients, Pieces, write_net_pieces, write_pieces
 
-__all__ = ["MOST_PATCHES", "Index", "index_of", "listed", "open_sides", "ordered", "sorted_keys"]
-
 # An index of all patches takes 230 bytes a patch, and is cached with the spline. A spline with more
 # than MOST_PATCHES patches has an index for each range of patches; each search makes them anew.
 MOST_PATCHES = 1 << 20

@@ -29,8 +29,6 @@ from .kernels.search import PATCHES, Memory, Pairs, search
 from .lines import beside_lines, have_lines, places_at
 from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
-__all__ = ["Hits", "developable_patches", "find", "find_in_turn", "on_border"]
-
 # At most so many normals are searched together, and at most so many hits are sorted together.
 NORMALS_AT_A_TIME, MOST_HITS = 1 << 20, 1 << 23
 # The number of normals that a thread takes at a time, and the initial capacity of its arrays of

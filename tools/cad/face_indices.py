@@ -14,7 +14,8 @@ from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.domain.domain import Domain
 from ...runtime.onto_surface.proved import index_of
 from ...runtime.proof.ball import Ball
-from ...runtime.proof.index import KINDS, ProvedIndex, ProvedPlaces, Undecided
+from ...runtime.proof.index import ProvedIndex, ProvedPlaces, Undecided
+from ...runtime.proof.kernels.answers import KINDS
 from ...runtime.surface.sides import with_found_sides
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.kernels.points import Tape

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ...generated.faces import cone_normal, torus_normal
 from ...runtime.base.formula_calls import python_function
 from ...runtime.domain.domain import Domain, Interval
-from ...runtime.proof.index import KINDS
+from ...runtime.proof.kernels.answers import KINDS
 from .face_places import NOTHING, FacePlaces, joined, undecided
 from .records import Geometry
 

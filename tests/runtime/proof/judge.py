@@ -14,7 +14,8 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import sympy as sp
-from gaussmap.runtime.proof.index import KINDS, ProvedIndex, ProvedPlaces
+from gaussmap.runtime.proof.index import ProvedIndex, ProvedPlaces
+from gaussmap.runtime.proof.kernels.answers import KINDS
 from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from gaussmap.runtime.proof.components import boxes_of, components_of
-from gaussmap.runtime.proof.index import KINDS
-from gaussmap.runtime.proof.kernels.answers import Answers
+from gaussmap.runtime.proof.kernels.answers import KINDS, Answers
 
 OPEN, CURVE = KINDS.index("open"), KINDS.index("curve")
 # u from 0 to 1 and v from 0 to 2, u with a period.
