@@ -161,9 +161,10 @@ def support(self: GaussMap, directions: ArrayLike) -> SupportPoints:
     if not np.isfinite(found.values).all():
         name = getattr(self.surface, "name", "surface")
         raise SurfaceError(f"{name!r} has no farthest point: no point inside its trim is finite.")
-    size = max((np.abs(x.points).max(initial=0.0) for x in _curves_of(self)), default=0.0)
-    sizes = np.maximum(np.linalg.norm(found.points, axis=1), size)
-    return found._replace(errors=found.errors + ROUNDING * sizes)
+    rounding = ROUNDING * np.linalg.norm(found.points, axis=1)
+    for curves in _curves_of(self):
+        np.maximum(rounding, curves.rounding, out=rounding)
+    return found._replace(errors=found.errors + rounding)
 
 
 def bounds_of(self: Surface | Whole) -> Array:
@@ -290,6 +291,7 @@ class Curves:
     points: Array
     tangents: Array
     reach: Array
+    rounding: float
 
     @classmethod
     def of(cls, parts: Sequence[Segments | NetEdges]) -> Curves:
@@ -306,7 +308,7 @@ class Curves:
         part, row, points, tangents = part[finite], row[finite], points[finite], tangents[finite]
         rounding = ROUNDING * np.abs(points).max(initial=0.0)
         reach = np.linalg.norm(points[:, 1] - points[:, 0], axis=1) + rounding
-        return cls(parts, part, row, points, tangents, reach)
+        return cls(parts, part, row, points, tangents, reach, rounding)
 
     def add(self, found: SupportPoints, normals: Array) -> None:
         """Replace known points by points of segments that are farther in the directions (S, 3)."""
@@ -362,7 +364,7 @@ class Curves:
         most = (ends + np.array([2.0, -2.0])[:, None, None] * slopes).min(axis=0)
         highest = ends.max(axis=0)
         best = np.fmax(highest.max(axis=1), found.values[some])
-        owner, peaks = np.nonzero(inside & (most >= best[:, None]))
+        owner, peaks = np.nonzero(inside & (most >= best[:, None] + self.rounding / 4.0))
         slopes = slopes[:, owner, peaks]
         highest = highest.argmax(axis=1)
         ends = ends[:, np.arange(len(some)), highest]
