@@ -258,11 +258,14 @@ class GaussMap(Methods):
         asked, signs = found.report.normals or 0, np.copysign(1.0, found.gaussian_curvature)
         kinds = found.component
         assert kinds is not None
-        signs[kinds != Component.REGULAR] = 0.0
+        whole = self._surface
+        counted = kinds == Component.REGULAR
+        if isinstance(whole, Whole):  # on its creases, K has the sign of the index
+            counted |= kinds == Component.CREASE
+        signs[~counted] = 0.0
         sums = np.bincount(found.normal_index, signs, minlength=asked).astype(np.int64)
         known = np.isin(kinds, (Component.ISOLATED, Component.CURVE, Component.TIP))
         which = np.unique(found.normal_index[known])
-        whole = self._surface
         for face in whole._space(threads).pieces if isinstance(whole, Whole) else ():
             sums[which] += face.component_degrees(directions[which])
         for piece in self._pieces:

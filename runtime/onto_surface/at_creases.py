@@ -192,10 +192,14 @@ class Creases:
         index = np.arange(len(rows))
         across = [x[index, 1 + axis] for x in jets]
         slopes = [np.einsum("kx,kx->k", x, given) for x in across]
-        slack = [SMOOTH * np.linalg.norm(x, axis=1) for x in across]
+        lengths = [np.linalg.norm(x, axis=1) for x in across]
+        slack = [SMOOTH * x for x in lengths]
         facing = sum(np.einsum("kx,kx->k", _unit(np.cross(x[:, 1], x[:, 2])), given) for x in jets)
         unsure = (np.abs(slopes[0]) <= slack[0]) | (np.abs(slopes[1]) <= slack[1])
         keep = (facing > 0.0) & (unsure | (slopes[0] * slopes[1] < 0.0))
+        # At a pole, x_s is 0 and the creases that end there have no direction across.
+        largest = np.linalg.norm(self.sides.after[0], axis=1).max()
+        keep &= np.minimum(*lengths) > SMOOTH * largest
         uv = self._uv(rows, middle, 2)
         if self.trim is not None:
             keep &= self.trim.contains(uv)

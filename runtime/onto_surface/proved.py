@@ -16,6 +16,7 @@ from ..base.memory import check_memory
 from ..base.scales import check_range, power_of_two, scale_to_one
 from ..base.threads import over_ranges
 from ..directions.regions import Reach
+from ..domain.domain import Domain
 from ..domain.trim import samples_inside, with_uv
 from ..proof.index import CELLS, ProvedIndex, ProvedPlaces, Undecided
 from ..proof.kernels.answers import KINDS
@@ -52,12 +53,15 @@ class Proof(NamedTuple):
 
 
 def index_of(
-    surface: Surface, threads: int | None = None, cells: tuple[int, int] = CELLS
+    surface: Surface, cells: tuple[int, int] = CELLS, domain: Domain | None = None
 ) -> ProvedIndex | None:
-    """Return the index of a surface, or None if its derivatives have no bounds somewhere."""
+    """Return the index of a surface, or None if its derivatives have no bounds somewhere.
+
+    A `domain` is that of the search, instead of the surface's own.
+    """
     if surface.tape is None:
         return None
-    index = ProvedIndex.of(surface.tape, surface.domain, surface.boundary, cells, threads)
+    index = ProvedIndex.of(surface.tape, domain or surface.domain, surface.boundary, cells)
     return index if index is not None and len(index.unbounded) == 0 else None
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -79,7 +79,7 @@ class SmoothPieces:
         for piece in surface.pieces():
             if _has_corners_that_meet(piece):
                 piece = with_found_sides(piece)[0]
-            index = index_of(_wider(piece, gap), cells=CELLS)
+            index = index_of(piece, CELLS, _wider(piece, gap))
             if index is None:
                 return None
             found.append((index, piece))
@@ -151,8 +151,8 @@ class Offset:
         return python_function(offset_side)(patch, vector(normals), self.distance)
 
 
-def _wider(surface: Surface, gap: float) -> Surface:
-    """Return a surface without its trim, extended beyond open sides by `gap` times the domain.
+def _wider(surface: Surface, gap: float) -> Domain:
+    """Return the domain of a surface, extended beyond open sides by `gap` times its size.
 
     Sides that are collapsed to a point stay.
     """
@@ -163,7 +163,7 @@ def _wider(surface: Surface, gap: float) -> Surface:
         if surface.boundary[axis][end] == "open" and size > CLOSE * max(sizes):
             domain[axis][end] += (-gap, gap)[end] * float(np.ptp(surface.domain[axis]))
     (u0, u1), (v0, v1) = domain
-    return replace(surface, domain=((u0, u1), (v0, v1)), trim=None)
+    return (u0, u1), (v0, v1)
 
 
 def _on_side(surface: Surface, axis: int, end: int) -> Array:

@@ -28,7 +28,7 @@ from ...runtime.onto_surface.proved import CODE, proof_of, with_components
 from ...runtime.onto_surface.reach import in_reach
 from ...runtime.onto_surface.tip_degrees import Fan, Tip, Tipped, tips_of_fans
 from ...runtime.samples.fields import ARRAY_NAMES_OF_PART, Component, bytes_of, dtype_of
-from ...runtime.samples.report import SamplingReport
+from ...runtime.samples.report import SamplingReport, UndecidedNormal
 from ...runtime.samples.samples import Samples
 from ...runtime.spline.kernels.jets import evaluate_jets
 from ...runtime.surface.derivatives import normals_of_jets
@@ -213,6 +213,14 @@ class FacePiece(Piece):
             places = np.concatenate([places, np.tile(row, (len(rows), 1))])
             order = np.argsort(numbers, kind="stable")
             numbers, places = numbers[order], places[order]
+        proof = proof_of(normals, open_, self.face.index)
+        return self.samples_of(normals, numbers, places, proof.undecided)
+
+    def samples_of(
+        self, normals: Array, numbers: Indices, places: Array,
+        undecided: Sequence[UndecidedNormal] = (),
+    ) -> Samples:  # fmt: skip
+        """Return samples with normals[numbers] (k, 3) at `places` (k, 7); see `with_components`."""
         check_memory("stored", len(numbers), bytes_of(ARRAY_NAMES_OF_PART, np.float64))
         given, uv, codes = normals[numbers], places[:, :2], places[:, CODE].astype(np.uint8)
         fields = self.fields_at(uv, uv, ARRAY_NAMES_OF_PART, np.float64)
@@ -224,9 +232,8 @@ class FacePiece(Piece):
         fields["gaussian_curvature"][codes != Component.REGULAR] = 0.0
         fields["mean_curvature"][codes == Component.TIP] = 0.0
         fields["gaussian_curvature"] = np.copysign(fields["gaussian_curvature"], places[:, 4])
-        proof = proof_of(normals, open_, self.face.index)
         report = SamplingReport(
-            self.label, len(normals), len(uv), None, None, None, **proof._asdict()
+            self.label, len(normals), len(uv), None, None, None, undecided=tuple(undecided)
         )
         arrays: dict[str, Any] = {
             **fields,

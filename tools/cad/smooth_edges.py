@@ -8,14 +8,19 @@ component are left out.
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import attrgetter
 
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.kept import kept
+from ...runtime.onto_surface.proved import CODE
 from ...runtime.samples.fields import Component
+from ...runtime.samples.report import UndecidedNormal
 from ...runtime.spline.joints import linked
-from ..density.at_normals import Given
+from ..density.at_normals import Given, PieceSamples
+from ..density.cells import grouped
+from .edge_gaps import EdgeGaps, largest_radius
 from .edges import Edges, at_places, edges_of
 from .face_indices import GAP
 from .part import Part
@@ -28,6 +33,9 @@ __all__ = ["each_once"]
 # the gap between faces, at most FAR. This is right since, near a smooth edge, no two points have
 # the same normal and the same sign of K.
 SAME, FAR = 1e-8, 1e-5
+# K keeps its sign next to an edge if the larger radius of curvature, times the root of the gap, is
+# at most SURE, relative to the size.
+SURE = 0.25
 # Points are sorted by their coordinates along this direction. Few of these are equal, even on
 # symmetric parts.
 DIRECTION = np.array([0.52, 0.47, 0.71])
@@ -44,10 +52,13 @@ def each_once(space: PartSpace, given: Given) -> Given:
     """Return the points at normals, without the points that a face of lower index has as well.
 
     Where K changes its sign at the edge, the points of both faces are kept: nearby normals have two
-    points or none.
+    points or none. Points of edges with gaps wider than `GAP` are added.
     """
     part = space.pieces[0].face.part
-    if len(space.pieces) < 2 or len(given) < 2 or not given.same_normals:
+    if not given.same_normals:
+        return given
+    given, alone = _with_gaps(space, given, EdgeGaps.of(part))
+    if len(space.pieces) < 2:
         return given
     points = given.array("points", np.float64)
     faces = np.array([x.face.index for x in space.pieces])[given.pieces]
@@ -57,12 +68,10 @@ def each_once(space: PartSpace, given: Given) -> Given:
         [normals, kept(part, each_once, lambda: _connected(part))[faces], np.signbit(K)]
     )
     along, size = points @ DIRECTION, space.size / space.unit
-    with np.errstate(divide="ignore", invalid="ignore"):  # at K = 0
-        radius = (np.abs(H) + np.sqrt(np.maximum(H * H - K, 0.0))) / np.abs(K)  # the larger one
-    slack = np.fmin(np.maximum(2.0 * GAP * radius, SAME * size), FAR * size)
+    slack = _reach(GAP, largest_radius(K, H), size)
     order = np.lexsort((along, *keys))
     points, faces, keys, along = points[order], faces[order], keys[:, order], along[order]
-    lost, slack = np.zeros(len(order), dtype=np.bool_), slack[order]
+    lost, slack, alone = np.zeros(len(order), dtype=np.bool_), slack[order], alone[order]
     for step in range(1, len(order)):
         near = (keys[:, step:] == keys[:, :-step]).all(axis=0)
         near &= along[step:] - along[:-step] <= slack.max()
@@ -70,16 +79,81 @@ def each_once(space: PartSpace, given: Given) -> Given:
             break
         first, second, apart = faces[:-step], faces[step:], points[step:] - points[:-step]
         near &= np.linalg.norm(apart, axis=1) <= np.maximum(slack[step:], slack[:-step])
-        near &= first != second
+        near &= (first != second) & ~(alone[step:] & alone[:-step])
         lost[step:] |= near & (first < second)
         lost[:-step] |= near & (first > second)
     keep = np.ones(len(order), dtype=np.bool_)
     keep[order[lost]] = False
     keep &= _first_of_curves(space, given, keep)
+    return replace(given, found=tuple(sorted(_kept(given, keep), key=attrgetter("piece"))))
+
+
+def _kept(given: Given, keep: Flags) -> list[PieceSamples]:
+    """Return some of the samples, flags (N,)."""
     ends = np.cumsum([len(x.samples) for x in given.found])[:-1]
     parts = np.split(keep, ends) if given.found else ()
-    found = (x._replace(samples=x.samples[y]) for x, y in zip(given.found, parts, strict=True))
-    return given if keep.all() else replace(given, found=tuple(found))
+    return [x._replace(samples=x.samples[y]) for x, y in zip(given.found, parts, strict=True)]
+
+
+def _reach(gap: Array | float, radius: Array, size: float) -> Array:
+    """Return the distance over which normals change by twice a gap, SAME to FAR of the size."""
+    return np.fmin(np.maximum(2.0 * gap * radius, SAME * size), FAR * size)
+
+
+def _with_gaps(space: PartSpace, given: Given, gaps: EdgeGaps | None) -> tuple[Given, Flags]:
+    """Return points with those of edges with gaps, and which of them are distinct from others.
+
+    Points that the search beyond the sides of a face found in a gap are left out. Normals beside
+    corners are undecided, and so are those where K may change its sign next to the edge.
+    """
+    count = len(given)
+    keep, distinct = np.ones(count, np.bool_), np.zeros(count, np.bool_)
+    at = None if gaps is None else gaps.at(given.normals)
+    if gaps is None or at is None or len(at.numbers) == 0:
+        return given, distinct
+    numbered = {x.face.index: k for k, x in enumerate(space.pieces)}
+    whole = np.array([numbered.get(x.face.index, -1) for x in gaps.space.pieces])
+    pieces, size = whole[at.pieces], space.size / space.unit
+    regular = given.array("component", np.float64) == Component.REGULAR
+    points, normals = given.array("points", np.float64), given.array("normal_index", np.int64)
+    keys = normals * len(space.pieces) + given.pieces
+    order = np.argsort(keys, kind="stable")
+    radius = largest_radius(*np.moveaxis(at.curvatures, 2, 0))
+    reach, widest = _reach(2.0 * at.gaps[:, None], radius, size), radius.max(axis=1) / size
+    settled = at.settled & (widest * np.sqrt(at.gaps) <= SURE)
+    is_inside = at.pieces[:, 0] == at.pieces[:, 1]
+    for k, side in np.argwhere((pieces >= 0) & (settled & ~is_inside)[:, None]).tolist():
+        key = at.numbers[k] * len(space.pieces) + pieces[k, side]
+        rows = order[slice(*np.searchsorted(keys[order], [key, key + 1]))]
+        away = np.linalg.norm(points[rows] - at.points[k], axis=1)
+        rows = rows[regular[rows] & (away <= reach[k, side])]
+        distinct[rows] = keep[rows] = at.has[k, side]
+    side = np.where(pieces < 0, len(space.pieces), pieces).argmin(axis=1)
+    owner, uv = pieces[np.arange(len(side)), side], at.uv[np.arange(len(side)), side]
+    for k, rows in grouped(np.where(is_inside, owner, -1)):
+        owner[rows] = np.where(space.pieces[k].contains(uv[rows]) | (k < 0), owner[rows], -1)
+    (rows,) = np.nonzero((owner >= 0) & settled & at.between)
+    found = _kept(given, keep)
+    for k, own in grouped(owner[rows]):
+        piece, some = space.pieces[k], rows[own]
+        places = np.zeros((len(some), 7))
+        places[:, :2], places[:, 4], places[:, CODE] = (
+            uv[some], at.signs[some], Component.CREASE
+        )  # fmt: skip
+        samples = piece.samples_of(given.normals, at.numbers[some], places)
+        if piece.reach is not None:
+            samples = samples[piece.reach._holds(samples.points, samples.normals)]
+        found.append(PieceSamples(k, samples, given.normals))
+    for k in np.flatnonzero((owner >= 0) & ~settled).tolist():
+        piece = space.pieces[owner[k]]
+        (u0, v0), (u1, v1) = ((uv[k] + x * FAR * piece.sizes).tolist() for x in (-1.0, 1.0))
+        corner = UndecidedNormal(
+            int(at.numbers[k]), (u0, u1, v0, v1), "open", True, piece.face.index
+        )
+        nothing = piece.samples_of(given.normals, at.numbers[:0], np.empty((0, 7)), [corner])
+        found.append(PieceSamples(int(owner[k]), nothing, given.normals))
+    given = replace(given, found=tuple(found))
+    return given, np.append(distinct[keep], np.ones(len(given) - keep.sum(), np.bool_))
 
 
 def _first_of_curves(space: PartSpace, given: Given, keep: Flags) -> Flags:

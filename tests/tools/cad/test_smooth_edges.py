@@ -93,16 +93,21 @@ def test_gaps_are_filled_beside_what_is_left():
     assert len(samples) == samples.report.samples > 50
 
 
-def nurbs_torus(first: int, last: int, digits: int = 17) -> gm.Surface:
-    """Return some thirds of a tilted torus of 3 × 3 rational spans, with some digits."""
+def torus_net(digits: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return points and weights of a tilted torus of 3 × 3 rational spans, with some digits."""
     angles, radii = np.arange(7) * np.pi / 3.0, 1.0 + np.arange(7) % 2
     x, y, weights = radii * np.cos(angles), radii * np.sin(angles), 1.0 / radii
+    reach, height = 1.0 + 0.4 * x, np.broadcast_to(0.4 * y, (7, 7))
+    points = np.dstack([np.outer(x, reach), np.outer(y, reach), height])
+    return (points @ TILT.T).round(digits), np.outer(weights, weights)
+
+
+def nurbs_torus(first: int, last: int, digits: int = 17) -> gm.Surface:
+    """Return some thirds of the torus of `torus_net`."""
     knots, some = np.repeat(np.arange(4), [3, 2, 2, 3]), slice(2 * first, 2 * last + 1)
-    reach, height = 1.0 + 0.4 * x, np.broadcast_to(0.4 * y, (len(x[some]), 7))
-    points = np.dstack([np.outer(x[some], reach), np.outer(y[some], reach), height])
-    points = (points @ TILT.T).round(digits)
     ends = np.repeat(np.arange(first, last + 1), [3, *[2] * (last - first - 1), 3])
-    return gm.Surface.from_nurbs((2, 2), (ends, knots), points, np.outer(weights[some], weights))
+    points, weights = (x[some] for x in torus_net(digits))
+    return gm.Surface.from_nurbs((2, 2), (ends, knots), points, weights)
 
 
 @pytest.mark.parametrize("cuts", [[0, 3], [0, 1, 3], [0, 1, 2, 3]])
@@ -162,3 +167,48 @@ def test_normals_in_the_gap_of_digits_have_each_point_once(trimmed):
     assert np.abs(np.tile(reach, len(steps))[list(listed)]).max(initial=0.0) < 0.01
     wrong = np.bincount(samples.normal_index) != 2
     assert set(np.flatnonzero(wrong).tolist()) <= listed
+
+
+def sides_of(points, weights, row: int) -> np.ndarray:
+    """Return points, and normals of both sides, (3, k, 3), on a row of a net of conics.
+
+    Tangent planes are those of the curves of the row and of the rows beside it.
+    """
+    net, t = np.dstack([points * weights[..., None], weights]), np.linspace(0.1, 0.9, 9)
+    value = np.stack([(1 - t) ** 2, 2 * t * (1 - t), t**2], axis=1)
+    slope = np.stack([2 * t - 2, 2 - 4 * t, 2 * t], axis=1)
+    found = []
+    for first in range(0, net.shape[1] - 1, 2):
+        before, on, after = net[row - 1 : row + 2, first : first + 3]
+        x = (value @ on)[:, :3] / (value @ on)[:, 3:]
+        vectors = slope @ on, value @ before, value @ after
+        along, left, right = (y[:, :3] - y[:, 3:] * x for y in vectors)
+        normals = np.stack([-np.cross(left, along), np.cross(right, along)])
+        found.append([x, *(normals / np.linalg.norm(normals, axis=2, keepdims=True))])
+    return np.concatenate(found, axis=1)
+
+
+@pytest.mark.parametrize(("row", "least"), [(2, 0.9), (4, 0.5)], ids=["edge", "knot of a face"])
+def test_normals_between_those_of_both_sides_have_a_point_there(row, least):
+    """Gaps of 7 digits are creases."""
+    faces, net = [nurbs_torus(0, 1, 7), nurbs_torus(1, 3, 7)], torus_net(7)
+    gauss_map = gm.GaussMap(gm.Part(faces, tolerance=1e-5))
+    x, one, other = sides_of(*net, row)
+    shares = np.array([-0.6, -0.3, 0.3, 0.5, 0.7, 1.3, 1.6])[:, None, None]
+    normals = ((1.0 - shares) * one + shares * other).reshape(-1, 3)
+    samples = gauss_map.points(normals)
+    known = ~np.isin(np.arange(len(normals)), [y.normal for y in samples.report.undecided or ()])
+    assert known.mean() > least
+    at = np.tile(x, (len(shares), 1))[samples.normal_index]
+    near = np.linalg.norm(samples.points - at, axis=1) < 0.05
+    regular, creases = (
+        np.bincount(samples.normal_index[near & (samples.component == y)], minlength=len(normals))
+        for y in (gm.Component.REGULAR, gm.Component.CREASE)
+    )
+    between = np.repeat((shares.ravel() > 0.0) & (shares.ravel() < 1.0), len(x))
+    wide = np.tile(np.linalg.norm(other - one, axis=1) > 1e-9, len(shares))
+    assert (known & between & wide).sum() > 20
+    np.testing.assert_array_equal(creases[known], (between & wide)[known])
+    np.testing.assert_array_equal(regular[known & ~(between & wide)], 1)
+    assert np.isin(regular[known], [0, 1, 2]).all()
+    np.testing.assert_array_equal(gauss_map.degree(normals)[known], 0)

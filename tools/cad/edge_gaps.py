@@ -1,0 +1,372 @@
+"""Points with given normals in the gaps that rounded numbers leave between smoothly joined faces.
+
+On an edge with the tangent t, n·t = 0. In a face, the height n·x has a slope s at the edge, on the
+way into the face. If the slopes of both faces have one sign, n is between their normals: the edge
+has a point with the normal n, as a crease has. A face has a point with the normal n near the edge
+if s and the second derivative of the height, on the way into the face, have different signs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ...runtime.base.aliases import Array, Flags, Indices
+from ...runtime.base.kept import kept
+from ...runtime.base.repeats import repeated
+from ...runtime.base.trees import tree_of
+from ...runtime.proof.grid_lines import creases_of
+from ...runtime.surface.creases import CREASE_ANGLE
+from ...runtime.surface.derivatives import normals_of_jets
+from ..density.cells import grouped
+from .edges import at_places, edges_of
+from .face_indices import GAP
+from .part import Part
+from .results import PartSpace, space_of
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
+
+__all__ = ["AtEdges", "EdgeGaps", "largest_radius"]
+
+# Gaps wider than WIDEST are edges. An edge is straight in the parameters of a face if it is nowhere
+# off a straight line by more than STRAIGHT times the domain.
+WIDEST, STRAIGHT = math.radians(CREASE_ANGLE), 1e-12
+# A face is developable where the larger radius of curvature exceeds FLAT times the size of edges.
+FLAT = 1e6
+# Gaps are measured at MEASURED points of an edge. Normals along it are known at FEWEST to MOST
+# places, at most FINE apart if that suffices.
+MEASURED, FINE, FEWEST, MOST = 7, 0.01, 65, 2048
+SHARES = (np.arange(MEASURED) + 0.5) / MEASURED
+# Edges are in cells of directions with this number of cells per unit.
+CELLS = 20
+# Two places of an edge with one normal differ by more than APART in their shares, unless they are
+# beside a corner. Shares that differ by SAME at most are one.
+APART, SAME = 1e-6, 1e-9
+# The search beyond sides finds points whose normals are up to BEYOND from those of the edge.
+BEYOND = 16.0 * GAP
+# STEPS of Newton's method lead to the place of an edge where |n·t| is at most SETTLED.
+STEPS, SETTLED = 5, 1e-12
+# A side of an edge is inside of the face if places at this distance are, relative to the domain.
+BESIDE = 1e-6
+
+
+class AtEdges(NamedTuple):
+    """Places of edges where n·t = 0 for some of the normals, close to those of both faces.
+
+    `numbers` (k,) are the rows of the normals; `pieces` (k, 2) those of the part. Both faces have
+    the parameters `uv` (k, 2, 2), the `normals` (k, 2, 3), the slopes (k, 2) of n·x on the way into
+    the face, the second derivatives of n·x `along` (k, 2) the edge, and K and H (k, 2, 2). Places
+    that are not `settled` (k,) are beside corners, where tangents jump.
+    """
+
+    numbers: Indices
+    pieces: Indices
+    points: Array
+    uv: Array
+    normals: Array
+    slopes: Array
+    along: Array
+    curvatures: Array
+    settled: Flags
+
+    @property
+    def has(self) -> Flags:
+        """Whether the faces (k, 2) have a point with the normal next to the edge."""
+        bend = self.along * self.curvatures[:, :, 0]  # the sign of the second derivative across
+        return self._is_down == (bend > 0.0)
+
+    @property
+    def between(self) -> Flags:
+        """Whether the normal is between those of both faces (k,)."""
+        return self._is_down[:, 0] == self._is_down[:, 1]
+
+    @property
+    def signs(self) -> Array:
+        """The index (k,) of the point of the edge: 1 for a maximum or a minimum of n·x, else -1."""
+        return np.where(self._is_down[:, 0] == (self.along[:, 0] < 0.0), 1.0, -1.0)
+
+    @property
+    def _is_down(self) -> Flags:
+        return self.slopes < 0.0
+
+    @property
+    def gaps(self) -> Array:
+        """The angles (k,) between the normals of both faces."""
+        return np.linalg.norm(self.normals[:, 1] - self.normals[:, 0], axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeGaps:
+    """Edges of a part with gaps wider than `GAP`, straight in the parameters of both faces.
+
+    Neither face is developable. Edge i goes from `starts`[i] (2, 2) by `steps`[i] (2, 2) on both
+    `pieces`[i] of the space; it may be `closed`. The faces are on the sides `inward`[i] (2,) of it:
+    1 is that of N × t. Normals of the first face at places `shares` (P,) of the edges `owner` (P,)
+    are in a `tree`, and in `cells` of directions; `spread` (P, 3) is half the difference of their
+    neighbours. Normals in gaps of an edge are within `slack` of its own, and within `reach` of some
+    in the tree. Lines inside of a face are edges, too, with the same piece twice.
+    """
+
+    space: PartSpace
+    pieces: Indices
+    starts: Array
+    steps: Array
+    inward: Array
+    closed: Flags
+    slack: Array
+    owner: Indices
+    shares: Array
+    normals: Array
+    spread: Array
+    reach: float
+    tree: KDTree
+    cells: Flags
+
+    @classmethod
+    def of(cls, part: Part) -> EdgeGaps | None:
+        """Return the edges with gaps of a part, kept with it; None if there are none."""
+        return kept(part, cls, lambda: cls._of(space_of(part, None)))
+
+    @classmethod
+    def _of(cls, space: PartSpace) -> EdgeGaps | None:
+        lines = _Lines._make(
+            map(np.concatenate, zip(_between_faces(space), *_inside_faces(space), strict=True))
+        )
+        count = len(lines.pieces)
+        if count == 0:
+            return None
+        sides = [
+            at_places(
+                space, np.repeat(lines.pieces[:, k], MEASURED), lines.places[:, :, k].reshape(-1, 2)
+            )
+            for k in (0, 1)
+        ]
+        gaps = np.linalg.norm(sides[1].normals - sides[0].normals, axis=1).reshape(count, MEASURED)
+        radii = np.maximum(*(largest_radius(*x.curvatures.T) for x in sides))
+        size = float(np.ptp(sides[0].vectors[:, 0], axis=0).max())
+        bent = radii.reshape(count, MEASURED).min(axis=1) <= FLAT * size
+        widest = gaps.max(axis=1, initial=0.0, where=gaps <= WIDEST)
+        some = np.flatnonzero((widest > GAP) & bent)
+        return cls._along(space, _Lines._make(x[some] for x in lines), widest[some], size)
+
+    @classmethod
+    def _along(cls, space: PartSpace, lines: _Lines, widest: Array, size: float) -> EdgeGaps | None:
+        """Return edges with the normals along them, without those whose sides are unknown."""
+        inward = np.stack([_inward(space, lines, k) for k in (0, 1)], axis=1)
+        known = (inward != 0.0).all(axis=1)
+        if not known.any():
+            return None
+        inward, widest = inward[known], widest[known]
+        pieces, starts, steps = lines.pieces[known], lines.starts[known], lines.steps[known]
+        each = np.full(len(pieces), FEWEST)
+        while True:
+            firsts = np.cumsum(each) - each
+            owner, number = repeated(each)
+            shares = number / (each[owner] - 1.0)
+            uv = starts[owner, 0] + shares[:, None] * steps[owner, 0]
+            places = at_places(space, pieces[owner, 0], uv)
+            normals, last = places.normals, each[owner] - 1
+            index = np.arange(len(owner))
+            before, after = index - (number > 0), index + (number < last)
+            spread = (normals[after] - normals[before]) / (after - before)[:, None]
+            is_pole = (normals == 0.0).all(axis=1)
+            spread[is_pole[before] | is_pole[after]] = 0.0
+            apart = np.maximum.reduceat(np.linalg.norm(spread, axis=1), firsts)
+            more = (apart > FINE) & (each < MOST)
+            if not more.any():
+                break
+            each = np.where(more, 2 * each - 1, each)
+        points = places.vectors[:, 0]
+        away = np.linalg.norm(points[firsts + each - 1] - points[firsts], axis=1)
+        closed = away <= SAME * size
+        cells = np.zeros((2 * CELLS + 5,) * 3, np.bool_)
+        around = np.array(_cell_of(normals))
+        for step in np.indices((3, 3, 3)).reshape(3, -1, 1).swapaxes(0, 1) - 1:
+            cells[tuple(around + step)] = True
+        slack = np.minimum(4.0 * widest, WIDEST) + BEYOND  # gaps are measured at some places
+        return cls(
+            space, pieces, starts, steps, inward, closed, slack, owner, shares, normals, spread,
+            float((apart + slack).max()), tree_of(normals), cells,
+        )  # fmt: skip
+
+    def at(self, normals: Array) -> AtEdges:
+        """Return the points of edges with unit normals (S, 3)."""
+        (near,) = np.nonzero(self.cells[_cell_of(normals)])
+        found = self.tree.query_ball_point(normals[near], self.reach)
+        numbers = np.repeat(near, [len(x) for x in found])
+        rows = np.concatenate([np.empty(0, np.int64), *found]).astype(np.int64)
+        away, spread = normals[numbers] - self.normals[rows], self.spread[rows]
+        size = np.maximum(np.einsum("kx,kx->k", spread, spread), 1e-300)
+        away -= (np.einsum("kx,kx->k", away, spread) / size)[:, None] * spread
+        keep = np.linalg.norm(away, axis=1) <= size + self.slack[self.owner[rows]]
+        numbers, rows = numbers[keep], rows[keep]
+        owner, shares = self.owner[rows], self.shares[rows]
+        one = self._solved(owner, 0, shares, normals[numbers])
+        close = np.linalg.norm(one.normals - normals[numbers], axis=1) <= self.slack[owner]
+        numbers, owner, shares = numbers[close], owner[close], shares[close]
+        one = _Side._make(x[close] for x in one)
+        other = self._solved(owner, 1, shares, normals[numbers])
+        gaps = np.linalg.norm(other.normals - one.normals, axis=1)
+        near = (gaps > GAP) & (gaps <= WIDEST)
+        for x in (one, other):
+            near &= np.linalg.norm(x.normals - normals[numbers], axis=1) <= gaps + BEYOND
+        numbers, owner = numbers[near], owner[near]
+        one, other = (_Side._make(x[near] for x in side) for side in (one, other))
+        settled = np.maximum(one.off, other.off) <= SETTLED
+        share = np.where(self.closed[owner] & (one.share >= 1.0 - SAME), 0.0, one.share)
+        # Neighbours lead to one place, as do both ends of a closed edge.
+        order = np.lexsort((~settled, share, owner, numbers))
+        same = (np.diff(numbers[order]) == 0) & (np.diff(owner[order]) == 0)
+        near = np.append(False, same & (np.diff(share[order]) <= APART))[: len(order)]
+        firsts = np.flatnonzero(~near)
+        low = np.minimum.reduceat(np.where(settled, share, np.inf)[order], firsts)
+        high = np.maximum.reduceat(np.where(settled, share, -np.inf)[order], firsts)
+        rows, settled = order[firsts], (low <= high) & (high <= low + SAME)
+
+        def both(name: str) -> Array:
+            return np.stack([getattr(x, name)[rows] for x in (one, other)], axis=1)
+
+        return AtEdges(
+            numbers[rows], self.pieces[owner[rows]], one.point[rows], both("uv"), both("normals"),
+            both("slope"), both("along"), both("curvatures"), settled,
+        )  # fmt: skip
+
+    def _solved(self, edges: Indices, side: int, shares: Array, normals: Array) -> _Side:
+        """Return the places of edges, near `shares` (k,), where n·t = 0 on one side."""
+        pieces, starts, steps = (x[edges, side] for x in (self.pieces, self.starts, self.steps))
+        du, dv = steps.T[:, :, None]
+
+        def derivatives(shares: Array) -> tuple[Array, Array, Array, Array]:
+            jets = _jets(self.space, pieces, starts + shares[:, None] * steps)
+            tangents = jets[:, 1] * du + jets[:, 2] * dv
+            bends = jets[:, 3] * du * du + 2.0 * jets[:, 4] * du * dv + jets[:, 5] * dv * dv
+            first, second = (np.einsum("kx,kx->k", x, normals) for x in (tangents, bends))
+            return first, second, tangents, jets[:, 0]
+
+        for _ in range(STEPS):
+            first, second, *_ = derivatives(shares)
+            move = np.divide(first, second, out=np.zeros_like(first), where=second != 0.0)
+            shares = np.clip(shares - move, 0.0, 1.0)
+        first, second, tangents, points = derivatives(shares)
+        uv = starts + shares[:, None] * steps
+        places, lengths = at_places(self.space, pieces, uv), np.linalg.norm(tangents, axis=1)
+        inward = self.inward[edges, side] / lengths
+        slope = inward * np.einsum("kx,kx->k", np.cross(places.normals, tangents), normals)
+        off = np.abs(first) / lengths
+        return _Side(points, uv, places.normals, slope, second, places.curvatures, off, shares)
+
+
+class _Side(NamedTuple):
+    """One face at places of edges; see `AtEdges`. `off` (k,) are the lengths |n·t|."""
+
+    point: Array
+    uv: Array
+    normals: Array
+    slope: Array
+    along: Array
+    curvatures: Array
+    off: Array
+    share: Array
+
+
+def largest_radius(K: Array, H: Array) -> Array:
+    """Return the larger radius of curvature, infinite where K is 0."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.nan_to_num(
+            (np.abs(H) + np.sqrt(np.maximum(H * H - K, 0.0))) / np.abs(K), nan=np.inf
+        )
+
+
+def _jets(space: PartSpace, pieces: Indices, uv: Array) -> Array:
+    """Return jets (k, 6, 3) of pieces (k,) at parameters (k, 2)."""
+    found = np.empty((len(uv), 6, 3))
+    for k, rows in grouped(pieces):
+        found[rows] = space.pieces[k].jets(*uv[rows].T.copy())
+    return found
+
+
+def _cell_of(normals: Array) -> tuple[Indices, Indices, Indices]:
+    """Return the cells of directions (k, 3), which leave out a margin."""
+    x, y, z = np.rint(CELLS * normals).astype(np.int64).T + CELLS + 2
+    return x, y, z
+
+
+class _Lines(NamedTuple):
+    """Straight lines in parameters of two sides, see `EdgeGaps`, with some `places` on both.
+
+    Inside of a face, `axes` (E,) is 0 for a line u = c, and 1 for v = c; it is −1 between faces.
+    """
+
+    pieces: Indices
+    starts: Array
+    steps: Array
+    axes: Indices
+    places: Array
+
+
+def _between_faces(space: PartSpace) -> _Lines:
+    """Return the edges that are straight in the parameters of both faces."""
+    edges = edges_of(space)
+    first, last = edges.starts[:-1], edges.starts[1:] - 1
+    points = edges.points.reshape(-1, 2, 2)
+    starts, steps = points[first], points[last] - points[first]
+    owner = repeated(np.diff(edges.starts))[0]
+    sizes = space.sizes[edges.pieces]
+    along, away = steps / sizes, (points - starts[owner]) / sizes[owner]
+    off = np.abs(away[..., 0] * along[owner, :, 1] - away[..., 1] * along[owner, :, 0])
+    off = np.maximum.reduceat(off.max(axis=1), first) if len(first) else np.empty(0)
+    length = np.linalg.norm(along, axis=2).min(axis=1)
+    keep = (off <= STRAIGHT * length) & (length > 0.0)
+    places = np.rint((last - first)[:, None] * SHARES).astype(np.int64) + first[:, None]
+    found = edges.pieces, starts, steps, np.full(len(edges), -1), points[places]
+    return _Lines._make(x[keep] for x in found)
+
+
+def _inside_faces(space: PartSpace) -> Iterator[_Lines]:
+    """Yield the knots of faces where tangent planes jump, and seams of closed faces."""
+    for k, piece in enumerate(space.pieces):
+        surface = piece.surface
+        if piece.face.geometry.net is None or surface.tape is None:
+            continue
+        for axis in (0, 1):
+            low, high = surface.domain[1 - axis]
+            for line in creases_of(surface.tape, axis, surface.domain, surface.boundary):
+                starts, steps = np.zeros((2, 1, 2, 2))
+                starts[..., axis], starts[..., 1 - axis], steps[..., 1 - axis] = (
+                    line,
+                    low,
+                    high - low,
+                )
+                places = starts[:, None] + SHARES[:, None, None] * steps[:, None]
+                yield _Lines(np.array([[k, k]]), starts, steps, np.array([axis]), places)
+
+
+def _inward(space: PartSpace, lines: _Lines, side: int) -> Array:
+    """Return whether faces are on the side of N × t (1) of edges, or on the other one (−1).
+
+    Return 0 if a face is on both sides, or on none.
+    """
+    owner, step = lines.pieces[:, side], lines.steps[:, side]
+    uv, count = lines.starts[:, side] + 0.5 * step, np.arange(len(owner))
+    jets = _jets(space, owner, uv)
+    tangents = np.einsum("ki,kix->kx", step, jets[:, 1:3])
+    across = np.einsum("kx,kix->ki", np.cross(normals_of_jets(jets), tangents), jets[:, 1:3])
+    across /= np.maximum(np.einsum("kix,kix->ki", jets[:, 1:3], jets[:, 1:3]), 1e-300)
+    across /= np.abs(across / space.sizes[owner]).max(axis=1, keepdims=True)
+    found = (2 * side - 1) * np.sign(across[count, lines.axes])  # of the lines inside of faces
+    edges = lines.axes < 0
+    found[edges] = 0.0
+    for k, rows in grouped(np.where(edges, owner, -1)):
+        piece = space.pieces[k]
+        for sign in (1.0, -1.0) if k >= 0 else ():
+            places = uv[rows] + sign * BESIDE * across[rows]
+            low, high = np.array(piece.surface.domain).T
+            turned = [x[0] == "periodic" for x in piece.surface.boundary]
+            inside = (((places >= low) & (places <= high)) | turned).all(axis=1)
+            found[rows] += sign * (inside & piece.contains(places))
+    return found
