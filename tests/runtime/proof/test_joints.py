@@ -163,3 +163,12 @@ def test_a_crease_is_no_joint() -> None:
     rough, smooth = (new_index(turned(MERIDIAN, np.array([15.0, 20.0, 5.0]), k)) for k in (8, 9))
     assert len(rough.index.joints.u) + len(rough.index.joints.v) < 5
     assert len(smooth.index.joints.u) + len(smooth.index.joints.v) == 5
+
+
+def test_creases_that_meet_at_a_pole_have_no_point_there() -> None:
+    """At a pole x_u is 0, and a normal that is perpendicular to x_v is not that of the surface."""
+    surface = turned(MERIDIAN, np.array([3.0, 2.0, 1.0]), 8)
+    samples = gm.GaussMap(surface).points(AROUND)
+    at = samples.points[samples.component == gm.Component.CREASE]
+    assert len(at) > 20
+    assert (np.abs(at[:, 2]) < 1.0 - 1e-9).all()
