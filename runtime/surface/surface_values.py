@@ -256,7 +256,7 @@ class SurfaceValues(Immutable):
         --------
         >>> import gaussmap as gm
         >>> def f(u, v):
-        ...     return np.stack([u, v, np.abs(u)], axis=-1)
+        ...     return np.stack([u, v, np.floor(u)], axis=-1)
         >>> gm.surfaces.torus().tape is None
         False
 

@@ -60,6 +60,15 @@ class ObjectArrays:
         """Return a new array of zeros."""
         return np.zeros(shape, object if dtype in (float, np.float64) else dtype)
 
+    @staticmethod
+    def sinc(x: Any) -> Any:  # noqa: ANN401
+        """Return sin(π x) / (π x)."""
+
+        def of(y: Any) -> Any:  # noqa: ANN401
+            return y.written("sinc", y * math.pi) if isinstance(y, Traced) else np.sinc(y)
+
+        return np.frompyfunc(of, 1, 1)(x)
+
 
 def _with_object_arrays(function: Function) -> Function:
     """Return a copy of a Python function in which new arrays of NumPy can hold traced numbers.
@@ -154,8 +163,8 @@ class Traced:
     """A number that depends on u and v: operations on it are written to a tape.
 
     For an array of objects, a function of NumPy calls the method of the same name of each object:
-    np.sin calls `sin`. Comparisons give conditions, which have no truth value. Absolute values can
-    only be compared. Integer conversion and equality raise TypeError.
+    np.sin calls `sin`. Comparisons give conditions, which have no truth value. Integer conversion
+    and equality raise TypeError.
     """
 
     writer: TapeWriter
@@ -187,7 +196,7 @@ class Traced:
     __ge__, __le__ = __gt__, __lt__  # Neither decides equality
 
     def __abs__(self) -> AbsoluteValue:
-        return AbsoluteValue(self)
+        return AbsoluteValue(self.writer, (self * self.written("sign", self)).row, self)
 
     def __pos__(self) -> Traced:
         return self
@@ -253,15 +262,15 @@ class Traced:
 
 
 @dataclass(frozen=True, eq=False)
-class AbsoluteValue:
-    """The absolute value of a traced number, only for comparisons: it has no derivative at 0."""
+class AbsoluteValue(Traced):
+    """The absolute value of a traced number; comparisons are those of the number, smooth at 0."""
 
     of: Traced
 
-    def __gt__(self, other: Traced | float) -> Condition:
+    def __gt__(self, other: object) -> Condition:
         return (self.of > other) | (-self.of > other)
 
-    def __lt__(self, other: Traced | float) -> Condition:
+    def __lt__(self, other: object) -> Condition:
         return (self.of < other) & (-self.of < other)
 
     __ge__, __le__ = __gt__, __lt__

@@ -135,6 +135,8 @@ TRACED: list[Callable[..., Any]] = [
     lambda u, v: np.stack([u, v, np.zeros_like(u)], axis=-1),
     lambda u, v: np.stack([u, v, np.full(u.shape, 3.0)], axis=-1),
     lambda u, v: np.stack([u, v, u * v], axis=-1) @ np.array([[1, 2, 3], [0, 1, 0], [1, 0, 2]]),
+    lambda u, v: np.stack([np.abs(u - 9.0) ** 1.5, v, abs(v + 9.0) * u], axis=-1),
+    lambda u, v: np.stack([u, np.sinc(v - 0.2), np.sinc(u) * v + np.sinc(0.3)], axis=-1),
     lambda u, v: np.stack([u, v, np.polyval([1.0, 2.0, 3.0], u)], axis=-1),
 ]
 
@@ -184,7 +186,7 @@ UNTRACED: list[Callable[..., Any]] = [
     lambda u, v: np.stack([u, v, np.where(u == 0.5, u, v)], axis=-1),
     lambda u, v: np.stack([u, v, np.where(u != 0.5, u, v)], axis=-1),
     lambda u, v: np.stack([u, v, u if u.all() else v], axis=-1),
-    lambda u, v: np.stack([u, v, np.abs(u)], axis=-1),
+    lambda u, v: np.stack([u, v, np.sign(u)], axis=-1),
     lambda u, v: np.stack([u, v, np.maximum(u, v)], axis=-1),
     lambda u, v: np.stack([u, v, np.floor(u)], axis=-1),
     lambda u, v: np.stack([u, v, (u * v).astype(np.float32)], axis=-1),
