@@ -26,8 +26,6 @@ from .patch import (
 )
 from .reading import ReadingError, read
 
-__all__ = ["BezierTriangle"]
-
 PAPER_NORMAL = (scalar("n_1"), scalar("n_2"), scalar("n_3"))
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 

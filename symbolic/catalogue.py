@@ -20,8 +20,6 @@ from . import (
 )
 from .formula import Formula
 
-__all__ = ["formulas"]
-
 formulas: Mapping[str, Formula] = MappingProxyType(
     {
         formula.name: formula

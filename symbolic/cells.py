@@ -10,21 +10,6 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-__all__ = [
-    "ALIGNED",
-    "CHORD",
-    "HEXAGON",
-    "area",
-    "gradient",
-    "kappa1",
-    "kappa2",
-    "legs",
-    "radius",
-    "theta",
-    "turned_triangle",
-    "turning",
-]
-
 kappa1, kappa2, area, radius = sp.symbols("kappa1 kappa2 A R", positive=True)
 theta = sp.Symbol("theta", real=True)
 Corner = Sequence[sp.Expr]

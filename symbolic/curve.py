@@ -20,8 +20,6 @@ import sympy as sp
 from .formula import Formula, compose
 from .notation import Dot, plane_vectors, scalar, substitute
 
-__all__ = ["FORMULAS", "NET", "b_spline_net"]
-
 SECTION = "Sect. 4.1"
 
 a, b, c, n = plane_vectors("abcn")

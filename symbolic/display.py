@@ -14,8 +14,6 @@ from sympy.printing.str import StrPrinter
 from .notation import Definition, Dot, VectorSymbol, scalar, substitute, vectors
 from .printer import PositiveFirst
 
-__all__ = ["latex", "latex_name", "latex_of", "text"]
-
 TEXT_WIDTH = 84
 LATEX_WIDTH = 62
 

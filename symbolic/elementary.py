@@ -10,17 +10,6 @@ import sympy as sp
 from .formula import Formula, Parts, formula
 from .notation import scalar
 
-__all__ = [
-    "CODES",
-    "FIRST_PART",
-    "FORMULAS",
-    "FUNCTIONS",
-    "LAST_PART",
-    "LIBRARY",
-    "SECOND_PART",
-    "constants",
-]
-
 x, y, w = scalar("x"), scalar("y"), scalar("w")
 HIGHEST = 3  # order of Taylor coefficients
 # The assumed bound of relative errors of functions of the C library, in units of 2⁻⁵³: two units in

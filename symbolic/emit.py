@@ -22,20 +22,6 @@ from .notation import (
 from .printer import source_of
 from .simplify import straight_line
 
-__all__ = [
-    "KINDS",
-    "arguments",
-    "assignments",
-    "counts",
-    "described",
-    "function",
-    "functions",
-    "grouped",
-    "named_tuples",
-    "render",
-    "unpacked",
-]
-
 TEMPLATES = Path(__file__).parent / "templates"
 PLACEHOLDER = re.compile(r"^(?P<indent> *)\{\{(?P<key>\w+)\}\}$", re.MULTILINE)
 WIDTH = 92

@@ -15,18 +15,6 @@ import sympy as sp
 from .formula import Formula, Parts, formula
 from .notation import Dot, dot, scalar, substitute, vectors
 
-__all__ = [
-    "ENTRIES",
-    "ENVELOPE_OPERATOR",
-    "HESSIAN_OF_EXTENSION",
-    "HESSIAN_SYMBOLS",
-    "INTRINSIC_GRADIENT",
-    "SECOND_DERIVATIVES",
-    "derivatives_of_extension",
-    "entries",
-    "verified",
-]
-
 # The entries of a symmetric matrix, in the order of the formula `hessian`.
 ENTRIES = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 

@@ -25,8 +25,6 @@ from .notation import Definition, dot, flat, scalar
 from .printer import array_source_of, source_of
 from .simplify import straight_line
 
-__all__ = ["NORMAL", "array_function", "is_homogeneous"]
-
 NORMAL = n.components
 # For longer expressions, homogeneity is not tested, and the general formula is used, which always
 # holds.

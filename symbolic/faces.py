@@ -16,8 +16,6 @@ from .notation import Dot, VectorSymbol, derivative, scalar, substitute, vectors
 from .patch import VECTORS, a, b, c, d, e, p
 from .surfaces import TORUS
 
-__all__ = ["CONE_NORMAL", "FORMULAS", "OFFSET_JET", "REVOLUTION_JET", "TORUS_NORMAL"]
-
 # The derivatives of a surface by u and v, in the order of its 2-jet.
 ORDERS = ("", "u", "v", "uu", "uv", "vv")
 

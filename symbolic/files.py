@@ -35,8 +35,6 @@ from .positions import position, surface_jet
 from .printer import source_of
 from .tape import tape_steps
 
-__all__ = ["GENERATED", "derive", "differences", "existing", "write"]
-
 GENERATED = Path(__file__).parent.parent / "generated"
 PROJECT = GENERATED.parent / "pyproject.toml"
 # The title of each generated file of formulas, by the module that holds its formulas; file and

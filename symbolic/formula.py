@@ -15,8 +15,6 @@ import sympy as sp
 from .display import latex, text
 from .notation import Definition, components, flat, named, substitute
 
-__all__ = ["BEYOND_THE_PAPER", "Content", "Formula", "Parts", "compose", "formula"]
-
 BEYOND_THE_PAPER = "beyond the paper"
 Named = Iterable[tuple[str, sp.Expr]]
 

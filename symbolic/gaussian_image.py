@@ -45,8 +45,6 @@ from .patch import (
     v,
 )
 
-__all__ = ["FORMULAS"]
-
 s, t = scalar("s"), scalar("t")
 z0, z1, z2, r = (scalar(x) for x in ("z0", "z1", "z2", "r"))
 p_u, p_v, N, q, n_t, N0, N1, N2, f1, f2, f3, x = vectors(

@@ -10,18 +10,6 @@ from typing import Any
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-__all__ = [
-    "CORNERS",
-    "EDGES",
-    "FACES",
-    "PHI",
-    "barycentric",
-    "face_radius",
-    "frame",
-    "golden_parts",
-    "tables",
-]
-
 PHI = sp.GoldenRatio
 # The cyclic permutations of (0, ±1, ±φ).
 CORNERS = [

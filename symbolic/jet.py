@@ -18,8 +18,6 @@ from .formula import Formula, Parts, formula
 from .notation import Cross, Dot, derivative, scalar, substitute, vectors
 from .patch import FORM_TERMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d, e, n, r
 
-__all__ = ["AT_JET", "FORMULAS", "N_ALONG"]
-
 N, N_u, N_v, w = vectors(("N", "N_u", "N_v", "w"))
 E, F, G, L = (scalar(x) for x in "EFGL")
 

@@ -33,8 +33,6 @@ from .positions import position
 from .simplify import straight_line
 from .uses import functions, wholes
 
-__all__ = ["document", "markdown", "parts_of", "passages", "sections"]
-
 GENERATOR = f"Written by `make generate` with SymPy {sp.__version__}: do not edit."
 FORMULAS = {
     "One quadratic patch": patch.FORMULAS,

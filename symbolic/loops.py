@@ -18,8 +18,6 @@ from .notation import VectorSymbol
 from .printer import source_of
 from .simplify import straight_line
 
-__all__ = ["array_function", "jet_function", "row_loop", "row_shapes"]
-
 Symbols = Sequence[sp.Symbol]
 
 # The names of the arrays of some arguments; the array of any other argument is named after it.

@@ -7,8 +7,6 @@ import sympy as sp
 from .formula import Formula, Parts, formula
 from .notation import Cross, Dot, scalar, vectors
 
-__all__ = ["FORMULAS"]
-
 p0, p1, p2, n0, n1, n2 = vectors(("p0", "p1", "p2", "n0", "n1", "n2"))
 e, f, g, N = vectors(("e", "f", "g", "N"))
 r, k, beta = scalar("r"), scalar("k"), scalar("beta")

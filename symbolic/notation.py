@@ -8,26 +8,6 @@ from typing import Any, Literal, cast
 import sympy as sp
 from sympy.printing.precedence import PRECEDENCE
 
-__all__ = [
-    "Cross",
-    "CubicTaylorSymbol",
-    "Definition",
-    "Det",
-    "Dot",
-    "PlaneVector",
-    "TaylorSymbol",
-    "VectorSymbol",
-    "components",
-    "derivative",
-    "dot",
-    "flat",
-    "named",
-    "plane_vectors",
-    "scalar",
-    "substitute",
-    "vectors",
-]
-
 Definition = tuple[sp.Symbol, sp.Expr]
 
 

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["CompiledFormula", "compiled"]
-
 PREAMBLE = "import math\nfrom typing import NamedTuple\n"
 
 

@@ -13,8 +13,6 @@ from .formula import Formula, Parts, compose, formula
 from .notation import dot, scalar, substitute, vectors
 from .patch import ENVELOPE, FORMS, PARAMETERS
 
-__all__ = ["BASIS", "FORMULAS", "LINEAR_FIELD", "MOVED", "SPHERICAL_FIELD", "n0", "n1", "n2"]
-
 SOURCE = "Sect. 3"
 
 n, n0, n1, n2, x, y = vectors(("n", "n_0", "n_1", "n_2", "x", "y"))

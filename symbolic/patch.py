@@ -16,8 +16,6 @@ import sympy as sp
 from .formula import Formula, Parts, compose, formula
 from .notation import Cross, Det, Dot, scalar, substitute, vectors
 
-__all__ = ["FORMULAS", "Elimination", "bernstein", "eliminate", "quadrature_node"]
-
 a, b, c, d, e, p, n = vectors("abcdepn")
 VECTORS = (a, b, c, d, e)
 A, B, C, P, Q = LINEAR_FORMS = tuple(scalar(x) for x in "ABCPQ")

@@ -6,8 +6,6 @@ from .formula import BEYOND_THE_PAPER, Content, Formula
 from .notation import vectors
 from .surfaces import ParametricSurface
 
-__all__ = ["position", "surface_jet"]
-
 
 def position(surface: ParametricSurface) -> Formula:
     """Return x(u,v) of a surface as a formula of u, v and its parameters."""

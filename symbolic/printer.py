@@ -15,8 +15,6 @@ from sympy.printing.numpy import SciPyPrinter
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
-__all__ = ["PositiveFirst", "array_source_of", "operations", "source_of"]
-
 LONGEST_PRODUCT = 64  # higher powers are calls of `math.pow`
 
 

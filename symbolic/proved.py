@@ -21,8 +21,6 @@ from .formula import Formula, Parts, formula
 from .notation import Cross, scalar, substitute
 from .patch import LINEAR_FORMS, SOLUTION, VECTORS, A, B, C, D, P, Q, a, b, c, d, e
 
-__all__ = ["FORMULAS"]
-
 s, t, x, y, i, j = (scalar(name) for name in "stxyij")
 
 

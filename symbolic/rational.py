@@ -7,8 +7,6 @@ import sympy as sp
 from .formula import Parts, formula
 from .notation import scalar, substitute, vectors
 
-__all__ = ["FORMULAS"]
-
 SOURCE = "beyond the paper; Piegl & Tiller, The NURBS Book, eqs. (4.19) and (4.20)"
 # The derivatives of order 0, 1 and 2, named by parameters; each follows the derivatives on which it
 # depends.

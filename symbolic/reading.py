@@ -21,23 +21,6 @@ from sympy.core.relational import Relational
 from sympy.functions.elementary.piecewise import ExprCondPair
 from sympy.logic.boolalg import Boolean, BooleanAtom, BooleanFunction
 
-__all__ = [
-    "FUNCTIONS",
-    "MOST_BITS",
-    "MOST_DERIVED",
-    "MOST_EXACT",
-    "MOST_STEPS",
-    "ReadingError",
-    "free_symbols",
-    "is_differentiable",
-    "is_long",
-    "parts",
-    "read",
-    "refuse_unusable",
-    "replaced",
-    "with_shared_parts",
-]
-
 LONGEST_TEXT = 20_000  # characters
 DEEPEST_TREE = 200
 MOST_STEPS = 10_000  # literals, names, operations and calls; those in sums count for each term

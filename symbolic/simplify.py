@@ -14,8 +14,6 @@ from .formula import Formula
 from .notation import Definition, substitute
 from .printer import operations
 
-__all__ = ["StraightLine", "straight_line"]
-
 
 @dataclass(frozen=True)
 class StraightLine:

@@ -24,8 +24,6 @@ from . import patch
 from .formula import Formula, Parts, formula
 from .notation import VectorSymbol, scalar, substitute
 
-__all__ = ["FORMULAS", "NEIGHBOURS", "SCALE", "box_spline_net", "coefficient_weights"]
-
 Point = tuple[Fraction, Fraction]
 Triangle = tuple[Point, Point, Point]
 Moments = Callable[[], Mapping[tuple[int, int], Fraction]]

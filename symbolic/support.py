@@ -23,19 +23,6 @@ from .formula import BEYOND_THE_PAPER, Content, Formula, Parts, compose, formula
 from .notation import Dot, scalar, substitute
 from .patch import CURVATURE, ENVELOPE, FORMS, HESSIAN, PARAMETERS, SUPPORT_FUNCTION, TANGENTS
 
-__all__ = [
-    "BRANCH",
-    "CURVATURE_FROM_HESSIAN",
-    "FORMULAS",
-    "HESSIAN_AT",
-    "LOOPS",
-    "OFFSET",
-    "OFFSET_CURVATURE",
-    "OFFSET_GROWTH",
-    "PARAMETERS_AT",
-    "TANGENT_PLANE",
-]
-
 R = scalar("R")
 
 TANGENT_PLANE = Formula.build(

@@ -12,8 +12,6 @@ from .jet import AT_JET
 from .notation import substitute
 from .patch import VECTORS
 
-__all__ = ["CATALOGUE", "Boundary", "BoundaryCondition", "Parameter", "ParametricSurface", "u", "v"]
-
 Triple = tuple[sp.Expr, sp.Expr, sp.Expr]
 BoundaryCondition = Literal["open", "periodic", "mirrored", "pole"]
 BoundaryPair = tuple[BoundaryCondition, BoundaryCondition]

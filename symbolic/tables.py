@@ -11,8 +11,6 @@ import sympy as sp
 
 from . import icosahedron, spline
 
-__all__ = ["differences", "grid", "icosahedron_tables"]
-
 # The number of points of a difference formula; the order of a central difference is one less.
 STENCIL = 9
 WIDTH = 106  # of the longest row of small numbers

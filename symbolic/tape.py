@@ -14,8 +14,6 @@ import sympy as sp
 from .elementary import FUNCTIONS
 from .reading import is_long, parts, replaced, with_shared_parts
 
-__all__ = ["NoTapeError", "Step", "tape_steps"]
-
 # The name of an operation and its arguments: in general indices of steps; for "constant" a value
 # and a bound of its error; for "parameter" a name; for "power" the index of a step and twice the
 # exponent.

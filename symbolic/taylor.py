@@ -21,8 +21,6 @@ import sympy as sp
 from .formula import Formula, Parts, formula
 from .notation import CubicTaylorSymbol, TaylorSymbol, scalar
 
-__all__ = ["FORMULAS"]
-
 Coefficients = dict[str, Any]
 Symbols = Mapping[sp.Symbol, sp.Symbol]
 

@@ -8,8 +8,6 @@ from functools import lru_cache
 
 from .formula import Formula
 
-__all__ = ["functions", "wholes"]
-
 
 def functions(sources: Mapping[str, str]) -> dict[str, list[str]]:
     """Return the generated functions of each formula, as `file.name`, by the formula's name.

@@ -27,16 +27,6 @@ if TYPE_CHECKING:
     from .gauss_map.silhouette import Silhouette
     from .meshes.mesh import Mesh
 
-__all__ = [
-    "mesh",
-    "offset",
-    "unobstructed",
-    "visible",
-    "weights",
-    "write",
-]
-
-
 # The number of samples of the mesh that decides which points of a silhouette are hidden.
 OF_VIEW = 10_000
 

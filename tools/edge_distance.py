@@ -22,8 +22,6 @@ from .support_points import Segments
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["AwayFrom"]
-
 # The length of an arc is about the distance divided by ARCS_A_DISTANCE; there are about MOST_ARCS
 # arcs at most.
 ARCS_A_DISTANCE, MOST_ARCS = 16.0, 100_000

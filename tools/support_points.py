@@ -34,8 +34,6 @@ from ..runtime.surface.surface import Surface
 from .meshes.border import border_lines
 from .meshes.places import on_side, uv_at, wrapped
 
-__all__ = ["NetEdges", "Segments", "SupportPoints", "bounds_of", "lines_of", "support"]
-
 # Sides of the domain are cut into this number of segments for each cell.
 STEPS_A_CELL = 2
 # Sets of directions are halved until at most PAIRS pairs of a direction and a segment that may be

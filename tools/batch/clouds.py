@@ -14,8 +14,6 @@ from ...runtime.samples.fields import COLUMNS, row_shape
 from .folder import Settings
 from .part_files import arrays_in, opened_part
 
-__all__ = ["Clouds"]
-
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Clouds:

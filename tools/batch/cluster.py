@@ -25,8 +25,6 @@ from .inputs import Input
 from .plan import Plan
 from .workers import Tally, Worker, sampled
 
-__all__ = ["connected", "run_on_cluster"]
-
 # The number of times that a task may be given to another worker after its worker was lost.
 LOST = 10
 # Seconds that a scheduler, or its first worker, may take to answer.

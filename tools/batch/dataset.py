@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
     from ...runtime.samples.samples import Samples
 
-__all__ = ["Dataset", "open_dataset"]
-
 
 def open_dataset(folder: PathLike) -> Dataset:
     """Open a data set: a folder that `sample_many` has written with ``out=folder``.

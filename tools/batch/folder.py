@@ -29,22 +29,6 @@ from ...runtime.machine_code.sources import digest
 from ...runtime.samples.fields import COLUMNS, EDGE_NAMES
 from ..files.paths import BEGUN, PathLike, atomic_path, checked_path, reason_of
 
-__all__ = [
-    "MANIFEST",
-    "NORMALS",
-    "PARTIAL",
-    "POINTS",
-    "SETTINGS",
-    "Settings",
-    "checked_names",
-    "opened",
-    "part_path",
-    "parts_in",
-    "read_settings",
-    "remove_from",
-    "replaced",
-]
-
 SETTINGS, LOCK, NORMALS, MANIFEST = "dataset.json", ".lock", "normals.npy", "manifest.parquet"
 POINTS, PARTIAL = FOLDERS = "points", "partial"
 FORMAT = 4

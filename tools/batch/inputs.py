@@ -23,8 +23,6 @@ from ..files.paths import checked_path, reason_of
 from ..files.reading import UnusableError, regular_file
 from .manifest import as_text
 
-__all__ = ["Input", "Source", "content_of", "inputs_of", "parameters_of"]
-
 Source = Surface | Spline | Part | str | os.PathLike[str]
 # The fingerprint of a surface is its points at this number of parameters along u and along v:
 # enough to detect small changes, and fewer points than sampling evaluates.

@@ -25,8 +25,6 @@ from .part_files import write_manifest
 from .plan import Plan
 from .workers import Tally, run_locally
 
-__all__ = ["limits_of", "make", "progress", "watched"]
-
 # The share of this machine's memory that all workers together may use.
 SHARE = 0.9
 

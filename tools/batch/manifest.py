@@ -8,16 +8,6 @@ from typing import Any
 
 from ...runtime.base.extras import from_extra
 
-__all__ = [
-    "COLUMNS",
-    "FAILED",
-    "OK",
-    "ManifestRow",
-    "as_text",
-    "manifest_schema",
-    "manifest_table",
-]
-
 OK, FAILED = "ok", "failed"
 # The name of the Arrow type for each Python type of a column.
 TYPES = {"int": "int64", "str": "string", "float | None": "float64"}

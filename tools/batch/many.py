@@ -27,8 +27,6 @@ from .inputs import Source
 from .making import make
 from .plan import SECONDS, plan_of
 
-__all__ = ["sample_many"]
-
 Surfaces = Iterable[Surface | Spline | str]
 ON_ERROR = ("raise", "skip", "return")
 

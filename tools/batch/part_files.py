@@ -36,19 +36,6 @@ from .manifest import ManifestRow, manifest_schema, manifest_table
 if TYPE_CHECKING:  # imports Numba, which reading a data set does not need
     from ...runtime.samples.samples import Samples
 
-__all__ = [
-    "arrays_in",
-    "opened_manifest",
-    "opened_part",
-    "points_schema",
-    "points_table",
-    "row_of",
-    "rows_of",
-    "stacked",
-    "write_manifest",
-    "write_part",
-]
-
 LONGEST_REASON, CODEC = 100, "zstd"
 REMEDY = "remove it, and run the same sampling again"
 # The fields that both samples of surfaces and samples of CAD parts have if they are requested.

@@ -20,8 +20,6 @@ from ..density.request import Request
 from ..sources.named import Named
 from .folder import NORMALS, Settings
 
-__all__ = ["SECONDS", "Plan", "plan_of"]
-
 SECONDS = 600.0
 
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from .manifest import ManifestRow
     from .plan import Plan
 
-__all__ = ["KEPT", "STOPPED", "Task", "serve"]
-
 GIB = 2**30
 # The statuses besides "ok" and "failed": KEPT if the part is unchanged, and STOPPED if its samples
 # cannot be written.

@@ -23,8 +23,6 @@ from .part_files import row_of, write_part
 from .plan import Plan
 from .worker_loop import KEPT, STOPPED, Task, serve
 
-__all__ = ["Tally", "Worker", "run_locally", "sampled"]
-
 # The largest number of failed parts that are shown when a run ends; the manifest has all of them.
 SHOWN = 10
 # A process has one thread, since one process runs on each core. Modules in the user's folder must

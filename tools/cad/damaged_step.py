@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from ..files.reading import UnusableError
 from .inspection import NOT_FINITE, TEXTS
 
-__all__ = ["COMMENT", "ENTITY", "LostFace", "numbers_of_entities", "without_damaged_faces"]
-
 COMMENT = re.compile(rb"/\*.*?\*/", re.DOTALL)
 ENTITY = re.compile(rb"#(\d+)\s*=\s*((?:'[^']*'|[^';])*);")
 REFERENCE = re.compile(rb"#(\d+)")

@@ -11,8 +11,6 @@ import numpy as np
 from ...runtime.base.aliases import Array
 from .records import Geometry
 
-__all__ = ["dimensions_of"]
-
 Dimensions = dict[str, Any]
 
 

@@ -31,8 +31,6 @@ from .results import PartSpace, space_of
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["AtEdges", "EdgeGaps", "largest_radius"]
-
 # Gaps wider than WIDEST are edges. An edge is straight in the parameters of a face if it is nowhere
 # off a straight line by more than STRAIGHT times the domain.
 WIDEST, STRAIGHT = math.radians(CREASE_ANGLE), 1e-12

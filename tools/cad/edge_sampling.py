@@ -18,8 +18,6 @@ from ..density.space import Space
 from .edges import Edges, Sides, edges_of, exact_places, sides_at
 from .results import PartSpace
 
-__all__ = ["step_of", "with_edges"]
-
 # The sizing function along an edge is measured in at least this many steps.
 PLACES = 32
 # The least number of steps between two ends. With 2 steps, an edge has a sample of its own even if

@@ -15,17 +15,6 @@ from .faces import own_parameters
 from .part import Part
 from .results import PartSpace
 
-__all__ = [
-    "Edges",
-    "Places",
-    "Sides",
-    "at_places",
-    "between_two",
-    "edges_of",
-    "exact_places",
-    "sides_at",
-]
-
 # Edges are sharp where the normals of the two faces differ by more than this, in degrees.
 SHARP = 1.0
 # Newton's method stops when the points on both faces are closer than SAME, relative to the size of

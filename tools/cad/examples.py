@@ -11,8 +11,6 @@ from .faces import face_surface
 from .part import Part, part_of
 from .records import EdgeRecord, FaceRecord, Geometry, Net, PartRecord
 
-__all__ = ["all_kinds", "box", "box_edges", "box_faces"]
-
 
 def box(width: float = 1.0, depth: float = 2.0, height: float = 3.0) -> Part:
     """Return a box in mm with a corner at the origin, and normals that point outward.

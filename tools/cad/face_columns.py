@@ -9,8 +9,6 @@ from ...runtime.samples.whole import FaceColumn
 if TYPE_CHECKING:
     from .part import Part
 
-__all__ = ["face_columns"]
-
 
 def face_columns(part: Part) -> list[FaceColumn]:
     """Return the face number in the file, the name, the kind and the radius of all faces.

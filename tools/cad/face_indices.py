@@ -25,8 +25,6 @@ from .faces import face_surface, simplest
 from .records import Geometry
 from .round_faces import ROUND, RoundFace
 
-__all__ = ["GAP", "face_index"]
-
 Array = NDArray[np.float64]
 
 # The numbers of cells of an index along u and v before bisection. They are small, since faces are

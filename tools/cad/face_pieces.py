@@ -41,8 +41,6 @@ from .faces import own_parameters
 from .part import Face
 from .records import Geometry
 
-__all__ = ["FacePiece", "pieces_of"]
-
 Array, Indices = NDArray[np.float64], NDArray[np.int64]
 Flags = NDArray[np.bool_]
 

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from ...runtime.proof.index import Undecided
 
-__all__ = ["NOTHING", "FaceIndex", "FacePlaces", "joined", "undecided"]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 

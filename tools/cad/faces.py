@@ -29,8 +29,6 @@ from .nets import SAME_END, curve_of_net, line_of, nurbs_of_curve, nurbs_of_net,
 from .offset_surface import OffsetSurface, Turned
 from .records import Geometry
 
-__all__ = ["face_surface", "own_parameters", "simplest"]
-
 Array = NDArray[np.float64]
 
 TURN = 2.0 * math.pi

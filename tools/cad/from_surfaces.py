@@ -28,8 +28,6 @@ from .sewing import Border, Sewn, sewn
 from .shells import shells_of
 from .surface_geometry import geometry_of_surface
 
-__all__ = ["part_of_surfaces"]
-
 # Boundaries coincide within this distance, relative to the size of all surfaces.
 TOLERANCE = 1e-6
 

@@ -14,17 +14,6 @@ from ...runtime.base.advice import CAD_SUFFIXES
 from ..files.numpy_files import array_file
 from ..files.reading import UnusableError
 
-__all__ = [
-    "HEAD",
-    "NOT_FINITE",
-    "TEXTS",
-    "UnusableError",
-    "checked_format",
-    "faces_said",
-    "format_of",
-    "is_part_file",
-]
-
 HEAD = 4096
 START_OF_STEP = re.compile(rb"(?<!END-)ISO-10303-21\s*;")
 END_OF_STEP = b"END-ISO-10303-21"

@@ -17,8 +17,6 @@ from .part import Part
 from .records import NO_AREA
 from .results import space_of
 
-__all__ = ["boundaries_of", "gap_of", "integrals_of", "signs_of", "volume_of"]
-
 # Nodes and weights of Gauss's rule on [0, 1], for each span of a surface and each segment of a
 # boundary.
 NODES, WEIGHTS = (x / 2.0 for x in np.polynomial.legendre.leggauss(5))

@@ -16,8 +16,6 @@ from .mesh_spacing import Spacing, least_enough
 from .part import Face
 from .results import PartSpace
 
-__all__ = ["MeshEdges", "SampledEdges"]
-
 # The spacing along an edge is measured in this many steps of equal length in its parameter.
 PLACES = 64
 # The least number of steps of a closed edge.

@@ -11,8 +11,6 @@ from ...runtime.base.extras import from_extra
 from .face_pieces import FacePiece
 from .mesh_edges import SampledEdges
 
-__all__ = ["EXTRA", "Crossing", "FaceBorder", "triangles_of"]
-
 # Shapely's constrained triangulations have no interior points; SciPy's have no constraints; the
 # library `triangle` is not free for all uses. The predicates of pythoncdt are exact.
 EXTRA = "pythoncdt", "mesh", "a mesh of a CAD part"

@@ -15,8 +15,6 @@ from .edge_sampling import step_of
 from .mesh_edges import MeshEdges
 from .results import PartSpace
 
-__all__ = ["graded"]
-
 # The size grows by at most this much per unit of distance from an edge.
 GROWTH = 0.55
 # Cells are halved until the sizes in a cell differ by about this fraction of its smallest size.

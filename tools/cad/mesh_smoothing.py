@@ -12,8 +12,6 @@ from ..meshes.triangulated import LARGEST_DEVIATION
 from .edges import Places, at_places
 from .results import PartSpace
 
-__all__ = ["smoothed"]
-
 # Vertices of triangles with an angle below SMALL degrees move, at most ROUNDS times.
 SMALL, ROUNDS = 30.0, 6
 # The ratio of height and side of an equilateral triangle.

@@ -27,8 +27,6 @@ from .edge_sampling import step_of
 from .face_pieces import FacePiece
 from .results import PartSpace
 
-__all__ = ["ByNormals", "Spacing", "TurnedPiece", "least_enough"]
-
 # Normals are compared at this number of values of each parameter, and at all knots.
 PLACES = 33
 # A face counts as ruled if its normals turn by less than this along a parameter, in radians. A

@@ -15,8 +15,6 @@ from ...runtime.surface.nurbs import Nurbs
 from ...runtime.surface.nurbs_input import nurbs_of
 from .records import Net
 
-__all__ = ["SAME_END", "curve_of_net", "line_of", "nurbs_of_curve", "nurbs_of_net", "nurbs_over"]
-
 Array = NDArray[np.float64]
 
 # Ends of domains closer than this, relative to the period or the length, are equal: CAD systems

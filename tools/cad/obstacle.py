@@ -11,8 +11,6 @@ from .part_meshing import mesh_of_part
 from .results import space_of
 from .selection import whole_part
 
-__all__ = ["obstacle_of"]
-
 # The number of vertices of the mesh; twice the number that edges need, if that is larger.
 VERTICES = 20_000
 

@@ -29,8 +29,6 @@ from ...runtime.tape.kernels.points import Tape
 from .kernels import faces as kernels
 from .turned_tape import turned_tape
 
-__all__ = ["OffsetSurface", "Turned"]
-
 Array = NDArray[np.float64]
 
 # A step is the largest power of two up to this fraction of a knot span.

@@ -24,8 +24,6 @@ from .saving import read_arrays, write_arrays
 if TYPE_CHECKING:
     from ...runtime.surface.surface import Surface
 
-__all__ = ["Face", "Part", "Solid", "part_of", "read_part"]
-
 Array = NDArray[np.float64]
 
 

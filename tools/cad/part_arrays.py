@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from .records import KINDS, FaceRecord, Geometry, Net, PartRecord
 
-__all__ = ["FORMAT", "VERSION", "geometry_of", "packed"]
-
 FORMAT = "gaussmap part"
 # To be increased when the arrays change such that older versions of gaussmap would misread them.
 VERSION = 2

@@ -13,8 +13,6 @@ from ...runtime.base.wording import plural
 from ..meshes.creased import CreasedMesh
 from ..meshes.links import edge_numbers
 
-__all__ = ["PartMesh"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PartMesh(CreasedMesh):

@@ -45,8 +45,6 @@ from .part_mesh import PartMesh
 from .records import NO_AREA
 from .results import PartSpace, space_of
 
-__all__ = ["mesh_of_part", "mesh_of_samples"]
-
 # Where a face has no normal, the normal is taken at this fraction of the way into the triangle.
 INSIDE = 1e-6
 # Edges are divided until triangles are valid, or ROUNDS times; samples outside of the polygons

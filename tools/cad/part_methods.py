@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from ...runtime.base.later import Later
 
-__all__ = ["Methods"]
-
 MEASURES, PLOT = "gaussmap.tools.cad.measures", "gaussmap.tools.pictures.plot"
 SELECTION = "gaussmap.tools.cad.selection"
 FROM_SURFACES = "gaussmap.tools.cad.from_surfaces"

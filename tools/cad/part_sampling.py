@@ -25,8 +25,6 @@ from .reached import reached
 from .results import PartSpace
 from .smooth_edges import each_once
 
-__all__ = ["sample_part", "samples_at"]
-
 Array = NDArray[np.float64]
 
 DENSITIES = ("gauss", "balanced", "uniform")

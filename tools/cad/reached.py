@@ -29,8 +29,6 @@ from .obstacle import obstacle_of
 from .part import Part
 from .results import PartSpace, space_of
 
-__all__ = ["borders_of", "reached", "weights_of"]
-
 # The number of cells per sample. Each cell gives its area to the nearest sample.
 CELLS_A_SAMPLE = 16
 # With twice as many points, the error of cubic interpolation is about 1/16 as large; a factor 2 is

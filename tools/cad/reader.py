@@ -26,8 +26,6 @@ from ..files.reading import UnusableError, regular_file
 from .part import Part, read_part
 from .worker import ERROR, PART
 
-__all__ = ["read_cad"]
-
 # The least memory limit, in GiB; Open CASCADE itself takes about a quarter of it.
 LEAST_MEMORY = 1.0
 MOST_SECONDS = 1e6
@@ -179,6 +177,7 @@ def _run(request: dict[str, object], seconds: float) -> int | None:
 
 
 def command_of_reader(request: dict[str, object]) -> list[str]:
+    """Return the command that starts the process which reads a part."""
     return [sys.executable, "-P", "-m", MODULE, json.dumps(request)]
 
 

@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from ...runtime.surface.surface import Surface
 
-__all__ = ["KINDS", "NO_AREA", "EdgeRecord", "FaceRecord", "Geometry", "Net", "PartRecord", "Wire"]
-
 Array = NDArray[np.float64]
 # The edges along a loop, in order: (edge, index among its sides, whether traversed backwards).
 Wire = list[tuple[int, int, bool]]

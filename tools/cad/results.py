@@ -16,8 +16,6 @@ from ..density.space import Space
 from .face_pieces import FacePiece, pieces_of
 from .part import Part
 
-__all__ = ["PartSpace", "space_of"]
-
 Array = NDArray[np.float64]
 
 

@@ -24,8 +24,6 @@ from ...runtime.proof.kernels.answers import KINDS
 from .face_places import NOTHING, FacePlaces, joined, undecided
 from .records import Geometry
 
-__all__ = ["ROUND", "RoundFace"]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 

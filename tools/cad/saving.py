@@ -73,8 +73,6 @@ from ..files.reading import UnusableError, opened
 from .part_arrays import FORMAT, VERSION, packed
 from .records import KINDS, PartRecord
 
-__all__ = ["about_of", "checked_arrays", "read_arrays", "write_arrays", "write_record"]
-
 SUFFIXES = (".npz",)
 # A part of 100,000 faces takes about 1 GB.
 MOST_BYTES = 4 << 30

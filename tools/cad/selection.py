@@ -28,8 +28,6 @@ from .face_pieces import FacePiece, pieces_of
 from .part import Face, Part, part_of
 from .records import KINDS, EdgeRecord, FaceRecord, PartRecord
 
-__all__ = ["select", "whole_part"]
-
 Axis = tuple[ArrayLike, SupportsFloat]
 
 # Colours may be rounded to 8 bits.

@@ -22,8 +22,6 @@ from ...runtime.base.trees import tree_of
 from ...runtime.surface.surface import Surface
 from .records import EdgeRecord, Wire
 
-__all__ = ["Border", "Sewn", "sewn"]
-
 # A boundary has a corner where it turns by more than this, in degrees.
 CORNER = 30.0
 # The points of a side are tabulated at the ends of STEPS steps. Newton's method for the nearest

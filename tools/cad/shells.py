@@ -20,8 +20,6 @@ from .sewing import Border, Sewn
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["Shell", "shells_of"]
-
 # A shell counts as inside another shell if at least the fraction INSIDE of its points is, of about
 # PROBES points that are tested.
 PROBES, INSIDE = 100, 0.9

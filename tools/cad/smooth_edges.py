@@ -26,8 +26,6 @@ from .face_indices import GAP
 from .part import Part
 from .results import PartSpace
 
-__all__ = ["each_once"]
-
 # Points with the same normal on connected faces count as one point if they are closer than SAME,
 # relative to the size of the part, or closer than the distance over which normals change by twice
 # the gap between faces, at most FAR. This is right since, near a smooth edge, no two points have

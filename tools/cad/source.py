@@ -18,8 +18,6 @@ from ..files.reading import UnusableError, regular_file
 from .damaged_step import COMMENT, ENTITY, LostFace, without_damaged_faces
 from .inspection import checked_format, faces_said
 
-__all__ = ["PartFiles", "Source", "prepared"]
-
 COPY = "copy.step"
 # Open CASCADE takes the name of a part file from the identification assigned to a document, or from
 # the document.

@@ -19,8 +19,6 @@ from ...runtime.surface.surfaces import CatalogueFunction
 from .offset_surface import Turned
 from .records import Geometry, Net
 
-__all__ = ["geometry_of_surface"]
-
 # Axes must be perpendicular, and scales equal, up to this error; otherwise circles become ellipses.
 SAME = 1e-9
 

@@ -14,8 +14,6 @@ from ...runtime.surface.traced import Traced
 from ...runtime.tape.kernels.points import Tape
 from ...runtime.tape.tapes import TapeWriter
 
-__all__ = ["turned_tape"]
-
 # The curve does not depend on u: there is one span in u, which contains all angles of faces.
 ALL_ANGLES = np.array([-64.0, 64.0])
 

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from .records import FaceRecord, Geometry
 
-__all__ = ["scaled_parameters", "with_unit"]
-
 # For each kind of face: the indices of its numbers that are lengths; whether u and v are lengths.
 LENGTHS: dict[str, tuple[tuple[int, ...], tuple[bool, bool]]] = {
     "plane": ((0, 1, 2), (True, True)),

@@ -14,8 +14,6 @@ from pathlib import Path
 
 from ..files.processes import end_with_parent, limit
 
-__all__ = ["ERROR", "PART", "main"]
-
 PART, ERROR = "part.npz", "error.txt"
 
 

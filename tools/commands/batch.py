@@ -25,8 +25,6 @@ from .console import complain, say, table
 from .part_lists import listed
 from .sampled import request_of
 
-__all__ = ["run"]
-
 # The exit code if parts failed, and the default number of samples.
 SOME_FAILED, COUNT = 3, 2048
 

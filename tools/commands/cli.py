@@ -17,8 +17,6 @@ from . import console
 from .completion import PROGRAM, completed
 from .parser import parser
 
-__all__ = ["main"]
-
 FAILED, INTERRUPTED, READER_GONE = 2, 130, 141
 
 

@@ -15,19 +15,6 @@ from click.shell_completion import CompletionItem, get_completion_class, shell_c
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = [
-    "PROGRAM",
-    "SHELLS",
-    "completed",
-    "densities",
-    "formula_names",
-    "is_source",
-    "run",
-    "settings",
-    "surface_names",
-    "surfaces_and_files",
-]
-
 PROGRAM = "gaussmap"
 SHELLS = ("bash", "zsh", "fish")
 # A shell that requests completions sets this variable to an instruction for Click.

@@ -19,20 +19,6 @@ if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
     from ..meshes.mesh import Mesh
 
-__all__ = [
-    "complain",
-    "fail",
-    "flush",
-    "give_up_output",
-    "interruptible",
-    "pour",
-    "say",
-    "show_warning",
-    "summarize",
-    "table",
-    "write",
-]
-
 
 def say(text: str) -> None:
     """Print to standard output."""

@@ -17,8 +17,6 @@ from ..sources.named import Named
 from ..sources.parts import read_part_file
 from .console import say
 
-__all__ = ["run"]
-
 
 def run(options: SimpleNamespace) -> None:
     """Print a line for each face of a part, or the properties of all faces as a JSON object."""

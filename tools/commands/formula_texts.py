@@ -12,8 +12,6 @@ from ...runtime.base.checks import known_name
 if TYPE_CHECKING:
     from ...runtime.base.bridge import Formula
 
-__all__ = ["Formulas", "formulas"]
-
 
 class Formulas(Mapping[str, "Formula"]):
     """The formulas of `gaussmap.symbolic` by name; SymPy is loaded at first use.

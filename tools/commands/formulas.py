@@ -7,8 +7,6 @@ from types import SimpleNamespace
 from .console import say, table
 from .formula_texts import formulas
 
-__all__ = ["run"]
-
 
 def run(options: SimpleNamespace) -> None:
     """List all formulas, or show one."""

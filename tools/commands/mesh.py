@@ -8,8 +8,6 @@ from ..files.formats import check_mesh_target
 from .console import summarize
 from .sampled import sampled
 
-__all__ = ["run"]
-
 
 def run(options: SimpleNamespace) -> None:
     """Sample a surface and write a mesh of the samples to a file."""

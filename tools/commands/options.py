@@ -12,17 +12,6 @@ from click.core import ParameterSource
 
 from .completion import is_source
 
-__all__ = [
-    "Command",
-    "Option",
-    "Program",
-    "density",
-    "number",
-    "setting",
-    "whole",
-]  # fmt: skip
-
-
 # The key in a context that requests the whole help, for --help-all.
 ALL = "gaussmap.all"
 

@@ -32,8 +32,6 @@ from .options import (
 )  # fmt: skip
 from .surface_options import cad_options, made_options, surface_argument, surface_options
 
-__all__ = ["parser"]
-
 SETTINGS = {"help_option_names": ["-h", "--help"]}
 
 EXAMPLES = """\

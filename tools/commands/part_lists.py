@@ -12,8 +12,6 @@ from ...runtime.base.errors import FileError, InputError
 from ...runtime.surface.surfaces import CATALOGUE
 from ..files.paths import reason_of
 
-__all__ = ["listed"]
-
 # The suffixes of the files that are taken from folders.
 SUFFIXES = (*CAD_SUFFIXES, ".npz", ".npy", *RASTER_SUFFIXES)
 

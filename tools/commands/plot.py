@@ -9,8 +9,6 @@ from ..pictures.plot import COUNT, check_target, plot_samples, write_figure
 from .console import summarize
 from .sampled import sampled
 
-__all__ = ["run"]
-
 
 def run(options: SimpleNamespace) -> None:
     """Draw a surface and its samples."""

@@ -16,9 +16,6 @@ from ..files.formats import check_fields, check_samples_target
 from .console import pour, summarize
 from .sampled import sampled
 
-__all__ = ["run"]
-
-
 STANDARD_OUTPUT = "-"
 
 

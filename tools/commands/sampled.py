@@ -26,8 +26,6 @@ from ..sources.elevations import is_raster_file
 from ..sources.named import Named
 from ..sources.surface_of import surface_of, with_tolerance
 
-__all__ = ["named_normals", "named_surface", "request_of", "sampled", "spare_inputs"]
-
 
 def sampled(
     options: SimpleNamespace,

@@ -18,8 +18,6 @@ from ..files.formats import check_samples_target
 from .console import say
 from .sampled import named_normals, named_surface, spare_inputs
 
-__all__ = ["run"]
-
 AXES = np.concatenate([0.0 - np.eye(3), np.eye(3)])
 
 

@@ -8,8 +8,6 @@ from ...runtime.base.limits import MOST
 from .completion import settings, surfaces_and_files
 from .options import Option, number, setting, whole
 
-__all__ = ["cad_options", "made_options", "surface_argument", "surface_options"]
-
 GROUP, FILES, FACES = "the surface", "reading CAD files", "faces of CAD parts"
 
 

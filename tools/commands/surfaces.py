@@ -8,8 +8,6 @@ from ...runtime.base.checks import known_name
 from ...runtime.surface.surfaces import CATALOGUE, describe, names
 from .console import say, table
 
-__all__ = ["run"]
-
 
 def run(options: SimpleNamespace) -> None:
     """List all surfaces, or explain one."""

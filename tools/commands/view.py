@@ -8,8 +8,6 @@ from ..viewer.view import COUNT, check_count, check_target, view
 from .console import summarize
 from .sampled import sampled
 
-__all__ = ["run"]
-
 
 def run(options: SimpleNamespace) -> None:
     """Write a page with a surface, its samples and their normals, linked."""

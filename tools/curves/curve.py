@@ -18,8 +18,6 @@ from ...runtime.spline.spline import short_label
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["Curve"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Curve:

@@ -25,8 +25,6 @@ from ...runtime.tape.tapes import bounds_over_boxes, jets_of
 from .curve import Curve
 from .turning import Turning
 
-__all__ = ["CurveArcs", "arcs_of"]
-
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 

@@ -13,8 +13,6 @@ from ...runtime.base.scales import not_too_large
 from ...runtime.domain.domain import Interval
 from .curve_spline import CurveSpline
 
-__all__ = ["checked_points", "spline_of_points", "spline_of_values"]
-
 Array = NDArray[np.float64]
 # A last point closer to the first point than this, relative to the first step, counts as a
 # repetition of the first point.

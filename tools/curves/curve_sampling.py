@@ -36,8 +36,6 @@ from .curve_spline import CurveSpline
 from .fitting import fit
 from .turning import angles_of
 
-__all__ = ["CurveReport", "CurveSamples", "filled", "find", "sample"]
-
 Array = NDArray[np.float64]
 
 # The largest number of attempts to meet `count` by changing the number of normals.

@@ -19,8 +19,6 @@ from ...runtime.domain.domain import Interval, checked_interval
 from ...runtime.spline.spline import short_label
 from .turning import Turning
 
-__all__ = ["CurveSpline"]
-
 Array = NDArray[np.float64]
 
 

@@ -19,8 +19,6 @@ from .curve_sampling import filled, find
 from .curve_spline import CurveSpline
 from .fitting import fit
 
-__all__ = ["CurveBranches", "SupportFunction"]
-
 Array = NDArray[np.float64]
 
 

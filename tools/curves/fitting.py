@@ -11,8 +11,6 @@ from .curve import Curve
 from .curve_quasi_interpolant import spline_of_points, spline_of_values
 from .curve_spline import CurveSpline
 
-__all__ = ["DEFAULT_PIECES", "fit"]
-
 DEFAULT_PIECES = 64
 
 

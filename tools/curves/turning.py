@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from ...runtime.base.aliases import Array
 
-__all__ = ["Turning", "angles_of"]
-
 
 class Turning:
     """A planar curve in P arcs, on each of which the normal turns by less than π."""

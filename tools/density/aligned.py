@@ -21,9 +21,6 @@ from .lines import Axis
 from .space import Space
 from .steps import Forms, Steps, equal_steps, steps_for_count
 
-__all__ = ["AlignedGrid"]
-
-
 # The fundamental forms are evaluated at about this number of points along u and along v.
 PLACES = 64
 # On a trimmed surface, BORDER samples are reserved for each sample of the grid next to the

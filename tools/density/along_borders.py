@@ -14,8 +14,6 @@ from .cells import Cells
 from .kernels.sizing import TargetDensity
 from .trims import Trims
 
-__all__ = ["BorderLines", "places_along", "polygons_of"]
-
 # Boundaries are measured in steps of at most this part of the domain.
 FINE = 1.0 / 48.0
 # In the search for the nearest cells, domains are scaled to width 1, and different pieces are

@@ -23,8 +23,6 @@ MARGIN = 0.02
 # The radii of the greedy choice of normals fall from this multiple of the last radius.
 FIRST = 2.0
 
-__all__ = ["MARGIN", "choose_apart", "chord_of", "cover_normals"]
-
 
 def chord_of(angle: float) -> float:
     """Return the chord of an angle in degrees: the distance of unit vectors at this angle."""

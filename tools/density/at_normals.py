@@ -22,9 +22,6 @@ from .chosen_normals import NORMALS_PER_SAMPLE, Chosen, choose
 from .fibonacci_lattice import Lattice
 from .space import Space
 
-__all__ = ["Given", "PieceSamples", "at_count", "at_lattices", "at_normals"]
-
-
 # If a lattice gives too many samples, a coarser one replaces it: the number of normals is
 # multiplied by the ratio of the allowed samples to the samples found, and by this factor.
 FEWER = 0.98

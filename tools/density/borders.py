@@ -12,8 +12,6 @@ from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.domain.domain import Domain
 from ...runtime.domain.trim import Trim
 
-__all__ = ["Border"]
-
 
 @dataclass(frozen=True, eq=False)
 class Border:

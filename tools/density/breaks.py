@@ -12,9 +12,6 @@ from ...runtime.base.aliases import Array
 from ...runtime.onto_surface.on_spline import OnSpline
 from .lines import Axis
 
-__all__ = ["breaks_along"]
-
-
 # Forms are compared along this number of lines.
 ACROSS = 8
 # A value may jump if it changes by more than JUMP between neighbouring points, relative to the

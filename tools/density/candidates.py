@@ -13,8 +13,6 @@ from ...runtime.base.threads import over_ranges
 from .kernels.greedy import choose_far, update_distances
 from .kernels.hash_grids import LEVELS, SQUARE, HashGrids, measure, sort_candidates
 
-__all__ = ["Block", "Candidates"]
-
 Numbers = NDArray[np.int32]
 Result = TypeVar("Result")
 

@@ -17,21 +17,6 @@ from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.memory import check_memory
 from .kernels.cells import cut_into_parts
 
-__all__ = [
-    "Cells",
-    "Sides",
-    "by_piece",
-    "grouped",
-    "halved",
-    "into_parts",
-    "joined",
-    "merged",
-    "new_cells",
-    "points_of",
-    "runs",
-]
-
-
 Sides = NDArray[np.float32]
 
 # The columns of `numbers`, see kernels/cells.py.

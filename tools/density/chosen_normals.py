@@ -15,8 +15,6 @@ from ...runtime.samples.samples import Samples
 from ...runtime.search.search import Hits, find
 from .fibonacci_lattice import Lattice
 
-__all__ = ["Chosen", "choose"]
-
 # The relative accuracy of the number of samples, and the largest number of attempts.
 NEAR_ENOUGH = 0.01
 ATTEMPTS = 20

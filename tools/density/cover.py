@@ -15,8 +15,6 @@ from .grid import Grid
 from .space import Space
 from .voronoi import Voronoi
 
-__all__ = ["STEP", "Cover"]
-
 # The radii at which samples are chosen fall from WIDEST times the expected radius, by the factor
 # STEP.
 WIDEST, STEP = 1.25, 0.98

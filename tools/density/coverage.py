@@ -13,8 +13,6 @@ from .candidates import Candidates
 from .kernels.greedy import SAME_SIDE
 from .space import Space
 
-__all__ = ["coverage"]
-
 # The search ends when the bound is within the factor TIGHT of the largest distance found, or after
 # MOST_CUTS rounds.
 TIGHT = 1.1

@@ -15,8 +15,6 @@ from .angles import chord_of
 from .cells import Cells
 from .space import Space
 
-__all__ = ["normal_deviation", "widest_angle"]
-
 # The initial number of test points per sample, and the least number of test points.
 PLACES, FEWEST = 16, 20_000
 # Then cells that may contain a larger angle than any found so far are cut, at most this often.

@@ -14,8 +14,6 @@ from ...runtime.directions.unit import in_pieces, perpendicular
 from ...runtime.search.kernels.pieces import least_cosine
 from ...runtime.spline.nets import AnySpline, NetSpline
 
-__all__ = ["Lattice"]
-
 
 @dataclass(frozen=True, eq=False)
 class Lattice:

@@ -30,8 +30,6 @@ from .request import BY_CURVATURE, Request
 from .shares import apportioned
 from .space import Space
 
-__all__ = ["Filling", "fields_of", "fill", "spacing", "target_of"]
-
 # Twice the area of a hexagon of circumradius 1.
 HEXAGON = 3.0 * math.sqrt(3.0)
 # If a greedy cover of n samples has the covering radius r, relative to the sizing function, the

@@ -14,8 +14,6 @@ from ...runtime.base.trees import tree_of
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["Sources", "bounds_of", "growth_for"]
-
 # The spacing grows by at most GROWTH/s² for each unit of distance, where s is the angle in radians
 # that normals turn by from one sample to the next. Measured with 500 to 2,000 samples: with 0.3, up
 # to a twentieth of the samples on steep bends with coarse sampling are superfluous in meshes; with

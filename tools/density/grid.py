@@ -12,8 +12,6 @@ from ...runtime.samples.fields import GRID_NAMES
 from ...runtime.samples.samples import Samples
 from .cells import Cells
 
-__all__ = ["Grid", "lines_of", "without_lines"]
-
 
 @dataclass(frozen=True, eq=False)
 class Grid:

@@ -8,9 +8,6 @@ import numpy as np
 
 from ...runtime.base.aliases import Array, Indices
 
-__all__ = ["Axis"]
-
-
 # A part of an interval is cut into at least this number of subintervals.
 FEWEST = 4.0
 

@@ -23,8 +23,6 @@ from .progressive import progressive_order
 from .space import Space
 from .surface_piece import space_of
 
-__all__ = ["coverage", "in_order", "normal_deviation", "progressive", "space_on"]
-
 
 def progressive(self: Samples, *, progress: bool = False) -> Samples:
     """Return the samples in progressive order: every prefix is well distributed.

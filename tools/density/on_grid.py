@@ -14,8 +14,6 @@ from .request import Request
 from .shares import apportioned
 from .space import Space
 
-__all__ = ["cover_on_grid"]
-
 # The covering radius of samples with round cells that follow the curvature, relative to the sizing
 # function.
 WIDEST = 1.0

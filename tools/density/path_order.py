@@ -7,8 +7,6 @@ import numpy as np
 from ...runtime.base.aliases import Array, Indices
 from ...runtime.base.trees import tree_of
 
-__all__ = ["path_order"]
-
 # Links are sought between each end of a path and this number of nearest ends.
 NEIGHBOURS = 8
 

@@ -19,8 +19,6 @@ from ...runtime.onto_surface.on_spline import OnSpline
 from ...runtime.samples.samples import Samples
 from .borders import Border
 
-__all__ = ["Piece", "boxes_between"]
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Piece(ABC):

@@ -11,8 +11,6 @@ from ...runtime.base.scales import scale_to_one
 from ...runtime.base.trees import tree_of
 from .candidates import Candidates
 
-__all__ = ["progressive_order"]
-
 # In each round, samples are chosen with mutual distances of at least a radius, relative to the
 # local spacing. The radius falls from one that contains all samples to FINEST, by the factor STEP.
 STEP, FINEST = 2.0**-0.5, 0.25

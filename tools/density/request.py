@@ -16,8 +16,6 @@ from ...runtime.directions.regions import Reach, checked_reach
 from ...runtime.directions.sets import frequency_within, icosphere
 from ...runtime.directions.unit import as_normals
 
-__all__ = ["BY_CURVATURE", "DENSITIES", "Request", "checked_request"]
-
 # Densities that follow the larger principal curvature.
 BY_CURVATURE = ("balanced", "aligned")
 DENSITIES = ("gauss", "balanced", "aligned", "uniform")

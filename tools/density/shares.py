@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["apportioned"]
-
 
 def apportioned(count: int, weights: NDArray[np.float64]) -> NDArray[np.int64]:
     """Divide a count into integers in proportion to weights (k,), which are not all 0.

@@ -10,8 +10,6 @@ from ...runtime.base.aliases import Array, Flags, Indices
 from .cells import Cells, by_piece, runs
 from .trims import Trims
 
-__all__ = ["beside", "placed", "sifted"]
-
 # Cells that the boundary intersects are tested at SUB² points, their subplaces.
 SUB = 4
 BOXES_AT_A_TIME = 1 << 13

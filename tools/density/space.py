@@ -43,8 +43,6 @@ from .piece import Piece
 from .sifting import beside, placed, sifted
 from .trims import Trims
 
-__all__ = ["Space"]
-
 # The cells `Space.first` bend by at most this along u and along v, in radians, unless they would
 # have to be bisected more often than MOST_BENDS.
 FLAT = 0.3

@@ -20,8 +20,6 @@ import numpy as np
 from ...runtime.base.aliases import Array
 from .kernels.steps import shared_steps
 
-__all__ = ["Forms", "Steps", "equal_steps", "steps_for_count"]
-
 _Arrays = tuple[Array, Array, Array, Array, float]
 
 # Steps along u are a share of the longest ones that the limits allow. The share is the best one of

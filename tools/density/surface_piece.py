@@ -17,9 +17,6 @@ from .kernels.sizing import TargetDensity
 from .piece import Piece, boxes_between
 from .space import Space
 
-__all__ = ["SurfacePiece", "space_of"]
-
-
 # About this number of boxes along u and along v; their sides are lines between cells.
 BOXES = 32
 

@@ -15,8 +15,6 @@ from ...runtime.domain.trim import Turned
 from .cells import grouped
 from .piece import Piece
 
-__all__ = ["Trims"]
-
 # The distance from a boundary to the points beside it, relative to the domain.
 BESIDE = 1e-6
 PLACES_AT_A_TIME = 1 << 17

@@ -10,8 +10,6 @@ from .cells import Cells, Sides
 from .kernels import voronoi as kernels
 from .kernels.cells import FINER
 
-__all__ = ["Voronoi"]
-
 Bounds = tuple[float, float, float]
 # The number of centres that are searched at a time.
 AT_ONCE = 1 << 12

@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from .reading import UnusableError
 
-__all__ = ["Archive", "archive_of"]
-
 # An archive may unpack to this many bytes, or to this many times its own size: numeric arrays
 # seldom compress to a tenth, and uncompressed archives do not grow.
 HARMLESS, MOST_TIMES = 256 << 20, 100

@@ -10,8 +10,6 @@ from ...runtime.samples.fields import COLUMNS
 from ...runtime.samples.report import SamplingReport
 from .reading import UnusableError
 
-__all__ = ["known_fields", "lacks", "report_from_json", "report_to_json"]
-
 
 def report_to_json(report: SamplingReport) -> str:
     """Return a report as one line of ASCII."""

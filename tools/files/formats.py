@@ -33,18 +33,6 @@ from .vtk import write_mesh_vtp, write_vtp, write_vtu
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = [
-    "MESH_SUFFIXES",
-    "READABLE_SUFFIXES",
-    "SUFFIXES",
-    "check_fields",
-    "check_mesh_target",
-    "check_samples_target",
-    "read_samples",
-    "write_mesh",
-    "write_samples",
-]
-
 
 class Format(NamedTuple):
     """The writer of a format, the fields that it needs, the library that it uses, and its extra."""

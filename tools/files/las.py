@@ -16,8 +16,6 @@ from .content import report_to_json
 from .of_terrain import in_world
 from .reference_systems import wkt_of
 
-__all__ = ["write_las"]
-
 # Coordinates are stored as 32-bit multiples of a step. The step is this fraction of the extent,
 # rounded down to a power of ten: far below the distances of samples, and without overflow.
 STEP = 2.0**-27

@@ -7,15 +7,6 @@ from ...runtime.samples.fields import COLUMNS, UNITS
 from ...runtime.samples.samples import Samples
 from ...runtime.samples.whole import Whole
 
-__all__ = [
-    "METRES",
-    "checked_unit",
-    "names_with_units",
-    "unit_named",
-    "units_of",
-    "whole_of",
-]
-
 # The length of each unit in metres.
 METRES: dict[str, float] = {
     "nm": 1e-9,

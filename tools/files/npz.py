@@ -14,8 +14,6 @@ from .archives import archive_of
 from .content import known_fields, lacks, report_from_json, report_to_json
 from .reading import UnusableError
 
-__all__ = ["read_npz", "write_npz"]
-
 # The version of the format. Raise it when files change so that older versions of gaussmap would
 # misread them.
 _VERSION = 1

@@ -15,8 +15,6 @@ from ...runtime.base.errors import FileError, GaussmapError, InputError
 from .archives import archive_of
 from .reading import UnusableError, regular_file
 
-__all__ = ["array_file", "is_array_file", "read_array"]
-
 
 def is_array_file(source: str) -> bool:
     """Return whether a text names an array in a file; the file need not exist."""

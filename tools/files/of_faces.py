@@ -13,9 +13,6 @@ from ...runtime.samples.samples import Samples
 from ...runtime.samples.whole import FaceColumn
 from .lengths import whole_of
 
-__all__ = ["columns_of_faces", "texts_of"]
-
-
 # Spreadsheets interpret texts with these beginnings as formulas, unless an apostrophe comes first.
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ..meshes.mesh import Mesh
 
-__all__ = ["to_pyvista", "to_trimesh", "write"]
-
 
 def write(self: Mesh, path: str | os.PathLike[str]) -> None:
     """Write the mesh to a file; its suffix, in any case, chooses the format.

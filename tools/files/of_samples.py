@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from ...runtime.samples.samples import Samples
 
-__all__ = ["polydata", "to_dataframe", "to_pyvista", "to_trimesh"]
-
 
 def to_dataframe(self: Samples) -> pandas.DataFrame:
     """Return a table with one row for each sample and the columns of a `.csv` file.

@@ -14,8 +14,6 @@ from ...runtime.samples.fields import columns_of
 from ...runtime.samples.samples import Samples
 from .reference_systems import wkt_of
 
-__all__ = ["columns_of_terrain", "in_world", "write_points"]
-
 # A point with three coordinates in the format WKB.
 POINT = np.dtype([("order", "u1"), ("type", "<u4"), ("place", "<f8", 3)])
 POINT_Z = 1001

@@ -16,8 +16,6 @@ from .lengths import units_of
 from .of_faces import columns_of_faces
 from .of_terrain import columns_of_terrain
 
-__all__ = ["write_parquet"]
-
 
 def write_parquet(samples: Samples, path: Path) -> None:
     """Write a column for each component of a field, and the report in the schema's metadata."""

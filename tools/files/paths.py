@@ -16,17 +16,6 @@ from pathlib import Path
 
 from ...runtime.base.errors import FileError, GaussmapError, InputError, UnknownNameError, shown
 
-__all__ = [
-    "BEGUN",
-    "PathLike",
-    "atomic_path",
-    "check_target",
-    "checked_path",
-    "known_suffix",
-    "reason_of",
-    "written_by_library",
-]
-
 PathLike = str | os.PathLike[str]
 
 # The largest number of characters that are quoted from a library's own message.

@@ -34,8 +34,6 @@ from .reading import UnusableError
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = ["read_ply", "write_mesh_ply", "write_ply"]
-
 # NumPy's type for each name of a type: names of the standard, newer names that some programs write,
 # and two names that belong to neither.
 _TYPES = {

@@ -6,8 +6,6 @@ import os
 import signal
 from contextlib import suppress
 
-__all__ = ["end_with_parent", "limit"]
-
 # The option of Linux's prctl that sets the signal sent when the parent ends.
 PR_SET_PDEATHSIG = 1
 

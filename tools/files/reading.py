@@ -11,8 +11,6 @@ from pathlib import Path
 from ...runtime.base.errors import FileError, InputError
 from .paths import reason_of
 
-__all__ = ["UnusableError", "opened", "readable", "regular_file"]
-
 # The beginning of a pointer file, which Git LFS leaves in place of a large file; the error for it.
 LFS = b"version https://git-lfs.github.com/spec/"
 POINTER = "is a Git LFS pointer, not the file itself; get that with 'git lfs pull'."

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.extras import from_extra
 
-__all__ = ["checked_crs", "crs_text", "projected", "target_crs", "wkt_of"]
-
 Array = NDArray[np.float64]
 
 # The latitude beyond which UPS replaces UTM, and the EPSG codes of the two zones of UPS, north and

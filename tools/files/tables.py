@@ -18,8 +18,6 @@ from .lengths import names_with_units
 from .of_faces import columns_of_faces, texts_of
 from .of_terrain import columns_of_terrain
 
-__all__ = ["write_csv", "write_rows", "write_xyz"]
-
 # The formats of numbers, with enough digits to read the same number again.
 _DIGITS = {"i8": "%d", "u1": "%d", "f4": "%.9g", "f8": "%r", "O": "%s"}
 _ROWS = 4096

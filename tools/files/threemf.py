@@ -12,8 +12,6 @@ from .lengths import METRES
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = ["write_3mf"]
-
 # trimesh is not used: it needs two more libraries, and writes different bytes each time.
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 MODEL = "application/vnd.ms-package.3dmanufacturing-3dmodel+xml"

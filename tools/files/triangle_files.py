@@ -16,8 +16,6 @@ from .tables import write_rows
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = ["write_glb", "write_obj", "write_stl"]
-
 _STL_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 

@@ -16,8 +16,6 @@ from .of_samples import polydata, to_pyvista
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-__all__ = ["write_mesh_vtp", "write_vtp", "write_vtu"]
-
 
 def write_vtp(samples: Samples, path: Path) -> None:
     """Write points with all other fields, and the report as field data."""

@@ -13,8 +13,6 @@ from .patches import Patches
 from .polylines import different
 from .solid_angle import by_boundary, is_wide, solid_angles, triangle_of
 
-__all__ = ["measures_of"]
-
 Array = NDArray[np.float64]
 
 

@@ -14,8 +14,6 @@ from ...runtime.base.checks import whole_number
 from ...runtime.base.formula_calls import python_function, vector
 from .solid_angle import EDGES, boundary_of, first_directions
 
-__all__ = ["BoundaryArc", "boundary_arcs", "edge_arcs"]
-
 Array = NDArray[np.float64]
 CORNERS = np.eye(3)
 

@@ -7,8 +7,6 @@ from collections.abc import Hashable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Segment", "chained", "continued", "joined"]
-
 Array = NDArray[np.float64]
 Ends = tuple[Hashable, Hashable]
 # The nodes at both ends of a piece of a polyline, and its vertices (k, 2).

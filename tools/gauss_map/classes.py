@@ -11,9 +11,6 @@ from ...runtime.spline.nets import AnySpline
 from .parabolic_lines import cubic_bernstein, pieces_of
 from .patches import Patches, checked_nets
 
-__all__ = ["PatchClass", "classes_of", "classify_patches"]
-
-
 # The cubic whose sign is that of K is sampled on a lattice of this size inside the triangle. If it
 # has both signs there, the patch is MIXED, and its parabolic lines need not be computed.
 LATTICE = 8

@@ -19,8 +19,6 @@ from ...runtime.domain.domain import brought_inside
 from ...runtime.spline.spline import Spline
 from .sign_changes import sign_changes, with_borders
 
-__all__ = ["View", "places_along", "polylines_of"]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]

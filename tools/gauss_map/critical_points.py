@@ -10,8 +10,6 @@ from ...runtime.base.aliases import Array, Flags
 from .polylines import different
 from .sign_grid import SignGrid
 
-__all__ = ["CriticalZeros", "critical_zeros"]
-
 # The number of steps of Newton's method, which converges slowly where K is of order four, and the
 # length of a final step, relative to the domain.
 NEWTON_STEPS, ARRIVED = 40, 1e-10

@@ -18,8 +18,6 @@ from ...runtime.surface.derivatives import Function, differences
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.tapes import jets_of
 
-__all__ = ["Curvature", "Known"]
-
 # The error of a second derivative that a formula gives, relative to its length.
 ROUNDING = 1e-13
 # K counts as zero if it is below its estimated error times this.

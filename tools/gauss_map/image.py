@@ -24,8 +24,6 @@ from .membership import PatchNormals
 from .parabolic_lines import Piece, pieces_of
 from .patches import Patches, checked_control_points
 
-__all__ = ["GaussianImage", "GaussianImages"]
-
 Array = NDArray[np.float64]
 NAMES = {
     PatchClass.SINGULAR: "empty",

@@ -18,8 +18,6 @@ from ...runtime.spline.spline import Spline
 from ...runtime.surface.derivatives import normals_of_jets
 from .polylines import distances, refined
 
-__all__ = ["Curves", "ImageCurve", "Traced", "Zeros", "jets_of_spline"]
-
 OfPlaces = Callable[[Array], Array]
 # Curves whose ends are closer than this, relative to their size, are closed.
 CLOSED = 1e-6

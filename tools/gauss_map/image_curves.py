@@ -23,8 +23,6 @@ from .curvature import Curvature
 from .image_curve import Curves, ImageCurve, Traced, jets_of_spline
 from .parabolic import checked_tolerance, traced_curves
 
-__all__ = ["border_image", "folds", "margin"]
-
 # The number of segments of a side of the domain, before refinement.
 PARTS_OF_SIDE = 16
 # The tolerance of the curves to which angles are measured.

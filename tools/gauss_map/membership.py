@@ -18,8 +18,6 @@ from ...runtime.base.tolerances import ACCURATE, FORM_ERROR, NEAR_SINGULAR_POINT
 from ...runtime.search.long_integers import integers, integers_by_row, ratio, sign
 from .kernels import support as kernels
 
-__all__ = ["Members", "PatchNormals"]
-
 Array = NDArray[np.float64]
 Place = tuple[Fraction, Fraction]
 # Vectors whose largest component is at least ½ and below 1 are shorter than √3.

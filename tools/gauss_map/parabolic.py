@@ -19,14 +19,6 @@ from .parabolic_spline import ZerosOfSpline
 from .parabolic_surface import CELLS, MOST_CELLS, ZerosOfSurface
 from .rectangles import merged
 
-__all__ = [
-    "ParabolicPoint",
-    "ParabolicPoints",
-    "checked_tolerance",
-    "parabolic_points",
-    "traced_curves",
-]
-
 
 @dataclass(frozen=True, eq=False)
 class ParabolicPoint:

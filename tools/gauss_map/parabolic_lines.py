@@ -17,17 +17,6 @@ from ...generated.vectors import Vector
 from ...runtime.base.tolerances import CUBIC_ERROR, DOUBLE_ROOT, PARAMETER_ERROR, VANISHING
 from .patches import Patches, checked_control_points
 
-__all__ = [
-    "ParabolicLine",
-    "Piece",
-    "cubic_bernstein",
-    "lines_of",
-    "parabolic_lines",
-    "pieces_of",
-    "singular_points",
-    "split_patch",
-]
-
 Array = NDArray[np.float64]
 TRIANGLE = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 

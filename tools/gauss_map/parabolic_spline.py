@@ -18,8 +18,6 @@ from .image_curve import Zeros, jets_of_spline
 from .parabolic_lines import cubic_bernstein, lines_of
 from .patches import Patches
 
-__all__ = ["ZerosOfSpline"]
-
 # The parameters u, v of the corners of a patch.
 CORNERS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
 # A point of an edge within this distance of a corner, in cells, counts as the corner.

@@ -15,8 +15,6 @@ from .image_curve import Zeros
 from .sign_grid import SignGrid
 from .zero_curves import zero_curves
 
-__all__ = ["CELLS", "MOST_CELLS", "ZerosOfSurface"]
-
 # The grid has at least CELLS cells along u and along v, and at most MOST_CELLS. It is refined if
 # curves are closer to each other than a cell, or smaller than a cell, and if more than the fraction
 # CROWDED of its cells contains curves.

@@ -20,8 +20,6 @@ from ...runtime.base.scales import LARGEST_EXPONENT, scales_to_one
 from ...runtime.base.tolerances import CUBIC_ERROR, DATA_ERROR
 from ...runtime.spline.nets import AnySpline, NetSpline
 
-__all__ = ["Patches", "checked_control_points", "checked_nets"]
-
 Array = NDArray[np.float64]
 # The control normals N200, N110, N101, N020, N011, N002 as pairs of corners of the triangle.
 INDEX_PAIRS = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))

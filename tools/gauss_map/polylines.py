@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from ...runtime.base.repeats import repeated
 
-__all__ = ["Evaluation", "different", "distances", "refined"]
-
 Array = NDArray[np.float64]
 Evaluation = Callable[[Array], Array]
 # A segment whose midpoint is h from the curve is cut into √(h / size) parts, as the arc of a

@@ -8,8 +8,6 @@ import numpy as np
 
 from ...runtime.base.aliases import Array, Flags
 
-__all__ = ["merged"]
-
 
 def merged(cells: Flags, lines: Sequence[Array]) -> Array:
     """Return the cells of a grid that are True as rectangles, merged along v and then along u.

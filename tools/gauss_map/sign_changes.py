@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from .chains import chained
 
-__all__ = ["sign_changes", "with_borders"]
-
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 # Values count as growing from a boundary if, next to it, they exceed their error by this factor.

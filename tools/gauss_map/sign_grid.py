@@ -11,8 +11,6 @@ from ...runtime.base.aliases import Array, Flags, Indices
 from .curvature import Curvature
 from .sign_changes import with_borders
 
-__all__ = ["SignGrid"]
-
 # Nodes are shifted by this share of a cell, so that curves on lines of symmetry do not pass through
 # them.
 OFFSET = 0.2360679774997897

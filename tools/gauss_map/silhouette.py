@@ -40,8 +40,6 @@ from ...runtime.surface.surfaces import named
 from ..density.chosen_normals import NEAR_ENOUGH, NORMALS_PER_SAMPLE
 from .contours import View, places_along, polylines_of
 
-__all__ = ["Silhouette", "great_circle", "silhouette"]
-
 # The fields for the normal of a sample, and for the patch where it was found.
 KEYS = ("normal_index", "patch_index")
 # The indices of x_uu, x_uv, x_vv, x_u, x_v in jets: the vectors of the osculating patch.

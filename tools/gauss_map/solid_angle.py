@@ -12,15 +12,6 @@ from ...generated.gaussian_image import boundary_arc
 from ...runtime.base.formula_calls import python_function, vector
 from .kernels.solid_angle import integrate_arcs
 
-__all__ = [
-    "boundary_of",
-    "by_boundary",
-    "first_directions",
-    "is_wide",
-    "solid_angles",
-    "triangle_of",
-]
-
 Array = NDArray[np.float64]
 # The least cosine between the normals of one triangle and their mean; wider triangles are
 # subdivided.

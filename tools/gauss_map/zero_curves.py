@@ -14,8 +14,6 @@ from .chains import continued
 from .sign_changes import sign_changes
 from .sign_grid import SignGrid
 
-__all__ = ["zero_curves"]
-
 # Accuracy of a vertex, relative to the side of a cell on which it lies.
 ACCURACY = 1e-14
 # A vertex within this distance of a node, relative to the side, counts as the node.

@@ -16,8 +16,6 @@ from ...runtime.spline.spline import Spline
 from ..gauss_map.chains import Segment, joined
 from .places import ON_SIDE, uv_at, wrapped
 
-__all__ = ["border_lines"]
-
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 

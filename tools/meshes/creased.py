@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from ...runtime.base.checks import checked_array
 from .mesh import Mesh
 
-__all__ = ["CreasedMesh", "mean_normals", "unit"]
-
 # Normals at a point are equal if they agree to this number of decimals.
 DIGITS = 9
 # These fields have defaults only because the last fields of `Mesh` have defaults.

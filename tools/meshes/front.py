@@ -18,8 +18,6 @@ from .mesh import Mesh
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["FreeAlong", "Front", "cross_of", "in_front"]
-
 # The number of pixels along each side for `in_front`, and the number of triangles that it treats at
 # a time.
 PIXELS, AT_ONCE = 400, 4096

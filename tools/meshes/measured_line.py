@@ -18,8 +18,6 @@ from .places import points_at, spacings_at, wrapped
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = ["CLOSE", "MeasuredLine"]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]

@@ -19,8 +19,6 @@ from .links import edges_of
 from .mesh_methods import Methods
 from .texture import corner_places
 
-__all__ = ["Mesh", "centred", "cosines_of", "scaled", "tangents_of"]
-
 # The default of `sides`: 1 everywhere.
 _ALL_ALIKE: Any = None
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from ...runtime.base.later import Later
 
-__all__ = ["Methods"]
-
 FILES = "gaussmap.tools.files.of_meshes"
 
 

@@ -28,8 +28,6 @@ from .vertices import Vertices, before_offset, check_fields
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
 
-__all__ = ["checked_angle", "finished", "mesh_of", "triangulated"]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 

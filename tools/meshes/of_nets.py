@@ -15,8 +15,6 @@ from .creased import CreasedMesh, mean_normals, unit
 if TYPE_CHECKING:
     from ...runtime.spline.nets import NetSpline
 
-__all__ = ["mesh"]
-
 
 class Parts(NamedTuple):
     """A division of a triangle into n² equal triangles, whose L corners are at `places` (L, 2).

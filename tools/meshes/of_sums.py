@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ..support.convolution import Convolution
     from .mesh import Mesh
 
-__all__ = ["mesh"]
-
 # Longitudes and latitudes of normals.
 DOMAIN = (-np.pi, np.pi), (-np.pi / 2.0, np.pi / 2.0)
 BOUNDARY: Boundary = ("periodic", "periodic"), ("pole", "pole")

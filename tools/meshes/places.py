@@ -16,16 +16,6 @@ from ...runtime.spline.tips import is_point
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-__all__ = [
-    "ON_SIDE",
-    "boundary_of",
-    "on_side",
-    "points_at",
-    "spacings_at",
-    "uv_at",
-    "wrapped",
-]
-
 Array = NDArray[np.float64]
 
 # A position within this distance of an open side or a pole, relative to the domain, lies on it.

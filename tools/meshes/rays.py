@@ -13,8 +13,6 @@ from ...runtime.base.extras import check_extra, from_extra
 from ...runtime.base.scales import scale_to_one
 from .mesh import Mesh
 
-__all__ = ["check_rays", "unobstructed", "visible"]
-
 PURPOSE = "a test with rays"
 # Rays begin this far below the surface, relative to the obstacle's size, to hit an obstacle in
 # contact.

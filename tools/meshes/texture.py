@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from ...runtime.domain.domain import Boundary, Domain
 from .places import ON_SIDE, wrapped
 
-__all__ = ["Texture", "corner_places", "split_at_seams"]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 

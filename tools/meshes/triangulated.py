@@ -20,17 +20,6 @@ from .kernels import flips as kernels
 from .links import neighbours
 from .mesh import Mesh, cosines_of, scaled, tangents_of
 
-__all__ = [
-    "ENOUGH",
-    "LARGEST_DEVIATION",
-    "Prefer",
-    "Triangulated",
-    "checked_prefer",
-    "flip_edges",
-    "improved",
-    "too_few",
-]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Prefer = Literal["normals", "shape"]

@@ -23,8 +23,6 @@ from ...runtime.base.tolerances import CIRCLE_HEIGHT_ERROR
 from ...runtime.domain.domain import Boundary
 from ...runtime.surface.kernels import surfaces as kernels
 
-__all__ = ["Triangulation", "convex_hull", "delaunay", "triangulations"]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 # Triangles (k, 3), and for their corners (k, 3) 1, or −1 where the corner is a mirrored copy.

@@ -21,8 +21,6 @@ from .measured_line import MeasuredLine
 from .places import uv_at, wrapped
 from .vertices import Vertices
 
-__all__ = ["trimmed_triangles"]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]

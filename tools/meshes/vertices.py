@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from ...runtime.samples.samples import Samples
 
-__all__ = ["Vertices", "before_offset", "check_fields"]
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 

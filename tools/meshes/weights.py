@@ -18,8 +18,6 @@ from .mesh import Mesh, centred
 if TYPE_CHECKING:
     from ...runtime.samples.samples import Samples
 
-__all__ = ["area_weights", "corner_areas"]
-
 Array = NDArray[np.float64]
 
 

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Colormap, Normalize
 
-__all__ = ["CURVATURE", "Colours", "checked_values", "colours_of", "draw_scale"]
-
 CURVATURE = "gaussian_curvature"
 SIGNED = (CURVATURE, "mean_curvature")  # their scales are symmetric to zero
 UNITS = {CURVATURE: "1/length²", "mean_curvature": "1/length", "support": "length"}

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["plot"]
-
 COUNT = 2_000  # of samples, coloured by K
 SIZE, ROOM, DOTS_PER_INCH = (8.0, 4.4), (3.6, 2.9), 200  # of the figure, and of the surface
 POINT = 0.02  # an image smaller than this is drawn as a point

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from ...runtime.samples.samples import Samples
 
-__all__ = ["Marked", "marked"]
-
 # A direction, by components right, up and towards the viewer, such that an arrow along it is not
 # seen end on.
 BETWEEN = np.array([0.6, 0.35, 0.8])

@@ -1,21 +1,5 @@
 """The colours and the style of all pictures."""
 
-__all__ = [
-    "ELLIPTIC",
-    "FAINT",
-    "FILLING",
-    "GLOBE",
-    "GRID",
-    "HYPERBOLIC",
-    "INK",
-    "MARK",
-    "NO_SAMPLE",
-    "PALE",
-    "PARABOLIC",
-    "SCALE",
-    "STYLE",
-]
-
 # Blue for elliptic and orange for hyperbolic, which colour-blind people can distinguish (Okabe and
 # Ito). The neutral colour of the scale is zero curvature.
 ELLIPTIC, HYPERBOLIC, NO_SAMPLE = "#0072b2", "#d55e00", "#a8a8a8"

@@ -38,17 +38,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = [
-    "COUNT",
-    "SUFFIXES",
-    "check_target",
-    "plot",
-    "plot_part",
-    "plot_samples",
-    "style",
-    "write_figure",
-]
-
 COUNT = 2_000  # the default number of samples
 DOTS_PER_INCH = 200
 LONGEST_LINE = 140  # characters of the summary

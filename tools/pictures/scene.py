@@ -25,17 +25,6 @@ from ..cad.part import Part
 from ..meshes.front import Front, cross_of, in_front
 from ..support.convolution import Convolution
 
-__all__ = [
-    "VIEW",
-    "Scene",
-    "divided",
-    "height_factor",
-    "quadrangles",
-    "scene_of",
-    "scene_of_samples",
-    "view",
-]
-
 Array = NDArray[np.float64]
 
 VIEW = ELEVATION, AZIMUTH = 28.0, -55.0  # of the viewer, in degrees

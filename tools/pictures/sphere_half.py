@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-__all__ = ["RADIUS", "draw_globe", "draw_sphere", "view_of"]
-
 RADIUS = 1.15  # in inches
 
 

@@ -17,8 +17,6 @@ from .sphere_half import draw_globe
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Branch", "branches_of", "draw_branch", "values_on_globe"]
-
 ROOM = 1.13  # half of the side of the axes; the globe has the radius 1
 PIXELS = 256  # along the diameter of the globe
 FAR = 1.5  # beyond this, relative to the distance between normals, a branch is not drawn

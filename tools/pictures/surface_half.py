@@ -15,8 +15,6 @@ from .marked import Marked
 from .palette import INK, MARK
 from .scene import Scene
 
-__all__ = ["Room", "View", "draw_face_numbers", "draw_surface"]
-
 # Numbers of at least LONG have long labels. Axes shorter than SHORT times the longest one have
 # fewer labels, axes shorter than FLAT times the longest one have one label.
 LONG, SHORT, FLAT = 1e5, 0.35, 0.15

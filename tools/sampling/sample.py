@@ -39,8 +39,6 @@ from ..density.grid import lines_of, without_lines
 from ..density.request import Request, checked_request
 from ..density.surface_piece import SurfacePiece, space_of
 
-__all__ = ["sample", "sample_and_normals"]
-
 
 def sample(
     surface: Surface | AnySpline | Whole | str,

@@ -31,8 +31,6 @@ from ...runtime.surface.surfaces import named
 from ..density.chosen_normals import Chosen, choose
 from ..density.request import Request, checked_request
 
-__all__ = ["sample_stream"]
-
 # The number of normals in a block; with their samples they take about 150 MB.
 NORMALS_AT_A_TIME = 1 << 20
 

@@ -14,14 +14,6 @@ from ..files.numpy_files import array_file, read_array
 from ..terrain.terrain import terrain
 from .named import Named
 
-__all__ = [
-    "OF_TERRAIN",
-    "has_place",
-    "is_raster_file",
-    "read_raster_file",
-    "terrain_of_array",
-]
-
 # The options that only elevations have.
 OF_TERRAIN = ("band", "x", "y", "crs", "source_crs", "origin")
 DEGREES = "EPSG:4326"

@@ -9,8 +9,6 @@ from typing import Any, Self
 
 from ...runtime.base.errors import InputError
 
-__all__ = ["Named"]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Named:

@@ -10,8 +10,6 @@ from ..cad.inspection import is_part_file
 from ..cad.part import Part, read_part
 from .named import Named
 
-__all__ = ["LIMITS", "OF_FACES", "read_part_file"]
-
 # The options of `read_cad`.
 LIMITS = ("unit", "time_limit", "memory_limit")
 # The options of `Part.select`.

@@ -18,8 +18,6 @@ from .elevations import OF_TERRAIN, has_place, is_raster_file, read_raster_file,
 from .named import Named
 from .parts import LIMITS, OF_FACES, read_part_file
 
-__all__ = ["surface_of", "with_tolerance"]
-
 NOT_OF_FORMULAS = ("set", "spacing", "nodata")
 NOT_OF_PARTS = ("set", "domain", "spacing", "periodic", "nodata", "cells", "tolerance", *OF_TERRAIN)
 PERIODIC = {"none": (False, False), "u": (True, False), "v": (False, True), "uv": (True, True)}

@@ -12,8 +12,6 @@ from ...generated.vectors import Hessian
 from ...runtime.base.formula_calls import python_function, vector
 from ...runtime.base.scales import scales_to_one
 
-__all__ = ["Branches", "Sheets", "curvatures"]
-
 
 @dataclass(frozen=True, eq=False, slots=True, repr=False)
 class Branches:

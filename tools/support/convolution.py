@@ -37,8 +37,6 @@ from .function import SupportFunction
 from .operations import pairs
 from .sources import Source, SplineSource, SurfaceSource
 
-__all__ = ["Convolution", "convolve"]
-
 # The number of sums computed at a time; there may be many more sums than branches.
 PIECE = 1 << 14
 

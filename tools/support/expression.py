@@ -20,8 +20,6 @@ from .branches import Sheets, curvatures
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["ExpressionSource"]
-
 # The number of normals evaluated at a time, so that intermediate results stay in the cache.
 AT_A_TIME = 1 << 13
 # The order of the entries of Hessians that functions return.

@@ -25,8 +25,6 @@ from .sources import PatchSource, Source, SplineSource
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["SupportFunction"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SupportFunction:

@@ -25,8 +25,6 @@ from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface
 from ..sampling.sample import sample
 
-__all__ = ["folded", "offset", "size_of_terms"]
-
 # For fields of an offset, the other fields of the samples from which they are computed.
 NEEDED = {
     "points": ("normals",),

@@ -25,8 +25,6 @@ from .sources import Source
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["Moved", "Sum", "pairs"]
-
 Vector = NDArray[np.float64]
 
 # A sum that is smaller than its terms by this factor suffers from cancellation.

@@ -28,8 +28,6 @@ from .branches import Sheets
 if TYPE_CHECKING:
     import sympy
 
-__all__ = ["PatchSource", "Source", "SplineSource", "SurfaceSource"]
-
 # Quadratic and cubic forms in three variables that vanish at these points vanish everywhere.
 FOR_QUADRATICS = [(2, 0, 0), (0, 2, 0), (0, 0, 2), (1, 1, 0), (1, 0, 1), (0, 1, 1)]
 FOR_CUBICS = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)]

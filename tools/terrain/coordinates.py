@@ -11,8 +11,6 @@ from ...runtime.base.checks import real_array
 from ...runtime.base.errors import InputError
 from ...runtime.spline.point_grid import checked_spacing
 
-__all__ = ["check_degrees", "grid_of", "of_arrays", "of_spacing", "of_transform"]
-
 Array = NDArray[np.float64]
 
 # Distances count as equal up to this relative difference, since coordinates may be in single

@@ -15,8 +15,6 @@ from ...runtime.base.memory import check_memory
 from ...runtime.base.wording import plural
 from ..files.reading import UnusableError, opened, readable
 
-__all__ = ["Raster", "raster_of", "read_raster"]
-
 Array = NDArray[np.float64]
 
 

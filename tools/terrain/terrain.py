@@ -26,8 +26,6 @@ from .raster import Raster, raster_of, read_raster
 if TYPE_CHECKING:
     import rasterio
 
-__all__ = ["terrain"]
-
 Array = NDArray[np.float64]
 
 OPEN: Boundary = ("open", "open"), ("open", "open")

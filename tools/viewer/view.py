@@ -32,8 +32,6 @@ from ..files.lengths import whole_of
 from ..pictures.palette import ELLIPTIC, HYPERBOLIC, PARABOLIC, SCALE
 from ..pictures.scene import Scene, scene_of_samples
 
-__all__ = ["COUNT", "MOST", "SUFFIXES", "check_count", "check_target", "page", "view"]
-
 SUFFIXES = (".html", ".htm")
 SCRIPTS = (
     "theme", "samples", "scene", "camera", "front", "picking", "selection", "highlights", "link",

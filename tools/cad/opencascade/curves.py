@@ -15,8 +15,6 @@ from OCP.GeomConvert import GeomConvert
 from ..records import Net
 from .shapes import direct_class
 
-__all__ = ["UnusableError", "curve_net", "knots_of", "opened"]
-
 Array = NDArray[np.float64]
 
 # Curves other than NURBS, such as circles, are interpolated by splines of this degree. The number

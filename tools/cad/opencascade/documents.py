@@ -23,8 +23,6 @@ from OCP.XCAFDoc import (
 
 from .shapes import Key, sequence
 
-__all__ = ["Document", "PlacedShape", "Style", "new_document", "pieces_of"]
-
 Color = tuple[float, float, float]
 
 MOST_LEVELS = 100

@@ -26,8 +26,6 @@ from .p_curves import PCurve
 from .shapes import indexed_shapes, parts_of
 from .solids import PlacedFace
 
-__all__ = ["Topology", "topology_of"]
-
 Array = NDArray[np.float64]
 Wires = list[Wire]
 

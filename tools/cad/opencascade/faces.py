@@ -21,8 +21,6 @@ from .shapes import Key
 from .solids import CLOSE
 from .surfaces import basis_of, geometry_of, periods_of
 
-__all__ = ["FaceReader", "area_of"]
-
 Array = NDArray[np.float64]
 
 # The smallest area, in mm², that counts as positive: Open CASCADE considers points within 1e-7 mm

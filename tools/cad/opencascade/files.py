@@ -22,8 +22,6 @@ from ..source import Source
 from .documents import Document, PlacedShape, new_document, pieces_of
 from .shapes import sequence
 
-__all__ = ["read_file"]
-
 # An entity is unusable if a message of Open CASCADE's checks contains one of these texts.
 UNRESOLVED = "unresolved"
 DAMAGE = ("not a real", UNRESOLVED)

@@ -19,8 +19,6 @@ from .curves import UnusableError
 from .p_curves import CONFUSION, PCurve, curve_of
 from .shapes import parts_of
 
-__all__ = ["EdgeCurves", "loops_of", "wires_of"]
-
 Array = NDArray[np.float64]
 # The edges of each wire of a face with their p-curves, in order.
 EdgeCurves = list[list[tuple[Any, PCurve]]]

@@ -21,8 +21,6 @@ from OCP.TopAbs import TopAbs_Orientation
 
 from .polylines import one_sided
 
-__all__ = ["CONFUSION", "PCurve", "curve_of"]
-
 Array = NDArray[np.float64]
 
 # The distance up to which Open CASCADE considers points equal, in mm.

@@ -25,8 +25,6 @@ from .files import read_file
 from .shapes import Key, parts_of
 from .solids import PlacedFace, gathered
 
-__all__ = ["part_record"]
-
 # The largest number of invalid faces that a warning names.
 MOST_NAMED = 5
 

@@ -7,8 +7,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["one_sided"]
-
 Array = NDArray[np.float64]
 # Points and first derivatives (k, 4) of a curve at parameters (k,).
 Evaluator = Callable[[Array], Array]

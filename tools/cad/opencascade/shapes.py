@@ -14,8 +14,6 @@ from typing import Any
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopLoc import TopLoc_Location
 
-__all__ = ["Key", "direct_class", "indexed_shapes", "parts_of", "sequence"]
-
 
 def parts_of(shape: Any, kind: Any, avoided: Any = None) -> Iterator[Any]:  # noqa: ANN401
     """Yield the subshapes of one kind, except those inside subshapes of the kind `avoided`."""

@@ -22,8 +22,6 @@ from OCP.TopoDS import TopoDS, TopoDS_Compound
 from .documents import Color, Document, Style
 from .shapes import Key, parts_of
 
-__all__ = ["CLOSE", "Gathered", "PlacedFace", "gathered"]
-
 # Loose faces are sewn where their boundaries are closer than CLOSE, in mm; if holes remain, closer
 # than CLOSE_OF_SIZE, relative to the size of all faces.
 CLOSE, CLOSE_OF_SIZE = 1e-3, 1e-4

@@ -16,8 +16,6 @@ from ..records import Geometry, Net
 from .curves import UnusableError, curve_net, knots_of, opened
 from .shapes import direct_class
 
-__all__ = ["basis_of", "geometry_of", "periods_of"]
-
 Array = NDArray[np.float64]
 
 # For each elementary class: the kind of face, and the methods that return its radii and angles.
