@@ -1,4 +1,4 @@
-"""Exact decisions: the signs of the forms U, V, W of a patch and a normal, on integers.
+"""Exact signs of the forms U, V, W of a patch at a normal, on integers of fixed length.
 
 Exact ties are broken by Simulation of Simplicity (Edelsbrunner and Mücke,
 https://doi.org/10.1145/77635.77639): the normal is displaced by an infinitesimal vector, the same
@@ -23,15 +23,19 @@ from .wide_integers import MANTISSA, rounded, wide
 
 __all__ = ["NORMAL_LIMBS", "PATCH_LIMBS", "SPARE", "Decided", "decide_exactly"]
 
-# The numbers of limbs of coefficients, and of normals: at corners of patches along an axis, normals
-# have components that are rounding errors of rounding errors.
+# The numbers of limbs (64 bits) of coefficients and of normals, as lengths of tuples. Normals need
+# more: at corners of patches along an axis, their components may be rounding errors of rounding
+# errors.
 PATCH_LIMBS, NORMAL_LIMBS = (0, 0), (0, 0, 0)
-# The spare bits, for weights and sums.
+# The number of spare bits, which weights and sums need.
 SPARE = 6
 
 
 class Decided(NamedTuple):
-    """The output: U/D and V/D (k, 2), |D| (k,), signs of U, V, W (k, 3), whether known (k,)."""
+    """Output arrays: U/D and V/D (k, 2), |D| (k,), the signs of U, V, W (k, 3), and a mask (k,).
+
+    The mask `known` is True for pairs that were decided.
+    """
 
     local: Any
     size: Any
@@ -44,7 +48,7 @@ class Decided(NamedTuple):
 
 @loop
 def widened(least, largest, x):
-    """Return the least and the largest modulus of nonzero numbers, updated by one more."""
+    """Update the least and the largest modulus of nonzero numbers by one more number x."""
     size = abs(x)
     if 0.0 < size < least:
         least = size
@@ -55,10 +59,10 @@ def widened(least, largest, x):
 
 @loop
 def unit_of(least, largest, limbs):
-    """Return the exponent of a unit in which numbers are integers, and whether they fit.
+    """Return the exponent of a unit in which given numbers are integers, and whether they fit.
 
-    The numbers have moduli from `least` to `largest`. They fit if they have at most as many limbs
-    as `limbs`, with SPARE bits left.
+    The nonzero moduli of the numbers are between `least` and `largest`. The integers fit if they
+    have at most as many limbs as the tuple `limbs` has entries, with SPARE bits left.
     """
     unit = math.frexp(least)[1] - MANTISSA
     return unit, largest == 0.0 or math.frexp(largest)[1] - unit <= 64 * len(limbs) - SPARE
@@ -86,7 +90,7 @@ def unit_of_normal(n):
 
 @loop
 def wide_coefficient(mu, i, j, unit):
-    """Return a coefficient as integers."""
+    """Return the coefficient (i, j) as integers, in the given unit."""
     x, y, z = vector_at(mu, i, j)
     return Vector(
         wide(x, unit, PATCH_LIMBS), wide(y, unit, PATCH_LIMBS), wide(z, unit, PATCH_LIMBS)
@@ -95,14 +99,14 @@ def wide_coefficient(mu, i, j, unit):
 
 @loop
 def neighbour(mu, i, j, turn, k, centre, unit):
-    """Return neighbour k minus the coefficient at the centre."""
+    """Return the k-th neighbour of the coefficient (i, j) minus `centre`, as integers."""
     x, y, z = wide_coefficient(mu, i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1], unit)
     return Vector(x - centre.x, y - centre.y, z - centre.z)
 
 
 @inline
 def wide_patch(mu, i, j, turn, unit) -> Patch:
-    """Return the vectors of the patch of the coefficient (i, j) as integers."""
+    """Return the vectors of patch `turn` of the cell with the coefficient (i, j), as integers."""
     centre = wide_coefficient(mu, i, j, unit)
     return triangle(
         neighbour(mu, i, j, turn, SOUTHWEST, centre, unit),
@@ -116,11 +120,10 @@ def wide_patch(mu, i, j, turn, unit) -> Patch:
 
 @loop
 def wide_normal(n, unit):
-    """Return a normal as integers, with its first component positive.
+    """Return n or −n as integers: the one whose first nonzero component is positive.
 
-    The forms are even in n, but a normal and its opposite must be displaced to opposite normals:
-    where a surface is joined to its own mirror image, one patch has the normal and its neighbour
-    the opposite one.
+    The forms are even in n. But n and −n must be displaced to opposite normals: where a surface is
+    joined to its own mirror image, one patch has the normal and its neighbour the opposite one.
     """
     side = math.copysign(1.0, n.x if n.x != 0.0 else n.y if n.y != 0.0 else n.z)
     return Vector(
@@ -135,10 +138,9 @@ def wide_normal(n, unit):
 
 @loop
 def note(D, U, V, W, forms, signs):
-    """Take signs that are still zero from the coefficients of one monomial.
+    """Set those signs that are still 0 to the signs of U, V, W, the coefficients of one monomial.
 
-    If D has no leading monomial yet, keep the coefficients for D, U, V. Return whether all signs
-    are known.
+    If forms[0] is still 0, the coefficients D, U, V become `forms`. Return whether no sign is 0.
     """
     if forms[0] == 0.0:
         forms[0], forms[1], forms[2] = D, U, V
@@ -150,12 +152,12 @@ def note(D, U, V, W, forms, signs):
 
 @inline
 def exact_forms(patch, n, forms, signs):
-    """Write D, U, V to forms (3,) and the signs of U, V, W to signs (3,), all zero before.
+    """Write D, U, V to `forms` (3,) and the signs of U, V, W to `signs` (3,), all 0 before.
 
     If a zero among U, V, W leaves undecided whether the patch has the normal, the normal is
-    displaced to n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁²: a form is then a sum of ten
-    monomials, each infinitesimal relative to the one before, and the first nonzero one gives its
-    sign. For quotients by D, the coefficients of the leading monomial of D are written.
+    displaced to n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁². A form is then a sum of ten
+    monomials, each infinitesimal relative to the one before, and its sign is that of the first
+    nonzero coefficient. D, U, V are then the coefficients of the leading monomial of D.
     """
     A, B, C, P, Q = linear_forms(patch, n)
     D, U, V, W = eliminated_forms(A, B, C, P, Q)
@@ -172,7 +174,7 @@ def exact_forms(patch, n, forms, signs):
             D, U, V, W = polar_forms(
                 A, B, C, P, Q, patch.a[t], patch.b[t], patch.c[t], patch.d[t], patch.e[t]
             )
-            # The polar form of a vector and itself is twice the form.
+            # The polar form of a vector with itself is twice the quadratic form.
             share = 0.5 if s == t else 1.0
             known = note(
                 share * rounded(D), share * rounded(U), share * rounded(V), rounded(W), forms, signs
@@ -181,9 +183,9 @@ def exact_forms(patch, n, forms, signs):
 
 @jit
 def decide_exactly(mu, scale, patches, normals, first, last, forms, decided):
-    """Decide the pairs [first, last) of patches (k,) and normals (k, 3).
+    """Decide the pairs (patches[k], normals[k]) with k in [first, last); write them to `decided`.
 
-    A pair stays undecided if its integers are too long. `forms` (3,) is a work array.
+    A pair whose integers would be too long is not decided. `forms` (3,) is a work array.
     """
     columns = mu.shape[1] - 2
     exponent = math.frexp(scale)[1] - 1

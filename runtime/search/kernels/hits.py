@@ -1,7 +1,7 @@
-"""The fields of samples, from pairs of a normal and one of its patches.
+"""The fields of samples at hits, which are pairs of a normal and a patch that has it.
 
-A tile is a batch of samples in rows of an array, for vectorized loops: the normal, the coefficients
-around the patch and its position, and the results.
+A tile is a batch of samples, stored by rows of one array for vectorized loops. Its rows are the
+normal, the coefficients around the patch, the position of the patch, and the resulting fields.
 """
 
 from __future__ import annotations
@@ -37,16 +37,17 @@ NORMAL, COEFFICIENTS, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
     np.int64(STEP * row) for row in (0, 3, 21, 30, 33, 34, 35, 36, 37)
 )
 NORMAL_INDEX, PATCH_INDEX, THREE_ROWS = np.int64(0), np.int64(STEP), np.int64(3 * STEP)
-# Rows and columns of the coefficients that `triangle` takes, counted from the coefficient before.
-# Contiguous: machine code refers to other arrays by their address, and then cannot be cached.
+# Rows and columns of the coefficients that `triangle` takes, relative to (i, j) for the cell (i,
+# j). The array is contiguous, since machine code that refers to other arrays cannot be cached.
 AROUND = np.ascontiguousarray(NEIGHBOURS[:, [0, 1, 2, 3, 5, 7]] + 1, np.uint64)
 
 
 class Place(NamedTuple):
-    """The position of a patch: the coefficient of its cell, the cell, and two corners.
+    """The position of a patch in space and in the domain.
 
-    The centre of the cell is at (cell_u, cell_v), in cells. From it, (u_s, u_t) leads to the corner
-    u = 1 of the patch, and (v_s, v_t) to the corner v = 1.
+    `centre` is the coefficient of its cell, (cell_u, cell_v) the centre of the cell in the domain,
+    in cells. The vectors (u_s, u_t) and (v_s, v_t) lead from this centre to the corners of the
+    patch where its own parameters are u = 1 and v = 1.
     """
 
     centre: Vector
@@ -59,20 +60,20 @@ class Place(NamedTuple):
 
 
 def new_tile() -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the rows of a tile as one array, and two rows for indices."""
+    """Return arrays for a tile: one with all its rows, and one with two rows of indices."""
     return np.zeros(ROWS * STEP), np.zeros(2 * STEP, np.int64)
 
 
 @loop
 def vector_in(tile, row, k):
-    """Return vector k in three rows of a tile from `row` on."""
+    """Return the vector of sample k in three rows of a tile, from `row` on."""
     at = np.uint64(row + k)  # unsigned: no check for negative indices
     return Vector(tile[at], tile[at + ONE_ROW], tile[at + TWO_ROWS])
 
 
 @loop
 def put(tile, row, k, v):
-    """Write vector k to three rows of a tile from `row` on."""
+    """Write the vector of sample k to three rows of a tile, from `row` on."""
     at = np.uint64(row + k)
     tile[at] = v.x
     tile[at + ONE_ROW] = v.y
@@ -81,7 +82,7 @@ def put(tile, row, k, v):
 
 @loop
 def place_in(mu, i, j, turn):
-    """Return the position of a patch."""
+    """Return the position of the patch `turn` of the cell (i, j)."""
     return Place(
         vector_at(mu, i + 1, j + 1),
         i + 0.5,
@@ -119,14 +120,17 @@ def load_patch(mu, number, scale, tile, k):
 
 @loop
 def copy_patch(tile, k, source):
-    """Copy what `load_patch` writes from another sample of the tile."""
+    """Copy the patch of the sample `source` of a tile to sample k; see `load_patch`."""
     for row in range(COEFFICIENTS, POINT, STEP):
         tile[np.uint64(row + k)] = tile[np.uint64(row + source)]
 
 
 @loop
 def on_surface(place, frame, size, n, u, v, x, K, H):
-    """Return point, parameters, support and curvatures of a sample, in the unit of the surface."""
+    """Return point, parameters, support and curvatures of a sample on the unscaled surface.
+
+    `x`, `K` and `H` are those of the patch times `size`, u and v its own parameters.
+    """
     unit = 1.0 / size
     point = Vector(
         place.centre.x + x.x * unit, place.centre.y + x.y * unit, place.centre.z + x.z * unit
@@ -138,9 +142,9 @@ def on_surface(place, frame, size, n, u, v, x, K, H):
 
 @loop
 def evaluate_tile(tile, count, frame, size, curved):
-    """Evaluate `count` samples of a tile; without branches, so that the loop is vectorized.
+    """Evaluate `count` samples of a tile. The loop has no branches, so that it is vectorized.
 
-    If `curved` is None, curvatures are left out when it is compiled.
+    If `curved` is None, the code is compiled without curvatures.
     """
     long_vectors()
     frame = (frame[0], frame[1], frame[2], frame[3])
@@ -176,7 +180,7 @@ def evaluate_tile(tile, count, frame, size, curved):
 
 @loop
 def store(k, point, n, s, t, h, K, H, points, directions, uv, support, gaussian, mean):
-    """Write the fields of sample k that are not empty."""
+    """Write the fields of sample k to the arrays; empty arrays are left out."""
     if len(points) > 0:
         set_row(points, k, point)
     if len(directions) > 0:
@@ -198,7 +202,7 @@ def fill_tile(
     points, directions, uv, support, gaussian, mean, normal_index, patch_index,
 ):  # fmt: skip
     """Evaluate `count` samples of a tile, and store them from index `start` on."""
-    # The last vector is padded with samples that are not stored.
+    # The loop works on whole SIMD vectors; additional samples in the last one are not stored.
     full = whole_vectors(count)
     if len(gaussian) + len(mean) > 0:
         evaluate_tile(tile, full, frame, SCALE * scale, True)
@@ -237,11 +241,12 @@ def fill_samples(
     mu, scale, normals, frame, keys, first, last, tile, indices,
     points, directions, uv, support, gaussian, mean, normal_index, patch_index,
 ):  # fmt: skip
-    """Fill the samples [first, last) of keys (N,), index of the normal << 32 | patch.
+    """Write the fields of the samples with the keys [first, last).
 
-    frame = (u0, v0, du, dv): the corner of the domain and the size of a cell in the parameters.
-    points (N, 3), directions (N, 3), uv (N, 2), support, gaussian, mean and the two indices (N,)
-    are empty if they are not requested. `tile` and `indices` are work arrays, see `new_tile`.
+    A key is (index of the normal) << 32 | index of the patch. `frame` is (u0, v0, du, dv): the
+    corner of the domain and the size of a cell. The fields are points (N, 3), directions (N, 3), uv
+    (N, 2), support, gaussian, mean and two indices (N,); arrays that are not requested are empty.
+    `tile` and `indices` are work arrays, see `new_tile`.
     """
     for begin in range(first, last, TILE):
         count = min(TILE, last - begin)
@@ -250,7 +255,7 @@ def fill_samples(
             number, patch = key >> 32, key & NUMBER
             indices[k], indices[STEP + k] = number, patch
             put(tile, NORMAL, k, row_vector(normals, np.uint64(number)))
-            # Neighbouring normals mostly have the same patches, often two.
+            # Consecutive normals often have the same two patches.
             if k > 1 and indices[STEP + k - 2] == patch:
                 copy_patch(tile, k, k - 2)
             else:
@@ -266,10 +271,11 @@ def fill_known(
     mu, scale, normals, frame, which, keys, local,
     points, directions, uv, support, gaussian, mean,
 ):  # fmt: skip
-    """Fill the samples which[0], which[1], … at known parameters; see `fill_samples`.
+    """Write the fields of the samples `which` (k,) at known parameters; see `fill_samples`.
 
-    keys (k,) are index of their normal << 32 | patch. local (k, 5) holds u, v, the sign of K, and
-    the parameters at which curvatures are evaluated: u, v, or a nearby point if that is singular.
+    `keys` (k,) are those of the samples. The columns of `local` (k, 5) are u, v, the sign of K, and
+    the parameters at which curvatures are evaluated: u, v, or those of a point nearby if the point
+    is singular.
     """
     columns = mu.shape[1] - 2
     frame = (frame[0], frame[1], frame[2], frame[3])

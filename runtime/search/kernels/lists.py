@@ -1,9 +1,9 @@
-"""Lists of the pieces whose cones of normals meet the bins of the sphere.
+"""For each bin of the sphere, a list of the pieces whose cones of normals meet it.
 
 Bins are squares on the faces of a cube around the sphere. If all cones lie in a cap, only the face
 +z has bins, and a linear map, the frame (3, 3), takes the cap to this face. On each face, bins are
-numbered along a Morton curve: the leading bits of a number are the bin of a coarser level. Keys are
-sorted by their leading bits, by counting; keys with the same leading bits keep their order.
+numbered along a Morton curve, so that the leading bits of a number are the bin of a coarser level.
+Keys are sorted by their leading bits with a stable counting sort.
 """
 
 from __future__ import annotations
@@ -31,19 +31,21 @@ __all__ = [
     "write_caps",
 ]
 
-# The level of the bins by which normals are sorted.
+# The number of times that faces are halved along both directions, for the bins in keys of normals.
 FINEST = np.int64(12)
-# The bits of an index in a key.
+# The bit mask of the index in a key.
 NUMBER = (1 << 32) - 1
-# Cones with a larger chord are compared with all bins.
+# For cones with a larger chord, all bins are tested.
 WIDE = 0.5
 ZENITH = np.int64(4)  # the face +z
 
 
 class Lists(NamedTuple):
-    """The bins: a frame and its inverse (3, 3), the number of faces, and how often they are halved.
+    """The bins and their lists of pieces.
 
-    Bin b lists `members` [starts[b], starts[b + 1]), which are indices of pieces.
+    `frame` (3, 3) maps directions to the cube, and `inverse` back; `faces` is the number of its
+    faces with bins, `level` the number of times that these are halved along both directions. Bin b
+    lists the pieces with the indices members[starts[b]:starts[b + 1]].
     """
 
     frame: NDArray[np.float64]
@@ -70,13 +72,16 @@ def cube_face(n):
 
 @loop
 def nearest_bin(position, grid):
-    """Return the bin at a position along an edge of the grid, clamped to the grid."""
+    """Return the row or column of the grid that contains a position, clamped to the grid."""
     return min(max(int(position), 0), grid - 1)
 
 
 @inline
 def bin_index(s, grid):
-    """Return the row or column of a face coordinate; monotone, also in rounding."""
+    """Return the row or column of a face coordinate s in −1 … 1.
+
+    It is a monotonic function of s, rounding included.
+    """
     return nearest_bin((s + 1.0) * (0.5 * grid), grid)
 
 
@@ -92,7 +97,7 @@ def mapped(frame, n):
 
 @inline
 def spread_bits(x):
-    """Return a 16-bit number with a zero before each bit."""
+    """Return the bits of a 16-bit number, with a zero inserted before each bit."""
     x = (x | x << 8) & 0x00FF00FF
     x = (x | x << 4) & 0x0F0F0F0F
     x = (x | x << 2) & 0x33333333
@@ -101,13 +106,13 @@ def spread_bits(x):
 
 @loop
 def bin_number(face, row, column, level):
-    """Return the number of a bin."""
+    """Return the number of a bin along the Morton curve of its face."""
     return (face << 2 * level) + (spread_bits(row) << 1) + spread_bits(column)
 
 
 @jit
 def order_normals(normals, frame, faces, first, last, keys):
-    """Write keys bin << 32 | index of the normals [first, last); −1 outside of a cap."""
+    """Write keys bin << 32 | index of the normals [first, last); −1 for normals without a bin."""
     grid = np.int64(1) << FINEST
     for k in range(first, last):
         face, s, t = cube_face(mapped(frame, row_vector(normals, k)))
@@ -122,7 +127,7 @@ def order_normals(normals, frame, faces, first, last, keys):
 
 @inline
 def face_of(faces, k):
-    """Return face k of the cube: all faces are used, or one."""
+    """Return the number of the k-th face with bins: all six faces have bins, or only +z."""
     return ZENITH if faces == 1 else np.int64(k)
 
 
@@ -138,7 +143,7 @@ def direction(inverse, face, s, t):
 
 @jit
 def write_caps(inverse, faces, level, caps):
-    """Write caps that contain the bins: their axes, and radii as chords."""
+    """Write a cap that contains each bin: its axis, and its radius as a chord."""
     grid = np.int64(1) << level
     half = 1.0 / grid
     for k in range(faces):
@@ -161,7 +166,7 @@ def write_caps(inverse, faces, level, caps):
 
 @inline
 def meets(cone, cap):
-    """Return whether a cone and its slab may share a direction with a cap."""
+    """Return whether a cap may have a direction in a cone and in its slab."""
     x, y, z = cone[0] - cap[0], cone[1] - cap[1], cone[2] - cap[2]
     reach = cone[CHORD] + cap[3]
     across = cone[SLAB] * cap[0] + cone[SLAB + 1] * cap[1] + cone[SLAB + 2] * cap[2]
@@ -170,10 +175,11 @@ def meets(cone, cap):
 
 @jit
 def list_pieces(cones, caps, frame, faces, level, stretch, least, keys):
-    """Write keys bin << 32 | piece for each bin of each piece; return the number of all keys.
+    """Write a key bin << 32 | piece for each bin that the cone of a piece meets.
 
-    Keys are not written when there is no more room. `stretch` is the norm of the frame, `least` the
-    least cosine between a direction and the axis of its face.
+    Return the number of keys, including those for which `keys` has no room. `stretch` is the norm
+    of the frame, `least` the least cosine between a direction and the axis of the face that it
+    meets.
     """
     count = 0
     grid = np.int64(1) << level
@@ -188,8 +194,8 @@ def list_pieces(cones, caps, frame, faces, level, stretch, least, keys):
                 height = axis[face >> 1] if face & 1 == 0 else -axis[face >> 1]
                 if height + chord < least:
                     continue
-                # If a direction moves by the chord, its position s = x / height on the face moves
-                # by at most ds, since its height is at least `least` there.
+                # If a direction changes by at most the chord, its position s = x / height on the
+                # face changes by at most ds, since heights are at least `least` there.
                 x, y = axis[((face >> 1) + 1) % 3], axis[((face >> 1) + 2) % 3]
                 step = chord * stretch / (height * max(least, height - chord))
                 s, ds = x / height, step * math.sqrt((x / stretch) ** 2 + height * height)
@@ -220,7 +226,10 @@ def count_keys(keys, shift, starts):
 
 @jit
 def place_keys(keys, shift, starts, ordered):
-    """Write keys to their positions, `starts` of their leading bits, which advance."""
+    """Write each key to the next free position for its leading bits, and advance `starts`.
+
+    starts[b] is the next free position for keys with the leading bits b.
+    """
     for k in range(keys.size):
         b = np.uint64(keys[k] >> shift)
         ordered[np.uint64(starts[b])] = keys[k]
@@ -229,7 +238,7 @@ def place_keys(keys, shift, starts, ordered):
 
 @jit
 def order_few(keys):
-    """Sort keys that are nearly in order: few are misplaced, by few positions."""
+    """Sort keys in place that are nearly sorted (insertion sort)."""
     for k in range(1, keys.size):
         key, at = keys[k], k
         while at > 0 and keys[at - 1] > key:

@@ -1,9 +1,9 @@
 """Pieces of a surface, each with a cone of its normals: patches of a spline, or cells of a surface.
 
 The normals of a patch are combinations of its control normals with positive weights. So a cone that
-contains the directions of these contains all normals. It is given by its axis and its chord, the
-largest distance from the axis on the sphere. A slab between two parallel planes also bounds long
-thin images.
+contains all control normals contains all normals. A cone is given by its axis and its chord: the
+largest distance between the unit axis and a unit vector of the cone. In addition, a slab between
+two parallel planes bounds long thin Gaussian images.
 """
 
 from __future__ import annotations
@@ -40,27 +40,28 @@ __all__ = [
     "write_pieces",
 ]
 
-# Columns of cones: the axis, the chord; the direction of the slab, and half its width.
+# The columns of a cone: its axis and its chord; the normal of its slab, and half the width of that.
 CHORD, SLAB, WIDTH, CONE = 3, 4, 7, 8
-# Columns of patches: the vectors a, b, c, d, e, and the error of U, V, W. Cells of a surface have
-# bounds of the remainders of x_s and x_t instead of the error.
+# The columns of a patch: the vectors a, b, c, d, e, and a bound of the errors of its forms U, V, W.
+# A cell of a surface has bounds of the remainders of x_s and x_t instead of this error.
 BOUND, VECTORS = 15, 16
 REST_S, REST_T = 15, 16
 # The chord of a cone, and the width of a slab, that contain all directions.
 EVERYTHING = 2.0
-# Cones with a chord above this, a half angle of 60°, are not used: a combination of their vectors
-# with weights of sum 1 may be as short as the cosine of the half angle.
+# Cones with a larger chord, a half angle above 60°, are not used: a combination of their unit
+# vectors with weights of sum 1 may be as short as the cosine of the half angle.
 WIDEST = 1.0
-# Chords and widths are enlarged by this, relatively and absolutely: rounding of sums of a few
-# numbers of size 1.
+# Chords and widths are enlarged, relatively and absolutely, by more than the rounding errors of
+# sums of a few numbers of size 1.
 RELATIVE, ABSOLUTE = 1.0 + 1e-12, 1e-14
 
 
 class Coefficients(NamedTuple):
     """The coefficients of a spline and their properties.
 
-    Coefficients mu (m, n, 3) with ghost coefficients, the power of two that scales them to about 1,
-    the rounding error of the scaled coordinates, and which sides of the domain are open (4,).
+    `mu` (m, n, 3) are the coefficients, including ghost coefficients; `scale` is the power of two
+    that scales them to about 1, `noise` the rounding error of the scaled coordinates, and `border`
+    (4,) says which sides of the domain are open.
     """
 
     mu: NDArray[np.float64]
@@ -70,9 +71,10 @@ class Coefficients(NamedTuple):
 
 
 class Pieces(NamedTuple):
-    """Cones with slabs (K, 8) and patches (K, 16 or more), see the columns above.
+    """Cones with slabs (K, 8) and patches (K, 16 or more), with the columns listed above.
 
-    A slab of width EVERYTHING also says that the cone does not exclude the opposites of normals.
+    If the slab has the width EVERYTHING, the cone may contain the opposite of a normal of the
+    piece.
     """
 
     cones: NDArray[np.float64]
@@ -80,15 +82,15 @@ class Pieces(NamedTuple):
 
     @classmethod
     def new(cls, count: int) -> Pieces:
-        """Return room for pieces."""
+        """Return empty arrays for `count` pieces."""
         return cls(np.empty((count, CONE)), np.empty((count, VECTORS)))
 
 
 @jit
 def write_pieces(spline, first, start, last, net, pieces):
-    """Write the patches of the cells [start, last); row 0 is the first patch of cell `first`.
+    """Write the pieces of the patches in the cells [start, last) of a spline.
 
-    `net` (6, 4) is a work array.
+    Row 0 of `pieces` is the first patch of cell `first`. `net` (6, 4) is a work array.
     """
     mu, scale, noise, border = spline
     rows, columns = mu.shape[0] - 2, mu.shape[1] - 2
@@ -124,17 +126,17 @@ def write_pieces(spline, first, start, last, net, pieces):
 
 @loop
 def step_to(mu, i, j, centre, scale):
-    """Return the coefficient (i, j) minus that of the cell, times `scale`."""
+    """Return the coefficient (i, j) minus the coefficient `centre` of the cell, times `scale`."""
     v = vector_at(mu, i, j)
     return Vector(scale * (v.x - centre.x), scale * (v.y - centre.y), scale * (v.z - centre.z))
 
 
 @loop
 def put_piece(pieces, k, patch, spread, noise, net):
-    """Write a patch, the cone of its normals, and a bound of the errors of its forms U, V, W.
+    """Write piece k: a patch, the cone of its normals, and a bound of the errors of U, V, W.
 
-    `spread` are the largest differences of its coefficients in x, y and z. `noise` is an error in
-    addition to the rounding of the coefficients.
+    `spread` has the largest differences of the coefficients of the patch in x, y and z. `noise` is
+    an error that is added to the rounding errors of the coefficients.
     """
     tangents = tangent_bounds(patch)
     square = max(tangents.x, tangents.y, tangents.z)
@@ -159,7 +161,7 @@ def put_piece(pieces, k, patch, spread, noise, net):
 
 @inline
 def write_patch(patch, bound, row):
-    """Write the vectors of a patch, and the error of U, V, W."""
+    """Write the vectors a, b, c, d, e of a patch to a row, and a bound of the errors of U, V, W."""
     write_vector(row, 0, patch.a)
     write_vector(row, 3, patch.b)
     write_vector(row, 6, patch.c)
@@ -170,16 +172,16 @@ def write_patch(patch, bound, row):
 
 @inline
 def write_vector(row, at, v):
-    """Write a vector to three columns."""
+    """Write a vector to three columns of a row, from `at` on."""
     row[at], row[at + 1], row[at + 2] = v.x, v.y, v.z
 
 
 @jit
 def write_net_pieces(vectors, control, angles, bounds, net, pieces):
-    """Write the patches of nets; `net` (6, 4) is a work array.
+    """Write the pieces of the patches of a spline of nets; `net` (6, 4) is a work array.
 
-    Nets have vectors (T, 5, 3), control normals (T, 6, 3) with errors that are angles (T,), and
-    errors (T,) of U, V, W.
+    The T patches have the vectors a, …, e (T, 5, 3), control normals (T, 6, 3), errors of these as
+    angles (T,), and bounds (T,) of the errors of U, V, W.
     """
     for k in range(angles.size):
         for m in range(6):
@@ -203,10 +205,10 @@ def write_net_pieces(vectors, control, angles, bounds, net, pieces):
 
 @loop
 def write_cone(net, cone):
-    """Write the cone and the slab of unit control normals, net[:, :3], with the errors net[:, 3].
+    """Write the cone and the slab of the unit control normals net[:, :3].
 
-    Errors are angles. That of a control normal that vanishes is infinite; it adds no direction to
-    the cone.
+    Their errors net[:, 3] are angles. A control normal with an infinite error is the zero vector,
+    and adds no direction to the cone.
     """
     x = y = z = far = worst = 0.0
     regular = True
@@ -234,13 +236,14 @@ def write_cone(net, cone):
         for m in range(6):
             width = max(width, abs(dot(row_vector(net, m), normal)))
         write_vector(cone, SLAB, normal)
-        # A combination of unit vectors of the cone is at least as long as the cosine of its angle.
+        # A combination of unit vectors of the cone, with weights of sum 1, is at least as long as
+        # the cosine of the half angle.
         cone[WIDTH] = (width + worst) / (1.0 - 0.5 * chord * chord) * RELATIVE + ABSOLUTE
 
 
 @loop
 def thinnest(net, axis):
-    """Return the unit vector perpendicular to an axis along which directions (6, 4) vary least."""
+    """Return the direction perpendicular to an axis in which the vectors net[:, :3] vary least."""
     x, y, z = abs(axis.x), abs(axis.y), abs(axis.z)
     if x <= y and x <= z:
         p = Vector(0.0, axis.z, -axis.y)
@@ -258,7 +261,7 @@ def thinnest(net, axis):
         n = row_vector(net, m)
         s, t = dot(n, p), dot(n, q)
         xx, xy, yy = xx + s * s, xy + s * t, yy + t * t
-    # Half the angle of (xx − yy, 2 xy) is the direction along which they vary most.
+    # The direction of largest variation has half the polar angle of (xx − yy, 2 xy).
     size = math.sqrt((xx - yy) ** 2 + 4.0 * xy * xy)
     share = (xx - yy) / size if size > 0.0 else 1.0
     c, s = math.sqrt(max(0.5 + 0.5 * share, 0.0)), math.sqrt(max(0.5 - 0.5 * share, 0.0))
@@ -271,7 +274,7 @@ def thinnest(net, axis):
 
 @loop
 def write_control_normals(patch, net):
-    """Write the control normals (6, 3) of a patch."""
+    """Write the control normals of a patch to `net` (6, 3)."""
     normals = control_normals(patch)
     for k in range(6):
         set_row(net, k, normals[k])
@@ -279,7 +282,7 @@ def write_control_normals(patch, net):
 
 @loop
 def tangent_bounds(patch):
-    """Return bounds of the moduli of the components of the tangent vectors of a patch."""
+    """Return bounds of |x|, |y| and |z| of the tangent vectors of a patch."""
     a, b, c, d, e, _ = patch
     return Vector(
         max(abs(a.x), abs(b.x), abs(c.x)) + max(abs(d.x), abs(e.x)),
@@ -290,10 +293,10 @@ def tangent_bounds(patch):
 
 @jit
 def least_cosine(mu, scale, axis, net):
-    """Return the least cosine between a unit vector (3) and an oriented normal of the spline.
+    """Return a lower bound of the cosines between a unit vector (3,) and the normals of the spline.
 
-    It is a lower bound, from the control normals. The search ends at the first negative cosine.
-    `net` (6, 3) is a work array.
+    It is the least cosine with a control normal; after the first negative one, no more patches are
+    examined. `net` (6, 3) is a work array.
     """
     columns = mu.shape[1] - 2
     towards = Vector(axis[0], axis[1], axis[2])

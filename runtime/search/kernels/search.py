@@ -1,8 +1,9 @@
-"""The search: which pieces have which normals.
+"""The search for the pieces of a surface that have given normals.
 
-Normals come in the order of their bins. A tile is up to LANES normals of one bin; pieces of the bin
-whose cones meet a cap around the tile are tested for all normals of the tile. A patch of a spline
-is decided by the signs of U, V, W and D; a cell of a surface is excluded, or left to the proof.
+The normals are sorted by bins of the sphere. A tile is a group of up to LANES normals of one bin.
+Those pieces of the bin whose cones meet a cap around the tile are tested for all of its normals.
+For a patch of a spline, the signs of the forms U, V, W and D decide; a cell of a surface is either
+excluded, or left to the proof.
 """
 
 from __future__ import annotations
@@ -32,12 +33,12 @@ PATCHES, CELLS = 0, 1
 LANES, STEP = 64, 8
 # Rows of a tile: x, y, z of the normals, and their codes.
 Y, Z, CODE = (np.uint64(k * LANES) for k in range(1, 4))
-# The codes: no, yes, and undecided because of rounding.
+# The codes of a normal and a piece: the piece lacks it, has it, or may have it, due to rounding.
 NO, YES, UNDECIDED = 0.0, 1.0, 2.0
 
 
 class Memory(NamedTuple):
-    """Work arrays: a tile of normals, a cap around it (4,), and the pieces that may have one."""
+    """Work arrays: a tile of normals, a cap (4,) around it, and the pieces that meet the cap."""
 
     tile: NDArray[np.float64]
     cap: NDArray[np.float64]
@@ -45,15 +46,15 @@ class Memory(NamedTuple):
 
     @classmethod
     def new(cls, members: int) -> Memory:
-        """Return new work arrays, for bins with up to `members` members."""
+        """Return new work arrays, for bins that list up to `members` pieces."""
         return cls(np.zeros(4 * LANES), np.zeros(4), np.empty(members + 1, np.int64))
 
 
 class Pairs(NamedTuple):
-    """Pairs of a normal and a piece that has it or may have it.
+    """Pairs of a normal and a piece that has it, or may have it, as keys.
 
-    `certain` and `undecided` are keys index of the normal << 32 | piece, `counts` (2,) their
-    numbers.
+    A key is (index of the normal) << 32 | index of the piece. The first counts[0] keys of `certain`
+    and the first counts[1] keys of `undecided` are used.
     """
 
     certain: NDArray[np.int64]
@@ -62,15 +63,16 @@ class Pairs(NamedTuple):
 
     @classmethod
     def new(cls, room: int) -> Pairs:
-        """Return room for a number of keys of both."""
+        """Return empty arrays for up to `room` certain and `room` undecided keys."""
         return cls(np.empty(room, np.int64), np.empty(room, np.int64), np.zeros(2, np.int64))
 
 
 @jit
 def search(kind, pieces, lists, normals, order, first, last, memory, found):
-    """Find the pieces, all of one kind, with the normals order[first], …, order[last − 1].
+    """Write the pairs of the normals order[first], …, order[last − 1] and pieces to `found`.
 
-    `order` (S,) are keys of `order_normals`. Returns where room ended, and how much is needed
+    All pieces are of one kind; `order` (S,) are keys of `order_normals`. Return `last` and 0, or,
+    if `found` was full before, the position in `order` to go on from, and the capacity needed
     there.
     """
     tile, cap, near = memory
@@ -103,7 +105,7 @@ def search(kind, pieces, lists, normals, order, first, last, memory, found):
 
 @loop
 def load_tile(tile, normals, order, first, last, cap):
-    """Write normals to a tile, and a cap that contains them."""
+    """Write the normals of the keys order[first:last] to a tile, and a cap that contains them."""
     x = y = z = square = 0.0
     count = last - first
     for k in range(count):
@@ -124,7 +126,7 @@ def load_tile(tile, normals, order, first, last, cap):
 
 @loop
 def near_pieces(cones, members, first, last, cap, near):
-    """Write the pieces of a bin that may have a normal in a cap; return their number."""
+    """Write the indices of the pieces of a bin whose cones meet a cap; return their number."""
     count = np.int64(0)
     for m in range(first, last):
         j = np.int64(members[m])
@@ -135,7 +137,7 @@ def near_pieces(cones, members, first, last, cap, near):
 
 @inline
 def patch_in(row):
-    """Return the patch of a piece, without p."""
+    """Return the patch of a piece from its row; its point p is 0."""
     return Patch(
         Vector(row[0], row[1], row[2]),
         Vector(row[3], row[4], row[5]),
@@ -148,10 +150,10 @@ def patch_in(row):
 
 @loop
 def test_tile(cone, row, tile, count):
-    """Write the codes of the normals of a tile.
+    """Write the codes of the normals of a tile for one patch.
 
-    A patch has a normal if U, V, W have the sign of D there (Sect. 3.2), and the normal is in the
-    cone: the forms are even, so that the opposite normal has the same signs.
+    The patch has a normal if its forms U, V, W and D have the same sign there (paper, Sect. 3.2),
+    and if the normal is in the cone. The forms alone do not distinguish a normal from its opposite.
     """
     patch = patch_in(row)
     axis, square, bound = Vector(cone[0], cone[1], cone[2]), cone[CHORD] * cone[CHORD], row[BOUND]
@@ -173,9 +175,10 @@ def test_tile(cone, row, tile, count):
 
 @loop
 def exclude_tile(cone, row, tile, count):
-    """Write the codes of the normals of a tile: NO where bounds of the cell exclude the normal.
+    """Write the codes of the normals of a tile for one cell of a surface.
 
-    The other codes are YES, or UNDECIDED if the cone does not exclude opposite normals.
+    The code is NO where bounds of the cell exclude the normal. Elsewhere it is YES, or UNDECIDED if
+    the cone does not distinguish a normal from its opposite.
     """
     patch, rest_s, rest_t = patch_in(row), row[REST_S], row[REST_T]
     axis, square = Vector(cone[0], cone[1], cone[2]), cone[CHORD] * cone[CHORD]
@@ -195,9 +198,10 @@ def exclude_tile(cone, row, tile, count):
 
 @loop
 def look_again(row, tile, count):
-    """Compare hits of a piece without a narrow cone with the oriented normal at their parameters.
+    """Reject the normals of a tile whose opposite the piece has, if it has no narrow cone.
 
-    The forms are even in n: unlike a cone, they do not distinguish a normal from its opposite.
+    The forms do not distinguish a normal from its opposite. Therefore each normal with the code YES
+    is compared with the oriented normal of the patch at the parameters of the hit.
     """
     patch = patch_in(row)
     for k in range(count):
@@ -215,7 +219,7 @@ def look_again(row, tile, count):
 
 @loop
 def store(tile, count, order, first, j, found):
-    """Write the keys of piece j and the normals of a tile that it has or may have."""
+    """Write the keys of piece j and those normals of a tile that it has or may have."""
     certain, undecided, counts = found
     a, b = counts[0], counts[1]
     for k in range(count):
