@@ -15,9 +15,10 @@ __all__ = ["offset", "revolve"]
 
 @jit
 def revolve(u, curve, out):
-    """Write x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) of curves turned about the z axis by u (k,).
+    """Write x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) of a surface of revolution about the z axis.
 
-    The curve is given by its points and its first and second derivatives (k, 3, 3).
+    `u` (k,) are the angles, and `curve` (k, 3, 3) the points of the curve with their first and
+    second derivatives by v.
     """
     for k in range(len(u)):
         p, x_u, x_v, x_uu, x_uv, x_vv = revolution_jet(
@@ -29,9 +30,10 @@ def revolve(u, curve, out):
 
 @jit
 def offset(distance, jets, thirds, out):
-    """Write y, y_u, y_v, y_uu, y_uv, y_vv (k, 6, 3) at a distance from 2-jets (k, 6, 3).
+    """Write y, y_u, y_v, y_uu, y_uv, y_vv (k, 6, 3) of an offset y of a surface x.
 
-    Second derivatives need third ones of x (k, 4, 3): x_uuu, x_uuv, x_uvv, x_vvv. All are NaN where
+    `jets` (k, 6, 3) are x, x_u, x_v, x_uu, x_uv, x_vv, and `thirds` (k, 4, 3) the third derivatives
+    x_uuu, x_uuv, x_uvv, x_vvv, which the second derivatives of y need. The results are NaN where
     x_u × x_v = 0.
     """
     for k in range(len(jets)):

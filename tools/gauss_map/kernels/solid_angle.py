@@ -11,9 +11,10 @@ __all__ = ["integrate_arcs"]
 
 @jit
 def integrate_arcs(arcs, poles, nodes, weights, integrals):
-    """Write the integrals of the solid-angle form along arcs (k, 3, 3), for the poles (k, 3).
+    """Write the integrals (k,) of the solid-angle form along arcs (k, 3, 3).
 
-    nodes and weights are those of a quadrature on [0, 1]. Vanishing normals are skipped.
+    An arc is a quadratic Bézier curve of normals, and `poles` (k, 3) are the poles of the form.
+    `nodes` and `weights` are those of a quadrature on [0, 1]. Vanishing normals are skipped.
     """
     for k in range(arcs.shape[0]):
         N0 = Vector(arcs[k, 0, 0], arcs[k, 0, 1], arcs[k, 0, 2])

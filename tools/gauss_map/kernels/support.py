@@ -37,10 +37,11 @@ branches_of_patch = jit(support_function.branch)
 
 @jit
 def classify(patch, bound, accurate, shortest, normals, kinds, uv):
-    """Write the kinds of the normals (k, 3) relative to a patch, and u, v (k, 2) if INSIDE.
+    """Write whether normals (k, 3) are INSIDE or OUTSIDE the image of a patch, and u, v if INSIDE.
 
-    `bound` is the rounding error of U, V, W. D must exceed `accurate`, and N `shortest`. Normals
-    have a length of about 1. Normals that rounding leaves undecided are DOUBTFUL.
+    `normals` have a length of about 1, `kinds` (k,) and `uv` (k, 2) are the results. A normal is
+    DOUBTFUL if rounding leaves it undecided: `bound` is the rounding error of the forms U, V, W,
+    and INSIDE needs |D| > `accurate` and |N| > `shortest`.
     """
     for k in range(normals.shape[0]):
         n = row_vector(normals, k)
@@ -66,8 +67,9 @@ def classify(patch, bound, accurate, shortest, normals, kinds, uv):
 def hessians_of_patches(mu, scale, patches, normals, known, hessians):
     """Write the Hessians (k, 3, 3) of the support function at unit normals (k, 3) of patches (k,).
 
-    Where `known` (k, 2) is not NaN, it holds parameters u, v that are more accurate than those that
-    follow from a normal, and the normal of the patch at u, v takes the place of the given one.
+    Where `known` (k, 2) is not NaN, it holds the parameters u, v, which are more accurate than
+    parameters computed from the normal. The normal of the patch at u, v then replaces the given
+    normal.
     """
     columns = mu.shape[1] - 2
     size = SCALE * scale
