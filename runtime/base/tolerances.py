@@ -37,43 +37,48 @@ __all__ = [
     "VANISHING",
 ]
 
-# Of coordinates, relative to the largest one: they carry a few roundings, at most 64 ε.
+# The error of coordinates, relative to the largest coordinate: a few roundings, at most 64 ε.
 DATA_ERROR = 2.0**-46
-# Of the linear forms A, B, C, P, Q at a unit normal, relative to the largest difference of the
-# coefficients of a patch: the integer weights of a vector sum to at most 12 in modulus, and a
-# scalar product adds three roundings, so that 2⁻⁴³ leaves a factor of 6 to spare.
+# The error of the linear forms A, B, C, P, Q at a unit normal, relative to the largest difference
+# of the coefficients of a patch: the integer weights of a vector sum to at most 12 in modulus, and
+# a scalar product adds three roundings, so that 2⁻⁴³ leaves a factor of 6 to spare.
 FORM_ERROR = 2.0**-43
-# U, V, W are compared with the bound of their error; D has to exceed it by this factor, so that
-# u = U/D and v = V/D have as many digits as the factor.
+# The quadratic forms U, V, W of a patch are compared with a bound of their errors. The form D has
+# to exceed this bound by the factor ACCURATE, so that u = U/D and v = V/D have about 16 correct
+# bits.
 ACCURATE = 2.0**16
-# Of the direction of a control normal, as an angle (radians): at most this times one plus the
-# square of the tangents relative to its length.
+# The error of the direction of a control normal, an angle in radians: at most this times 1 + t²/l,
+# with the length t of the tangents and the length l of the control normal.
 ANGLE_ERROR = 2.0**-40
 # A control normal shorter than this, relative to the square of the tangents, has no direction: its
 # patch has a singular point there. The threshold is far above the rounding error of a cross
 # product.
 SHORT_CONTROL_NORMAL = 2.0**-30
 # A point is singular where the normal is shorter than this, relative to the normal at the centre of
-# its patch; its curvatures are taken at this distance (in u, v) from it.
+# its patch. Its curvatures are evaluated at another point, at this distance in u, v.
 SINGULAR_POINT = 2.0**-20
 # A point is near a singular point where the normal is shorter than this, relative to the square of
-# the tangents: parameters with few digits do not give its direction there.
+# the tangents: the direction of the normal there needs parameters with many digits.
 NEAR_SINGULAR_POINT = 2.0**-12
-# A normal, or a slope along it, is zero if it is shorter than this, relative to the product of its
-# tangents, or to the largest normal of the patch: 4096 ε, far above the rounding of such a product.
+# A normal, or a slope along a normal, counts as zero if it is smaller than this, relative to the
+# product of the tangents or to the largest normal of the patch: 4096 ε, far above the rounding of
+# such a product.
 VANISHING = 2.0**-40
-# Of a coefficient of the parabolic cubic, or of the cubic of its directions, relative to the
-# product of the lengths of the vectors in its terms: 256 ε.
+# The error of a coefficient of the parabolic cubic, or of the cubic of its directions, relative to
+# the product of the lengths of the vectors in its terms: 256 ε.
 CUBIC_ERROR = 2.0**-44
-# Of parameters in the triangle u, v, 1 − u − v ≥ 0, whose legs have length 1.
+# The error of parameters in the triangle u, v, 1 − u − v ≥ 0, whose legs have length 1.
 PARAMETER_ERROR = 1e-12
-# Two roots, directions (radians) or parameter pairs (u, v) that differ by less than this are a
-# double root, and a smaller imaginary part is zero: a rounding error ε splits a double root by √ε ≈
-# 1.5e-8, times the condition number of the cubic, for which a factor of 67 is left.
+# Two roots, directions (radians) or parameter pairs (u, v) that differ by less than this count as a
+# double root, and an imaginary part smaller than this counts as zero: a rounding error ε splits a
+# double root by √ε ≈ 1.5e-8, times the condition number of the cubic, for which a factor of 67 is
+# left.
 DOUBLE_ROOT = 1e-6
-# Of the radius of a cap in degrees: the iteration has converged if it grows by less than this.
+# The iteration for the smallest cap has converged if its radius grows by less than this, in
+# degrees.
 CAP_RADIUS_ERROR = 1e-12
-# Of the height of a circle of latitude on the unit sphere: free points are farther away from it.
+# The error of the height of a circle of latitude on the unit sphere: other points are farther away
+# from the circle.
 CIRCLE_HEIGHT_ERROR = 1e-12
 # The flip or collapse of an edge must raise a cosine, or the tangent of an angle of a triangle, by
 # at least this, which exceeds their rounding errors.
@@ -81,34 +86,37 @@ QUALITY_GAIN = 1e-14
 # A triangle whose smallest angle (radians) is below this counts as one without area: its area
 # vanishes in files of single precision.
 NO_AREA = 1e-6
-# Of K, H and 1 + 2 d H + d² K relative to their terms, in units of the last place.
+# The error of K, H and 1 + 2 d H + d² K relative to their terms, in units of the last place.
 CURVATURE_ERROR = 4.0
-# Of a principal curvature times the diagonal of the bounding box, relative to the rounding of
-# coordinates in units of the diagonal: on a surface that is given by values only (second
-# differences of them), and on a spline, where this is multiplied by the square of its number of
-# cells. Measured values on planes, cylinders and cones are 1.3e7 and 40.
+# The error of a principal curvature times the diagonal of the bounding box, relative to the
+# rounding of coordinates in units of the diagonal. DERIVATIVE_ERROR is for surfaces that are given
+# by values only, whose curvatures come from second differences; PATCH_ERROR is for splines, and is
+# multiplied by the square of the number of cells. Measured values on planes, cylinders and cones
+# are 1.3e7 and 40.
 DERIVATIVE_ERROR, PATCH_ERROR = 2.0**26, 2.0**8
-# Of a difference of two coefficients of a planar spline, in units of the last place of the largest
-# coordinate.
+# The error of a difference of two coefficients of a planar spline, in units of the last place of
+# the largest coordinate.
 DIFFERENCE_ERROR = 8.0
-# Of the integral of κ² over a surface: a smaller one is rounding error.
+# The error of the integral of κ² over a surface: a smaller integral counts as zero.
 FLAT_SURFACE = 1e-9
-# Of distances on a surface, relative to its size.
+# The error of distances on a surface, relative to its size.
 LENGTH_ERROR = 1e-15
-# Of a principal radius relative to its terms: 64 ε. A smaller one is zero.
+# The error of a principal radius relative to its terms: 64 ε. A smaller radius counts as zero.
 RADIUS_ERROR = 2.0**-46
-# Of R Rᵀ − 1 of a rotation: the rounding of its entries and of a few products of rotations.
+# The error of R Rᵀ − 1 for a rotation R: the rounding of its entries and of a few products of
+# rotations.
 ROTATION_ERROR = 1e-12
 # Parameters that differ by less than this part of their range are the same.
 SAME_PARAMETER = 1e-12
-# Of triple products of unit vectors: 4 ε. Regions of the sphere are closed up to this.
+# The error of triple products of unit vectors: 4 ε. Regions of the sphere are larger by this.
 TRIPLE_PRODUCT_ERROR = 2.0**-50
-# Of the normal of a sample on a surface, as an angle (radians).
+# The error of the normal of a sample on a surface, an angle in radians.
 NORMAL_ERROR = 1e-12
-# Of the same angle where Newton's method stagnates because of the rounding of parameters and
-# derivatives, or of the error of finite differences: a sample with a larger error is not on the
-# surface.
+# The largest error of the normal of a sample, in radians, where Newton's method stagnates because
+# of the rounding of parameters and derivatives, or of the error of finite differences: a sample
+# with a larger error is not on the surface.
 NORMAL_NOISE = 1e-9
-# Of the distance at which two samples of one normal coincide on the surface, relative to a cell of
-# the spline: the error of points found with numerical derivatives, far from the origin.
+# Two samples of one normal are the same point of the surface if their distance, relative to a cell
+# of the spline, is below this: the error of points that are found with numerical derivatives on a
+# surface far from the origin.
 MEETING = 2.0**-13

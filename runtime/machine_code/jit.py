@@ -20,7 +20,8 @@ __all__ = ["inline", "jit", "long_vectors", "loop"]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 config: Any = numba_config  # Numba creates its attributes at run time
-# Kernels are called from Python and from one another, never from C; they count no references.
+# Compiled functions are called from Python or from one another, never from C; they count no
+# references.
 OPTIONS: dict[str, Any] = {
     "nogil": True, "error_model": "numpy", "fastmath": False, "no_cfunc_wrapper": True,
     "_nrt": False,
@@ -28,7 +29,7 @@ OPTIONS: dict[str, Any] = {
 
 
 def loop(function: Function) -> Function:
-    """Compile a function that kernels call, once and separately.
+    """Compile a function that kernels call, once and separately from them.
 
     Use it for functions that are long or have several callers. They allocate no memory: arrays come
     from the caller. Use `inline` for short functions, which are copied into their callers.

@@ -115,13 +115,13 @@ class KernelCompiler(PartCompiler):
 
 
 def copies_in(library: Any) -> list[str]:
-    """Return the parts that were compiled more than once for a kernel, for different types."""
+    """Return the names of the parts that a kernel needs for several sets of argument types."""
     names = Counter(part.name for part in getattr(library, "called", ()))
     return sorted(name for name, count in names.items() if count > 1)
 
 
 def without_literals(part: Any) -> Any:
-    """Compile one copy of a part for all integers, where Numba makes one for each literal."""
+    """Make Numba compile one copy of a part for all integers, not one for each literal."""
     if hasattr(part, "_compiler"):  # absent if compilation is switched off
         fold = part._compiler.fold_argument_types
 

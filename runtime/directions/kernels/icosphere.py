@@ -1,7 +1,8 @@
 """The points of the icosphere, a refined icosahedron: their indices and unit normals.
 
-The points of frequency ν on a face are (ν − s − t, s, t), in row s and column t. The 12 corners
-come first, then the points inside the 30 edges, then those inside the 20 faces, row by row.
+The points of a face, at frequency ν, have the barycentric coordinates (ν − s − t, s, t)/ν, with the
+row s and the column t. The 12 corners come first, then the points inside the 30 edges, then the
+points inside the 20 faces, row by row.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ def new_line() -> tuple[NDArray[np.int64], NDArray[np.float64]]:
 
 @inline
 def row_start(face, s, frequency):
-    """Return the index of the point (s, 0) of a face, that of (s, 1) minus one."""
+    """Return the index of the point (s, 1) of a face, the first one inside its row, minus one."""
     rows = s - 1
     inside = (frequency - 1) * (frequency - 2) >> 1
     before = rows * (frequency - 1) - (rows * (rows + 1) >> 1)
@@ -43,9 +44,9 @@ def row_start(face, s, frequency):
 def write_normals(face, frequency, places, first, count, tile):
     """Write the unit normals of points of a face to the first three rows of a tile.
 
-    They are `count` points from `first` on, and up to VECTOR − 1 more; `places` (2 STEP) contains
-    their rows and columns. Before the square root, only b φ and one sum are rounded, so that mirror
-    images agree bit for bit, and a point of two faces is the same on both.
+    `places` (2 STEP) are the rows and the columns of points: `count` points from `first` on are
+    written, and up to VECTOR − 1 more. Before the square root, only b φ and one sum are rounded, so
+    that mirror images agree bit for bit, and a point of two faces is the same on both.
     """
     long_vectors()
     a_x, b_x, a_y, b_y, a_z, b_z = line(face, 0)
@@ -67,7 +68,10 @@ def write_normals(face, frequency, places, first, count, tile):
 
 @inline
 def line(face, k):
-    """Return the first corner of a face or a step along it: x, y, z as pairs a, b for a + b φ."""
+    """Return the first corner of a face (k = 0), or the step to the next row (1) or column (2).
+
+    Its coordinates x, y, z are pairs a, b for a + b φ.
+    """
     return (
         LINES[face, k, 0],
         LINES[face, k, 1],
@@ -80,7 +84,10 @@ def line(face, k):
 
 @loop
 def write_line(face, frequency, s, t, s_step, t_step, count, places, tile):
-    """Write the unit normals (s, t), (s + s_step, t + t_step), … of a face to a tile."""
+    """Write unit normals of `count` points of a face to a tile.
+
+    The points are in row s and column t, in row s + s_step and column t + t_step, and so on.
+    """
     for k in range(whole_vectors(count)):
         places[k] = s + k * s_step
         places[STEP + k] = t + k * t_step
@@ -95,7 +102,10 @@ def line_count(part, frequency):
 
 @loop
 def line_of(part, k, frequency):
-    """Return a line of a part: its first index, its length, and the arguments of `write_line`."""
+    """Return line k of a part: the index of its first point, and its number of points.
+
+    The other results are the arguments of `write_line`: face, s, t, s_step and t_step.
+    """
     inner = frequency - 1
     if part == 0:
         face, t, s = CORNER_PLACES[k, 0], CORNER_PLACES[k, 1], CORNER_PLACES[k, 2]

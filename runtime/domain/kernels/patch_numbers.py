@@ -1,4 +1,4 @@
-"""The numbers of patches: four for each cell, row by row."""
+"""The indices of patches: four for each cell, cell by cell along v."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ __all__ = ["place_of"]
 
 @inline
 def place_of(patch, columns):
-    """Return the row and the column of the cell of a patch, and its number of quarter turns."""
+    """Return row and column of the cell of a patch, and the quarter turns (0 to 3) of the patch."""
     cell = patch // 4
     return cell // columns, cell % columns, patch % 4

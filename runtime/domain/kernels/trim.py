@@ -53,7 +53,8 @@ class SegmentGrid(NamedTuple):
 def is_left(segment, u, v):
     """Return whether a point is left of the line through a segment, as seen from its first end.
 
-    For a segment along u, left means above; a point on its line is above it.
+    A segment along u runs towards larger u, so that left of it is above it; points on its line
+    count as left.
     """
     rise = segment[3] - segment[1]
     product = (segment[2] - segment[0]) * (v - segment[1]) - rise * (u - segment[0])
@@ -62,9 +63,10 @@ def is_left(segment, u, v):
 
 @inline
 def is_right_of(segment, u, v):
-    """Return whether a segment whose v range contains a point's is right of it (at larger u).
+    """Return whether a segment is right of a point, that is, at larger u.
 
-    The first end of the segment is the lower one, so that the point is on its left.
+    The v of the point is in the range of v of the segment. The first end of the segment is its
+    lower end, so that the point is then left of the segment.
     """
     if segment[0] > u and segment[2] > u:
         return True
@@ -75,7 +77,7 @@ def is_right_of(segment, u, v):
 
 @inline
 def is_below(segment, u, v):
-    """Return whether a segment whose u range contains a point's is below it."""
+    """Return whether a segment is below a point whose u is in the segment's range of u."""
     if segment[3] <= v:
         return True
     if segment[1] > v:
@@ -85,9 +87,9 @@ def is_below(segment, u, v):
 
 @inline
 def crosses(segment, u, v, corner_u, corner_v):
-    """Return whether a segment is crossed an odd number of times on the path to a corner.
+    """Return whether the path from a point to a corner crosses a segment an odd number of times.
 
-    The path goes along u first.
+    The path goes along u first, then along v.
     """
     odd = False
     if segment[1] <= v < segment[3]:
@@ -126,7 +128,7 @@ def is_inside(cells, u, v):
 
 @jit
 def find_inside(cells, shifts, places, first, last, inside):
-    """Write whether the points [first, last) of rows u, v are inside after one of the shifts.
+    """Write whether points [first, last) of `places` (k, 2) are inside after one of the shifts.
 
     shifts (s, 4): rows a, b, c, d map (u, v) to (a u + b, c v + d).
     """
@@ -143,8 +145,8 @@ class Joined(NamedTuple):
     """The cells of L sets of polygons, concatenated, and their shifts (s, 4).
 
     starts (L + 1, 6): the offsets of segments, starts, members, parities and shifts of each set,
-    and its number of rows, which is also that of columns. `cell_starts` and `members` are relative
-    to these offsets.
+    and its number of rows of cells, which equals its number of columns. `cell_starts` and `members`
+    are relative to these offsets.
     """
 
     segments: NDArray[np.float64]
@@ -158,7 +160,7 @@ class Joined(NamedTuple):
 
 @jit
 def find_inside_each(joined, owners, places, inside):
-    """Write whether points (k, 2) are inside the sets of polygons given by `owners` (k,)."""
+    """Write whether each point (k, 2) is inside a set of polygons, whose index is in `owners`."""
     for k in range(owners.shape[0]):
         owner = owners[k]
         first = joined.starts[owner]
@@ -182,7 +184,7 @@ def find_inside_each(joined, owners, places, inside):
 def find_parities(cells):
     """Write the parities at the corners of the cells.
 
-    The parity of a corner is that of the number of segments in its row on its right.
+    A corner is inside if the ray from it towards larger u crosses an odd number of segments.
     """
     rows, columns = cells.parity.shape
     frame = cells.frame
@@ -213,8 +215,8 @@ def find_parities(cells):
 def list_segments(cells, margins, stores):
     """Count the segments of each cell in starts[cell + 1], or store them from starts[cell] on.
 
-    Storing advances the starts to the ends. A segment belongs to all cells that it may touch:
-    margins (2,) exceed the rounding errors of coordinates.
+    Storing advances starts[cell] to the end of the list of the cell. A segment belongs to all cells
+    that it may touch: margins (2,) exceed the rounding errors of coordinates.
     """
     rows, columns = cells.parity.shape
     frame = cells.frame
@@ -244,7 +246,7 @@ def list_segments(cells, margins, stores):
 
 @jit
 def to_cells(patches, places, columns, first, last, cells):
-    """Write parameters (k, 2) in cells of the grid, from parameters (k, 2) in patches (k,)."""
+    """Convert parameters `places` (k, 2) in `patches` (k,) to parameters in units of cells."""
     for k in range(first, last):
         i, j, turn = place_of(patches[k], columns)
         u = places[k, 0]

@@ -36,7 +36,7 @@ __all__ = [
     "newton",
 ]
 
-# The behaviour of a parameter at the ends of its interval: no ends, clamped to them, or periodic.
+# The kinds of parameters: unbounded, clamped to an interval, or periodic.
 FREE, CLAMPED, PERIODIC = 0, 1, 2
 NOT_FOUND, FOUND = 0, 1
 # In cells of the spline: the largest length of a step, and of all steps together. A point farther
@@ -52,8 +52,8 @@ OPPOSITE = 4.0  # in place of the squared sine of angles above 90 degrees
 class Rows(NamedTuple):
     """The unfinished rows: their indices `numbers` (n,), and their parameters (2, n).
 
-    In cells of the spline, `steps` (4, n) are the last step and all steps together; `least` (n,) is
-    the squared sine of the smallest angle so far.
+    `steps` (4, n) are the last step and the sum of all steps, in units of cells of the spline.
+    `least` (n,) is the squared sine of the smallest angle so far.
     """
 
     numbers: NDArray[np.int64]
@@ -84,7 +84,7 @@ class Target(NamedTuple):
 
 
 class Box(NamedTuple):
-    """The ends of both parameters, their types, and the size of a cell of the spline."""
+    """The bounds of u and v, their kinds (FREE, …), and the size of a cell of the spline."""
 
     ends: tuple[float, float, float, float]
     kinds: tuple[int, int]
@@ -93,7 +93,7 @@ class Box(NamedTuple):
 
 @inline
 def inside(value, low, high, kind):
-    """Return a parameter in the interval: unchanged, modulo the period, or the nearest one."""
+    """Return a parameter moved into its interval, by a period or to the nearest end, if needed."""
     if kind == PERIODIC:
         if value < low:
             value += high - low
@@ -197,7 +197,10 @@ def newton(jets, count, rows, target, box, size, tolerance, noise):
 
 @inline
 def polar_jet(jets, k, angle, turn, sign):
-    """Return a 2-jet by φ and r: parameter `angle` is φ/turn, the other has the slope `sign`."""
+    """Return the 2-jet with respect to φ and r, from the 2-jet with respect to u and v.
+
+    The parameter with the index `angle` (0 or 1) is φ/turn; the other one is `sign` r + const.
+    """
     radius = 1 - angle
     by_angle = 1.0 / turn
     return Patch(
@@ -222,7 +225,7 @@ def jet_of_pole(jets, angle, sign, chart):
 
 @jit
 def chart_jets(jets, phi, r, angle, turn, sign, near, pole, chart):
-    """Write 2-jets (k, 6, 3) by s = r cos φ and t = r sin φ, from 2-jets by the parameters.
+    """Write 2-jets (k, 6, 3) with respect to s = r cos φ and t = r sin φ, from 2-jets in u and v.
 
     Where r (k,) is at most `near`, the 2-jet (1, 6, 3) of the `pole` is continued.
     """

@@ -26,14 +26,14 @@ __all__ = [
     "merge_places",
 ]
 
-# Kinds of boxes without regular points: it is open whether there are solutions, there is a small
-# component of them, or a curve or a region of solutions.
+# The kinds of boxes that are listed besides regular solutions: a box that may contain solutions or
+# none, a box around a small component of solutions, and one around a curve or a region of them.
 KINDS = ("open", "isolated", "curve")
 OPEN_BOX, ISOLATED, CURVE = range(3)
 # The columns of solutions: u, v, their error bounds, D; then the box without other solutions, u₀,
 # u₁, v₀, v₁; and whether the error bounds reach the boundary of the domain.
 BOX, BORDER, COLUMNS = 5, 9, 10
-# The columns of boxes end with u and v of a point, for curves a solution.
+# The last two columns of boxes are u and v of a point in the box, a solution if the kind is CURVE.
 WHERE, OPEN_COLUMNS = 5, 7
 
 
@@ -99,8 +99,9 @@ def add_place(answers, number, row, domain):
 
 @jit
 def merge_places(places, numbers, groups, first, last, fast, fast_starts, domain, keep, answers):
-    """Mark the solutions to keep: those in the domain, each once; list undecided ones.
+    """Write to `keep` whether to keep each solution: solutions in the domain, each once.
 
+    Solutions of which this cannot be decided are listed as boxes.
     Solutions (k, 10) of a group share one normal, whose index is in numbers (k,). The groups are
     [first, last); further solutions of group g, fast[fast_starts[g]:fast_starts[g + 1]], are always
     kept. Return the next group, `last` unless there was no more room for boxes.

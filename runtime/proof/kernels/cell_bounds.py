@@ -1,8 +1,9 @@
 """Cells of the parameters of a surface, with proved bounds of its derivatives.
 
-Each cell has parameters s and t in [−1, 1]: u = u₀ + h_u s, v = v₀ + h_v t. Derivatives are by s
-and t, so that all derivatives of a cell have one unit, as have those of n·x for a unit normal n.
-`symbolic/proved.py` says what the bounds are for.
+Each cell has parameters s and t in [−1, 1]: u = u₀ + h_u s, v = v₀ + h_v t. Derivatives are taken
+with respect to s and t. So all derivatives of a cell have the same unit, and so have the
+derivatives of the height n·x for a unit normal n. `symbolic/proved.py` says what the bounds are
+for.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ HOT = 17
 # The columns of `noise`: rounding errors of x_s, of x_t, and of second derivatives; how far bounds
 # hold; the tolerances of n·x_s and of n·x_t at joints.
 FIRST_S, FIRST_T, SECOND, REACH, TOLERANCE_S, TOLERANCE_T = range(6)
-# Three each: remainders of the coordinates of x_s and of x_t.
+# The first of three columns each: remainders of the coordinates of x_s, and of x_t.
 LEFT_S, LEFT_T = 6, 9
 NOISE = 12
 # Normals of both sides of a joint differ by at most this angle, in radians.
@@ -63,25 +64,26 @@ SMOOTH = 1e-9
 # Chords of cones: above WIDE, the half angle is too wide to tell n from −n; OPEN means that normals
 # have no bound.
 WIDE, OPEN = 1.3, 2.1
-# In a regular cell, contractions for the directions of the ordinates of its normals are below this.
+# A cell is regular if the contraction factors of Newton's simplified method are below this, for the
+# directions of the Bernstein ordinates of its normals.
 REGULAR = 0.8
 # A Hessian whose determinant is smaller than this, relative to its entries, is singular.
 FLAT = 1e-9
 
 
 class CellBounds(NamedTuple):
-    """Bounds over cells; all arrays have one row for each.
+    """Bounds over cells; all arrays have one row for each cell.
 
     place (k, 4): u₀, v₀, h_u, h_v.
     hot (k, 17): the vectors a, b, c, d, e of the patch that osculates at the centre, and bounds of
     the remainders of x_s and x_t beyond it.
     thirds (k, 24): midpoints of x_sss, x_sst, x_stt, x_ttt over the cell, then bounds of the
     differences from these.
-    noise (k, 12): the rounding of x_s and x_t, and of second derivatives; the largest |s|, |t| for
-    which all bounds hold, 0 if there are none, 1 if they end at a joint; tolerances. At a joint the
-    normals of both sides differ a little: there, |n·x_s| and |n·x_t| of a point with the normal n
-    are not 0, but at most these tolerances. Then what the patch leaves out of x_s and of x_t, by
-    coordinates.
+    noise (k, 12): the rounding errors of x_s, of x_t, and of second derivatives; the largest |s|,
+    |t| for which all bounds hold (0 if there are no bounds, 1 if bounds end at a joint); the
+    tolerances of n·x_s and n·x_t. At a joint the normals of both sides differ a little: there,
+    |n·x_s| and |n·x_t| of a point with the normal n are not 0, but at most these tolerances. Then
+    bounds of the coordinates of the remainders of x_s and x_t beyond the patch.
     cone (k, 4): the axis of a cone that holds the normals of the cell, and its chord, the distance
     of its border on the sphere from the axis.
     """
@@ -94,12 +96,12 @@ class CellBounds(NamedTuple):
 
     @classmethod
     def new(cls, count: int) -> CellBounds:
-        """Return room for some cells."""
+        """Return arrays for `count` cells."""
         return cls(*(np.zeros((count, columns)) for columns in (4, HOT, 24, NOISE, 4)))
 
 
 class Work(NamedTuple):
-    """Work arrays for tapes: registers of points and of boxes, and the places of a tile of them."""
+    """Work arrays for tapes: registers of points and boxes, and the parameters of a tile."""
 
     registers: NDArray[np.float64]
     middles: NDArray[np.float64]
@@ -114,7 +116,7 @@ class Work(NamedTuple):
 
     @classmethod
     def new(cls, rows: int) -> Work:
-        """Return work arrays for tapes of some rows."""
+        """Return work arrays for tapes with this number of rows."""
         middles, radii, errors = np.zeros((3, BALL * (rows + 1)))
         centres, half_widths = np.zeros((2, LANES, 2))
         u, v, levels = np.zeros((3, LANES))
@@ -165,9 +167,10 @@ def thirds_of(thirds, j, n):
 
 @inline
 def inverse_of(a, b, c, t0, t1, t2, t3, r0, r1, r2, r3, second):
-    """Return the inverse of the Hessian, and how far the product of both may be from 1.
+    """Return the inverse of the Hessian of n·x at the centre of a cell, and two bounds.
 
-    This is a bound for the change of the Hessian over the cell, and one for rounding.
+    They bound the difference from 1 of the product of this inverse and any Hessian of the cell: the
+    first one for the change of the Hessian over the cell, the second one for rounding.
     """
     y11, y12, y22, q1, q2 = contraction(a, b, c, t0, t1, t2, t3, r0, r1, r2, r3)
     i11, i12, i22 = abs(y11), abs(y12), abs(y22)
@@ -181,9 +184,10 @@ def inverse_of(a, b, c, t0, t1, t2, t3, r0, r1, r2, r3, second):
 
 @loop
 def write_cells(tape, work, reach, cells, count):
-    """Write bounds over the first `count` cells, at most LANES, whose places are written.
+    """Write bounds over the first `count` cells, at most LANES; their `place` is given.
 
-    Bounds hold as far as `reach`, or else up to the sides; a cell without bounds has the reach 0.
+    Bounds hold for |s|, |t| up to `reach`, or if this fails, up to 1, the sides of the cell. A cell
+    without bounds gets the reach 0.
     """
     write_bounds(tape, work, reach, cells, count)
     for j in range(count):
@@ -227,13 +231,13 @@ def write_rest(cells, j):
 
 @inline
 def write_left(noise, j, column, bounds):
-    """Write bounds of coordinates; see `left_of`."""
+    """Write bounds of the coordinates of a remainder to three columns of `noise`; see `left_of`."""
     noise[j, column], noise[j, column + 1], noise[j, column + 2] = bounds.x, bounds.y, bounds.z
 
 
 @inline
 def widened(bounds, slack):
-    """Return bounds of coordinates, each enlarged by the slack."""
+    """Return bounds of coordinates, each enlarged by `slack`."""
     return Vector(bounds.x + slack, bounds.y + slack, bounds.z + slack)
 
 
@@ -291,7 +295,8 @@ def third_sizes(thirds, j):
 def write_bounds(tape, work, reach, cells, count):
     """Write derivatives at centres, bounds as far as `reach`, and rounding errors.
 
-    Cells without bounds get the reach 0. Cells that have some stay as they are if `reach` is 1.
+    Cells without bounds get the reach 0. If `reach` is 1, cells that already have bounds are left
+    unchanged.
     """
     place = cells.place
     # Where bounds end at the sides of cells, derivatives may jump there.
@@ -420,7 +425,7 @@ def left_of(cells, j, column):
 
 @loop
 def side_of(patch, rest_s, rest_t, n):
-    """Return 1 or −1 if all normals of a cell have products of that sign with n, else 0."""
+    """Return the sign that the scalar products of n with all normals of a cell have, or else 0."""
     ordinates = normal_ordinates(patch)
     error = normal_error(patch, rest_s, rest_t)
     least, most = math.inf, -math.inf
@@ -438,7 +443,10 @@ def side_in(cells, j, n):
 
 @loop
 def write_cone(cells, j):
-    """Write the cone of the normals of cell j: that of Bernstein ordinates, each with an error."""
+    """Write a cone that contains the normals of cell j.
+
+    It is the cone around the Bernstein ordinates of the normals, each with an error bound.
+    """
     hot, cone = cells.hot, cells.cone
     patch = patch_of(hot, j)
     ordinates = normal_ordinates(patch)
@@ -498,7 +506,7 @@ def is_done(cells, j):
 
 @loop
 def copy_cell(cells, j, target, k):
-    """Copy cell j to row k of others."""
+    """Copy cell j of `cells` to row k of `target`."""
     for x in range(4):
         target.place[k, x], target.cone[k, x] = cells.place[j, x], cells.cone[j, x]
     for x in range(NOISE):
@@ -511,7 +519,7 @@ def copy_cell(cells, j, target, k):
 
 @jit
 def cut_cells(tape, work, places, state, last, levels, stack, tile, cells):
-    """Write the cells of base cells, each cut into four until it is regular.
+    """Cut base cells into four parts, again and again until the parts are regular; write these.
 
     The base cells are rows of places (k, 4), cut at most `levels` times. `state` holds the next
     base cell, the number of cells on the `stack` (…, 5), and the number of cells written. The

@@ -13,10 +13,10 @@ __all__ = ["indices_around"]
 def indices_around(
     tape, work, tile, joints, domain, points, boxes, numbers, normals, ends, path, around
 ):
-    """Write the winding number around each box (k, 4) to `around` (k, 5), and the path's box.
+    """Write the winding number around each box (k, 4), and the box of its path, to `around` (k, 5).
 
-    numbers (k,) are those of the normals (S, 3); `points` (4,) are 1 for sides of the domain that
-    are one point, else 0. The winding number is NaN if it is unknown.
+    `numbers` (k,) are indices of normals (S, 3); `points` (4,) are 1 for collapsed sides of the
+    domain, else 0. The winding number is NaN if it is unknown.
     """
     for k in range(numbers.size):
         n, row = row_vector(normals, numbers[k]), around[k]

@@ -1,4 +1,4 @@
-"""The degree of the Gauss map on a box that may cross joints: 0 or 1 points with a normal.
+"""The degree of the Gauss map on a box that may cross joints: no point with a normal, or one.
 
 A joint is a line u = const or v = const where second derivatives of the surface may jump, and first
 ones, too, as long as the tangent plane does not. Joints cut the box into parts. Where the surface
@@ -9,7 +9,7 @@ is a graph over the tangent plane, minus the gradient of the height is
 with the coordinates (X1, Y1) of x_u and (X2, Y2) of x_v in the plane. It depends on no parameters,
 so that it is continuous at joints. If the Hessian of n·x has a determinant of one sign d in all
 parts, the index of each zero of G has this sign, and the winding number of G along the border is
-their sum: d if there is one, 0 if there is none.
+their sum: d if there is one zero, 0 if there is none.
 """
 
 from __future__ import annotations
@@ -48,13 +48,15 @@ __all__ = ["DECIDED", "LARGEST", "PARTS", "PATH", "degree_on", "index_around"]
 
 # What is known of a box: nothing, or whether it contains one point with the normal or none.
 UNDECIDED, DECIDED = range(2)
-# Boxes grow on each side by this part of their width, since the normal may not be on the border. If
-# a joint is nearer to a side than this part of the width, the side moves to the joint. Boxes grow
-# at least by a part of the domain: near a joint normals are known up to a tolerance.
+# Boxes grow on each side by the part GROWN of their width, since no point of their border may have
+# the normal, and at least by the part LEAST of the domain, since near a joint normals are known
+# only up to a tolerance. If a joint is nearer to a side than the part NEAR_SIDE of the width, the
+# side moves to the joint.
 GROWN, LEAST, NEAR_SIDE = 0.4, 2.0**-23, 0.05
 # The largest number of parts along u and along v.
 PARTS = 4
-# Segments of a side of a part are at least this long; a side has the length 2.
+# Half the length of the first segment that is tried on a side of a part, and the least length of a
+# segment; a side has the length 2.
 LONGEST, SHORTEST = 1.0, 2.0**-14
 # The relative error of the computed gradient at ends of segments is at most this, so that two
 # errors and the jump at a joint add up to less than half a turn.
@@ -62,14 +64,16 @@ ERROR = 0.3
 # The normal differs from normals of the border by at least this multiple of the tolerance.
 AWAY = 4.0
 STEPS = 8
-# The entries of a path along a border.
+# The number of entries of a path along a border, see `walk_side`.
 PATH = 6
-# How a box lies along a parameter: inside of the domain, all of a period, at either end.
+# How a box lies along a parameter: inside of the domain, over a whole period, at the lower or at
+# the upper end of the domain.
 INSIDE, SEAM, BEFORE, AFTER = range(4)
 # A hull is small if it is at most LARGEST times the domain. Its index is computed along the border
-# of a larger box, since the gradient is too small next to the hull: the box grows by the fractions
-# AROUND of the domain in turn; that of a large hull by those from FAR on, and BEYOND of its size.
-# The border has up to LANES cells, which are THIN relative to the box.
+# of a larger box, since the gradient is too small next to the hull. On each side the box is larger
+# by a fraction of the domain (those in AROUND are tried in turn) or, if that is more, by GROWN
+# times the hull. For a large hull only fractions from FAR on are tried, and BEYOND replaces GROWN.
+# The border has up to LANES cells, whose half width across the border is THIN times the box.
 LARGEST, AROUND, THIN = 0.01, (3e-6, 1e-4, 1e-3, 1e-2, 3e-2), 2.0**-7
 FAR, BEYOND = 1e-2, 0.1
 
@@ -112,7 +116,10 @@ def ends_of_parts(lines, period, low, high, ends):
 
 @loop
 def write_parts(tape, work, tile, joints, domain, hull, ends):
-    """Write bounds over the parts of a grown box to a tile; return their numbers along u and v."""
+    """Write bounds over the parts of a grown box to a tile.
+
+    Returns the numbers of parts along u and along v.
+    """
     grown_u = max(GROWN * (hull[1] - hull[0]), LEAST * (domain[1] - domain[0]))
     grown_v = max(GROWN * (hull[3] - hull[2]), LEAST * (domain[3] - domain[2]))
     along = ends_of_parts(joints.u, domain[4], hull[0] - grown_u, hull[1] + grown_u, ends[0])
@@ -167,7 +174,7 @@ def sign_on(tile, count, n):
 
 @inline
 def along_side(side, x):
-    """Return s and t at a distance x from the start of a side of a part, counter-clockwise."""
+    """Return s and t on a side of a part, at the distance x from its start (counter-clockwise)."""
     if side == 0:
         return x - 1.0, -1.0
     if side == 1:
@@ -274,7 +281,7 @@ def start_path(path):
 
 @inline
 def turns_of(path):
-    """Return the winding number of a path, which is closed here."""
+    """Return the winding number of a path, with the angle that closes it."""
     total = path[0] + angle_between(path[1], path[2], path[3], path[4])
     return np.rint(total / (2.0 * math.pi))
 
@@ -297,10 +304,10 @@ def winding(tile, along, across, n, path):
 
 @loop
 def grow(hull, axis, large, factor, domain, points, box):
-    """Write both ends, along an axis, of a box around a hull; return how the box lies there.
+    """Write both bounds, along an axis, of a box around a hull; return how the box lies.
 
-    SEAM if the hull is all of a period, BEFORE or AFTER if the box ends in a side of the domain
-    that is one point, INSIDE if it ends in no side; -1 if it leaves the domain.
+    The result is SEAM if the hull covers a whole period, BEFORE or AFTER if the box ends at a
+    collapsed side of the domain, INSIDE if it reaches no side, and −1 if it leaves the domain.
     """
     low, high = hull[2 * axis], hull[2 * axis + 1]
     start, end = domain[2 * axis], domain[2 * axis + 1]
@@ -323,9 +330,9 @@ def grow(hull, axis, large, factor, domain, points, box):
 def index_around(tape, work, tile, joints, domain, points, hull, n, ends, path, box):
     """Return the winding number of the gradient around a hull; NaN if it is unknown.
 
-    The path goes around a larger `box` (4,), which is written, in the domain. It consists of two
-    curves if the hull is all of a period, and of one if there is a pole beside it: `points` (4,)
-    are 1 for sides of the domain that are one point.
+    The path is the border of a larger `box` (4,) in the domain, which is written. It consists of
+    two closed curves if the hull covers a whole period, and of one closed curve if the box then
+    ends at a pole. `points` (4,) are 1 for collapsed sides of the domain.
     """
     e1, e2 = plane_of(n)
     size_u, size_v = domain[1] - domain[0], domain[3] - domain[2]
@@ -365,7 +372,7 @@ def index_around(tape, work, tile, joints, domain, points, hull, n, ends, path, 
 
 @inline
 def is_free(side, in_u, in_v):
-    """Return whether a side of a box is a part of its border: neither a seam nor one point."""
+    """Return whether a side of a box belongs to its border: it is no seam and not collapsed."""
     kind = in_v if side % 2 == 0 else in_u
     # Side 0 is where v is least, side 3 where u is.
     return kind != SEAM and kind != (BEFORE if side % 3 == 0 else AFTER)
@@ -424,8 +431,8 @@ def plane_of(n):
 def write_nearest(tape, work, tile, count, n, row):
     """Write the best known solution in the parts of a tile to a row; return False if there is none.
 
-    The error bounds enclose the solutions of all parts. If several parts have one, they enclose all
-    points whose normals are within the tolerance.
+    The error bounds enclose the solutions of all parts. If several parts have a solution, the error
+    bounds also enclose all points whose normals are within the tolerance.
     """
     outputs, place = tape.outputs, tile.place
     x, y, z = (
@@ -474,8 +481,8 @@ def write_nearest(tape, work, tile, count, n, row):
 def reach_at(tile, k, n, s, t, p, q):
     """Return a bound of the distance from s, t, where F is (p, q), to a solution in part k.
 
-    The second value is what the tolerance adds to it; the third one says whether there is no
-    solution even with the tolerance.
+    The second result is the addition to this bound for the tolerance. The third result is True if
+    there is no solution, even with the tolerance.
     """
     patch = patch_of(tile.hot, k)
     a, b, c, _, _ = linear_forms_of(patch, n)

@@ -58,7 +58,7 @@ class Disc(NamedTuple):
 
 @inline
 def bound_of(changes, ring, k, n):
-    """Return the largest change of the product of n with a second derivative."""
+    """Return the largest change, in a ring, of the product of n with second derivative k."""
     return (
         changes[ring, k, 0] * abs(n.x)
         + changes[ring, k, 1] * abs(n.y)
@@ -68,7 +68,7 @@ def bound_of(changes, ring, k, n):
 
 @inline
 def rows_of(y11, y12, y22, p, q):
-    """Return the larger row of a matrix times a vector, in absolute values."""
+    """Return the larger component of |Y| (p, q), for a symmetric matrix Y."""
     return max(abs(y11) * p + abs(y12) * q, abs(y12) * p + abs(y22) * q)
 
 
@@ -107,7 +107,10 @@ def place_towards(disc, s, t):
 
 @loop
 def graph_at(tape, work, disc, u, r):
-    """Return s and t at u and r, derivatives of u and r by s and t, and those of h, unscaled."""
+    """Return s, t at u, r, the derivatives of u, r with respect to s, t, and the slopes of h.
+
+    The slopes of h are with respect to the unscaled coordinates of the plane.
+    """
     work.u[0], work.v[0] = u, r
     evaluate_points(tape, work.u, work.v, 1, work.registers)
     x, y, z = (
@@ -206,8 +209,8 @@ def place_in(tape, work, disc, n):
 def decide_discs(tape, work, disc, normals, numbers, first, last, domain, answers):
     """Find the solutions in a disc for the normals (S, 3) with the indices `numbers`.
 
-    The tape is that of the surface by u and r, with the coordinates of the plane and h, or of its
-    quotient by r. Returns the next position in `numbers`; see `decide_normals`.
+    The tape computes the coordinates of the plane and h from u and r, or their quotients by r.
+    Returns the next position in `numbers`; see `decide_normals`.
     """
     answers.counts[0] = answers.counts[1] = 0
     frame = disc.frame

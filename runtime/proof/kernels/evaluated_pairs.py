@@ -42,7 +42,7 @@ class Joints(NamedTuple):
 
 
 class Index(NamedTuple):
-    """Cells; from number `discs` on, they are discs around poles. Joints are sides of cells."""
+    """The cells of a surface, cut at joints; from index `discs` on, cells are discs at poles."""
 
     cells: CellBounds
     discs: int
@@ -79,7 +79,7 @@ class Outcome(NamedTuple):
 
     @classmethod
     def new(cls, places: int, hard: int) -> Outcome:
-        """Return room for numbers of places and of hard pairs."""
+        """Return arrays with room for these numbers of places and of hard pairs."""
         return cls(
             np.empty((places, PLACE)), np.empty(places, np.int64), np.empty((hard, 2), np.int64),
             np.zeros(2, np.int64),

@@ -63,7 +63,8 @@ __all__ = [
     Y11, Y12, Y22, CHANGE, NOISE, BASE, SLACK, S, T, RADIUS, DETERMINANT, ROUND, STATE,
 ) = (np.uint64(k * LANES) for k in range(39))  # fmt: skip
 ROWS = 39
-# States of a pair: no solution; one; needs another evaluation; not decided here; one near a side.
+# States of a pair: no solution; one solution; another evaluation is needed; not decided here; one
+# solution, near a side of the cell.
 NONE, ONE, MORE, HARD, EDGE = 0.0, 1.0, 2.0, 3.0, 4.0
 # The largest allowed product of the inverse of the Hessian with its change.
 CONTRACTING = 0.95
@@ -71,7 +72,7 @@ CONTRACTING = 0.95
 CLOSE = 4.0
 # The largest number of evaluations for a pair.
 ROUNDS = 6.0
-# The model's solution may be outside the cell, up to this coordinate.
+# The solution of the cubic model may be outside the cell, up to this |s| and |t|.
 OUTSIDE = 1.5
 
 
@@ -128,7 +129,7 @@ def write_forms(t, count, registers, outputs):
 
 @inline
 def rests(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap):
-    """Return bounds of the remainders of both derivatives beyond the linear forms in a cell."""
+    """Return bounds of the remainders of n·x_s and n·x_t, beyond their linear terms, in a cell."""
     rest_s, rest_t = remainders(abs(t0) + r0, abs(t1) + r1, abs(t2) + r2, abs(t3) + r3)
     rest_s = rest_s * (1.0 + 4.0 * gap) + round_s + 2.0 * round_2 + gap * (abs(a) + abs(b) + abs(p))
     rest_t = rest_t * (1.0 + 4.0 * gap) + round_t + 2.0 * round_2 + gap * (abs(b) + abs(c) + abs(q))
@@ -137,7 +138,7 @@ def rests(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round
 
 @inline
 def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap):
-    """Return whether a cell has a solution neither for a normal nor for its opposite."""
+    """Return whether a cell has no solution for the normal n, and none for −n."""
     rest_s, rest_t = rests(
         a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t, round_2, gap
     )
@@ -219,7 +220,11 @@ def contracted(t, k):
 
 @loop
 def bound_pairs(t, first, count):
-    """Write the states of pairs; inverse, bounds and start if they may have a solution."""
+    """Write the states of pairs [first, count).
+
+    For pairs that may have a solution, also write the inverse of the Hessian, its bounds, and a
+    start for Newton's method.
+    """
     long_vectors()
     for k in range(first, count):
         i = np.uint64(k)
@@ -239,8 +244,8 @@ def bound_pairs(t, first, count):
         rounding = max(i11 * round_s + i12 * round_t, i12 * round_s + i22 * round_t)
         tolerance = max(i11 * tol_s + i12 * tol_t, i12 * tol_s + i22 * tol_t)
         s, z = model_start(a, b, c, p, q, t0, t1, t2, t3, y11, y12, y22)
-        # The residual of the model at the point of the cell nearest to its solution; inside of
-        # joints.
+        # The residual of the model at the point of the cell that is nearest to the model's
+        # solution; if bounds end at a joint, at a point inside of it.
         most = most_of(t[i + REACHED], gap)
         s1, z1 = min(max(s, -most), most), min(max(z, -most), most)
         _, _, _, p1, q1 = model_at(a, b, c, p, q, t0, t1, t2, t3, s1, z1)

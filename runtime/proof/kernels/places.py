@@ -67,9 +67,9 @@ __all__ = ["Boxes", "decide_normals"]
 
 # The number of levels of bisection, and the levels after which clusters are tested.
 DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
-# The boxes along a curve of solutions about double on each level. More than MANY boxes count as a
-# curve if their number grows by more than the factor GROWTH on TIMES consecutive levels. At most
-# MOST cells and 4 MOST boxes are processed.
+# The number of boxes along a curve of solutions about doubles on each level. More than MANY boxes
+# count as a curve if their number grows by more than the factor GROWTH on TIMES consecutive levels.
+# At most MOST cells and 4 MOST boxes are processed.
 MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
 # The columns of boxes: u, v, the index of a cell, and half the widths relative to the cell's.
 BOX_COLUMNS = 5
@@ -77,11 +77,13 @@ BOX_COLUMNS = 5
 # sides of its cell.
 # Contraction leaves at least the part SHRUNK of a side, so that clusters have a width.
 SLENDER, SHRUNK = 4.0, 2.0**-5
-# A cluster is a curve of solutions if SETTLING steps from the centres of up to CHECKED of its boxes
-# lead to solutions within BESIDE half widths. A Hessian has the rank 1 if its determinant is less
-# than RANK times the square of its larger eigenvalue.
+# A cluster is a curve of solutions if from the centre of each of its boxes (of CHECKED boxes, if
+# there are more) at most SETTLING steps lead to a solution within BESIDE half widths. A Hessian
+# counts as one of rank 1 if its determinant is less than RANK times the square of its larger
+# eigenvalue.
 SETTLING, CHECKED, BESIDE, RANK = 32, 64, 4.0, 1e-4
-# From this level on, open boxes may be due to rounding if they more than double in a level.
+# From this level on, boxes may be open because of rounding if their number more than doubles on a
+# level.
 FINE = 10
 
 
@@ -126,7 +128,10 @@ def side_at(tape, work, tile, cells, j, u, v, r_u, r_v, n):
 
 @loop
 def cut_boxes(tape, work, index, boxes, count, number, n, answers):
-    """Decide the boxes of a level, write the next ones; return their number, −1 without room."""
+    """Decide the boxes of a level, and write the boxes of the next level.
+
+    Returns the number of boxes on the next level, −1 if there was no room for answers.
+    """
     cells, t = index.cells, boxes.pairs
     following = 0
     for first in range(0, count, LANES):
@@ -164,7 +169,7 @@ def cut_boxes(tape, work, index, boxes, count, number, n, answers):
 
 @inline
 def inside(middle, half):
-    """Return a middle, moved as little as needed for its interval to lie in −1 … 1."""
+    """Return the middle of an interval after the least move that brings it into −1 … 1."""
     return min(max(middle, half - 1.0), 1.0 - half)
 
 
@@ -231,7 +236,7 @@ def store_places(t, lanes, work, boxes, number, answers):
 
 @loop
 def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, answers):
-    """Drop clusters of boxes that a degree or a fold decides; list the rest after the `last` level.
+    """Drop clusters of boxes that a degree or a fold decides; on the `last` level, list the rest.
 
     Returns the number of boxes that remain, −1 if there was no room.
     """
@@ -287,7 +292,7 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
 
 @loop
 def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
-    """List the clusters of boxes of rows; return whether there was room."""
+    """List all undecided boxes, the first `count` rows, as clusters; return if there was room."""
     cells = index.cells
     hulls = cluster(rows, count, cells, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):
@@ -399,7 +404,7 @@ def bisect(tape, work, index, boxes, count, domain, number, n, answers):
 
 @loop
 def orient(tape, work, index, boxes, first, domain, number, n, answers):
-    """Remove solutions with the normal −n; list those of unknown sign.
+    """Remove solutions whose normal is −n; list solutions of unknown sign as boxes.
 
     Return whether there was room.
     """

@@ -27,7 +27,7 @@ class Sorted(NamedTuple):
 
 @jit
 def count_places(numbers, starts):
-    """Add the number of solutions for each normal to `starts` (S + 1,), shifted by one."""
+    """Add the number of solutions for each normal n to starts[n + 1]; `starts` is (S + 1,)."""
     for k in range(numbers.size):
         starts[numbers[k] + 1] += 1
 

@@ -21,7 +21,7 @@ def jet_vector(jets, k, i, factor):
 
 @inline
 def patch_of_jet(jets, k, size, du, dv):
-    """Return the patch that osculates `size` times the surface, in cells of the parameters."""
+    """Return the patch that osculates `size` times the surface; cells du × dv become 1 × 1."""
     along_u = size * du
     along_v = size * dv
     return Patch(
@@ -36,7 +36,7 @@ def patch_of_jet(jets, k, size, du, dv):
 
 @inline
 def is_regular(patch, L, K):
-    """Return whether a patch whose normal has the length L determines its direction and K."""
+    """Return whether a patch determines its normal, of the length L, and its curvature K."""
     largest = max(dot(patch.d, patch.d), dot(patch.e, patch.e))
     return VANISHING * largest < L and abs(K) < math.inf
 
@@ -61,8 +61,8 @@ def evaluate_jets(jets, scales, normals, gaussian, mean):
 def forms_of_jets(jets, scales, forms):
     """Write E, F, G, e, f, g and D (k, 7) of 2-jets (k, 6, 3), see `forms_at_jet`.
 
-    The forms are those of `size` times the surface, by u and v in cells; `scales` = (size, du, dv).
-    The third form and the sign of K are 0 at singular points.
+    The forms are those of `size` times the surface, with u and v in units of cells; `scales` =
+    (size, du, dv). The third form and the sign of K are 0 at singular points.
     """
     size, du, dv = scales
     for k in range(jets.shape[0]):

@@ -48,7 +48,7 @@ def vector_at(mu, i, j):
 
 @loop
 def neighbour(mu, i, j, turn, k, centre, scale):
-    """Return neighbour k minus the coefficient (i, j), times `scale`."""
+    """Return neighbour k of the coefficient (i, j), minus this coefficient, times `scale`."""
     p = i + NEIGHBOURS[turn, k, 0]
     q = j + NEIGHBOURS[turn, k, 1]
     return Vector(
@@ -60,7 +60,7 @@ def neighbour(mu, i, j, turn, k, centre, scale):
 
 @loop
 def patch_vectors(mu, i, j, turn, scale) -> Patch:
-    """Return the vectors of the patch of the coefficient (i, j), times SCALE * scale.
+    """Return the vectors of the patch `turn` of the coefficient (i, j), times SCALE * scale.
 
     p is relative to the coefficient.
     """
@@ -117,9 +117,10 @@ def normals_at(mu, scale, patches, places, normals):
 
 @loop
 def curvature_error(patch, longest, noise):
-    """Return the error of D(N), which has the sign of K, due to the rounding of coordinates.
+    """Return a bound of the error of the form D(N) that results from the rounding of coordinates.
 
-    `longest` is the length of the longest control normal, `noise` the rounding, in their units.
+    D(N) has the sign of K. `longest` is the length of the longest control normal, `noise` the
+    rounding error of coordinates in the unit of the patch.
     """
     second = max(largest_component(patch.a), largest_component(patch.b), largest_component(patch.c))
     tangent = second + max(largest_component(patch.d), largest_component(patch.e))

@@ -32,7 +32,8 @@ __all__ = [
     "patches_at",
 ]
 
-# From steps in cells to steps in the parameters u, v of a patch, by its quarter turns.
+# For each number of quarter turns of a patch, the matrix that maps steps in units of cells to steps
+# of the parameters u, v of the patch.
 TO_PATCH = np.linalg.inv(CORNERS)
 
 
@@ -87,7 +88,7 @@ def fit_vertices(values, coefficients):
 
 @inline
 def coefficient_near(mu, i, j, turn, k):
-    """Return neighbour k of a coefficient."""
+    """Return neighbour k of the coefficient (i, j), after `turn` quarter turns."""
     return vector_at(mu, i + NEIGHBOURS[turn, k, 0], j + NEIGHBOURS[turn, k, 1])
 
 
@@ -112,7 +113,10 @@ def control_nets(mu, nets):
 
 @inline
 def locate(s, t):
-    """Return the triangle of a cell and u, v in it; s, t are relative to its centre, in cells."""
+    """Return the triangle of a cell that contains a point, and u, v of the point in this triangle.
+
+    s, t are the parameters of the point relative to the centre of the cell, in units of cells.
+    """
     turn = 0
     if abs(s) > abs(t):
         turn = 1 if s > 0.0 else 3
@@ -124,7 +128,7 @@ def locate(s, t):
 
 @inline
 def patch_at(x, y, rows, columns):
-    """Return row, column and triangle of a parameter pair in cells, and u, v in this triangle."""
+    """Return row, column and triangle of parameters x, y in units of cells, and u, v in it."""
     i = min(max(int(math.floor(x)), 0), rows - 1)
     j = min(max(int(math.floor(y)), 0), columns - 1)
     turn, u, v = locate(x - i - 0.5, y - j - 0.5)
@@ -133,7 +137,7 @@ def patch_at(x, y, rows, columns):
 
 @inline
 def in_triangle(s, t, turn):
-    """Return u, v in a triangle of a cell; s, t are relative to its centre, in cells."""
+    """Return u, v in a triangle of a cell, for s, t relative to the cell's centre, in cells."""
     for _ in range(turn):
         s, t = t, -s
     return -t - s, -t + s
@@ -163,7 +167,7 @@ def set_combination(jets, k, row, v, w, a, b):
 
 @inline
 def set_second(jets, k, row, patch, uu, uv, vv, size):
-    """Write a second derivative: a combination of those of a patch, divided by `size`."""
+    """Write a second derivative: (uu a + uv b + vv c) / `size`, with a, b, c of a patch."""
     set_combination(jets, k, row, patch.a, patch.c, uu / size, vv / size)
     jets[k, row, 0] += uv / size * patch.b.x
     jets[k, row, 1] += uv / size * patch.b.y
@@ -199,9 +203,10 @@ def jets_on_spline(mu, scale, frame, cells, jets):
 
 @jit
 def patches_at(rows, columns, cells, patches, places):
-    """Write the patches (k,) and the parameters (k, 2) in these for parameters (k, 2) in cells.
+    """Write the patches (k,) that contain points, and the parameters (k, 2) in these patches.
 
-    `rows` and `columns` are the numbers of cells along u and v.
+    The points have the parameters `cells` (k, 2), in units of cells. `rows` and `columns` are the
+    numbers of cells along u and v.
     """
     for k in range(cells.shape[0]):
         i, j, turn, u, v = patch_at(cells[k, 0], cells[k, 1], rows, columns)
@@ -212,8 +217,9 @@ def patches_at(rows, columns, cells, patches, places):
 
 @jit
 def mark_left(uv, patches, frame, columns, near, left):
-    """Mark parameters (k, 2) outside their patches (k,), or within `near` of the sides, in cells.
+    """Write whether parameters (k, 2) are outside their patches (k,), or near their sides.
 
+    They are near a side within the distance `near`, in units of cells.
     A step of one cell along both axes changes u and v in a triangle by two.
     """
     u0, v0, du, dv = frame

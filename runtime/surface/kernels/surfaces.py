@@ -14,7 +14,7 @@ __all__ = ["jets", "positions"]
 
 @cache
 def positions(name: str) -> Callable[..., None]:
-    """Return the loop that writes points (k, 3) of a surface.
+    """Return the compiled loop that writes points (k, 3) of a surface of the catalogue.
 
     Its arguments are the parameters of the surface, u (k,), v (k,), and the points.
     """
@@ -23,7 +23,7 @@ def positions(name: str) -> Callable[..., None]:
 
 @cache
 def jets(name: str) -> Callable[..., None]:
-    """Return the loop that writes 2-jets (k, 6, 3) of a surface: x, x_u, x_v, x_uu, x_uv, x_vv.
+    """Return the compiled loop that writes 2-jets (k, 6, 3): x, x_u, x_v, x_uu, x_uv, x_vv.
 
     Its arguments are the parameters of the surface, u (k,), v (k,), and the jets.
     """

@@ -95,7 +95,7 @@ def put_quadratic(registers, at, k, c):
 
 @loop
 def write_variables(code, numbers, centres, half_widths, terms, middles, radii, at, count):
-    """Write u, v or a constant."""
+    """Write the balls of u, v or a constant to the register that begins at `at`."""
     for j in range(terms):
         for k in range(count):
             i = np.uint64(at + j * LANES + k)
@@ -171,7 +171,7 @@ def multiply(terms, middles, radii, a, b, at, count):
 
 @loop
 def inflate(terms, radii, at, count):
-    """Add the rounding errors of radii to them."""
+    """Increase radii by a bound of their own rounding errors."""
     for j in range(terms):
         for k in range(count):
             i = np.uint64(at + j * LANES + k)
@@ -180,7 +180,7 @@ def inflate(terms, radii, at, count):
 
 @loop
 def write_ranges(code, middles, radii, a, f, ends, count):
-    """Write midpoints and radii of the Taylor coefficients of a function to the rows from f on."""
+    """Write balls of the Taylor coefficients of a function of a register to the rows from f on."""
     for k in range(count):
         i = np.uint64(a + k)
         middle, radius = middles[i], radii[i]
@@ -193,7 +193,7 @@ def write_ranges(code, middles, radii, a, f, ends, count):
 
 @loop
 def write_coranges(code, middles, radii, f, count):
-    """Replace the coefficients of a sine by those of the cosine."""
+    """Replace the Taylor coefficients of sin (or sinh) by the coefficients of cos (or cosh)."""
     for k in range(count):
         i = np.uint64(f + k)
         y, w = middles[i], middles[i + U]
@@ -299,7 +299,10 @@ def hide_unknown(tape, terms, middles, radii, count):
 
 @jit
 def bounds_of_boxes(tape, order, centres, half_widths, middles, radii, ends, bounds):
-    """Write midpoints and radii of Taylor coefficients (k, 2, 10, 3) on boxes (k, 2)."""
+    """Write midpoints and radii (k, 2, 10, 3) of the Taylor coefficients of x, y, z on boxes.
+
+    `centres` and `half_widths` of the boxes are (k, 2).
+    """
     for start in range(0, len(centres), LANES):
         count = min(LANES, len(centres) - start)
         evaluate_boxes(

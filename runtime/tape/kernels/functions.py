@@ -113,7 +113,7 @@ def error_of_rounding(code, order, size):
 
 @loop
 def include(code, x, f):
-    """Extend the least and largest coefficients f (2, 4) by those at x."""
+    """Extend the ranges f (2, 4) of Taylor coefficients, [least, largest], by values at x."""
     found = coefficients(code, x)
     jumps = code == elementary.SIGN and x == 0.0
     if jumps or not abs(found[0]) + abs(found[1]) + abs(found[2]) + abs(found[3]) < math.inf:
@@ -128,8 +128,9 @@ def include(code, x, f):
 def ranges(code, low, high, f):
     """Write midpoints and radii (2, 4) of the Taylor coefficients on an interval.
 
-    They are monotone between their extrema, so that the values at extrema and ends bound them; or
-    they are bounded by the values in the middle and by slopes.
+    Coefficients are monotone between their extrema, so that their values at extrema and at the ends
+    of the interval bound them. Those of sinc are bounded by their values in the middle, and by
+    bounds of their slopes.
     Radii are infinite if the function has a singularity in the interval, or if no bound is known.
     """
     function = code - elementary.RECIPROCAL

@@ -23,8 +23,8 @@ class Net(NamedTuple):
     """A NURBS surface, as arrays for kernels.
 
     Points are (m, n, 3), or (m, n, 4) with w x, w y, w z, w; relative to the centre (3,). For u and
-    for v: the degree; the knots; the first and last knot span in use, whose polynomials extend
-    beyond their ends; and the lower end and length of the period, which is 0 without one.
+    for v: the degree; the knots; the first and the last knot span in use, whose polynomials are
+    continued beyond them; and the lower bound and the length of the period, 0 for no period.
     """
 
     degrees: NDArray[np.int64]
@@ -59,7 +59,7 @@ def in_period(x, low, period):
 def span_of(knots, first, last, near, x):
     """Return the knot span from `first` to `last` that contains x, or the one nearest to x.
 
-    Spans are closed on their left. The search begins at the span `near`.
+    A span contains its left knot, but not its right knot. The search begins at the span `near`.
     """
     if knots[near] <= x < knots[near + 1]:
         return near
@@ -81,8 +81,8 @@ def span_of(knots, first, last, near, x):
 def basis_functions(knots, degree, span, x, basis):
     """Write the nonzero basis functions, and their first and second derivatives.
 
-    Each step raises the degree by one. The derivatives of one degree are differences of the
-    functions of the degree below, relative to the knots that these cover.
+    Each step raises the degree by one. The derivatives of one degree are differences of functions
+    of the degree below, each divided by the length of the knots that the function covers.
     """
     basis[0, 0], basis[1, 0], basis[2, 0] = 1.0, 0.0, 0.0
     for j in range(1, degree + 1):
@@ -99,7 +99,10 @@ def basis_functions(knots, degree, span, x, basis):
 
 @loop
 def sum_derivatives(net, i, j, scratch):
-    """Write the sums of the coordinates and their derivatives: 1, u, v, uu, uv, vv."""
+    """Write the sums over control points that give coordinates and their derivatives.
+
+    The rows of `scratch.sums` are for 1, u, v, uu, uv, vv; i and j are the knot spans.
+    """
     p, q = net.degrees[0], net.degrees[1]
     basis_u, basis_v, sums = scratch
     for c in range(net.points.shape[2]):

@@ -1,8 +1,9 @@
 """Tapes: lists of operations that compute a surface; their evaluation to 2-jets.
 
 Points are evaluated in tiles of LANES: each operation is a loop over the lanes, which shares the
-cost of interpretation. The results of operations, in registers, are Taylor polynomials in u and v
-of degree 2: numbers 1, u, v, uu, uv, vv for each row of the tape, each with LANES lanes.
+cost of interpretation. The results of operations are Taylor polynomials of degree 2 in u and v.
+Each row of the tape has a register for its result: the coefficients of 1, u, v, uu, uv, vv, each
+with LANES lanes.
 """
 
 from __future__ import annotations
@@ -29,11 +30,11 @@ U, V, UU, UV, VV = (np.uint64(k * LANES) for k in range(1, 6))
 
 
 class Tape(NamedTuple):
-    """Three functions of u and v as operations, each on results of earlier ones.
+    """Three functions x, y, z of u and v, as a list of operations on results of earlier operations.
 
-    Operations (k, 4) int64 are a code of `generated.elementary` and the rows of its arguments.
-    Numbers (k, 2) are constants with bounds of their errors. Outputs (3,) int64 are the rows of x,
-    y and z. The operation `spline` reads a spline.
+    A row of operations (k, 4) int64 is a code of `generated.elementary`, the rows of two arguments,
+    and a number that only splines use. Numbers (k, 2) are constants with bounds of their errors.
+    Outputs (3,) int64 are the rows of x, y and z. The operation SPLINE evaluates `spline`.
     """
 
     operations: NDArray[np.int64]
@@ -66,7 +67,7 @@ def put(registers, at, k, value, u, v, uu, uv, vv):
 
 @loop
 def write_variables(code, number, u, v, registers, at, count):
-    """Write u, v or a constant."""
+    """Write the polynomials of u, v or a constant to the register that begins at `at`."""
     for k in range(count):
         if code == elementary.U:
             put(registers, at, k, u[k], 1.0, 0.0, 0.0, 0.0, 0.0)
@@ -78,7 +79,7 @@ def write_variables(code, number, u, v, registers, at, count):
 
 @loop
 def write_spline(spline, turned, total, u, v, registers, at, count):
-    """Write the coordinates of a spline to four rows."""
+    """Write x, y, z and the weight of a spline to four registers, of which the first is at `at`."""
     i, j, periods = 0, 0, spline.periods
     for k in range(count):
         x = own_parameter(turned, total, u[k])
@@ -136,7 +137,10 @@ def multiply(registers, a, b, at, count):
 
 @loop
 def compose(registers, a, at, count):
-    """Write a function of a register whose value, f1 and f2 are in the slots of 1, u and v."""
+    """Write a function of a register; its value, f1 and f2 are in the slots of 1, u and v.
+
+    f1 and f2 are the Taylor coefficients of the function at the value of the register.
+    """
     for k in range(count):
         x = taylor_at(registers, a, k)
         i = np.uint64(at + k)
@@ -147,7 +151,7 @@ def compose(registers, a, at, count):
 
 @loop
 def write_coefficients(code, registers, a, at, count):
-    """Write the value, f1 and f2 of a function of a register to the slots of 1, u and v."""
+    """Write value and Taylor coefficients f1, f2 of a function to the slots of 1, u and v."""
     for k in range(count):
         value, f1, f2, _ = coefficients(code, registers[np.uint64(a + k)])
         i = np.uint64(at + k)
@@ -156,7 +160,7 @@ def write_coefficients(code, registers, a, at, count):
 
 @loop
 def write_sines(registers, a, at, count):
-    """Write what `write_coefficients` writes, for sines."""
+    """Write value, f1 and f2 of the sine as `write_coefficients` does, but in vectorized loops."""
     long_vectors()
     for k in range(count):
         i = np.uint64(at + k)
@@ -173,7 +177,7 @@ def write_sines(registers, a, at, count):
 
 @loop
 def write_cofunction(code, registers, at, count):
-    """Write value, f1 and f2 of the cosine to the row after those of the sine."""
+    """Write value, f1 and f2 of cos (or cosh) to the register after the one of sin (or sinh)."""
     for k in range(count):
         i, j = np.uint64(at + k), np.uint64(at + POINT + k)
         sine, cosine = registers[i], registers[i + U]

@@ -25,13 +25,14 @@ __all__ = ["SLACK", "write_spline_balls", "write_spline_errors"]
 IN_U = np.array([0, 1, 0, 2, 1, 0, 3, 2, 1, 0])
 IN_V = np.array([0, 0, 1, 0, 1, 2, 0, 1, 2, 3])
 SECOND = np.int64(MOST_COEFFICIENTS)  # the offset of the second polynomial of an array
-# An end of a box within this distance of a knot counts as the knot, in roundings of the knots.
+# A bound of a box counts as a knot if it is within this distance of the knot, relative to the
+# largest knots.
 SLACK = 8.0 * UNIT
 
 
 @loop
 def shift_polynomial(d, at, p, q, s, t):
-    """Expand the polynomial whose coefficients are in d, from `at` on, at s, t."""
+    """Expand a polynomial at s, t; its coefficients in d, from `at` on, are overwritten."""
     for a in range(p + 1):
         row = at + a * (q + 1)
         for k in range(q):
@@ -45,9 +46,10 @@ def shift_polynomial(d, at, p, q, s, t):
 
 @loop
 def spans_of(breaks, low_end, period, low, high):
-    """Return the first and last span that an interval intersects, and the period of its lower end.
+    """Return the first and the last span that an interval intersects, and a number of periods.
 
-    The numbering of spans continues beyond the end of a period.
+    The number is that of whole periods by which the lower end of the interval is outside the first
+    period. Indices of spans continue into the next period.
     """
     slack = SLACK * (abs(breaks[0]) + abs(breaks[-1]))
     last = len(breaks) - 2
@@ -65,16 +67,16 @@ def spans_of(breaks, low_end, period, low, high):
 
 @loop
 def end_of(breaks, period, i):
-    """Return the end of a span, which may be in a later period."""
+    """Return the upper end of span i, which may be in a later period."""
     spans = len(breaks) - 1
     return breaks[i % spans + 1] + (i // spans) * period
 
 
 @loop
 def part_in(breaks, frames, period, turns, first, last, i, u, half_width):
-    """Return centre and half width of the part of an interval in a span, with their error.
+    """Return centre and half width of the part of an interval in span i, and their error.
 
-    All are in the unit of the span.
+    All three are in the unit of the span.
     """
     spans = len(breaks) - 1
     offset = (turns + i // spans) * period
@@ -96,7 +98,7 @@ def part_in(breaks, frames, period, turns, first, last, i, u, half_width):
 
 @loop
 def least_smooth(smooth, first, last):
-    """Return the number of derivatives that are continuous at the knots between spans."""
+    """Return the number of derivatives that are continuous at all knots from `first` to `last`."""
     spans, least = len(smooth) - 1, 1000
     for i in range(first, last):
         least = min(least, smooth[(i + 1) % spans])
@@ -125,7 +127,7 @@ def expand(spline, i, j, c, s, t, middles, radii, at):
 
 @loop
 def include_balls(spline, i, j, c, s, t, half_s, half_t, terms, middles, radii, at, scratch):
-    """Extend the least and largest coefficients in u and v by those of one pair of spans."""
+    """Extend the least and the largest coefficients in u, v by the coefficients on spans i, j."""
     p, q = spline.coefficients.shape[2] - 1, spline.coefficients.shape[3] - 1
     along_u, along_v = spline.frames_u[i, 1], spline.frames_v[j, 1]
     rounding = (2.0 * (p + q) + 2.0) * UNIT
@@ -201,7 +203,8 @@ def write_spline_errors(
 ):
     """Write bounds of the errors of the coordinates of a spline at points of a box.
 
-    The parameter in a span has an error, too, which is multiplied by the slopes of coefficients.
+    The error of the parameters s, t in a span is included: it is multiplied by the slopes of the
+    coefficients.
     """
     x = own_parameter(turned, number, u)
     if turned == 1:
