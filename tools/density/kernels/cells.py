@@ -28,16 +28,17 @@ BEYOND = 1.03
 
 @inline
 def distance_of(v, w):
-    """Return the distance between the ends of two vectors."""
+    """Return the distance between the end points of two position vectors."""
     return length(Vector(v.x - w.x, v.y - w.y, v.z - w.z))
 
 
 @loop
 def squared_sine(patch, s, t, sign, n, least):
-    """Return sin² of the largest angle from n to normals of half a cell; 2 if it is not acute.
+    """Return sin² of the largest angle from n to normals of half a cell; 2 if not acute.
 
-    The normals are combinations of control normals; those shorter than `least` are ignored. The
-    half is the triangle of the corner s, t and the two corners a step of `sign` away from it.
+    The normals are combinations of control normals; control normals shorter than `least` are
+    ignored. The half is the triangle of the corner s, t and the two corners a step of `sign` away
+    from it.
     """
     p_u, p_v, _ = tangents(patch, s, t)
     d = Vector(sign * p_u.x, sign * p_u.y, sign * p_u.z)
@@ -56,7 +57,7 @@ def squared_sine(patch, s, t, sign, n, least):
 
 @inline
 def chord_of_cell(patch, low_s, low_t, n, least):
-    """Return the largest chord between n and normals of a cell, 2 if an angle is not acute."""
+    """Return the largest chord between n and normals of a cell; 2 if an angle is not acute."""
     square = max(
         squared_sine(patch, low_s, low_t, 1.0, n, least),
         squared_sine(patch, low_s + 1.0, low_t + 1.0, -1.0, n, least),
@@ -82,11 +83,11 @@ def evaluate_cells(jets, boxes, places, limits, size, centre, finest, target, ro
 
     rows (M, 8): point, unit normal, target density and K; normal and K are 0 at singular points.
     numbers (M, 7): the radius of a ball around the point that contains the cell; the largest chord
-    between the normal and others of the cell, 0 if it is rounding error, 2 if an angle is not acute
-    or there is no normal; the lengths of the cell along u and v; its bends along u and v, relative
-    to the lengths, 0 if they are rounding error; its area.
-    limits (M,): least radii of curvature, which replace smaller ones; those that are 0 on entry
-    become the width of the cell, or of a cell with the sides `finest` (2,).
+    between the normal at the place and a normal of the cell, 0 if it is rounding error, 2 if an
+    angle is not acute or there is no normal; the lengths of the cell along u and v; its bends along
+    u and v, relative to the lengths, 0 if they are rounding error; its area.
+    limits (M,): least radii of curvature, which replace smaller ones. A limit that is 0 on entry
+    becomes the width of the cell, or of a cell with the sides `finest` (2,).
     """
     for k in range(jets.shape[0]):
         du = boxes[k, 2] - boxes[k, 0]
@@ -135,8 +136,9 @@ def evaluate_cells(jets, boxes, places, limits, size, centre, finest, target, ro
 def evaluate_places(jets, boxes, places, limits, size, centre, finest, target, rows, sides):
     """Write the rows of `evaluate_cells`, and the sides of cells instead of their numbers.
 
-    sides (M, 8) float32: the sides along u and v at the place, which are vectors, the area, and the
-    largest distance of a fine point from the place, see kernels/voronoi.py. The limits are known.
+    sides (M, 8) float32: two vectors, the sides of the cell along u and v at its place; its area;
+    and the largest distance of a fine point from the place, see kernels/voronoi.py. The limits are
+    known.
     """
     for k in range(jets.shape[0]):
         patch = patch_of_jet(jets, k, size, boxes[k, 2] - boxes[k, 0], boxes[k, 3] - boxes[k, 1])
@@ -156,7 +158,10 @@ def evaluate_places(jets, boxes, places, limits, size, centre, finest, target, r
 
 @jit
 def cut_into_parts(cells, parts, boxes):
-    """Write the boxes of cells (M, 4) that are cut into parts (M, 2) along u and v."""
+    """Write the boxes of the parts of cells (M, 4).
+
+    `parts` (M, 2) are the numbers of parts of each cell along u and v.
+    """
     at = 0
     for k in range(cells.shape[0]):
         du = (cells[k, 2] - cells[k, 0]) / parts[k, 0]

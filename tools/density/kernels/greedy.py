@@ -34,15 +34,16 @@ def normal_of(rows, k):
 
 @inline
 def on_side(candidates, at, n):
-    """Return whether a candidate is on the side of the surface with the normal n."""
+    """Return whether a candidate is on the same side of the surface as a point with normal n."""
     return dot(normal_of(candidates, at), n) >= SAME_SIDE
 
 
 def around(meet):
-    """Return a loop that calls meet(grids, kept, number, bucket, x, n) near a sample.
+    """Return a loop that calls meet(grids, kept, number, bucket, x, n) for buckets near a sample.
 
-    It is called for all buckets with candidates within radius/√w of the sample x with the normal n,
-    and for some others, perhaps more than once. `number` and `kept` are for `meet`.
+    The sample has the point x and the normal n. The buckets are all those with candidates within
+    radius/√w of x, and some others, perhaps more than once. `number` and `kept` are passed to
+    `meet`.
     """
     meets = inline(meet)
 
@@ -79,7 +80,7 @@ def squared_distance(rows, k, x):
 
 
 def update(grids, kept, number, bucket, x, n):
-    """Update the distances of the candidates of a bucket."""
+    """Update the distances of the candidates of a bucket from their nearest samples."""
     candidates = grids.candidates
     for at in range(grids.starts[bucket], grids.starts[bucket + 1]):
         square = squared_distance(candidates, at, x) * candidates[at, DENSITY]
@@ -105,7 +106,10 @@ def is_near(grids, radius, samples, k):
 
 @jit
 def update_distances(grids, radius, samples):
-    """Update the distances of candidates within radius/√w of samples (N, 6), point and normal."""
+    """Update the distances of candidates within radius/√w of samples (N, 6).
+
+    A row of a sample is its point and its unit normal.
+    """
     for k in range(samples.shape[0]):
         if is_near(grids, radius, samples, k):
             update_around(grids, radius, 0, k, row_vector(samples, k), normal_of(samples, k))
@@ -113,10 +117,11 @@ def update_distances(grids, radius, samples):
 
 @jit
 def choose_far(grids, radius, least, searched, chosen):
-    """Choose candidates that are farther than radius/√w from all samples, chosen ones included.
+    """Choose candidates that are farther than radius/√w from all samples and chosen candidates.
 
-    Only candidates in `searched` are considered, in this order. Those still farther than least/√w
-    are moved to its front. Return their number, and the number of chosen candidates.
+    Only the candidates in `searched` are considered, in this order. Candidates still farther than
+    least/√w are moved to the front of `searched`. Return their number, and the number of chosen
+    candidates.
     """
     candidates = grids.candidates
     kept = 0

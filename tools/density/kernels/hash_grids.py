@@ -38,10 +38,11 @@ class HashGrids(NamedTuple):
 
     candidates: (M, 8) float64, point, unit normal, density w, and w times the squared distance to
         the nearest sample so far, or −1 for a candidate without a normal.
-    starts: (buckets + 1,) int32, the first candidate of each bucket; `buckets` is a power of two.
+    starts: (buckets + 1,) int32, the index of the first candidate of each bucket; `buckets` is a
+        power of two.
     sizes: (grids,) the largest 1/√w of each grid.
-    box: (2, 3) the bounding box of the points.
-    radius: cells are CELL * radius * sizes wide.
+    box: (2, 3) the smallest and largest coordinates of the points.
+    radius: the cells of a grid are CELL * radius * size wide, for the size of the grid.
     """
 
     candidates: np.ndarray
@@ -53,13 +54,13 @@ class HashGrids(NamedTuple):
 
 @inline
 def level_of(density):
-    """Return the index of the grid for a density; the next one has cells twice as wide."""
+    """Return the index of the grid for a density; cells of the next grid are twice as wide."""
     return LEVELS // 2 - (math.frexp(density)[1] >> 1)
 
 
 @inline
 def bucket_of(level, i, j, k, buckets):
-    """Return the bucket of the cell (i, j, k) of a grid; several cells may share it.
+    """Return the index of the bucket of the cell (i, j, k) of a grid; several cells may share it.
 
     The buckets of 4 × 4 × 4 cells are consecutive: neighbours in space are close in memory.
     """
@@ -92,7 +93,8 @@ def measure(rows, box, sizes):
 def sort_candidates(rows, finest, grids, buckets, order):
     """Sort rows (M, 8) by their buckets into the candidates of grids: a counting sort.
 
-    The starts must be 0 on entry. Candidate k is row order[k]; `buckets` (M,) is a work array.
+    The starts must be 0 on entry. After sorting, candidate k is row order[k] of `rows`. `buckets`
+    (M,) is a work array.
     """
     starts = grids.starts
     for k in range(rows.shape[0]):

@@ -31,7 +31,7 @@ class TargetDensity(NamedTuple):
 
 @inline
 def at_most(value, limit):
-    """Return the smaller number, the limit for NaN."""
+    """Return the smaller one of a value and a limit; the limit if the value is NaN."""
     return value if value < limit else limit
 
 

@@ -28,7 +28,8 @@ def longest_step(e, f, g, a, limit):
 def longest_steps(third, first, limits, along, least, most, steps):
     """Write the longest steps (l,) along v for steps (k,) along u, between `least` and `most`.
 
-    `third` and `first` (3, k, l) are these fundamental forms, each with a limit.
+    `third` and `first` (3, k, l) are the third and first fundamental forms; `limits` are the
+    largest squared diagonals of a cell in normal space and in space.
     """
     limit_of_third, limit_of_first = limits
     for j in range(steps.size):
@@ -49,11 +50,14 @@ def longest_steps(third, first, limits, along, least, most, steps):
 
 @jit
 def shared_steps(forms, swapped, limits, share, shortest, longest, along_u, along_v):
-    """Write steps along u (k,) and v (l,), where steps along u use a share of the limits.
+    """Write the steps along u (k,) and v (l,) for limits of the squared diagonals of cells.
+
+    At first, steps along u are a share of the longest that the limits allow. Then steps along v,
+    and at last steps along u, are as long as possible.
 
     `forms` are the third and the first fundamental form (3, k, l), the maxima (k,) along v of the
     entry e of each, and the width of the domain; `swapped` are the same with u and v exchanged.
-    Steps are at least the part `shortest` of the domain, and at most `longest`.
+    Steps are at least the part `shortest` of the domain, and at most the part `longest`.
     """
     third, first, largest_of_third, largest_of_first, width = forms
     for i in range(along_u.size):

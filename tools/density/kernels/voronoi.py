@@ -1,8 +1,8 @@
 """Discrete Voronoi cells of samples: their centres, and the widest gaps.
 
 The cell of a candidate that no boundary intersects is nearly a parallelogram, with a grid of FINER²
-points. The candidates of a bucket share a list of samples. Their coordinates are relative to the
-first candidate of the bucket, so that single precision suffices.
+points. The candidates of a bucket share a list of samples. The coordinates of these samples are
+relative to the first candidate of the bucket, so that single precision suffices.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ S = np.repeat((np.arange(FINER, dtype=np.float32) + 0.5) / FINER - 0.5, FINER)
 T = np.tile(S[::FINER], FINER)
 # The columns of the sides of cells, see kernels/cells.py.
 AREA, EXTENT = 6, 7
-# The square of a distance larger than all others.
+# A squared distance that is larger than all others.
 FAR = np.float32(1e30)
 COSINE = np.float32(SAME_SIDE)
 # The largest coordinate of a centre in a cell: at edges of cells, surfaces may be singular.
@@ -40,8 +40,9 @@ class Lists(NamedTuple):
     """The samples near the candidates of each bucket.
 
     sides: (M, 8) float32, the sides of the cells of candidates, see kernels/cells.py.
-    starts: (buckets + 1,) int32, the first entry of each bucket.
-    entries: (E,) int32, indices of samples; (0,) to count the samples of each bucket first.
+    starts: (buckets + 1,) int32, the index of the first entry of each bucket.
+    entries: (E,) int32, indices of samples, bucket by bucket. If it is empty, `enter` only counts
+        the samples of each bucket.
     last: (buckets,) int32, the index of the last sample entered for each bucket; −1 for none.
     """
 
@@ -56,7 +57,7 @@ class Room(NamedTuple):
 
     near: (6, m) float32, points relative to the first candidate of the bucket, and unit normals.
     squares: (m + 1,) float32, squared distances from a candidate, FAR for another side.
-    bits: (m + 1,) int32, the memory of `squares`: floats ≥ 0 and their bits have the same order.
+    bits: (m + 1,) int32, a view of `squares`: floats ≥ 0 and their bits have the same order.
     few: (m,) int32, samples that may be nearest to a fine point, by their positions in the list.
     moments: (m, 4), the moments of the samples, see `add_moments`.
     least: (FINER²,) float32, squared distances of the fine points from the nearest samples.
@@ -73,7 +74,7 @@ class Room(NamedTuple):
 
 
 def enter(grids, lists, number, bucket, x, n):
-    """Count a sample for a bucket, or enter it in its list."""
+    """Enter a sample in the list of a bucket; without room for entries, only count it."""
     # Cells of a grid may share a bucket, which is then visited several times.
     if grids.starts[bucket] < grids.starts[bucket + 1] and lists.last[bucket] != number:
         lists.last[bucket] = number
@@ -100,9 +101,9 @@ def list_samples(grids, lists, radius, samples, near):
     """Enter samples (N, 6) in the lists of all buckets with candidates within radius/√w of them.
 
     Write the indices of the samples near the box of all candidates to `near`, and return their
-    number; the lists hold positions in `near`. If `lists.entries` is empty, `lists.starts` become
-    the numbers of samples of the buckets. Otherwise they have to be the positions of their first
-    entries, and become those of their last entries, plus 1.
+    number; the lists hold positions in `near`. If `lists.entries` is empty, each of `lists.starts`
+    becomes the number of samples of a bucket. Otherwise it has to be the position of the first
+    entry of the bucket, and becomes that of the last entry, plus 1.
     """
     count = 0
     for k in range(samples.shape[0]):
@@ -121,7 +122,7 @@ def single(x, y, z):
 
 @inline
 def place_of(candidates, at, first):
-    """Return the point of a candidate, relative to the first one of its bucket."""
+    """Return the point of a candidate, relative to the first candidate of its bucket."""
     p, q = row_vector(candidates, at), row_vector(candidates, first)
     return single(p.x - q.x, p.y - q.y, p.z - q.z)
 
@@ -233,12 +234,13 @@ def add_moments(grids, lists, samples, room, moments):
 
 @jit
 def find_centres(grids, sides, order, points, squares, rows, steps):
-    """Find the point of a cell nearest to each of the points (N, 6), with the normals of samples.
+    """Find the point of a cell nearest to each of the points of `points` (N, 6).
 
-    The cell is that of the nearest candidate on the side of the normal, in the grids around the
-    point. If the squared distance from it is less than that in `squares` (N,), it is written there,
-    order[candidate] to `rows` (N,), and the coordinates of the found point in the cell, of absolute
-    value INNER at most, to `steps` (N, 2).
+    A row of `points` has a point, and the normal of a sample. The cell is that of the nearest
+    candidate on the side of this normal, in the grids around the point. If the squared distance of
+    the point from this candidate is less than that in `squares` (N,), it is written to `squares`,
+    order[candidate] to `rows` (N,), and the coordinates of the found point in its cell, at most
+    INNER in modulus, to `steps` (N, 2).
     """
     for k in range(points.shape[0]):
         x, n, before = row_vector(points, k), normal_of(points, k), squares[k]
@@ -279,12 +281,12 @@ def turn_of(candidates, at, square, count, room):
 def find_widest(grids, lists, samples, bounds, room, found, gaps):
     """Find the point of each cell that is farthest from all samples, if at least least/√w away.
 
-    found (M,) are the indices of these fine points; −1 for the candidate itself, if its bucket has
-    no samples or a chord counts; −2 if all points are nearer. gaps (M, 2) are w, and w times the
-    squared distance d², which is about the squared chord c² between the normals of the point and of
-    the nearest sample if w = κ². Where κ jumps, c² at the candidate may be larger: then it counts
-    instead, with w = c²/d² up to the ceiling. A chord above `most` never counts: it is between the
-    two sides of an edge. `bounds` are `least`, `most` and the ceiling.
+    found (M,) are the indices of these fine points in their cells; −1 for the candidate itself, if
+    its bucket has no samples or a chord counts; −2 if all points are nearer. gaps (M, 2) are w, and
+    w times the squared distance d². If w = κ², this product is about the squared chord c² between
+    the normals of the point and of the nearest sample. Where κ jumps, c² at the candidate may be
+    larger: then it counts instead, with w = c²/d² up to the ceiling. A chord above `most` never
+    counts: it is between the two sides of an edge. `bounds` are `least`, `most` and the ceiling.
     """
     candidates, sides = grids.candidates, lists.sides
     least, most, ceiling = bounds
