@@ -1,8 +1,8 @@
 """Collapses of edges that remove triangles with small angles from a mesh.
 
 A vertex b is moved to a neighbour a: the two triangles at the edge a b vanish, and in the other
-triangles around b it is replaced by a. Arrays are those of `flips`; the corners of a triangle that
-has vanished are −1.
+triangles around b it is replaced by a. The arrays are those of the module `flips`; the corners of a
+triangle that has vanished are −1.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ COSINE_LOSS = 0.1
 
 @loop
 def find_fan(triangles, neighbours, first, b, a, fan):
-    """Write the triangles around b, from `first` to the other one at the edge a b, to `fan`.
+    """Write the indices of the triangles around b to `fan`; the first and last have the edge a b.
 
-    Returns their number, or 0 if b is on a boundary, or there are more triangles than `fan` (n,)
-    has room for.
+    The first of these triangles is `first`. Returns their number, or 0 if b is on a boundary, or
+    there are more triangles than `fan` (n,) has room for.
     """
     t, over = first, corner_of(triangles, first, a)
     for k in range(fan.size):
@@ -102,7 +102,7 @@ def tangent_after(points, normals, triangles, sides, neighbours, least, first, b
 
 @loop
 def have_other_neighbours(triangles, neighbours, b, a, fan, count):
-    """Return whether a and b have common neighbours besides those in triangles at their edge."""
+    """Return whether a and b have common neighbours besides the vertices opposite to their edge."""
     first, other = fan[0], fan[count - 1]
     for t in fan[1 : count - 1]:
         for k in range(3):
@@ -132,7 +132,7 @@ def remove_triangle(triangles, neighbours, t, b, a):
 
 @loop
 def collapse_edge(triangles, sides, neighbours, first, b, a, fan):
-    """Move b to a, both corners of the triangle `first`."""
+    """Move the vertex b to the vertex a; both are corners of the triangle `first`."""
     turn = turn_between(triangles, sides, first, a, b)
     count = find_fan(triangles, neighbours, first, b, a, fan)
     for t in fan[1 : count - 1]:

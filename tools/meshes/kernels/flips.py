@@ -83,7 +83,7 @@ def smallest_tangents(points, triangles, tangents):
 
 @loop
 def corner_of(triangles, t, vertex):
-    """Return the corner of a triangle at a vertex, −1 if there is none."""
+    """Return the index, 0 to 2, of the corner of a triangle at a vertex; −1 if there is none."""
     for k in range(3):
         if triangles[t, k] == vertex:
             return k
@@ -118,7 +118,10 @@ def are_joined(triangles, neighbours, first, c, d):
 
 @loop
 def replace_neighbour(neighbours, triangles, t, old, new, left, right):
-    """Replace the neighbour of triangle t, unless t is −1, across the edge from left to right."""
+    """Replace the neighbour `old` of triangle t, across the edge from left to right, by `new`.
+
+    Do nothing if t is −1.
+    """
     if t >= 0:
         for k in range(3):
             if neighbours[t, k] == old and triangles[t, k] != left and triangles[t, k] != right:
@@ -138,9 +141,9 @@ def flip_edge(points, normals, triangles, sides, neighbours, by_shape, least, t,
     """Flip the edge of triangle t opposite to its corner k if that improves the two triangles.
 
     The edge a b of the triangles c a b and d b a becomes the edge c d of c a d and d b c. The flip
-    must raise their smallest cosine or, `by_shape`, the tangent of their smallest angle; the other
-    of these two may fall, but not below `least`. Returns the triangle across the edge, or −1
-    without a flip.
+    must raise the smallest cosine of the two triangles or, `by_shape`, the tangent of their
+    smallest angle; the other one of these two numbers may fall, but not below `least`. Returns the
+    triangle across the edge, or −1 without a flip.
     """
     other = neighbours[t, k]
     if other < 0:
