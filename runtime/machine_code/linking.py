@@ -50,7 +50,7 @@ class Part(JITCodeLibrary):
         return self
 
     def set_env(self, name: str, environment: Any) -> None:
-        """Do nothing: the kernels set the variable of this name."""
+        """Do nothing: each linked kernel sets the variable of this name."""
 
     def finalize(self) -> None:
         """Optimise this function alone."""
@@ -81,7 +81,8 @@ class Kernel(Part):
     """The code of a kernel, with the code of all parts that it needs."""
 
     def _finish(self) -> None:
-        # Callers first, so that code without remaining callers is left out.
+        # Parts are linked before the parts that they call, so that code without callers is left
+        # out.
         for part in reversed(self.called):
             self._final_module.link_in(part._get_module_for_linking(), preserve=True)
         self._final_module.verify()

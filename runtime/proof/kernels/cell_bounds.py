@@ -67,7 +67,7 @@ WIDE, OPEN = 1.3, 2.1
 # A cell is regular if the contraction factors of Newton's simplified method are below this, for the
 # directions of the Bernstein ordinates of its normals.
 REGULAR = 0.8
-# A Hessian whose determinant is smaller than this, relative to its entries, is singular.
+# A Hessian counts as singular if its determinant, relative to its entries, is smaller than this.
 FLAT = 1e-9
 
 

@@ -53,7 +53,7 @@ UNDECIDED, DECIDED = range(2)
 # only up to a tolerance. If a joint is nearer to a side than the part NEAR_SIDE of the width, the
 # side moves to the joint.
 GROWN, LEAST, NEAR_SIDE = 0.4, 2.0**-23, 0.05
-# The largest number of parts along u and along v.
+# The largest number of parts of a box along u, and along v.
 PARTS = 4
 # Half the length of the first segment that is tried on a side of a part, and the least length of a
 # segment; a side has the length 2.
@@ -374,7 +374,7 @@ def index_around(tape, work, tile, joints, domain, points, hull, n, ends, path, 
 def is_free(side, in_u, in_v):
     """Return whether a side of a box belongs to its border: it is no seam and not collapsed."""
     kind = in_v if side % 2 == 0 else in_u
-    # Side 0 is where v is least, side 3 where u is.
+    # Side 0 is at the least v, side 3 at the least u.
     return kind != SEAM and kind != (BEFORE if side % 3 == 0 else AFTER)
 
 

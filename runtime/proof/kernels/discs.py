@@ -25,7 +25,8 @@ __all__ = ["Disc", "decide_discs"]
 
 # The largest number of steps towards a solution.
 STEPS = 60
-# A step longer than this part of the distance from the pole restarts at the pole.
+# After a step that is longer than this part of the distance from the pole, u and r are computed
+# from the tangents at the pole, not from the derivatives at the last point.
 LONG = 0.25
 # Indices into the frame of a disc.
 (
@@ -157,7 +158,8 @@ def place_in(tape, work, disc, n):
     base = rows_of(y11, y12, y22, frame[FAR_NOISE], frame[FAR_NOISE]) / (1.0 - change)
     if max(abs(s), abs(t)) > 1.0 + change + base:
         return 0.0, 0.0, -1.0, d  # the solution is too far from the pole
-    # The 2-jet at the pole may be more accurate than that of a small circle around it.
+    # Near the pole, the solution from the 2-jet at the pole may be more accurate than solutions
+    # from 2-jets beside the pole.
     length, ring = math.hypot(s, t), 0
     while ring + 1 < disc.changes.shape[0] and 2.0 * length <= whole * 0.5 ** (ring + 1):
         ring += 1

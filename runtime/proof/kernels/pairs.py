@@ -148,7 +148,7 @@ def is_excluded(a, b, c, p, q, t0, t1, t2, t3, r0, r1, r2, r3, round_s, round_t,
 
 @inline
 def most_of(reached, gap):
-    """Return the largest |s|, |t| where derivatives are those of this cell, not a neighbour's."""
+    """Return the largest |s|, |t| at which derivatives belong to this cell, not to a neighbour."""
     return 1.0 if reached > 1.0 else 1.0 - gap
 
 

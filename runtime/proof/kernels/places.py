@@ -88,7 +88,7 @@ FINE = 10
 
 
 class Boxes(NamedTuple):
-    """Work arrays: boxes of a level, of the next one, their clusters, and decisions on these."""
+    """Work arrays: boxes of a level and of the next level, clusters of boxes, and decisions."""
 
     now: NDArray[np.float64]
     following: NDArray[np.float64]
