@@ -113,7 +113,7 @@ class GaussMap(Methods):
 
     @property
     def _fitted(self) -> tuple[OnPatches, ...]:
-        """The pieces with their splines, which the computation of densities needs."""
+        """The pieces with their splines; the computation of densities needs the splines."""
         return tuple(x.fitted for x in self._pieces)
 
     def _with_fit(self, samples: Samples, reach: Reach | None = None) -> Samples:

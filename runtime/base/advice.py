@@ -55,7 +55,7 @@ def _has(value: object, *names: str) -> bool:
 
 
 def about_value(value: object) -> str:
-    """Return advice on a value that is not a surface: usually the call that makes one of it."""
+    """Return advice on a value that is not a surface: usually the call that makes a surface."""
     if is_of_geomdl(value) or is_of_splipy(value):
         return "make one by gm.Surface.from_nurbs(surface)"
     if is_raster(value):

@@ -16,12 +16,12 @@ from .errors import InputError, UnknownNameError, shown
 from .limits import MOST
 from .memory import check_memory
 
-# Tuples of types, made once: a report checks many numbers.
+# Tuples of types for `isinstance`, made once, since a report checks many numbers.
 WHOLE, OF_NUMPY = (int, np.integer), (np.ndarray, np.generic)
 SIMILAR = 0.7  # similarity of a name to the intended one, see difflib
-# The largest number of entries of a sequence that is not an array: if entries are checked one by
-# one, and if the sequence is converted to an array. Nested sequences are counted down to the depth
-# DEEPEST.
+# The largest number of entries of a list or tuple: MOST_LISTED if the entries are checked one by
+# one, MOST_CONVERTED if the sequence is converted to an array. The entries of nested sequences are
+# counted down to the depth DEEPEST.
 MOST_LISTED, MOST_CONVERTED, DEEPEST = 10**7, 10**8, 4
 
 
@@ -136,7 +136,10 @@ def text(value: object, name: str) -> str:
 
 
 def yes_or_no(value: object, name: str) -> bool:
-    """Return the truth value of a value; InputError, with `name`, if it has none, as an array."""
+    """Return the truth value of a value.
+
+    Raises InputError, with `name`, if the value has none; an array of several entries has none.
+    """
     try:
         return bool(value)
     except Exception:

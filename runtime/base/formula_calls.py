@@ -27,6 +27,6 @@ def plane_vector(array: ArrayLike) -> PlaneVector:
 
 
 def patch(array: ArrayLike) -> Patch:
-    """Return an array (..., 5, 3) of the vectors a, b, c, d, e as a patch whose p is zero."""
+    """Return the patch with the vectors a, b, c, d, e in an array (..., 5, 3); its p₀ is zero."""
     a, b, c, d, e = np.moveaxis(np.asarray(array), -2, 0)
     return Patch(vector(a), vector(b), vector(c), vector(d), vector(e), Vector(0.0, 0.0, 0.0))

@@ -47,11 +47,11 @@ COSTS: dict[str, Cost] = {
     "cap": Cost("normals", 96.0, 0.0, "use fewer"),
     "polygon": Cost("normals", 24.0, 1.0, "use fewer"),
     "numbers": Cost("numbers", 9.0, 0.0, "use fewer"),
-    # The memory of normals that are sorted into bins, and of one sample for each normal.
+    # "search" is for normals that are sorted into bins, "gauss" for one sample at each normal.
     "search": Cost("normals", 52.0, 0.0, FEWER),
     "stored": Cost("samples", 0.0, 1.0, "use fewer normals, fewer fields or float32"),
     "gauss": Cost("samples", 76.0, 1.0, "use fewer, fewer fields, float32, or a stream"),
-    # The other densities have several candidates for each sample.
+    # These densities need more than "gauss": they choose the samples from several candidates each.
     "balanced": Cost("samples", 3700.0, 0.0, FEWER),
     "uniform": Cost("samples", 3600.0, 0.0, FEWER),
     "aligned": Cost("samples", 900.0, 0.0, FEWER),

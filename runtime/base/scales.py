@@ -44,10 +44,10 @@ def apart(
 
 
 def extent_of(points: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the longest side of the bounding box of points (m, n, 3), and their last place.
+    """Return the longest side of the bounding box of points (m, n, 3), and a unit of rounding.
 
-    The last place is the distance from the largest coordinate to the next float64. Missing points,
-    NaN, are ignored.
+    The unit is the distance from the largest coordinate to the next float64. Missing points (NaN)
+    are ignored.
     """
     high, low = (f.reduce(f.reduce(points)) for f in (np.fmax, np.fmin))  # the fastest way
     largest = np.maximum(np.abs(low), np.abs(high)).max()

@@ -110,7 +110,7 @@ def shown(results: Iterator[Result], count: int, progress: bool) -> Iterator[Res
 
 @contextmanager
 def counted(count: int | None, progress: bool) -> Iterator[Callable[[int], object]]:
-    """Yield a function that shows its argument on a terminal, the number of finished steps.
+    """Yield a function that takes the number of finished steps, and shows it on a terminal.
 
     `count` is the number of all steps, if known.
     """

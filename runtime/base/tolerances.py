@@ -64,8 +64,8 @@ NEAR_SINGULAR_POINT = 2.0**-12
 # product of the tangents or to the largest normal of the patch: 4096 ε, far above the rounding of
 # such a product.
 VANISHING = 2.0**-40
-# The error of a coefficient of the parabolic cubic, or of the cubic of its directions, relative to
-# the product of the lengths of the vectors in its terms: 256 ε.
+# The error of a coefficient of the parabolic cubic, or of the cubic whose roots are directions of
+# parabolic lines, relative to the product of the lengths of the vectors in its terms: 256 ε.
 CUBIC_ERROR = 2.0**-44
 # The error of parameters in the triangle u, v, 1 − u − v ≥ 0, whose legs have length 1.
 PARAMETER_ERROR = 1e-12
@@ -77,16 +77,17 @@ DOUBLE_ROOT = 1e-6
 # The iteration for the smallest cap has converged if its radius grows by less than this, in
 # degrees.
 CAP_RADIUS_ERROR = 1e-12
-# The error of the height of a circle of latitude on the unit sphere: other points are farther away
-# from the circle.
+# The error of the height z of points on a circle of latitude of the unit sphere. Points that are
+# not on the circle differ from its height by more than this.
 CIRCLE_HEIGHT_ERROR = 1e-12
 # The flip or collapse of an edge must raise a cosine, or the tangent of an angle of a triangle, by
 # at least this, which exceeds their rounding errors.
 QUALITY_GAIN = 1e-14
-# A triangle whose smallest angle (radians) is below this counts as one without area: its area
-# vanishes in files of single precision.
+# A triangle whose smallest angle (radians) is below this counts as a triangle without area: its
+# area vanishes in files of single precision.
 NO_AREA = 1e-6
-# The error of K, H and 1 + 2 d H + d² K relative to their terms, in units of the last place.
+# The error of K, of H and of 1 + 2 d H + d² K for an offset by d, relative to the terms of these
+# sums, in units of the last place.
 CURVATURE_ERROR = 4.0
 # The error of a principal curvature times the diagonal of the bounding box, relative to the
 # rounding of coordinates in units of the diagonal. DERIVATIVE_ERROR is for surfaces that are given
@@ -106,9 +107,10 @@ RADIUS_ERROR = 2.0**-46
 # The error of R Rᵀ − 1 for a rotation R: the rounding of its entries and of a few products of
 # rotations.
 ROTATION_ERROR = 1e-12
-# Parameters that differ by less than this part of their range are the same.
+# Parameters that differ by less than this part of their range count as equal.
 SAME_PARAMETER = 1e-12
-# The error of triple products of unit vectors: 4 ε. Regions of the sphere are larger by this.
+# The error of triple products of unit vectors: 4 ε. Regions of the sphere are enlarged by this, so
+# that their boundaries belong to them.
 TRIPLE_PRODUCT_ERROR = 2.0**-50
 # The error of the normal of a sample on a surface, an angle in radians.
 NORMAL_ERROR = 1e-12

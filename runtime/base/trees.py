@@ -15,7 +15,7 @@ DIGITS = 9
 
 
 def tree_of(points: NDArray[np.float64], periods: NDArray[np.float64] | None = None) -> KDTree:
-    """Return the k-d tree of points (N, k); `periods` (k,) of coordinates are 0 for none."""
+    """Return the k-d tree of points (N, k); `periods` (k,) are those of the coordinates, or 0."""
     from scipy.spatial import KDTree  # its import takes as long as a small sampling
 
     return KDTree(points, boxsize=periods)

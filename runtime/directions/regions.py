@@ -44,7 +44,10 @@ class Condition(Protocol):
 
     @property
     def error(self) -> float:
-        """The error of edges, in L, by which the condition is stricter; 0 without edges."""
+        """The error of the arcs that stand for edges, in L; 0 without edges.
+
+        The condition is stricter by this distance.
+        """
         ...
 
     def holds(self, points: NDArray[np.float64], normals: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -54,9 +57,9 @@ class Condition(Protocol):
     def may_change(
         self, points: NDArray[np.float64], radii: NDArray[np.float64]
     ) -> NDArray[np.bool_]:
-        """Return whether the condition may hold in some part of a ball, and fail in another part.
+        """Return for each ball whether the condition may hold in one part and fail in another.
 
-        The balls have the centres `points` (k, 3) and the `radii` (k,).
+        The k balls have the centres `points` (k, 3) and the `radii` (k,).
         """
         ...
 

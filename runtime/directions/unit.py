@@ -75,9 +75,9 @@ def in_pieces(
     threads: int | None = None,
     width: int = 3,
 ) -> NDArray[np.float64]:
-    """Return the array rows(first, last), which has `width` columns.
+    """Return the rows [first, last) of a long array with `width` columns.
 
-    Threads compute it, PIECE rows at a time.
+    The function `rows` returns any range of rows; threads call it for PIECE rows at a time.
     """
     check_memory("normals", last - first)
     result = np.empty((last - first, width))

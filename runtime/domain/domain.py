@@ -52,7 +52,8 @@ def _checked(domain: Sequence[Sequence[float]], names: str, form: str) -> list[I
 def checked_boundary(periodic: Periodic) -> tuple[Boundary, Assumed]:
     """Return the boundary conditions that `periodic` means, and whether open sides are assumed.
 
-    The open sides of a parameter are assumed, not declared, if its entry is False, not "open".
+    The open sides of a parameter are assumed if its entry in `periodic` is False; they are declared
+    if the entry is "open".
     Raises InputError if the conditions contradict each other.
     """
     boundary = checked_sides(periodic)

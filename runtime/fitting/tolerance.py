@@ -61,7 +61,7 @@ class Tolerance:
         return replace(self, distance=asked)
 
     def excess(self, comparison: Comparison) -> tuple[float, float]:
-        """Return distance and angle relative to the largest allowed ones: at most 1 if reached."""
+        """Return the distance and the angle of a misfit, divided by the largest allowed ones."""
         misfit = comparison.misfit
         angle = misfit.angle if self.poles else comparison.angle_away
         return (
@@ -124,7 +124,8 @@ def refined(
         distance, angle = goal.excess(comparison)
         if stalled >= goal.patience and distance <= FAR_OFF:
             break
-        # Derivatives may mislead: the error also varies along u if cells are too long along v.
+        # The variation may mislead: the error also varies along u if cells are too long along v.
+        # So after a step without improvement, the variation of the distance is used instead.
         u, v = variation(spline, comparison, angle > distance and stalled == 0)
         finer = _finer(spline.cells, u, v, goal)
         if finer == spline.cells:

@@ -106,7 +106,7 @@ def _keys(listing: signatures.Listing) -> Iterator[tuple[str, str]]:
 
 
 def _known(path: Path) -> dict[str, bytes]:
-    """Return the entries of a file by their keys; {} if its sources or versions are others."""
+    """Return the entries of a file by key; {} if it was built from other sources or versions."""
     try:
         pack = Pack(path)
     except (OSError, ValueError):
@@ -138,7 +138,10 @@ def _module_of(name: str) -> str:
 
 
 def _compiled(listing: Mapping[str, Any]) -> dict[str, bytes]:
-    """Compile kernels for their signatures, in a process of its own; return entries by keys."""
+    """Compile each kernel for each of its signatures; return the entries of the file, by key.
+
+    This runs in a process of its own.
+    """
     gc.disable()  # Numba also numbers types, and renumbers those that were garbage-collected.
     entries: dict[str, bytes] = {}
     for name, kinds in listing.items():

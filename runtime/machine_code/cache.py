@@ -73,7 +73,7 @@ def _processor(context: Any) -> object:
 
 @cache
 def say_why() -> None:
-    """Warn, once, if the machine code of the package is for other versions than the installed."""
+    """Warn, once, if the machine code of the package is for versions that are not installed."""
     if others := shipped.misfit():
         warnings.warn(
             f"the compiled kernels of this installation are for {others}: new ones are compiled "

@@ -29,7 +29,8 @@ class Level(NamedTuple):
 
 
 V3 = "cx16 sahf popcnt sse3 sse4.1 sse4.2 ssse3 avx avx2 bmi bmi2 f16c fma lzcnt movbe"
-# One level per architecture: code for v3 takes up to 12 % longer than for the processor itself.
+# One level per architecture: code for x86-64-v3 runs up to 12 % longer than code that is compiled
+# for the processor itself.
 LEVELS = {
     "x86_64": Level("x86-64-v3", V3),
     "aarch64": Level("generic", "neon"),

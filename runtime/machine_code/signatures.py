@@ -1,5 +1,6 @@
-"""The list of signatures of kernels, `signatures.json`, from which the package's file is built.
+"""The list of signatures of kernels, `signatures.json`.
 
+`building` compiles these kernels into the file of machine code that comes with the package.
 `usual.json` names the kernels that usual calls need: `pip install .` compiles these.
 
 A type is a text, as "float64", "int64 2 C" (an array: item, dimensions, layout) or "int64 2 C
@@ -18,12 +19,13 @@ from numba import types
 
 SIGNATURES = Path(__file__).with_suffix(".json")
 USUAL = SIGNATURES.with_name("usual.json")
-# A list of signatures, the types of all arguments, for the qualified name of each kernel.
+# For the qualified name of each kernel, the list of its signatures. A signature is the list of the
+# types of all arguments.
 Listing = Mapping[str, Sequence[Any]]
 
 
 def read() -> Listing:
-    """Return the signatures of all kernels, as JSON has them."""
+    """Return the signatures of all kernels, with types in the form that JSON has."""
     return json.loads(SIGNATURES.read_text(encoding="utf-8"))
 
 

@@ -90,7 +90,7 @@ FIELDS: dict[str, Field] = {
     "other_uv": Field(("other_u", "other_v"), "parameter", only="edges"),
     "other_face_index": Field(("other_face_index",), kind="index", only="edges"),
 }
-# Groups of samples with fields that other samples lack, and their descriptions in messages.
+# Groups of samples with fields that other samples lack, and how messages describe each group.
 ONLY = {
     "surface": "on the surface only, not on its spline",
     "proved": "at prescribed normals of surfaces with bounds of their derivatives only",

@@ -18,8 +18,8 @@ from ..directions.regions import Reach
 from ..spline.developable import CellMeasure
 from ..spline.nets import AnySpline
 
-# A warning is given if samples leave out more than this share of the area or of the length of a
-# curve, or if more than this share of the samples is not on the surface.
+# Missing or inaccurate parts cause a warning if they are a larger share of the area, of the length
+# of a curve, or of the samples.
 WORTH_A_WARNING = 0.01
 # A requested count is missed if the number of samples differs from it by more than this share of it
 # plus FEW: on a symmetric surface several samples appear or vanish together.

@@ -66,7 +66,7 @@ def summary_of(samples: SampleArrays) -> str:
 
 
 def _place(report: SamplingReport) -> str:
-    """Return a clause on the reference system of coordinates, and their origin."""
+    """Return a clause on the reference system and the subtracted origin of the coordinates."""
     clause = f"; coordinates in {crs_label(report.crs)}" if report.crs else ""
     if report.origin and any(report.origin):
         numbers = ", ".join(f"{x:.12g}" for x in report.origin)

@@ -33,8 +33,8 @@ PAIRS_AT_A_TIME = 1 << 10
 # many such integers, each of about a hundred bytes.
 LONG_PAIRS_AT_A_TIME = 1 << 14
 # A distance in the parameter plane, in cells: hits of one normal at the open boundary that are
-# closer than this are one point, and a hit that is closer to a pole is at the pole. The distance is
-# far more than rounding errors, which are below 1e-14, and far less than 1.
+# closer than this count as one point, and a hit that is closer to a pole counts as at the pole. The
+# distance is far more than rounding errors, which are below 1e-14, and far less than a cell.
 SAME_PLACE = 1e-6
 
 

@@ -85,7 +85,10 @@ class Hits:
         return Hits(self.keys[rows], place[kept], self.local[kept], self.developable)
 
     def merged(self, keys: Indices, local: Array) -> Hits:
-        """Return these hits with others of other normals, which were decided exactly."""
+        """Return these hits together with exactly decided hits, which have other normals.
+
+        `keys` (k,) and `local` (k, 5) describe the hits to add.
+        """
         order = np.argsort(np.concatenate([self.keys, keys]))
         place = np.argsort(order)
         exact = np.concatenate([place[self.exact], place[len(self) :]])

@@ -106,8 +106,9 @@ def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decis
 def _agree(spline: NetSpline, patches: Indices, normals: Array, places: Array) -> Flags:
     """Return whether each normal agrees with the normal of its patch at the parameters `places`.
 
-    It must not be its opposite. At a singular point (k, 2), where tangents are perpendicular to a
-    circle of directions, and at tips, the cosine of the angle must be at least SAME_NORMAL.
+    The angle between both normals must be less than 90 degrees. At singular points, where the
+    tangents are perpendicular to a circle of directions, and at tips, the cosine of the angle must
+    be more than SAME_NORMAL.
     """
     N, singular = spline.normals_in_patches(patches, places)
     tips = tips_of(spline)
@@ -275,7 +276,7 @@ def _tangents_at(spline: NetSpline, rows: Indices, end: Indices) -> tuple[Intege
 
 
 def _plane_signs(planes: Integers, normals: Array) -> NDArray[np.int8]:
-    """Return the signs (k,) of linear forms (k, 3) at displaced normals."""
+    """Return the signs (k,) of linear forms, with coefficients (k, 3), at displaced normals."""
     n, _ = integers_by_row(normals)
     forms = [(planes.T * n).sum(axis=0), *(leading_sign(n) * planes.T)]
     signs = sign(np.array(forms, dtype=object))

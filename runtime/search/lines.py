@@ -1,8 +1,8 @@
-"""Normals that all points of a line of nets have, as the one of the circle on top of a torus.
+"""Normals that all points of a line of nets have, such as the circle on top of a torus.
 
-In such a patch all forms of the normal are 0, and rounding gives each corner on the line its own
-normal. So the normal is displaced by more than rounding, and the points found are moved back to the
-line.
+In a patch on such a line all forms of the normal are 0, and rounding gives each corner on the line
+its own normal. So the search displaces the normal by more than rounding, and the points found are
+moved back to the line.
 """
 
 from __future__ import annotations
@@ -15,15 +15,15 @@ from ..base.formula_calls import python_function, vector
 from ..spline.nets import NetSpline
 from .in_nets import rounding_of
 
-# The displacement is this multiple of the rounding of coordinates, which turns normals by about as
-# much. It is in no plane of symmetry.
+# Normals are displaced by BESIDE times the rounding error of coordinates: the angle by which
+# rounding turns normals is about that error. DIRECTION is in no plane of symmetry.
 BESIDE, DIRECTION = 64.0, np.array([1.0, 1e-2, 1e-4])
 
 
 def have_lines(spline: NetSpline, patches: Indices, normals: Array) -> Flags:
-    """Return whether lines in patches (k,) have the normals (k, 3), up to rounding.
+    """Return for each of k patches whether a line in it has its normal in (k, 3), up to rounding.
 
-    Patches at poles and tips, with a singular corner or a collapsed edge, have none.
+    The result is False for patches with a singular corner or a collapsed edge, at poles and tips.
     """
     topology = spline.topology
     forms = python_function(formulas.forms)(spline.patch(patches), vector(normals))
@@ -42,7 +42,8 @@ def beside_lines(spline: NetSpline, normals: Array) -> Array:
 def places_at(spline: NetSpline, patches: Indices, normals: Array, beside: Array) -> Array:
     """Return the parameters (k, 2) of points with the normals (k, 3).
 
-    On lines, they are those of the points nearest to the ones with the normals `beside`.
+    If a line of the patch has the normal, the result is the point of the line that is nearest to
+    the point with the displaced normal in `beside`.
     """
     uv, lines = np.full((len(patches), 2), 1.0 / 3.0), have_lines(spline, patches, normals)
     for n, on_lines in ((beside, np.zeros_like(lines)), (normals, lines)):

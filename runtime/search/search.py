@@ -62,7 +62,7 @@ def _in_turn(
     threads: int | None,
     progress: bool = False,
 ) -> Iterator[Hits]:
-    """Yield the hits as `find_in_turn`; those of a range are `decided` by a function."""
+    """Yield the hits as `find_in_turn` does; the function `decided` returns the hits of a range."""
     developable = developable_patches(spline, threads)
     tips = tips_of(spline)
     nothing = developable == spline.patches or (tips is not None and tips.collapsed.all())
