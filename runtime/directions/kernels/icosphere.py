@@ -33,7 +33,7 @@ def new_line() -> tuple[NDArray[np.int64], NDArray[np.float64]]:
 
 @inline
 def row_start(face, s, frequency):
-    """Return the index of the point (s, 1) of a face, the first one inside its row, minus one."""
+    """Return one less than the index of the point (s, 1), the first inner point of row s."""
     rows = s - 1
     inside = (frequency - 1) * (frequency - 2) >> 1
     before = rows * (frequency - 1) - (rows * (rows + 1) >> 1)
@@ -45,8 +45,9 @@ def write_normals(face, frequency, places, first, count, tile):
     """Write the unit normals of points of a face to the first three rows of a tile.
 
     `places` (2 STEP) are the rows and the columns of points: `count` points from `first` on are
-    written, and up to VECTOR − 1 more. Before the square root, only b φ and one sum are rounded, so
-    that mirror images agree bit for bit, and a point of two faces is the same on both.
+    written, and up to VECTOR − 1 more. A coordinate is a + b φ with integers a and b, divided by
+    the length. Before the square root, only b φ and this sum are rounded, so that mirror images
+    agree bit for bit, and a point of two faces is the same on both.
     """
     long_vectors()
     a_x, b_x, a_y, b_y, a_z, b_z = line(face, 0)
@@ -96,7 +97,10 @@ def write_line(face, frequency, s, t, s_step, t_step, count, places, tile):
 
 @inline
 def line_count(part, frequency):
-    """Return the number of lines in the corners (0), an edge (1 … 30) or a face (31 … 50)."""
+    """Return the number of lines of points in a part of the icosphere.
+
+    Part 0 has all corners, each a line; parts 1 … 30 are edges, and parts 31 … 50 faces.
+    """
     return 12 if part == 0 else 1 if part <= 30 else frequency - 2
 
 

@@ -195,7 +195,7 @@ def find_parities(cells):
         while j < rows and frame[1] + j * frame[5] < segment[3]:
             v = frame[1] + j * frame[5]
             if segment[1] <= v:
-                # The last corner left of the segment.
+                # Column i becomes that of the last corner left of the segment, in row j.
                 share = (v - segment[1]) / (segment[3] - segment[1])
                 near = segment[0] + share * (segment[2] - segment[0])
                 i = cell_along(near, frame[0], frame[2], columns)

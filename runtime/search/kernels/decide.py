@@ -70,7 +70,7 @@ def unit_of(least, largest, limbs):
 
 @loop
 def unit_around(mu, i, j):
-    """Return the unit of the coefficient (i, j) and its neighbours; see `unit_of`."""
+    """Return the result of `unit_of` for the coefficient (i, j) and its eight neighbours."""
     least, largest = np.inf, 0.0
     for p in range(i - 1, i + 2):
         for q in range(j - 1, j + 2):
@@ -81,7 +81,7 @@ def unit_around(mu, i, j):
 
 @loop
 def unit_of_normal(n):
-    """Return the unit of the components of a normal; see `unit_of`."""
+    """Return the result of `unit_of` for the components of a normal."""
     least, largest = widened(np.inf, 0.0, n.x)
     least, largest = widened(least, largest, n.y)
     least, largest = widened(least, largest, n.z)

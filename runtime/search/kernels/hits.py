@@ -37,8 +37,9 @@ NORMAL, COEFFICIENTS, PLACE, POINT, U, V, SUPPORT, GAUSSIAN, MEAN = (
     np.int64(STEP * row) for row in (0, 3, 21, 30, 33, 34, 35, 36, 37)
 )
 NORMAL_INDEX, PATCH_INDEX, THREE_ROWS = np.int64(0), np.int64(STEP), np.int64(3 * STEP)
-# Rows and columns of the coefficients that `triangle` takes, relative to (i, j) for the cell (i,
-# j). The array is contiguous, since machine code that refers to other arrays cannot be cached.
+# For each patch of a cell, the rows and columns of the coefficients that `triangle` takes, relative
+# to the first of the nine coefficients around the cell. The array is contiguous, since machine code
+# that refers to other arrays cannot be cached.
 AROUND = np.ascontiguousarray(NEIGHBOURS[:, [0, 1, 2, 3, 5, 7]] + 1, np.uint64)
 
 
@@ -129,7 +130,7 @@ def copy_patch(tile, k, source):
 def on_surface(place, frame, size, n, u, v, x, K, H):
     """Return point, parameters, support and curvatures of a sample on the unscaled surface.
 
-    `x`, `K` and `H` are those of the patch times `size`, u and v its own parameters.
+    `x`, `K` and `H` are those of the patch scaled by `size`; u and v are the patch's parameters.
     """
     unit = 1.0 / size
     point = Vector(

@@ -112,7 +112,10 @@ def bin_number(face, row, column, level):
 
 @jit
 def order_normals(normals, frame, faces, first, last, keys):
-    """Write keys bin << 32 | index of the normals [first, last); −1 for normals without a bin."""
+    """For each of the normals [first, last), write the key bin << 32 | index of the normal.
+
+    The key is −1 for a normal without a bin.
+    """
     grid = np.int64(1) << FINEST
     for k in range(first, last):
         face, s, t = cube_face(mapped(frame, row_vector(normals, k)))
@@ -166,7 +169,7 @@ def write_caps(inverse, faces, level, caps):
 
 @inline
 def meets(cone, cap):
-    """Return whether a cap may have a direction in a cone and in its slab."""
+    """Return whether a cap may contain a direction that is both in a cone and in its slab."""
     x, y, z = cone[0] - cap[0], cone[1] - cap[1], cone[2] - cap[2]
     reach = cone[CHORD] + cap[3]
     across = cone[SLAB] * cap[0] + cone[SLAB + 1] * cap[1] + cone[SLAB + 2] * cap[2]
@@ -238,7 +241,7 @@ def place_keys(keys, shift, starts, ordered):
 
 @jit
 def order_few(keys):
-    """Sort keys in place that are nearly sorted (insertion sort)."""
+    """Sort nearly sorted keys in place (insertion sort)."""
     for k in range(1, keys.size):
         key, at = keys[k], k
         while at > 0 and keys[at - 1] > key:

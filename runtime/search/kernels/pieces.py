@@ -40,7 +40,7 @@ __all__ = [
     "write_pieces",
 ]
 
-# The columns of a cone: its axis and its chord; the normal of its slab, and half the width of that.
+# The columns of a cone: its axis and its chord; the normal of its slab, and half the slab's width.
 CHORD, SLAB, WIDTH, CONE = 3, 4, 7, 8
 # The columns of a patch: the vectors a, b, c, d, e, and a bound of the errors of its forms U, V, W.
 # A cell of a surface has bounds of the remainders of x_s and x_t instead of this error.

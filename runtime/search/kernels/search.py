@@ -137,7 +137,10 @@ def near_pieces(cones, members, first, last, cap, near):
 
 @inline
 def patch_in(row):
-    """Return the patch of a piece from its row; its point p is 0."""
+    """Return the patch with the vectors a, b, c, d, e in a row of `Pieces.patches`.
+
+    The row does not have p₀, which is set to 0.
+    """
     return Patch(
         Vector(row[0], row[1], row[2]),
         Vector(row[3], row[4], row[5]),
@@ -198,10 +201,11 @@ def exclude_tile(cone, row, tile, count):
 
 @loop
 def look_again(row, tile, count):
-    """Reject the normals of a tile whose opposite the piece has, if it has no narrow cone.
+    """Reject normals of a tile of which the patch has only the opposite.
 
-    The forms do not distinguish a normal from its opposite. Therefore each normal with the code YES
-    is compared with the oriented normal of the patch at the parameters of the hit.
+    It is needed for a patch without a narrow cone, since the forms do not distinguish a normal from
+    its opposite. Each normal with the code YES is compared with the oriented normal of the patch at
+    the parameters of the hit.
     """
     patch = patch_in(row)
     for k in range(count):
@@ -219,7 +223,7 @@ def look_again(row, tile, count):
 
 @loop
 def store(tile, count, order, first, j, found):
-    """Write the keys of piece j and those normals of a tile that it has or may have."""
+    """Write a key for each normal of a tile that piece j has or may have."""
     certain, undecided, counts = found
     a, b = counts[0], counts[1]
     for k in range(count):

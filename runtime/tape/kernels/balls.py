@@ -180,7 +180,10 @@ def inflate(terms, radii, at, count):
 
 @loop
 def write_ranges(code, middles, radii, a, f, ends, count):
-    """Write balls of the Taylor coefficients of a function of a register to the rows from f on."""
+    """Write balls of the Taylor coefficients of a function to the rows from f on.
+
+    The argument of the function is the register that begins at `a`.
+    """
     for k in range(count):
         i = np.uint64(a + k)
         middle, radius = middles[i], radii[i]
@@ -210,7 +213,10 @@ def write_coranges(code, middles, radii, f, count):
 
 @loop
 def compose(terms, middles, radii, a, f, at, count):
-    """Write a function of a register; its Taylor coefficients are in the rows from f on."""
+    """Apply a function to the register at `a`, and write the result to the register at `at`.
+
+    The rows from f on have the Taylor coefficients of the function.
+    """
     if terms == 10:
         for k in range(count):
             i = np.uint64(f + k)
@@ -245,8 +251,8 @@ def compose(terms, middles, radii, a, f, at, count):
 def evaluate_boxes(tape, order, centres, half_widths, count, middles, radii, ends):
     """Write the balls of all rows of a tape on `count` boxes, at most LANES.
 
-    Centres and half widths of boxes are (k, 2). The order is 2 or 3. Registers have a row more than
-    the tape; `ends` (2, 4) is scratch memory.
+    Centres and half widths of boxes are (k, 2). The order is 2 or 3. The arrays of registers have
+    room for one row more than the tape; `ends` (2, 4) is scratch memory.
     """
     terms = 10 if order == 3 else 6
     rows = tape.operations.shape[0]

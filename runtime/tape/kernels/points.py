@@ -137,9 +137,10 @@ def multiply(registers, a, b, at, count):
 
 @loop
 def compose(registers, a, at, count):
-    """Write a function of a register; its value, f1 and f2 are in the slots of 1, u and v.
+    """Write a function of a register to another register.
 
-    f1 and f2 are the Taylor coefficients of the function at the value of the register.
+    Before, the slots of 1, u and v of the result have the value f of the function and its Taylor
+    coefficients f1 and f2, at the value of the first register.
     """
     for k in range(count):
         x = taylor_at(registers, a, k)

@@ -55,7 +55,7 @@ def largest_at(middles, radii, at, k):
 
 @loop
 def of_sum(code, factor, distance, middles, radii, errors, a, b, at, count):
-    """Write the errors of sums and of multiples by constants."""
+    """Write the errors of sums of two registers, and of sums and products with a constant."""
     for j in range(TERMS):
         for k in range(count):
             lane = j * LANES + k
@@ -105,7 +105,7 @@ def of_coefficients(code, middles, radii, errors, a, f, ends, count):
 
 @loop
 def compose_errors(middles, radii, errors, a, f, at, count):
-    """Write the errors of a function of a register."""
+    """Write the errors of the value of a function whose argument is the register at `a`."""
     for k in range(count):
         i = np.uint64(f + k)
         c = formulas.composition_radius_2(
