@@ -102,7 +102,7 @@ class Corner(NamedTuple):
         return near
 
     def at(self, normals: Array) -> OnCreases:
-        """Return the corner for each of the unit normals (S, 3) in its normal cone.
+        """Return the corner once for each of the unit normals (S, 3) that is in its normal cone.
 
         The index follows from the signs of the slopes of n·x along the four creases; corners with
         the index 0 are left out. Where the index depends on a slope that is 0 up to `TURNED`, the
@@ -319,9 +319,9 @@ class Creases:
         return numbers[keep], rows[keep], ends[keep]
 
     def _turning(self, rows: Indices, ends: Array, normals: Array) -> Array:
-        """Return 1 for intervals in which the height n·x has a maximum along the crease.
+        """For each interval, return whether the height n·x has an extremum along the crease there.
 
-        Return −1 for a minimum, and 0 for neither.
+        The result is 1 for a maximum, −1 for a minimum, and 0 for neither.
         """
         step = APART * np.ptp(self.spans[rows], axis=1)
         signs, between = [], self._arcs(rows, ends.mean(axis=1))[1].T
@@ -351,7 +351,7 @@ class Creases:
         return arcs, ends
 
     def _uv(self, rows: Indices, along: Array, side: int) -> Array:
-        """Return u and v (k, 2) just before creases, for `side` 1, or just after them, for 2.
+        """Return u and v (k, 2) just before creases (`side` is 1) or just after them (`side` is 2).
 
         `rows` (k,) are the indices of the creases, `along` (k,) the parameters w.
         """
@@ -387,7 +387,7 @@ def _sides(tape: Tape, lines: Array, ends: Array) -> _Sides:
 
 
 def _may_be_zero(normals: Array, bounds: tuple[Array, Array], all_pairs: bool = False) -> Flags:
-    """Return whether n·x may be 0 for some vector x within given bounds, and n known up to SMOOTH.
+    """Return whether n·x may be 0, given bounds of the vector x and n up to the angle SMOOTH.
 
     The result is a mask (k,) for normals (k, 3) and bounds of k vectors; with `all_pairs`, a mask
     (S, k) for S normals and k vectors.
@@ -400,7 +400,7 @@ def _may_be_zero(normals: Array, bounds: tuple[Array, Array], all_pairs: bool = 
 
 
 def _may_be_between(normals: Array, sides: _Sides) -> Flags:
-    """Return where (k,) n·x_s may have different signs on both sides, or be 0 on one side."""
+    """Return a mask (k,): whether n·x_s may have different signs on both sides, or be 0 on one."""
     slopes = [_product(normals, x) for x in (sides.before, sides.after)]
     zero = [_may_be_zero(normals, x) for x in (sides.before, sides.after)]
     return zero[0] | zero[1] | (slopes[0][0] * slopes[1][0] < 0.0)

@@ -115,7 +115,10 @@ def _refine_away(
     target: Target,
     threads: int | None,
 ) -> list[Indices]:
-    """Do `refine` for samples away from poles; return the indices of the others for each chart."""
+    """Do `refine` for samples away from poles; return for each chart the samples near its pole.
+
+    The samples near a pole are given by an array of their indices.
+    """
     domain = Parameters.of_domain(surface, spline)
 
     def work(first: int, last: int) -> tuple[Indices, list[Indices]]:
@@ -202,7 +205,10 @@ def evaluate_on_surface(
 def near_poles(
     charts: list[PoleChart], scale: float, uv: Array
 ) -> Iterator[tuple[Indices, Array, Array, Array]]:
-    """For each chart, yield which rows (k,) of `uv` need it, with unit normals, K and H there."""
+    """For each chart that is needed, yield the indices (k,) of the rows of `uv` that need it.
+
+    With the indices come the unit normals (k, 3), K (k,) and H (k,) at these parameters.
+    """
     for chart in charts:
         rows = np.flatnonzero(chart.next_to(uv))
         if len(rows):

@@ -51,7 +51,7 @@ def count_of(arrays: Fields) -> int:
 
 
 class FieldsOfSamples(NamedTuple):
-    """Fields of samples, with the samples and the normals for which the surface has no point.
+    """Fields of samples, and what is known of points that could not be moved to the surface.
 
     `unrefined` is the number of samples that are points of the spline, not of its surface.
     `undecided` has a box for each normal with points of the spline that could not be moved to the
@@ -195,7 +195,7 @@ class OnPatches:
     def near_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits: points of the surface, or if there is none, of the spline."""
+        """Return the samples at hits; `OnSurface` includes hits without a point of the surface."""
         return self.at_hits(normals, hits, fields, dtype)
 
     def share_at(self, normals: Array, hits: Hits) -> float:

@@ -101,8 +101,8 @@ class OnSurface(OnSpline):
     def measure(self) -> tuple[Array, Array]:
         """Areas and signed solid angles of the patches, as `Spline.measure`.
 
-        The solid angle of a cell is integrated by K of the surface at the Gauss points of the cell,
-        and a fourth of it is that of each patch. For surfaces whose derivatives are finite
+        The solid angle of a cell is the integral of K of the surface, computed at the Gauss points
+        of the cell; each patch gets a fourth of it. For surfaces whose derivatives are finite
         differences, which take many evaluations, the solid angles are those of the spline. Both
         arrays are cached with the spline.
         """
@@ -161,7 +161,10 @@ class OnSurface(OnSpline):
     def near_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits: points of the surface, or if there is none, of the spline."""
+        """Return a sample for each hit: a point of the spline, or of the surface if one is found.
+
+        Of samples that coincide on the surface, only one is returned.
+        """
         return as_fields(self._moved_once(normals, hits), fields, dtype)
 
     def share_at(self, normals: Array, hits: Hits) -> float:
@@ -209,7 +212,7 @@ class OnSurface(OnSpline):
         return part_of(arrays, arrays[FLAG_NAMES[0]]), unmoved(self.spline, numbers, uv)
 
     def _moved_once(self, normals: Array, hits: Hits) -> Fields:
-        """Return the samples of `_moved`, of those that coincide only one."""
+        """Return the samples of `_moved`, but only one of samples that coincide on the surface."""
         arrays = self._moved(normals, hits)
         return part_of(arrays, self._kept_once(arrays))
 
@@ -225,7 +228,7 @@ class OnSurface(OnSpline):
         return np.logical_or.reduce([np.zeros(len(arrays["uv"]), dtype=bool), *at_poles])
 
     def _kept_once(self, arrays: Fields) -> NDArray[np.bool_]:
-        """Return a mask that is True for one of the samples that coincide; see `kept_once`."""
+        """Return a mask of the samples to keep, so that none is repeated; see `kept_once`."""
         return kept_once(self.spline, arrays, self._at_poles(arrays))
 
     @property

@@ -260,7 +260,7 @@ class ProvedSurface:
     def component_degrees(self, normals: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return, for each normal, the sum of the degrees of its curves and isolated points.
 
-        These are all components with a known kind but regular points; undecided boxes do not count.
+        Only components with a known kind count: neither regular points nor undecided boxes do.
         """
         found = self.index.query(normals, self.threads)
         trim = self.surface.trim
@@ -292,7 +292,10 @@ def with_components(
 
 
 def proof_of(normals: NDArray[np.float64], open_: Undecided, face: int | None = None) -> Proof:
-    """Return the proof for unit normals (S, 3) and undecided boxes; `face` is that of a part."""
+    """Return the proof for unit normals (S, 3) and undecided boxes.
+
+    For a CAD part, `face` is the index of the face on which points were searched.
+    """
     if len(open_.numbers) == 0:
         return Proof(len(normals), ())
     undecided = tuple(

@@ -101,9 +101,10 @@ class OnPoints:
 
 
 def _places(domain: Domain, cells: tuple[int, int], shift: float) -> Array:
-    """Return a grid of parameters: the corners (m + 1, n + 1, 2) of m × n cells if `shift` is 0.
+    """Return a grid of parameters in m × n cells.
 
-    Else it is the points (m, n, 2) with this shift from the first corners, in cells.
+    If `shift` is 0, these are all corners (m + 1, n + 1, 2) of cells. Else there is one point for
+    each cell, (m, n, 2): its distance from the lower corner is `shift`, in cells, along u and v.
     """
     u, v = (
         low + (high - low) * ((np.arange(count + (shift == 0.0)) + shift) / count)

@@ -1,7 +1,7 @@
 """Repeated samples: samples at a fold of the spline that become the same point of the surface.
 
-A fold of the Gaussian image of the spline has several points with one normal where the surface may
-have one. Their signs of K cancel but for one.
+At a fold of its Gaussian image, the spline has several points with one normal where the surface may
+have one. The signs of K of these points cancel in pairs, except for one point.
 
 A patch has at most one point with a given normal. So if two samples of one normal coincide after
 they were moved, at least one of them has left its patch. Only normals with such samples are
@@ -91,9 +91,9 @@ def _starts(values: Indices) -> Indices:
 
 
 def _paired(rows: Indices, keys: Indices, others: Indices) -> Indices:
-    """Return, for each key, as many of the rows with this key as `others` contains it.
+    """Return, for each key, as many rows with this key as `others` has entries equal to the key.
 
-    If there are fewer such rows, all are returned.
+    If fewer rows have the key, all of them are returned.
     """
     if len(rows) == 0 or len(others) == 0:
         return rows[:0]

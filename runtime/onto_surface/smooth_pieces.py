@@ -83,9 +83,9 @@ def _with_cells(
 def cells_of_piece(
     surface: Surface, piece: Surface, cells: Sequence[int] | None
 ) -> tuple[int, int] | None:
-    """Return the numbers of cells (m, n) of a piece: the share of those of the whole surface.
+    """Return the numbers of cells (m, n) of a piece, from those of the whole surface, `cells`.
 
-    The share along u, or v, is that of the piece in the domain of the whole surface.
+    They are multiplied by the piece's share of the domain along u and along v.
     """
     if cells is None:
         return None
@@ -119,7 +119,7 @@ def with_area(geometries: Sequence[OnSpline]) -> list[tuple[int, OnSpline]]:
 
 
 def _size_of(geometry: OnSpline, is_one_of_many: bool) -> float:
-    """Return the size of a piece; 0 for one of several pieces of which the trim leaves nothing."""
+    """Return the size of a piece; 0 if it is one of several, and the trim leaves nothing of it."""
     try:
         return geometry.size
     except SurfaceError:
@@ -139,8 +139,9 @@ def samples_of_pieces(
 ) -> Samples:
     """Return all points of a surface of several pieces that have one of the unit normals (S, 3).
 
-    The report gets the `name`, and the samples the `surface`, None if they lie on splines. A piece
-    without a proof has no samples if the area of its Gaussian image is rounding error.
+    `name` is the name in the report, and `surface` the attribute of the samples: None if they lie
+    on splines. A piece without a proof gets no samples if the area of its Gaussian image is
+    rounding error.
     """
     fitted = on_grids([x.fitted for x in geometries])
     searched: dict[OnSpline, OnPatches | ProvedSurface] = dict(zip(fitted, geometries, strict=True))

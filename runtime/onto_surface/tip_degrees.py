@@ -43,16 +43,18 @@ ROUNDING = 1e-9
 SAME_RAY = 1e-6
 # A side is collapsed if this number of its points coincide.
 ALONG = 65
-# A tip is inside a trim if the parameter line at this distance from it is, relative to the domain.
+# A tip is inside a trim if a nearby parameter line is. The distance of this line from the collapsed
+# line of the tip is BESIDE, relative to the domain.
 BESIDE = 1e-6
 
 
 class Fan(NamedTuple):
     """Rays (k, 3) from a point of one surface or patch, in anticlockwise order.
 
-    `bends` (k,) are the lengths of their second differences, or 0 if the fan is flat between rays;
-    `ray_at` returns the rays at fractional indices (m,). `uv` is one of the parameter pairs of the
-    point, for nets in the patch `patch`.
+    The rays are in anticlockwise order. `bends` (k,) are the lengths of their second differences;
+    `ray_at` returns the rays at fractional indices (m,). All normals n with n·axis < cosine have
+    the degree `outside`. On a spline of nets, the parameters are those in the patch with the index
+    `patch`.
     """
 
     point: Array
@@ -181,7 +183,7 @@ class Pinch(NamedTuple):
 
 
 def tip_degrees(geometry: OnPatches | ProvedSurface, normals: Array) -> NDArray[np.int64]:
-    """Return, for each of the unit normals (S, 3), the sum of the degrees of all tips there."""
+    """Return, for each of the unit normals (S, 3), the sum of the degrees of all tips at it."""
     found = np.zeros(len(normals), np.int64)
     for tip in tips_on(geometry):
         found += tip.degrees(normals)

@@ -346,7 +346,7 @@ def _moved(tapes: PolarTapes, frame: Array, shift: Array) -> PolarTapes | None:
 
 
 def _length(x: Ball, y: Ball) -> float:
-    """Return the largest length of vectors x, y."""
+    """Return an upper bound of the lengths of the vectors (x, y), whose components are balls."""
     return float(np.hypot(x.largest, y.largest).max())
 
 

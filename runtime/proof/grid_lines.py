@@ -69,7 +69,7 @@ def creases_of(
 ) -> list[tuple[float, float]]:
     """Return the values of u (axis 0) or v just before and just after each crease.
 
-    Both ends of a domain are one line if their points are the same.
+    Both bounds of the parameter count as one line if the surface has the same points on them.
     """
     x = tape.spline
     smooth = (x.smooth_u, x.smooth_v)[axis]
@@ -89,9 +89,10 @@ def creases_of(
 def _with_seam(
     tape: Tape, axis: int, domain: Domain, boundary: Boundary, jumps: Sequence[float]
 ) -> list[tuple[float, float]]:
-    """Return the parameter below and above each line; these are both ends of u or v for a seam.
+    """Return the parameter of each line, from below and from above.
 
-    Lines are those at `jumps`, and the seam of a periodic spline.
+    The lines are those at `jumps`, where both numbers are equal, and the seam of a periodic spline,
+    where they are the upper and the lower bound of the domain.
     """
     lines = [(x, x) for x in jumps]
     if boundary[axis][0] == "periodic" and len(tape.spline.breaks_u) > 0:
@@ -111,7 +112,10 @@ def _is_closed(tape: Tape, axis: int, domain: Domain) -> bool:
 
 
 def _turning(tape: Tape, axis: int, domain: Domain, below: float, above: float) -> float:
-    """Return the largest distance of unit normals on both sides of a line, at sampled points."""
+    """Return the largest distance between the unit normals below and above a line.
+
+    The normals are compared at sampled points of the line.
+    """
     other = lines_of(tape, 1 - axis, np.array(domain[1 - axis]), PLACES)
     along = (0.5 * (other[1:] + other[:-1])).ravel()
     step = 4.0 * np.spacing(max(map(abs, domain[axis])))

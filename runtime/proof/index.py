@@ -311,7 +311,7 @@ class ProvedIndex:
     ) -> tuple[Places, NDArray[np.int64]]:
         """Return solutions and hard pairs for the pairs of normals and cells in `rooms.pairs`.
 
-        They are those of `_search`. `numbers` (k,) are the indices of the normals (k, 3) in the
+        The results are as in `_search`. `numbers` (k,) are the indices of the normals (k, 3) in the
         query.
         """
         certain, undecided = rooms.pairs[0].counts

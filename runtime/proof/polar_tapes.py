@@ -88,7 +88,10 @@ def _with_slopes(
 
 
 def _applied(writer: TapeWriter, name: str, x: Traced, slope: Slope) -> tuple[Traced, Slope]:
-    """Return the function `name` of a row, and the derivative of this by the chain rule."""
+    """Write the function `name` of a row to the tape; return its value and its derivative.
+
+    `slope` is the derivative of the row; the chain rule gives the derivative of the value.
+    """
     value = Traced(writer, writer.write(name, x.row))
     if isinstance(slope, float):
         return value, 0.0

@@ -44,7 +44,7 @@ class Cap(NamedTuple):
     kind: int = OPEN_BOX
 
     def answers(self, normals: Array) -> Answers:
-        """Return an answer for each of the unit normals (S, 3) in the cone: the box of the cap."""
+        """Return the box of the cap as the answer for each unit normal of (S, 3) in the cone."""
         away = np.linalg.norm(normals - self.axis, axis=1)
         numbers = np.flatnonzero(away <= 2.0 * np.sin(0.5 * self.angle) + ROUNDING)
         row = np.array([*self.box, 0.0, *self.box.reshape(2, 2).mean(axis=1)])

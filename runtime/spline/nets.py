@@ -137,7 +137,7 @@ class NetSpline(PatchSpline, NetMethods):
         return math.hypot(*np.ptp(points, axis=0)), math.isqrt(self.patches)
 
     def patch(self, rows: NDArray[np.int64] | slice = slice(None)) -> Patch:
-        """Return the vectors of the patches `rows` times `scale`, for formulas; p is 0."""
+        """Return the vectors of the patches `rows` times `scale`, for formulas; p₀ is 0."""
         a, b, c, d, e = np.moveaxis(self.vectors[rows], 1, 0)
         zero = np.zeros_like(a)
         return Patch(vector(a), vector(b), vector(c), vector(d), vector(e), vector(zero))

@@ -24,9 +24,10 @@ from ..domain.domain import Boundary, BoundaryPair
 
 # The number of pairs a, b from which the plane closest to the ring is chosen.
 CANDIDATES = 4096
-# The length of a and b is the root of this times the distance of neighbours in the ring. With
-# longer vectors, the plane of a and b is closer to the plane of the ring; with shorter vectors,
-# points x a + y b are closer to the coefficients of the ring.
+# The length of a and b is the square root of BALANCE times the distance of neighbours in the ring,
+# in units of the rounding of coordinates. With longer vectors, the plane of a and b is closer to
+# the plane of the ring; with shorter vectors, points x a + y b are closer to the coefficients of
+# the ring.
 BALANCE = 1.0 / 32.0
 
 

@@ -30,7 +30,7 @@ Evaluation = Callable[[Array, Array], ArrayLike]
 Bounds = tuple[tuple[float, float], tuple[float, float]]
 Lines = tuple[tuple[float, ...], tuple[float, ...]]
 
-# The indices of a 2-jet.
+# The names of the six vectors of a 2-jet, in order.
 NAMES = ("x", "x_u", "x_v", "x_uu", "x_uv", "x_vv")
 EVERYWHERE: Bounds = ((-math.inf, math.inf), (-math.inf, math.inf))
 POINTS = FIRST.shape[1]

@@ -160,7 +160,10 @@ def _read(entry: Any, symbols: dict[str, Any]) -> Any:  # noqa: ANN401
 
 @dataclass(frozen=True, eq=False)
 class Expressions(Differentiable):
-    """A NumPy function: three expressions in two symbols, or two expressions in one symbol."""
+    """The NumPy function of a position, given by SymPy expressions.
+
+    The position is three expressions in two symbols, or two expressions in one symbol.
+    """
 
     has_gaps = True  # sin(u)/u
 
@@ -306,5 +309,9 @@ def _lambdified(symbols: Sequence[sympy.Symbol], expressions: Sequence[Any]) -> 
 
 
 def _defined(definitions: Any, expressions: Any) -> tuple[Any, Any]:  # noqa: ANN401
-    """Return both arguments; with `definitions` fixed, the option `cse` of SymPy's lambdify."""
+    """Return both arguments.
+
+    With `definitions` fixed, this is the function that SymPy's lambdify takes as its option `cse`:
+    it returns the definitions of shared parts, and the expressions that use them.
+    """
     return definitions, expressions

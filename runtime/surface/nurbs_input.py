@@ -62,7 +62,7 @@ def _pair(values: Any, name: str) -> tuple[Any, Any]:  # noqa: ANN401 - what a u
 
 
 def _knots(values: ArrayLike, degree: int, count: int, name: str) -> Array:
-    """Return the knots of u or v as an array; InputError if `count` control points need others."""
+    """Return the knots of u or v as an array; InputError unless they fit `count` control points."""
     knots = finite_array(values, None, f"the knots of {name}")
     if count <= degree:
         raise InputError(
@@ -91,7 +91,7 @@ def _knots(values: ArrayLike, degree: int, count: int, name: str) -> Array:
 def _check_multiplicities(knots: Array, degree: int, name: str) -> None:
     """Raise InputError if a knot occurs too often for the degree.
 
-    Inside the domain such a knot tears the surface; elsewhere, control points have no effect.
+    Inside the domain such a knot tears the surface; elsewhere, some control points have no effect.
     """
     values, counts = np.unique(knots, return_counts=True)
     inside = (values > knots[degree]) & (values < knots[-degree - 1])
