@@ -76,7 +76,7 @@ def pair_of_cells(cells: Sequence[int]) -> tuple[int, int]:
 
 
 def checked_count(value: object) -> int:
-    """Return a number of samples; InputError otherwise, with a hint if normals were given."""
+    """Return a number of samples; InputError for other values, with a hint if they are arrays."""
     shape = getattr(value, "shape", None)
     if isinstance(value, list | tuple) or (isinstance(shape, tuple) and shape):
         raise InputError(
@@ -97,7 +97,7 @@ def as_float(value: SupportsFloat | str) -> float:
 
 
 def listed(values: object) -> list[Any] | None:
-    """Return the elements of an object as a list; None for texts and dicts, or if it has none.
+    """Return the elements of an iterable object as a list; None for texts, dicts, other objects.
 
     None is also returned for more than MOST_LISTED elements. An empty sequence gives [].
     """

@@ -116,7 +116,10 @@ def widened(values: NDArray[Any], mode: Literal["edge", "wrap"] = "wrap") -> NDA
 def less_periods(
     values: NDArray[np.float64], low: NDArray[np.float64] | float, high: NDArray[np.float64] | float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return values (k,) reduced modulo the period to the domain, and the numbers of periods."""
+    """Return values (k,) after subtracting whole periods, so that they are in the domain.
+
+    The second result (k,) has the number of periods subtracted from each value.
+    """
     periods = np.floor((values - low) / (high - low))
     return np.clip(values - periods * (high - low), low, high), periods
 

@@ -22,7 +22,7 @@ from .kernels import trim as kernels
 # Segments are sorted into a square grid of cells. It has about this many cells for each segment,
 # and at most this many rows.
 CELLS_A_SEGMENT, MOST_ROWS = 8, 2048
-# About the largest total length of the lists of segments of all cells.
+# The lists of segments of all cells have at most about this many entries together.
 MOST_ENTRIES = 1 << 24
 # A segment belongs to all cells within a margin around it, the sum of two numbers: the first one in
 # units of a cell, the second one in units in the last place of the largest coordinate.

@@ -183,7 +183,7 @@ class Trim:
         return Trim(self.domain, boundary, tuple(parts))
 
     def turned(self, boundary: Boundary) -> Trim:
-        """Return the trim of the surface with u reversed, which has the given `boundary`."""
+        """Return the trim after a reversal of u; `boundary` are the conditions after that."""
         low, high = self.domain[0]
         parts = tuple(Turned.of(part, low + high) for part in self.parts)
         return replace(self, boundary=boundary, parts=parts)

@@ -50,7 +50,7 @@ class Part(JITCodeLibrary):
         return self
 
     def set_env(self, name: str, environment: Any) -> None:
-        """Do nothing: each linked kernel sets the variable of this name."""
+        """Do nothing: kernels set the variable with the given name, for all of their parts."""
 
     def finalize(self) -> None:
         """Optimise this function alone."""

@@ -3,9 +3,9 @@
 At such a point of a crease u = c, n is perpendicular to x_v, and n·x_u has different signs on both
 sides. So across the crease the height n·x has a maximum or a minimum. Along the crease it has a
 maximum or a minimum, too, or neither. The index of the point is 1 for two maxima or two minima, −1
-for one of each, and else 0: it is the index of the points that a surface has which rounds the
-crease off. For creases u = c and v = c alike, w is the parameter along the crease, and s the
-parameter across it.
+for one of each, and else 0. On a surface that rounds the crease off, the indices of the points near
+it with this normal have the same sum. For creases u = c and v = c alike, w is the parameter along
+the crease, and s the parameter across it.
 """
 
 from __future__ import annotations
@@ -292,7 +292,7 @@ class Creases:
     def _merged(
         self, numbers: Indices, rows: Indices, ends: Array
     ) -> tuple[Indices, Indices, Array]:
-        """Return the intervals, those of one normal and crease joined if they are close to another.
+        """Return the intervals, after joining close ones of the same normal and crease.
 
         Close means a gap of at most APART; intervals on different sides of a corner stay apart.
         """

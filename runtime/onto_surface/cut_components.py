@@ -41,9 +41,9 @@ def components_in(
 ) -> tuple[Undecided, Undecided]:
     """Return the known components inside a trim, and the boxes that remain undecided.
 
-    A component is known if its kind is. One that the boundary of the trim cuts has a row for each
-    of its pieces inside the trim; if no piece is found, its box is undecided. `jets` returns the
-    2-jets of the surface at u and v (k,). The normals (S, 3) are unit vectors.
+    A component is known if its kind is. A component that the boundary of the trim cuts gets a row
+    for each of its pieces inside the trim, or an undecided box if no piece is found. `jets` returns
+    the 2-jets of the surface at u and v (k,). The normals (S, 3) are unit vectors.
     """
     known = open_.kinds != OPEN_BOX
     if trim is None or len(known) == 0:

@@ -46,8 +46,9 @@ MOST_STEPS = 32
 class Parameters:
     """A parametrization of a surface, by u and v or by the coordinates of a chart at a pole.
 
-    `jets` returns its 2-jets; `box` has the bounds of both parameters and what happens there. Cells
-    of the surface times `size` have sides of about 1. Rounding errors of normals are up to `noise`.
+    `jets` returns its 2-jets; `box` has the bounds of both parameters and what happens there. The
+    factor `size` scales the surface so that its cells have sides of about 1. Rounding errors of
+    normals are up to `noise`.
     """
 
     jets: Jets

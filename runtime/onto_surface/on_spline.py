@@ -305,8 +305,8 @@ class OnSpline(OnPatches):
     ) -> Fields:
         """Return fields of samples at parameters (k, 2).
 
-        At a singular point, where they do not follow from the parameters, the normal is the row of
-        `normals` (k, 3), and the sign of K is that of `K` (k,).
+        At a singular point, normal and curvatures do not follow from the parameters: there the
+        normal is the row of `normals` (k, 3), and the sign of K is that of `K` (k,).
         """
         count, spline = len(uv), self.spline
         patches, places = np.empty(count, dtype=np.int64), np.empty((count, 2))

@@ -70,9 +70,9 @@ class ProvedSurface:
     """A surface that gives all points with given normals, with a proof and without a spline.
 
     The boundary conditions of `surface` include the poles that were found at collapsed sides of its
-    domain. `scale` is a power of two by which neighbouring points of a grid are about 1 apart,
-    `largest` the largest coordinate of these points. Densities need a spline; it is fitted with
-    `cells` cells at first access.
+    domain. `scale` is the power of two that scales the distances of neighbouring points of a grid
+    to about 1; `largest` is the largest coordinate of these points. Densities need a spline; it is
+    fitted with `cells` cells at first access.
     """
 
     on: ClassVar[str] = "surface"

@@ -256,7 +256,8 @@ def pole_disc(tape: Tape, domain: Domain, angle: int, end: float, radius: float)
 def _disc(pole: Pole, size: float, sectors: int, place: Array) -> PoleDisc | None:
     """Return the disc of radius `size` around a pole; None if its bounds are too wide.
 
-    `place` has the value of the parameter r at the pole, its sign inwards, and the index `angle`.
+    `place` has three numbers: the value at the pole of the parameter towards it; 1 if this
+    parameter increases away from the pole, or −1 if it decreases; and the index `angle`.
     """
     count = RINGS_OF_QUOTIENTS if pole.tapes.slope is None else RINGS
     whole, last = (pole.bounds(WHOLE * size * 0.5**k, sectors) for k in (0, count - 1))

@@ -529,7 +529,7 @@ def _taken(room: Answers) -> Answers:
 
 
 def _sorted(parts: list[Places], count: int) -> Sorted:
-    """Return solutions sorted by normal, of which there are `count`, then by u and v."""
+    """Return solutions sorted by normal, then by u and v; `count` is the number of normals."""
     starts = np.zeros(count + 1, np.int64)
     room = Sorted.new(sum(len(x.numbers) for x in parts))
     for part in parts:

@@ -132,8 +132,8 @@ def _cone(
 ) -> tuple[Array, float] | None:
     """Return axis and half angle of a cone that contains the normals of a strip; None without one.
 
-    `side` has the value of the parameter towards the pole there, and its sign inwards; `size` is
-    the width of the strip.
+    `side` has the value at the pole of the parameter towards it, and 1 if this parameter increases
+    away from the pole, or −1 if it decreases; `size` is the width of the strip.
     """
     (low, high), (end, inward), count = domain[angle], side, NARROW * SECTORS
     half = np.array([0.5 * (high - low) / count, 0.5 * size])

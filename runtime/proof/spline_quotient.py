@@ -51,9 +51,10 @@ def spline_quotient(tape: Tape, angle: int, end: float, inward: float) -> tuple[
 def _quotients(
     spline: Polynomials, axis: int, end: float, inward: float, is_rational: bool
 ) -> tuple[Polynomials, float] | None:
-    """Return the polynomials of (x − p) / r, and the largest r: the end of their knot span.
+    """Return the polynomials of (x − p) / r, and the largest r at which they are valid.
 
-    The parameter of the given axis is end + inward · r.
+    They are valid in the knot span next to the side r = 0. The parameter of the given axis is
+    end + inward · r.
     """
     breaks, frames = (spline.breaks_u, spline.breaks_v)[axis], (spline.frames_u, spline.frames_v)
     at = 0 if inward > 0.0 else -1

@@ -193,7 +193,10 @@ def _first_of_each_place(
     place: NDArray[np.float64],
     near: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
-    """Return a mask of the hits to keep: one of those hits near the boundary that coincide."""
+    """Return a mask of the hits to keep.
+
+    A hit `near` the boundary is left out if it coincides with another hit that is kept.
+    """
     keep = np.ones(len(place), dtype=bool)
     if not near.any():
         return keep

@@ -153,9 +153,9 @@ def _decide_at_poles(
 ) -> None:
     """Decide the pairs whose normal is near that of a pole of their patch; write the results.
 
-    Around a pole the Gaussian image of a patch is a wedge between two planes: that of an edge at
-    the pole contains the normals at both of its ends. Signs with respect to planes are exact,
-    whereas the forms of the patches consist of rounding errors there.
+    Around a pole the Gaussian image of a patch is a wedge between two planes. Each plane belongs to
+    an edge that ends at the pole, and contains the normals at both ends of this edge. Signs with
+    respect to planes are exact, whereas the forms of the patches are rounding errors near the pole.
     """
     topology = spline.topology
     shared, fan = topology.corners

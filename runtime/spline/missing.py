@@ -29,8 +29,8 @@ from .quasi_interpolant import (
 # The usual values of missing elevations.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))
 USUAL_LARGE_NODATA = (float(np.finfo(np.float32).max), 1e20)
-# If the lowest or the highest value differs from the given `nodata` by at most this fraction, it
-# may be the number that means missing data: the given one may be a copy with six digits.
+# If the lowest or the highest value differs from the given `nodata` by at most this fraction, that
+# value may be the number that means missing data, and `nodata` a copy of it with six digits.
 NEAR = 1e-5
 # A block of missing data has at least this many heights, and at least this fraction of all heights.
 FEWEST, SMALLEST = 16, 1e-3
