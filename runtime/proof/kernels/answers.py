@@ -158,7 +158,7 @@ def relation(row, other, period):
 
 @loop
 def worse(one, other):
-    """Combine the relations to two solutions: 1 if either is 1, −1 if either is unknown, or 0."""
+    """Combine two relations: return 1 if either is 1, otherwise −1 if either is −1, otherwise 0."""
     return 1 if one == 1 or other == 1 else -1 if one == -1 or other == -1 else 0
 
 

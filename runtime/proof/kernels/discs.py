@@ -42,10 +42,11 @@ class Disc(NamedTuple):
     changes (m, 3, 3): bounds of x_ss, x_st, x_tt minus a, b, c, within the distance to which bounds
     hold, within half of it, …
     frame (14): two numbers e0, e1: computed derivatives of h by s and t have errors up to e0 + e1 /
-    r, in units of the size; radius of the disc; first u, and its length; the other parameter at the
-    pole, whether it grows with r (1 or −1), and the index, 0 or 1, of u; the unit of s and t; how
-    far bounds hold; the largest derivatives of r u and of r by the coordinates of the plane;
-    whether the tape is that of (x − p) / r; and 1 if angles in the plane grow with u.
+    r, in units of the size; the radius of the disc; the least u, and the length of the interval of
+    u; the value of the other parameter at the pole, whether this parameter grows with r (1 or −1),
+    and the index, 0 or 1, of u; the unit of s and t; how far bounds hold; the largest derivatives
+    of r u and of r by the coordinates of the plane; whether the tape is that of (x − p) / r; and 1
+    if angles in the plane grow with u.
     basis (3, 3): derivatives of x by the coordinates of the plane and by h.
     directions (k, 2): angles in the plane at equal steps of u, and distances over r there.
     """
@@ -69,13 +70,16 @@ def bound_of(changes, ring, k, n):
 
 @inline
 def rows_of(y11, y12, y22, p, q):
-    """Return the larger component of |Y| (p, q), for a symmetric matrix Y."""
+    """Return the larger component of |Y| (p, q); |Y| has the moduli of a symmetric matrix Y."""
     return max(abs(y11) * p + abs(y12) * q, abs(y12) * p + abs(y22) * q)
 
 
 @loop
 def change_in(disc, ring, n, y11, y12, y22):
-    """Return a bound of the change of the Hessian in a ring, times its inverse at the pole."""
+    """Return a bound of the change of the Hessian in a ring, times the inverse of that at the pole.
+
+    y11, y12, y22 are the entries of this inverse.
+    """
     a, b, c = (
         bound_of(disc.changes, ring, 0, n),
         bound_of(disc.changes, ring, 1, n),
@@ -158,8 +162,7 @@ def place_in(tape, work, disc, n):
     base = rows_of(y11, y12, y22, frame[FAR_NOISE], frame[FAR_NOISE]) / (1.0 - change)
     if max(abs(s), abs(t)) > 1.0 + change + base:
         return 0.0, 0.0, -1.0, d  # the solution is too far from the pole
-    # Near the pole, the solution from the 2-jet at the pole may be more accurate than solutions
-    # from 2-jets beside the pole.
+    # The 2-jet at the pole may be more accurate than 2-jets on a small circle around the pole.
     length, ring = math.hypot(s, t), 0
     while ring + 1 < disc.changes.shape[0] and 2.0 * length <= whole * 0.5 ** (ring + 1):
         ring += 1

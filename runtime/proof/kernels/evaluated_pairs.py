@@ -1,4 +1,4 @@
-"""Pairs of a normal and a cell whose solution two evaluations of the surface prove."""
+"""Pairs of a normal and a cell that a few evaluations of the surface decide."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ def store_hard(t, count, tiles, found):
 def evaluate_pairs(cells, tape, work, normals, keys, tiles, found):
     """Find the solutions of pairs; return whether there was room for them.
 
-    A key is index of a normal (S, 3) << 32 | cell.
+    A key is (index of a normal in (S, 3)) << 32 | index of a cell.
     """
     found.counts[0] = found.counts[1] = 0
     kept = count = 0  # pairs in the tile; those with an earlier evaluation come first

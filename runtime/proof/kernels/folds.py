@@ -26,7 +26,8 @@ from .pairs import forms_at
 __all__ = ["DOUBLE", "NO_PLACE", "UNKNOWN", "at_fold"]
 
 NO_PLACE, DOUBLE, UNKNOWN = range(3)
-# The ranges of the rotated coordinates p, w; the range of s and t for bounds: √(2² + 2) < 2.5.
+# The rotated coordinates p and w are between −ALONG and ALONG, and between −ACROSS and ACROSS. So
+# bounds are needed for |s|, |t| ≤ √(2² + 2) < WIDER.
 ALONG, ACROSS, WIDER = 2.0, 1.4143, 2.5
 # The largest number of steps towards the extremum; the length of a step that ends them.
 STEPS, SMALL = 30, 1e-10

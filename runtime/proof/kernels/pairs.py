@@ -324,7 +324,10 @@ def improve_pairs(t, count, registers, outputs, u, v):
 
 @inline
 def forms_at(registers, x, y, z, n, h_u, h_v):
-    """Return the linear forms from 2-jets in registers: A, B, C, P, Q in the unit of the cell."""
+    """Return the linear forms A, B, C, P, Q of n and the surface, whose 2-jets are in `registers`.
+
+    Derivatives are with respect to s and t: u = u₀ + h_u s, v = v₀ + h_v t.
+    """
     return (
         2.0 * h_u * h_u * form(registers, x, y, z, n, np.uint64(3 * LANES)),
         h_u * h_v * form(registers, x, y, z, n, np.uint64(4 * LANES)),
@@ -342,7 +345,10 @@ def form(registers, x, y, z, n, at):
 
 @inline
 def distance(p, q, y11, y12, y22, whole, base):
-    """Return a bound of the distance from the unique solution of P = Q = 0, if it is near."""
+    """Return a bound of the distance from a point to the unique solution, if that is near.
+
+    At the point, the derivatives of n·x by s and t are p and q; at the solution both are 0.
+    """
     i11, i12, i22 = abs(y11), abs(y12), abs(y22)
     g1 = abs(y11 * p + y12 * q) + 4.0 * EPS * (i11 * abs(p) + i12 * abs(q))
     g2 = abs(y12 * p + y22 * q) + 4.0 * EPS * (i12 * abs(p) + i22 * abs(q))
@@ -359,5 +365,8 @@ def newton(a, b, c, p, q, s, t):
 
 @inline
 def after_step(away, change, noise, whole, base):
-    """Return a bound of the distance from the solution after a step of Newton's method."""
+    """Return a bound of the distance from the solution after a step of Newton's method.
+
+    `away` is a bound of the distance before the step.
+    """
     return (0.5 * change * away + noise) * away / (1.0 - whole) + base

@@ -1,4 +1,7 @@
-"""The fields of samples at solutions, whose normals are known, from the tape of the surface."""
+"""Compute the fields of samples with the tape of the surface, at the solutions of a search.
+
+Each solution has a known normal.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +39,7 @@ class SampleFields(NamedTuple):
 
 @inline
 def derivative(registers, x, y, z, at, factor):
-    """Return a vector of derivatives of three rows of registers, times a factor."""
+    """Return the derivative of (x, y, z) at the place `at` of registers, times a factor."""
     return Vector(
         factor * registers[x + at], factor * registers[y + at], factor * registers[z + at]
     )

@@ -62,7 +62,7 @@ def neighbour(mu, i, j, turn, k, centre, scale):
 def patch_vectors(mu, i, j, turn, scale) -> Patch:
     """Return the vectors of the patch `turn` of the coefficient (i, j), times SCALE * scale.
 
-    p is relative to the coefficient.
+    The vector p₀ is relative to the coefficient.
     """
     centre = vector_at(mu, i, j)
     return triangle(

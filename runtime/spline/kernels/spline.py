@@ -128,7 +128,10 @@ def locate(s, t):
 
 @inline
 def patch_at(x, y, rows, columns):
-    """Return row, column and triangle of parameters x, y in units of cells, and u, v in it."""
+    """Return row and column of the cell that contains a point, its triangle, and u, v in this.
+
+    x, y are the parameters of the point in units of cells.
+    """
     i = min(max(int(math.floor(x)), 0), rows - 1)
     j = min(max(int(math.floor(y)), 0), columns - 1)
     turn, u, v = locate(x - i - 0.5, y - j - 0.5)
