@@ -60,9 +60,9 @@ class InReach:
         return np.where(self.cap.contains(normals), 1, -1).astype(np.int8)
 
     def _cosines(self, places: Array) -> Array:
-        """Return the cosines (…) of the angles to the axis at parameters (…, 2).
+        """Return the cosines (…) of the angles between the axis and the normals.
 
-        They are NaN at singular points.
+        The normals are those at the parameters `places` (…, 2); cosines are NaN at singular points.
         """
         normals = self.normals(places.reshape(-1, 2))
         normals[~normals.any(axis=1)] = np.nan

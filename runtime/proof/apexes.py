@@ -94,7 +94,10 @@ class Apex:
         return left, np.array(rows).reshape(-1, 6), np.array(list(found), np.int64)
 
     def _beside(self, reach: float) -> tuple[Array, Array]:
-        """Return normals (k, 3) and the signs (k,) of K at k points at the distance `reach`."""
+        """Return unit normals (k, 3) and the signs (k,) of K at k points beside the line.
+
+        The points are inside the domain, at the distance `reach` from the line.
+        """
         inward = 1.0 if self.end == self.domain[self.axis][0] else -1.0
         at = np.array([self.end + inward * reach])
         jets = _jets_on(self.tape, self.domain, self.axis, at)[0]

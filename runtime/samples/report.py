@@ -299,7 +299,7 @@ def warn_of(
     coverage: float | None = None,
     filled: bool = False,
 ) -> None:
-    """Warn if samples leave out a part of the surface, are not on it, or miss count or coverage.
+    """Warn if samples leave out a part of the surface, are not on it, or miss a requested number.
 
     If the samples are `filled`, developable regions have samples as well.
     """

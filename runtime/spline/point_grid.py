@@ -95,7 +95,10 @@ def _check(points: NDArray[np.float64], boundary: Boundary, name: str) -> None:
 
 
 def _farthest(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
-    """Return the largest difference of coordinates; NaN if all differences are NaN."""
+    """Return the largest difference of coordinates between two rows of points.
+
+    The result is NaN if all differences are NaN.
+    """
     return float(np.fmax.reduce(np.abs(first - second), axis=None))
 
 

@@ -51,7 +51,7 @@ class Values(NamedTuple):
 def values_at(
     function: Callable[[Array, Array], Array], domain: Domain, cells: tuple[int, int]
 ) -> Values:
-    """Evaluate function(u, v) → (..., 3) on the cells of a domain.
+    """Evaluate function(u, v) → (..., 3) at the centres and vertices of the cells of a domain.
 
     Raises InputError if the domain is too narrow for the cells in float64.
     """
@@ -70,7 +70,7 @@ def values_at(
 
 
 def from_values(values: Values) -> tuple[Array, Border]:
-    """Return the inner coefficients (m, n, 3) and the border, from values on cells."""
+    """Return the inner coefficients (m, n, 3) and the border, from `values`."""
     inner = np.empty_like(values.centres)
     kernels.fit_centres_and_vertices(values.centres, values.vertices, inner)
     return inner, Border.of_values(values.middles, values.vertices)

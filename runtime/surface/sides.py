@@ -38,8 +38,8 @@ LEAST_STEP, MOST_STEP = 1e-4, 1e-2
 # step. KINK_OF_DATA is for grids of points, whose steps are larger.
 KINK, KINK_OF_DATA = 1e-2, 0.3
 
-# If the points at the two bounds of a parameter differ, points are computed this many units in the
-# last place away from the bounds.
+# If the surface has different points at the two bounds of a parameter, the difference is compared
+# with the change of its points when the parameter changes by this many units in the last place.
 ROUNDINGS = 2.0
 
 
