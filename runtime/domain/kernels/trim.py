@@ -101,7 +101,7 @@ def crosses(segment, u, v, corner_u, corner_v):
 
 @inline
 def cell_along(x, low, rate, count):
-    """Return the index of the row or column of a coordinate."""
+    """Return the index of the row or column of cells that contains a coordinate."""
     return min(max(int((x - low) * rate), 0), count - 1)
 
 

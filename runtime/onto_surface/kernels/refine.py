@@ -44,7 +44,7 @@ NOT_FOUND, FOUND = 0, 1
 LONGEST_STEP, FARTHEST = 1.0, 3.0
 # The part of a step that is undone if it does not reduce the angle.
 TAKEN_BACK = 0.5
-# The iteration fails if the squared sine is not below this part of the previous one.
+# The iteration fails if the squared sine of the angle is not below this part of the previous one.
 SLOW = 0.25
 OPPOSITE = 4.0  # in place of the squared sine of angles above 90 degrees
 

@@ -332,7 +332,7 @@ def write_bounds(tape, work, reach, cells, count):
 
 @loop
 def write_patch(tape, registers, cells, j):
-    """Write the derivatives at the centre of cell j, lane j of registers."""
+    """Write the derivatives at the centre of cell j, from lane j of registers."""
     hot, h_u, h_v = cells.hot, cells.place[j, 2], cells.place[j, 3]
     for x in range(3):
         at = np.uint64(POINT * tape.outputs[x] + j)
@@ -345,7 +345,7 @@ def write_patch(tape, registers, cells, j):
 
 @loop
 def write_thirds(tape, work, cells, j):
-    """Write the third derivatives in cell j, lane j of registers."""
+    """Write the third derivatives in cell j, from lane j of registers."""
     h_u, h_v = cells.place[j, 2], cells.place[j, 3]
     for k in range(4):
         scale = h_u ** (3 - k) * h_v**k * (6.0 if k == 0 or k == 3 else 2.0)

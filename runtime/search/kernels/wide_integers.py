@@ -59,13 +59,13 @@ def wide(value, unit, limbs) -> Any:
 
 
 def rounded(x) -> Any:
-    """Return the nearest floating-point number."""
+    """Return the floating-point number that is nearest to a wide integer."""
     return float(x)
 
 
 @intrinsic
 def shifted(_: Any, mantissa: Any, shift: Any, limbs: Any) -> Any:
-    """Return mantissa × 2^shift."""
+    """Return mantissa × 2^shift as a wide integer."""
 
     def emit(context: Any, builder: Any, signature: Any, values: Any) -> Any:
         kind = ir.IntType(signature.return_type.bits)
@@ -184,7 +184,10 @@ def product(builder: Any, x: Any, y: Any) -> Any:
 
 
 def long_product(builder: Any, x: Any, y: Any) -> Any:
-    """Emit the product limb by limb, for unsigned numbers first."""
+    """Emit the product of two numbers limb by limb.
+
+    The numbers are first read as unsigned; the surplus of negative numbers is then subtracted.
+    """
     kind = ir.IntType(x.type.width + y.type.width)
     a, b = limbs(builder, x), limbs(builder, y)
     total = [PAIR(0)] * (len(a) + len(b))

@@ -97,7 +97,7 @@ def normal_of_patch(patch, u, v):
 
 @loop
 def curvatures_of_patch(patch, N, u, v):
-    """Return the unit normal, K and H of a patch at (u, v), with the normal N there."""
+    """Return the unit normal, K and H of a patch at (u, v), where its unnormalized normal is N."""
     size = length(N)
     n = Vector(N.x / size, N.y / size, N.z / size)
     K, H = curvature_at(patch, n, u, v)
