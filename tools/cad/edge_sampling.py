@@ -115,8 +115,8 @@ def _many_places(edges: Edges) -> tuple[Indices, Array]:
 def _costs(space: PartSpace, sides: Sides) -> Array:
     """Return the distances (M − 1,) of neighbouring positions, divided by the sizing function.
 
-    If the target density depends on the curvature, a distance is at least the change of the unit
-    normal, on each of the two faces.
+    If the target density depends on the curvature, the distance of two positions counts as at least
+    the change of the unit normal between them, on each of the two faces.
     """
     target = space.target
     lengths = np.linalg.norm(np.diff(sides.points[:, 0], axis=0), axis=1) * space.unit

@@ -26,8 +26,9 @@ TIMES_APART = 3.0
 # If the two faces are farther apart than this at a point of the file, relative to the size of the
 # part, then the point is on no edge.
 APART = 1e-4
-# A surface counts as collapsed where one of |x_u|, |x_v| is COLLAPSED times the other. Parameters
-# outside the domain by less than the fraction BEYOND of its size are moved to its boundary.
+# A surface counts as collapsed where one of |x_u|, |x_v| is at least COLLAPSED times the other.
+# Parameters outside the domain by less than the fraction BEYOND of its size are moved to its
+# boundary.
 COLLAPSED, BEYOND = 1e10, 1e-12
 
 

@@ -80,7 +80,7 @@ ANGLES = {
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class FacePiece(Piece):
-    """A face with its surface, whose normals point outward, restricted to a `reach`."""
+    """A face of a part, restricted to a `reach`; the normals of its surface point outward."""
 
     face: Face
     surface: Surface
@@ -246,8 +246,9 @@ class FacePiece(Piece):
     def _owns(self, uv: Array) -> Flags:
         """Return a mask (k,) of the parameter pairs (k, 2) that belong to the face.
 
-        They are inside its trim or, on faces of files, in the gap beside it: the pair enters the
-        trim if it moves until the normal has changed by `GAP`, and then by `GAP` times the domain.
+        They are inside its trim or, on faces of files, in the gap beside it: a step in one of four
+        directions leads into the trim. The step turns the normal by about `GAP`, plus `GAP` times
+        the domain; without the latter part it is at most `FAR` times the domain.
         """
         trim, inside = self.surface.trim, self.contains(uv)
         if trim is None or self.face.geometry.surface is not None or inside.all():

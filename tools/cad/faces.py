@@ -35,7 +35,7 @@ TURN = 2.0 * math.pi
 QUARTER = math.pi / 2.0
 OPEN: BoundaryPair = ("open", "open")
 PERIODIC: BoundaryPair = ("periodic", "periodic")
-# A loop within this distance of the boundary of the domain, relative to the domain, is that
+# A loop within this distance of the boundary of the domain, relative to the domain, counts as that
 # boundary.
 ON_BORDER = 1e-9
 
@@ -79,8 +79,8 @@ def face_surface(
     if shape.placement is None:
         surface = Surface(name, function, *ends, trim=trim, assumed_open=assumed)
         return surface.flipped() if is_reversed else surface
-    # Placed and reversed in one step, since such faces are numerous. Both ends of u have the same
-    # boundary condition.
+    # A face with a frame of its own is placed and reversed in one step, since such faces are
+    # numerous. Both ends of u have the same boundary condition.
     moved = Moved(Surface(name, function, *ends), shape.placement, is_reversed, shape.domain[0])
     if is_reversed and trim is not None:
         trim = trim.turned(shape.boundary)
@@ -253,8 +253,8 @@ def _offset(geometry: Geometry, domain: Domain) -> Shape:
 def simplest(geometry: Geometry, domain: Domain) -> Geometry:
     """Replace an offset of a plane, cylinder, cone, sphere or torus by a surface of that kind.
 
-    Other geometries are returned with the simplest basis. An offset of a torus that has passed the
-    axis is such another geometry.
+    Other geometries, among them offsets of a torus that have passed its axis, are returned with the
+    simplest basis.
     """
     if geometry.kind != "offset" or geometry.basis is None:
         return geometry

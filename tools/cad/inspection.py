@@ -88,9 +88,9 @@ def _letters(lines: list[bytes]) -> str:
 
 
 def _check_iges(content: bytes) -> None:
-    """Raise UnusableError unless the sections of an IGES file have as many lines as it states.
+    """Raise UnusableError unless each section of an IGES file has the stated number of lines.
 
-    The last line of the file states them.
+    The last line of the file states these numbers.
     """
     lines = [x for x in content.splitlines() if x.strip()]
     letters = _letters(lines)

@@ -66,8 +66,8 @@ def _closed_faces(part: Part) -> Flags:
 def _mean_height(piece: FacePiece, centre: Array) -> float:
     """Return the mean of (x − c)·n over a face, where c is `centre`.
 
-    The volume is a sum of means times areas of the CAD library. So the area inside the boundary
-    polygons need not be exact.
+    `volume_of` multiplies this mean by `Face.area`, which is exact to about 1e-6. So the area
+    inside the boundary polygons need not be exact.
     """
     heights, area = integrals_of(piece, centre)
     return heights / area

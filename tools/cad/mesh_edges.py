@@ -244,9 +244,10 @@ class MeshEdges:
     def _points(
         self, vertices: Array, count: int, numbers: dict[int, Indices], uv: dict[int, Array]
     ) -> Array:
-        """Return the points (count, 3) of the vertices on edges; `vertices` are those at ends.
+        """Return the points (count, 3) of all vertices on edges.
 
-        Vertices between the ends of an edge lie on its first face.
+        `vertices` are the points at the ends of edges; the other vertices are computed on the first
+        face of their edge.
         """
         found = np.concatenate([vertices, np.empty((count - len(vertices), 3))])
         firsts = np.sort(np.unique(self.owner, return_index=True)[1])

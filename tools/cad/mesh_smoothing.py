@@ -60,8 +60,9 @@ def smoothed(
 def _steps(corners: Array, tangents: Array, owner: Indices, count: int) -> Array:
     """Return displacements (count, 3) of vertices; triangle i has vertex owner[i] as first corner.
 
-    A vertex moves to a weighted mean of the tips of equilateral triangles, each on the opposite
-    side of one of its triangles `corners` (k, 3, 3). Thin triangles have larger weights.
+    In each of its triangles `corners` (k, 3, 3), the side opposite to the vertex is the base of an
+    equilateral triangle. The vertex moves to a weighted mean of the tips of these equilateral
+    triangles; thin triangles have larger weights.
     """
     tip, one, other = corners.transpose(1, 0, 2)
     side, up = other - one, tip - (one + other) / 2.0
@@ -112,7 +113,8 @@ def _least(values: Array, owner: Indices, count: int) -> Array:
 def _first(chosen: Indices, better: Flags, now: Array, around: Indices, count: int) -> Indices:
     """Return the vertices that move in this round, as indices in `chosen`.
 
-    All of them become better. Of two neighbours, only the vertex with the smaller angle moves.
+    Only vertices that `better` flags move: those whose smallest angle grows. Of two such
+    neighbours, only the vertex with the smaller angle moves.
     """
     rank = np.full(count, len(chosen))
     rank[chosen[better]] = np.argsort(np.argsort(now[better]))

@@ -32,8 +32,8 @@ PLACES = 33
 # A face counts as ruled if its normals turn by less than this along a parameter, in radians. A
 # straight edge as long as the part takes as many vertices as a turn of normals by this angle.
 RULED = 1e-6
-# Along each parameter, the normal counts as turning at least as fast as if it turned evenly, by
-# LEAST times the larger total angle.
+# Between two values of a parameter, the angle of the normal counts as at least their distance,
+# relative to the domain, times LEAST times the larger one of the total angles along u and along v.
 LEAST = 1e-3
 # The weight of the turning angle of an edge, relative to the angles of normals.
 CURVED = 0.5
@@ -189,7 +189,10 @@ def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
 
 
 def least_enough(is_enough: Callable[[float], bool], low: float, high: float) -> float:
-    """Return the least number that is enough, up to rounding; `low` is not enough, `high` is."""
+    """Return the least number for which `is_enough` is true, up to rounding.
+
+    It is between `low`, for which `is_enough` is false, and `high`, for which it is true.
+    """
     while low < (middle := math.sqrt(low * high)) < high:
         low, high = (low, middle) if is_enough(middle) else (middle, high)
     return high

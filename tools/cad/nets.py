@@ -50,9 +50,10 @@ def curve_of_net(net: Net) -> Nurbs:
 
 
 def line_of(start: Array, way: Array, ends: Interval) -> Nurbs:
-    """Return the line start + v way, in the plane y = 0, between two values of v.
+    """Return the line start + t way in the plane y = 0, for t in the interval `ends`.
 
-    As in `curve_of_net`, it is the line v = 0 of a surface, which extends along y.
+    As in `curve_of_net`, it is the line v = 0 of a surface, with u = t; the surface extends along
+    y.
     """
     middle, half = start + sum(ends) / 2.0 * way, (ends[1] - ends[0]) / 2.0 * way
     across = np.array([(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)])

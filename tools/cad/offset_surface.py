@@ -31,7 +31,7 @@ from .turned_tape import turned_tape
 
 Array = NDArray[np.float64]
 
-# A step is the largest power of two up to this fraction of a knot span.
+# A step of the finite differences is the largest power of two up to this fraction of a knot span.
 STEP = 1 / 128
 NODES = np.arange(9)[:, None] - 4
 # Where the basis has no normal, at a pole or an apex, the normal is taken at this distance,

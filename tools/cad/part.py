@@ -266,7 +266,7 @@ class Part(Methods, Whole):
 
     @property
     def _sides_of_edges(self) -> NDArray[np.int64]:
-        """The numbers of sides of all non-degenerate edges."""
+        """For each edge that is not degenerate, the number of its sides."""
         return np.diff(self.arrays["edge_side_starts"])[~self.arrays["edge_degenerate"]]
 
     @cached_property

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from .records import KINDS, FaceRecord, Geometry, Net, PartRecord
 
 FORMAT = "gaussmap part"
-# To be increased when the arrays change such that older versions of gaussmap would misread them.
+# The version of the format, to be increased when the arrays change such that older versions of
+# gaussmap would misread them.
 VERSION = 2
 
 Arrays = dict[str, NDArray[Any]]
@@ -174,7 +175,10 @@ def _wires(part: PartRecord) -> Arrays:
 
 
 def _rows(name: str, parts: Iterable[NDArray[Any]], shape: tuple[int, ...]) -> Arrays:
-    """Return concatenated arrays, and the index of the first row of each, with the length last."""
+    """Return concatenated arrays, and the index of the first row of each.
+
+    The last entry of the indices is the total number of rows.
+    """
     rows = [np.empty((0, *shape)), *(np.asarray(x, np.float64).reshape(-1, *shape) for x in parts)]
     starts = np.cumsum([len(x) for x in rows], dtype=np.int64)
     return {f"{name}s": np.concatenate(rows), f"{name}_starts": starts}

@@ -15,7 +15,7 @@ REACHED, SAMPLING = "gaussmap.tools.cad.reached", "gaussmap.tools.cad.part_sampl
 
 
 class Methods:
-    """The methods that `Whole` calls on a part, and those that make something from parts."""
+    """The methods that `Whole`, the base class of `Part`, calls, and others that use a part."""
 
     plot = Later(PLOT, "plot_part")
     select = Later(SELECTION)

@@ -31,8 +31,8 @@ from .results import PartSpace, space_of
 
 # The number of cells per sample. Each cell gives its area to the nearest sample.
 CELLS_A_SAMPLE = 16
-# With twice as many points, the error of cubic interpolation is about 1/16 as large; a factor 2 is
-# for safety.
+# The error of cubic interpolation, relative to that with every second point. It is about 1/16; a
+# factor 2 is for safety.
 OF_COARSER = 1.0 / 8.0
 
 

@@ -37,7 +37,8 @@ def space_of(
 
     For whole parts, the pieces are cached, but without rasters of their boundaries, which are
     large. The first cells are cached for each target density, except for powers of K, which may be
-    many. `reach` knows its conditions on points of the part; see `reached`.
+    many. `reach` must contain its conditions on points of the part already; `reached` puts them
+    there.
     """
     target = target or TargetDensity(floor=1.0)
     if reach is None:

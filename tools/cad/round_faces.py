@@ -67,7 +67,10 @@ class Angles(NamedTuple):
 
     @classmethod
     def on_lines(cls, numbers: Indices, domain: Domain) -> Angles:
-        """Return one row for each index of a normal: the middle of the domain, ± half its size."""
+        """Return one row for each of the indices of normals, which covers the whole domain.
+
+        The parameters are the middle of the domain, and the bounds of errors half of its size.
+        """
         (u, of_u), (v, of_v) = (whole(x, len(numbers)) for x in domain)
         return cls(numbers, u, v, of_u, of_v)
 

@@ -74,7 +74,7 @@ from .part_arrays import FORMAT, VERSION, packed
 from .records import KINDS, PartRecord
 
 SUFFIXES = (".npz",)
-# A part of 100,000 faces takes about 1 GB.
+# The largest size of the unpacked arrays of a file. A part of 100,000 faces takes about 1 GB.
 MOST_BYTES = 4 << 30
 Arrays = dict[str, NDArray[Any]]
 
@@ -130,7 +130,7 @@ ABOUT: dict[str, tuple[type, type | tuple[type, ...]]] = {
 # The reasons why single faces are unusable, while the other faces of the part are used.
 NOT_FINITE = "its numbers are not finite"
 WRONG_AREA, FAR_AWAY = "its area is out of range", "its boundary is outside of its domain"
-# Squares of areas must neither overflow nor underflow.
+# The bounds of areas: squares of areas must neither overflow nor underflow.
 LEAST_AREA, MOST_AREA = 1e-150, 1e150
 # Loops may exceed the domain by this fraction of its size.
 SLACK = 1e-6

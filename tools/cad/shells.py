@@ -98,7 +98,8 @@ class _Points:
     def hold(self, other: _Points) -> bool:
         """Return whether another shell is inside this one.
 
-        It is if most of its points are behind the nearest points of this shell.
+        A point of the other shell is inside if it is behind the nearest point of this shell. The
+        other shell counts as inside if the fraction INSIDE of its tested points is.
         """
         probes = other.points[:: 1 + len(other.points) // PROBES]
         if not len(probes) or not len(self.points):

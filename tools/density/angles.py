@@ -110,7 +110,10 @@ def _apart(
 
 
 def _in_normal_space(normals: Array) -> Array:
-    """Return candidates (M, 8) whose points are `normals`, all with the same normal and density."""
+    """Return candidates (M, 8) in normal space: their points are the unit vectors `normals`.
+
+    All candidates have one common normal, and one common density.
+    """
     rows = np.zeros((len(normals), 8))
     rows[:, :3], rows[:, 3], rows[:, 6] = normals, 1.0, 1.0
     return rows

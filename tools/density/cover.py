@@ -312,7 +312,7 @@ class Cover:
     def _joined(self) -> Cover:
         """Append pending samples to the arrays, and return the cover.
 
-        Samples wait until then since concatenating many of them at once is faster.
+        Added samples are pending until then, since one concatenation of many is faster.
         """
         if self._waiting:
             added = joined(self._waiting)

@@ -51,7 +51,8 @@ MOST_FOR_ANGLE, SPHERES = 2e6, 300.0
 # The largest number of searches for points at which the angle is too large, on parts with narrow
 # tips.
 MOST_SEARCHES = 8
-# |K|^α vanishes with K; gaps there are wider than the mean by at most this factor.
+# |K|^α vanishes where K = 0. Gaps where it is small are wider than the mean gap by at most this
+# factor.
 WIDEST_GAP = 1000.0
 # The number of added samples that a sample at a normal is assumed to save: up to 0.7 are saved. A
 # smaller number leaves more samples for the wide gaps of the density |K|.
@@ -62,11 +63,11 @@ LATTICE = 0.1
 # If some of several pieces have no lattice, this part of a count is placed where normals are
 # farthest from those of all samples.
 FOR_NORMALS = 0.05
-# For the samples placed in this way: the chord between the normals of candidates, relative to the
-# spacing of as many points on a sphere as the cover has samples; and about the number of candidates
-# minus the number of samples.
+# For samples placed where normals are farthest from those of all samples: the chord between the
+# normals of candidates, relative to the spacing of as many points on a sphere as the cover has
+# samples; and about the number of candidates minus the number of samples.
 NORMALS_APART, CANDIDATES = 0.2, 200_000
-# The smallest chord between the normals of these candidates.
+# The smallest chord between the normals of the candidates for such samples.
 LEAST_CHORD = math.radians(0.5)
 # Normals of samples are distinct if they differ when rounded to this number of decimals.
 DIGITS = 6
@@ -212,7 +213,8 @@ class Filling:
     def _floor(self, ceiling: float) -> float:
         """Return the floor of "balanced" for a target density with a ceiling."""
         request, space = self.request, self.space.between(self.space.target.floor, ceiling)
-        # Normals or an angle fix the radius: a flat surface counts as a surface with all normals.
+        # If normals or an angle are requested, they fix the radius. Then the integral counts as at
+        # least the solid angle of all normals that may have samples, also for a flat surface.
         absolute = request.normals is not None or request.angle is not None
         least = request.solid_angle if absolute else FLAT_SURFACE
         return FLOOR * max(space.integral, least) / space.area
@@ -362,7 +364,7 @@ class Filling:
     def _for_count(self, space: Space, count: int) -> Given:
         """Return samples at lattices of normals that leave enough of `count` for filling gaps."""
         seen = space.solid_angles(count / (4 * math.pi))
-        # The number of filling samples for a lattice of one normal per steradian.
+        # The number of filling samples that go with a lattice of one normal per steradian.
         filling = space.integral / (GREEDY * (WIDER * spacing(1.0)) ** 2)
         chosen, density = np.arange(len(seen)), 0.0
         for _ in range(2):  # with all pieces, then with pieces that have a lattice

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 # to a twentieth of the samples on steep bends with coarse sampling are superfluous in meshes; with
 # 0.1, other places lose more samples than these bends need.
 GROWTH = 0.15
-# The number of nearest cells whose sizes bound that of a cell.
+# The size of a cell is bounded by the sizes of this number of nearest cells.
 NEAREST = 8
 # Twice the area of a triangle of edges 1.
 TWO_TRIANGLES = math.sqrt(3.0) / 2.0

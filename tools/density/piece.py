@@ -81,7 +81,9 @@ class Piece(ABC):
         """Return fields of samples at parameters (k, 2), in cells with the rows `rows` (k, 8)."""
 
     def solid_angle(self, density: float) -> float | None:
-        """Return the solid angle of the Gaussian image that lattices of this density resolve.
+        """Return the solid angle of the part of the Gaussian image that a lattice resolves.
+
+        `density` is the number of normals of the lattice per steradian.
 
         Return None if the solid angle is to be computed from K.
         """

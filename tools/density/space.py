@@ -47,7 +47,7 @@ from .trims import Trims
 # have to be bisected more often than MOST_BENDS.
 FLAT = 0.3
 MOST_BENDS = 24
-# These cells are quartered this many times if they have no place inside the trim.
+# Cells of `Space.first` without a place inside the trim are quartered at most this many times.
 MOST_LOST = 4
 # The least and the largest number of pixels along u and v of the rasters of boundaries.
 FEWEST_PIXELS, MOST_PIXELS = 64, 512
@@ -165,7 +165,10 @@ class Space:
         return np.bincount(self.first.pieces, weights, len(self.pieces)).astype(np.float64)
 
     def solid_angles(self, density: float) -> Array:
-        """Return the solid angles (P,) of Gaussian images that lattices of this density resolve."""
+        """Return the solid angles (P,) of the parts of Gaussian images that a lattice resolves.
+
+        `density` is the number of normals of the lattice per steradian.
+        """
         known = (x.solid_angle(density) for x in self.pieces)
         return np.array([y if x is None else x for x, y in zip(known, self.images, strict=True)])
 

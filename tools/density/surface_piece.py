@@ -79,7 +79,7 @@ class SurfacePiece(Piece):
         return self.geometry.at_parameters(uv, rows[:, 3:6], rows[:, 7], fields, dtype)
 
     def solid_angle(self, density: float) -> float:
-        """Return the solid angle of the Gaussian image that a lattice of this density resolves."""
+        """Return the solid angle of the part of the Gaussian image that a lattice resolves."""
         return self.geometry.cell_measure.curved_solid_angle(density)
 
     @property

@@ -109,7 +109,8 @@ class BoundaryArc:
             if self._lengths(np.array([before, 0.5 * (before + t)])).max() > self._limit:
                 groups.append([])
         groups[-1].append(1.0)
-        # The first and the last group belong to singular corners.
+        # The first and the last group contain the ends of the arc: their singular points are
+        # corners of the patch.
         return tuple(min(x, key=lambda t: self._lengths(np.array([t]))[0]) for x in groups[1:-1])
 
     @cached_property

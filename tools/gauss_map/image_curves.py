@@ -1,7 +1,7 @@
 """Folds and boundary images of Gauss maps, where the number of points with a normal changes.
 
-The Gauss map folds along the parabolic curves. A normal next to the image of a fold has two points
-on one side of it, and none on the other; next to the image of a boundary, one and none.
+The Gauss map folds along the parabolic curves. Across the image of a fold, the number of points
+with a normal changes by two; across the image of a boundary, by one.
 """
 
 from __future__ import annotations

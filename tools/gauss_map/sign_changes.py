@@ -30,7 +30,8 @@ def sign_changes(
     from contourpy import LineType, contour_generator
 
     size = np.abs(values) / (np.nanmax(np.abs(values), initial=0.0) or 1.0)
-    # With these values, vertices are in the middle third of their sides.
+    # Linear interpolation of these values puts vertices into the middle third of the sides of
+    # cells.
     apart = np.where(values >= 0.0, 1.0 + size, -1.0 - size)
     # contourpy counts the second axis first.
     lines = contour_generator(z=apart.T, corner_mask=False, line_type=LineType.Separate).lines(0.0)

@@ -45,7 +45,7 @@ EDGES = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
 def solid_angles(normals: Array) -> Array:
     """Return the solid angles (k,) of triangles, given the polar forms of their normal fields.
 
-    Singular points, where N vanishes, must be corners (exactly zero) for the full accuracy.
+    For the full accuracy, singular points must be corners of triangles, at which N is exactly zero.
 
     `normals` (k, 3, 3, 3) are the control normals of each two corners. The result is the integral
     of the Gaussian curvature over the surface: negative where it is hyperbolic, with overlaps

@@ -33,7 +33,7 @@ LARGEST_DEVIATION = 30.0
 SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
 # A bound is given up if more than this share of the samples would be left out: where the spacing
-# doubles from one sample to the next, no triangles are better, and collapses would go on.
+# doubles from one sample to the next, no better triangles exist, and collapses would go on.
 MOST_LOST = 0.1
 # The arrays that flips and collapses change.
 CHANGED = ("triangles", "sides", "neighbours")

@@ -39,7 +39,7 @@ class Style:
 
 @dataclass(frozen=True)
 class PlacedShape:
-    """A placed shape, its name after those of the assemblies that contain it, and its colour."""
+    """A placed shape with its colour, and its name after the names of its assemblies."""
 
     shape: Any
     name: str = ""
@@ -128,7 +128,8 @@ def _color(label: Any) -> Color | None:  # noqa: ANN401
     color = Quantity_Color()
     for kind in (XCAFDoc_ColorType.XCAFDoc_ColorSurf, XCAFDoc_ColorType.XCAFDoc_ColorGen):
         if XCAFDoc_ColorTool.GetColor_s(label, kind, color):
-            # Values as in files: Open CASCADE itself stores linear values, in single precision.
+            # These are the sRGB values of files. Open CASCADE itself stores linear values, in
+            # single precision.
             red, green, blue = color.Values(Quantity_TypeOfColor.Quantity_TOC_sRGB)
             return round(red, DIGITS), round(green, DIGITS), round(blue, DIGITS)
     return None

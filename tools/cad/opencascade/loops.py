@@ -32,7 +32,7 @@ OF_BOX, OF_WIDTH, LEAST = 1e-4, 1e-3, 1e-7
 GAP = 1e-2
 # Points are equal up to this distance, relative to the box.
 SAME = 1e-12
-# Numbers from here on stand for infinity in Open CASCADE.
+# Numbers of at least this modulus stand for infinity in Open CASCADE.
 INFINITE = 1e50
 FORWARD, REVERSED = TopAbs_Orientation.TopAbs_FORWARD, TopAbs_Orientation.TopAbs_REVERSED
 EDGE, WIRE = TopAbs_ShapeEnum.TopAbs_EDGE, TopAbs_ShapeEnum.TopAbs_WIRE

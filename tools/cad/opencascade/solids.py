@@ -137,7 +137,10 @@ def _size(shape: Any) -> float:  # noqa: ANN401
 
 
 def _closed_solids(sewn: Any) -> list[Any]:  # noqa: ANN401
-    """Return the closed shells as solids whose normals point outward, but into cavities."""
+    """Return the closed shells as solids.
+
+    Normals point outward; those of a shell that bounds a cavity point into the cavity.
+    """
     shells = [TopoDS.Shell(x) for x in parts_of(sewn, Kinds.TopAbs_SHELL)]
     solids = []
     for shell in shells:
