@@ -6,37 +6,6 @@ comment says which quantity the bound is for.
 
 from __future__ import annotations
 
-__all__ = [
-    "ACCURATE",
-    "ANGLE_ERROR",
-    "CAP_RADIUS_ERROR",
-    "CIRCLE_HEIGHT_ERROR",
-    "CUBIC_ERROR",
-    "CURVATURE_ERROR",
-    "DATA_ERROR",
-    "DERIVATIVE_ERROR",
-    "DIFFERENCE_ERROR",
-    "DOUBLE_ROOT",
-    "FLAT_SURFACE",
-    "FORM_ERROR",
-    "LENGTH_ERROR",
-    "MEETING",
-    "NEAR_SINGULAR_POINT",
-    "NORMAL_ERROR",
-    "NORMAL_NOISE",
-    "NO_AREA",
-    "PARAMETER_ERROR",
-    "PATCH_ERROR",
-    "QUALITY_GAIN",
-    "RADIUS_ERROR",
-    "ROTATION_ERROR",
-    "SAME_PARAMETER",
-    "SHORT_CONTROL_NORMAL",
-    "SINGULAR_POINT",
-    "TRIPLE_PRODUCT_ERROR",
-    "VANISHING",
-]
-
 # The error of coordinates, relative to the largest coordinate: a few roundings, at most 64 ε.
 DATA_ERROR = 2.0**-46
 # The error of the linear forms A, B, C, P, Q at a unit normal, relative to the largest difference

@@ -21,8 +21,6 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.environment import lookup_environment
 
-__all__ = ["Kernel", "KernelCompiler", "PartCompiler", "copies_in", "without_literals"]
-
 # The private attributes of Numba's code libraries that are used here.
 PRIVATE = (
     "_codegen", "_final_module", "_finalized", "_linking_libraries", "_reload_init",

@@ -16,12 +16,6 @@ from ....generated.icosahedron import CORNER_PLACES, EDGE_PLACES, LINES, PHI
 from ...machine_code.jit import inline, jit, long_vectors, loop
 from .vectors import STEP, TILE, whole_vectors
 
-__all__ = [
-    "new_line",
-    "write_points",
-]
-
-
 # Typed, since Numba compiles a function anew for each literal number in its arguments.
 ZERO = np.int64(0)
 

@@ -6,8 +6,6 @@ import numpy as np
 
 from ...machine_code.jit import jit
 
-__all__ = ["are_unit"]
-
 # The squares of lengths that are 1 up to rounding differ from 1 by at most this: 2.5 units in the
 # last place above 1, 5 units below 1, where units are half as large.
 NEAR = 5.6e-16

@@ -7,19 +7,6 @@ import math
 from ....generated.vectors import Vector
 from ...machine_code.jit import inline, loop
 
-__all__ = [
-    "STEP",
-    "TILE",
-    "VECTOR",
-    "dot",
-    "largest_component",
-    "length",
-    "row_vector",
-    "set_jet",
-    "set_row",
-    "whole_vectors",
-]
-
 # The largest number of lanes of a vectorized loop; arrays are padded by as many entries.
 VECTOR = 16
 # The number of samples of a tile, and the length of its rows, with room for some more.

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from ...machine_code.jit import inline
 
-__all__ = ["place_of"]
-
 
 @inline
 def place_of(patch, columns):

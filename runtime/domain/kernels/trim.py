@@ -22,16 +22,6 @@ from ....generated.spline import CORNERS
 from ...machine_code.jit import inline, jit, loop
 from .patch_numbers import place_of
 
-__all__ = [
-    "Joined",
-    "SegmentGrid",
-    "find_inside",
-    "find_inside_each",
-    "find_parities",
-    "list_segments",
-    "to_cells",
-]
-
 
 class SegmentGrid(NamedTuple):
     """Segments of polygons, sorted into the rows (along v) and columns (along u) of a grid.

@@ -10,8 +10,6 @@ from ...directions.kernels.vectors import dot
 from ...machine_code.jit import jit
 from ...spline.kernels.jets import patch_of_jet
 
-__all__ = ["GAUSS", "signed_solid_angles"]
-
 # The Gauss points of a cell are at 1/2 ± GAUSS/2 of its sides.
 GAUSS = 1.0 / math.sqrt(3.0)
 

@@ -21,21 +21,6 @@ from ...directions.kernels.vectors import row_vector, set_jet, set_row
 from ...machine_code.jit import inline, jit
 from ...spline.kernels.jets import is_regular, jet_vector, patch_of_jet
 
-__all__ = [
-    "CLAMPED",
-    "FOUND",
-    "FREE",
-    "NOT_FOUND",
-    "PERIODIC",
-    "Box",
-    "Rows",
-    "Target",
-    "begin",
-    "chart_jets",
-    "jet_of_pole",
-    "newton",
-]
-
 # The kinds of parameters: unbounded, clamped to an interval, or periodic.
 FREE, CLAMPED, PERIODIC = 0, 1, 2
 NOT_FOUND, FOUND = 0, 1

@@ -11,21 +11,6 @@ from ...machine_code.jit import jit, loop
 from .cell_bounds import EPS
 from .clusters import shift_to
 
-__all__ = [
-    "BORDER",
-    "BOX",
-    "COLUMNS",
-    "CURVE",
-    "ISOLATED",
-    "KINDS",
-    "OPEN_BOX",
-    "WHERE",
-    "Answers",
-    "add_open",
-    "add_place",
-    "merge_places",
-]
-
 # The kinds of boxes that are listed besides regular solutions: a box that may contain solutions or
 # none, a box around a small component of solutions, and one around a curve or a region of them.
 KINDS = ("open", "isolated", "curve")

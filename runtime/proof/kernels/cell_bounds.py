@@ -23,30 +23,6 @@ from ...tape.kernels.balls import BALL, evaluate_boxes
 from ...tape.kernels.points import LANES, POINT, UU, UV, VV, U, V, evaluate_points
 from ...tape.kernels.rounding import rounding_of_points
 
-__all__ = [
-    "EPS",
-    "FIRST_S",
-    "FIRST_T",
-    "LEFT_S",
-    "OPEN",
-    "REACH",
-    "SECOND",
-    "SMOOTH",
-    "TOLERANCE_S",
-    "TOLERANCE_T",
-    "WIDE",
-    "CellBounds",
-    "cut_cells",
-    "inverse_of",
-    "linear_forms_of",
-    "patch_of",
-    "rests_in",
-    "side_in",
-    "thirds_of",
-    "write_cells",
-    "write_one_cone",
-]  # fmt: skip
-
 # Twice the unit roundoff.
 EPS = 2.0**-52
 # Bounds hold beyond the sides of a cell, so that neighbours share the points near a common side.

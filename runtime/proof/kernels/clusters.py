@@ -6,8 +6,6 @@ import numpy as np
 
 from ...machine_code.jit import inline, loop
 
-__all__ = ["cluster"]
-
 # Boxes touch if their distance is at most this multiple of their size.
 TOUCHING = 1e-6
 

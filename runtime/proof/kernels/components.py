@@ -6,8 +6,6 @@ from ...directions.kernels.vectors import row_vector
 from ...machine_code.jit import jit
 from .degree import index_around
 
-__all__ = ["indices_around"]
-
 
 @jit
 def indices_around(

@@ -44,8 +44,6 @@ from .cell_bounds import (
 )
 from .pairs import distance, forms_at, is_beyond, most_of, newton
 
-__all__ = ["DECIDED", "LARGEST", "PARTS", "PATH", "degree_on", "index_around"]
-
 # What is known of a box: nothing, or whether it contains one point with the normal or none.
 UNDECIDED, DECIDED = range(2)
 # Boxes grow on each side by the part GROWN of their width, since no point of their border may have

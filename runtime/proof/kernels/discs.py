@@ -21,8 +21,6 @@ from .answers import BORDER, OPEN_BOX, add_open
 from .cell_bounds import EPS, linear_forms_of, patch_of
 from .pairs import CLOSE, CONTRACTING
 
-__all__ = ["Disc", "decide_discs"]
-
 # The largest number of steps towards a solution.
 STEPS = 60
 # After a step that is longer than this part of the distance from the pole, u and r are computed

@@ -27,8 +27,6 @@ from .pairs import (
     load_pair,
 )
 
-__all__ = ["PLACE", "Index", "Joints", "Outcome", "Tiles", "evaluate_pairs"]
-
 # The columns of places: u, v, the error bound of each, D, and whether the error bounds reach the
 # boundary of the domain.
 PLACE = 6

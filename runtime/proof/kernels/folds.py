@@ -23,8 +23,6 @@ from .cell_bounds import (
 )
 from .pairs import forms_at
 
-__all__ = ["DOUBLE", "NO_PLACE", "UNKNOWN", "at_fold"]
-
 NO_PLACE, DOUBLE, UNKNOWN = range(3)
 # The rotated coordinates p and w are between −ALONG and ALONG, and between −ACROSS and ACROSS. So
 # bounds are needed for |s|, |t| ≤ √(2² + 2) < WIDER.

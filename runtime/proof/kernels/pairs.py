@@ -29,31 +29,6 @@ from .cell_bounds import (
     thirds_of,
 )
 
-__all__ = [
-    "DETERMINANT",
-    "EDGE",
-    "HARD",
-    "HU",
-    "HV",
-    "MORE",
-    "NONE",
-    "ONE",
-    "RADIUS",
-    "REACHED",
-    "ROWS",
-    "STATE",
-    "U0",
-    "V0",
-    "bound_pairs",
-    "compact",
-    "contracted",
-    "forms_at",
-    "improve_pairs",
-    "load_box",
-    "load_pair",
-    "write_forms",
-]
-
 # The rows of a tile of pairs, of LANES numbers: the normal; the cell; the forms of the pair; bounds
 # (see `CellBounds`); the inverse of the Hessian with its bounds (`inverse_of`); the tolerance of
 # solutions; and the solution: s, t, its error bound, D, the number of evaluations, a state.

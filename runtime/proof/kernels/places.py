@@ -63,8 +63,6 @@ from .pairs import (
     write_forms,
 )
 
-__all__ = ["Boxes", "decide_normals"]
-
 # The number of levels of bisection, and the levels after which clusters are tested.
 DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
 # The number of boxes along a curve of solutions about doubles on each level. More than MANY boxes

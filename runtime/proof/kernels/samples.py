@@ -18,8 +18,6 @@ from ...machine_code.jit import inline, jit, long_vectors, loop
 from ...spline.kernels.jets import is_regular
 from ...tape.kernels.points import LANES, POINT, UU, UV, VV, U, V, evaluate_points
 
-__all__ = ["CURVATURES", "SampleFields", "fill_places"]
-
 # The size of a work array: Gaussian and mean curvatures of a tile.
 CURVATURES = 2 * LANES
 MEAN = np.uint64(LANES)

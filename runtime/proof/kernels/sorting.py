@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 from ...machine_code.jit import jit, loop
 from .evaluated_pairs import PLACE
 
-__all__ = ["Sorted", "count_places", "order_places", "put_places", "start_normals"]
-
 
 class Sorted(NamedTuple):
     """Arrays for sorted solutions (k, 6) of a search, and the indices (k,) of their normals."""

@@ -21,8 +21,6 @@ from ...machine_code.jit import inline, jit, loop
 from ...spline.kernels.patch import EAST, NORTH, SOUTH, SOUTHEAST, SOUTHWEST, WEST, vector_at
 from .wide_integers import MANTISSA, rounded, wide
 
-__all__ = ["NORMAL_LIMBS", "PATCH_LIMBS", "SPARE", "Decided", "decide_exactly"]
-
 # The numbers of limbs (64 bits) of coefficients and of normals, as lengths of tuples. Normals need
 # more: at corners of patches along an axis, their components may be rounding errors of rounding
 # errors.

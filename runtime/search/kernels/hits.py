@@ -27,8 +27,6 @@ from ...spline.kernels.patch import (
 )
 from .lists import NUMBER
 
-__all__ = ["fill_known", "fill_samples", "new_tile"]
-
 # The number of rows of a tile, of STEP entries each, and where its parts start. The starts are
 # typed, since Numba compiles a function anew for each literal number in its arguments.
 ROWS = 38

@@ -19,18 +19,6 @@ from ...directions.kernels.vectors import row_vector, set_row
 from ...machine_code.jit import inline, jit, loop
 from .pieces import CHORD, SLAB, WIDTH
 
-__all__ = [
-    "FINEST",
-    "NUMBER",
-    "Lists",
-    "count_keys",
-    "list_pieces",
-    "order_few",
-    "order_normals",
-    "place_keys",
-    "write_caps",
-]
-
 # The number of times that faces are halved along both directions, for the bins in keys of normals.
 FINEST = np.int64(12)
 # The bit mask of the index in a key.

@@ -23,23 +23,6 @@ from ...domain.kernels.patch_numbers import place_of
 from ...machine_code.jit import inline, jit, loop
 from ...spline.kernels.patch import patch_vectors, vector_at
 
-__all__ = [
-    "BOUND",
-    "CHORD",
-    "CONE",
-    "EVERYTHING",
-    "REST_S",
-    "REST_T",
-    "SLAB",
-    "VECTORS",
-    "WIDTH",
-    "Coefficients",
-    "Pieces",
-    "least_cosine",
-    "write_net_pieces",
-    "write_pieces",
-]
-
 # The columns of a cone: its axis and its chord; the normal of its slab, and half the slab's width.
 CHORD, SLAB, WIDTH, CONE = 3, 4, 7, 8
 # The columns of a patch: the vectors a, b, c, d, e, and a bound of the errors of its forms U, V, W.

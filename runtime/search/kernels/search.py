@@ -24,8 +24,6 @@ from ...spline.kernels.patch import normal_of_patch
 from .lists import FINEST, NUMBER, meets
 from .pieces import BOUND, CHORD, EVERYTHING, REST_S, REST_T, WIDTH
 
-__all__ = ["CELLS", "PATCHES", "Memory", "Pairs", "search"]
-
 # The kinds of pieces.
 PATCHES, CELLS = 0, 1
 

@@ -20,8 +20,6 @@ from numba.core import types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, overload, register_model
 
-__all__ = ["MANTISSA", "rounded", "wide"]
-
 # The format of floating-point numbers: the bits of the mantissa as an integer, the mask of those
 # that are stored, and the exponent of the last one in the smallest numbers.
 MANTISSA, FRACTION, LOWEST = 53, (1 << 52) - 1, -1074

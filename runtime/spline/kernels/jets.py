@@ -10,8 +10,6 @@ from ...base.tolerances import VANISHING
 from ...directions.kernels.vectors import dot, set_row
 from ...machine_code.jit import inline, jit
 
-__all__ = ["evaluate_jets", "forms_of_jets", "is_regular", "jet_vector", "patch_of_jet"]
-
 
 @inline
 def jet_vector(jets, k, i, factor):

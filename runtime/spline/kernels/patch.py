@@ -24,17 +24,6 @@ from ...directions.kernels.vectors import dot, largest_component, length, set_ro
 from ...domain.kernels.patch_numbers import place_of
 from ...machine_code.jit import inline, jit, loop
 
-__all__ = [
-    "count_developable",
-    "curvatures_of_patch",
-    "normal_of_patch",
-    "normals_at",
-    "patch_of",
-    "patch_vectors",
-    "point_of_patch",
-    "vector_at",
-]
-
 THIRD = 1.0 / 3.0
 # The indices of neighbours in NEIGHBOURS; typed, as Numba compiles for each literal separately.
 SOUTHWEST, SOUTH, SOUTHEAST, WEST, EAST, NORTH = (np.int64(k) for k in (0, 1, 2, 3, 5, 7))

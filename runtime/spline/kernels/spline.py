@@ -21,17 +21,6 @@ from ...domain.kernels.patch_numbers import place_of
 from ...machine_code.jit import inline, jit
 from .patch import normal_of_patch, patch_vectors, point_of_patch, vector_at
 
-__all__ = [
-    "control_nets",
-    "evaluate",
-    "fit_centres_and_vertices",
-    "fit_vertices",
-    "jets_on_spline",
-    "mark_left",
-    "measure_patches",
-    "patches_at",
-]
-
 # For each number of quarter turns of a patch, the matrix that maps steps in units of cells to steps
 # of the parameters u, v of the patch.
 TO_PATCH = np.linalg.inv(CORNERS)

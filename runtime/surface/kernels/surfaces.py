@@ -9,8 +9,6 @@ from ....generated.surface_jets import JETS
 from ....generated.surfaces import CATALOGUE
 from ...machine_code.jit import jit
 
-__all__ = ["jets", "positions"]
-
 
 @cache
 def positions(name: str) -> Callable[..., None]:

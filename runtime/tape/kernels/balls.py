@@ -21,8 +21,6 @@ from .functions import UNIT, ranges
 from .points import LANES
 from .spline_bounds import write_spline_balls
 
-__all__ = ["BALL", "bounds_of_boxes", "evaluate_boxes"]
-
 # The size of a row of registers, and the offsets of its coefficients.
 BALL = np.int64(10 * LANES)
 U, V, UU, UV, VV, UUU, UUV, UVV, VVV = (np.uint64(k * LANES) for k in range(1, 10))

@@ -7,15 +7,6 @@ import math
 from ....generated import elementary
 from ...machine_code.jit import inline, loop
 
-__all__ = [
-    "LARGEST_ANGLE",
-    "UNIT",
-    "coefficients",
-    "error_of_rounding",
-    "ranges",
-    "sine_and_cosine",
-]
-
 UNIT = 2.0**-53  # unit roundoff
 QUARTER = 0.5 * math.pi
 FAR = 1e8  # beyond this, reduction modulo π/2 is inaccurate

@@ -16,8 +16,6 @@ from ....generated.rational import rational_jet
 from ...directions.kernels.vectors import row_vector, set_row
 from ...machine_code.jit import jit, loop
 
-__all__ = ["Net", "Scratch", "jets", "positions"]
-
 
 class Net(NamedTuple):
     """A NURBS surface, as arrays for kernels.

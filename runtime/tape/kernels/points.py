@@ -21,8 +21,6 @@ from ...machine_code.jit import jit, long_vectors, loop
 from .functions import LARGEST_ANGLE, coefficients, sine_and_cosine
 from .splines import COORDINATES, NO_SPLINE, Polynomials, own_parameter, span_at, spline_at
 
-__all__ = ["LANES", "POINT", "Tape", "evaluate_points", "points_jets"]
-
 LANES = 32
 # The size of a row of registers, and the offsets of its coefficients.
 POINT = np.int64(6 * LANES)

@@ -31,8 +31,6 @@ from .functions import UNIT, error_of_rounding, ranges
 from .points import LANES
 from .spline_bounds import write_spline_errors
 
-__all__ = ["rounding_of_boxes", "rounding_of_points"]
-
 TERMS = 6
 
 

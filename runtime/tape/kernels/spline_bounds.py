@@ -19,8 +19,6 @@ from .nurbs import in_period, span_of
 from .points import LANES
 from .splines import COORDINATES, MOST_COEFFICIENTS, own_parameter
 
-__all__ = ["SLACK", "write_spline_balls", "write_spline_errors"]
-
 # The orders in u, and in v, of the ten Taylor coefficients.
 IN_U = np.array([0, 1, 0, 2, 1, 0, 3, 2, 1, 0])
 IN_V = np.array([0, 0, 1, 0, 1, 2, 0, 1, 2, 3])

@@ -14,16 +14,6 @@ from numpy.typing import NDArray
 from ...machine_code.jit import loop
 from .nurbs import in_period, span_of
 
-__all__ = [
-    "COORDINATES",
-    "MOST_COEFFICIENTS",
-    "NO_SPLINE",
-    "Polynomials",
-    "own_parameter",
-    "span_at",
-    "spline_at",
-]
-
 COORDINATES = 4  # rows of a tape: x, y, z and a weight
 MOST_COEFFICIENTS = 160  # of one polynomial, which fit into registers
 

@@ -10,8 +10,6 @@ from ....generated.vectors import Patch
 from ....runtime.directions.kernels.vectors import row_vector, set_jet
 from ....runtime.machine_code.jit import jit
 
-__all__ = ["offset", "revolve"]
-
 
 @jit
 def revolve(u, curve, out):

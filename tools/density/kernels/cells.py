@@ -17,8 +17,6 @@ from ....runtime.machine_code.jit import inline, jit, loop
 from ....runtime.spline.kernels.jets import patch_of_jet
 from .sizing import density_of
 
-__all__ = ["FINER", "cut_into_parts", "evaluate_cells", "evaluate_places"]
-
 # The number of fine points along each side of a cell, and the coordinate of the last one.
 FINER = 4
 OUTERMOST = (FINER - 0.5) / FINER - 0.5

@@ -14,8 +14,6 @@ from ....runtime.directions.kernels.vectors import dot, row_vector
 from ....runtime.machine_code.jit import inline, jit, loop
 from .hash_grids import CELL, DENSITY, NORMAL, SQUARE, bucket_of
 
-__all__ = ["around", "choose_far", "is_near", "normal_of", "on_side", "update_distances"]
-
 # The cosine of the largest angle between normals on the same side of a surface.
 SAME_SIDE = 0.5
 

@@ -13,18 +13,6 @@ import numpy as np
 
 from ....runtime.machine_code.jit import inline, jit
 
-__all__ = [
-    "CELL",
-    "DENSITY",
-    "LEVELS",
-    "NORMAL",
-    "SQUARE",
-    "HashGrids",
-    "bucket_of",
-    "measure",
-    "sort_candidates",
-]
-
 # The width of the cells of a grid, relative to the widest gap that is searched in it.
 CELL = 2.0
 # The powers of two that 1/√density can have.

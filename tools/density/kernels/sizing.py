@@ -12,8 +12,6 @@ from typing import NamedTuple
 from ....generated.patch import largest_curvature
 from ....runtime.machine_code.jit import inline
 
-__all__ = ["TargetDensity", "density_of"]
-
 
 class TargetDensity(NamedTuple):
     """Samples per area, up to a factor: a κ^(2e) + b |K|^e, from the floor to the ceiling.

@@ -6,8 +6,6 @@ import math
 
 from ....runtime.machine_code.jit import inline, jit, loop
 
-__all__ = ["shared_steps"]
-
 EPS = 2.0**-52
 
 

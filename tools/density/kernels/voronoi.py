@@ -19,8 +19,6 @@ from .cells import FINER
 from .greedy import SAME_SIDE, around, is_near, normal_of, on_side, squared_distance
 from .hash_grids import DENSITY, NORMAL, SQUARE
 
-__all__ = ["Lists", "Room", "add_moments", "find_centres", "find_widest", "list_samples"]
-
 PLACES = FINER * FINER
 # The coordinates of fine points along the sides of a cell, from −1/2 to 1/2.
 S = np.repeat((np.arange(FINER, dtype=np.float32) + 0.5) / FINER - 0.5, FINER)

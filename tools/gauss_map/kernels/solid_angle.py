@@ -6,8 +6,6 @@ from ....generated.gaussian_image import boundary_arc, solid_angle
 from ....generated.vectors import Vector
 from ....runtime.machine_code.jit import jit
 
-__all__ = ["integrate_arcs"]
-
 
 @jit
 def integrate_arcs(arcs, poles, nodes, weights, integrals):

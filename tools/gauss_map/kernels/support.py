@@ -18,15 +18,6 @@ from ....runtime.domain.kernels.patch_numbers import place_of
 from ....runtime.machine_code.jit import jit
 from ....runtime.spline.kernels.patch import patch_vectors
 
-__all__ = [
-    "DOUBTFUL",
-    "INSIDE",
-    "OUTSIDE",
-    "branches_of_patch",
-    "classify",
-    "hessians_of_patches",
-]
-
 OUTSIDE = 0
 INSIDE = 1
 DOUBTFUL = 2

@@ -11,8 +11,6 @@ from ....runtime.base.tolerances import QUALITY_GAIN
 from ....runtime.machine_code.jit import jit, loop
 from .flips import are_joined, corner_of, smallest_cosine, smallest_tangent
 
-__all__ = ["collapse_edges"]
-
 # Where triangles are far from the normals, the smallest cosine may fall by this, since b moves.
 COSINE_LOSS = 0.1
 

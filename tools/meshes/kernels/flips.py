@@ -12,8 +12,6 @@ from ....runtime.base.tolerances import QUALITY_GAIN
 from ....runtime.directions.kernels.vectors import row_vector
 from ....runtime.machine_code.jit import inline, jit, loop
 
-__all__ = ["flip_edges", "smallest_cosines", "smallest_tangents"]
-
 
 @loop
 def smallest_cosine(points, normals, a, b, c, side_a, side_b, side_c):
