@@ -23,11 +23,11 @@ ANGLE_ERROR = 2.0**-40
 # patch has a singular point there. The threshold is far above the rounding error of a cross
 # product.
 SHORT_CONTROL_NORMAL = 2.0**-30
-# A point is singular where the normal is shorter than this, relative to the normal at the centre of
-# its patch. Its curvatures are evaluated at another point, at this distance in u, v.
+# A point counts as singular where the normal is shorter than this, relative to the normal at the
+# centre of its patch. Its curvatures are evaluated at another point, at this distance in u, v.
 SINGULAR_POINT = 2.0**-20
-# A point is near a singular point where the normal is shorter than this, relative to the square of
-# the tangents: the direction of the normal there needs parameters with many digits.
+# A point counts as near a singular point where the normal is shorter than this, relative to the
+# square of the tangents: the direction of the normal there needs parameters with many digits.
 NEAR_SINGULAR_POINT = 2.0**-12
 # A normal, or a slope along a normal, counts as zero if it is smaller than this, relative to the
 # product of the tangents or to the largest normal of the patch: 4096 ε, far above the rounding of

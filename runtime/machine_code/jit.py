@@ -41,7 +41,7 @@ def loop(function: Function) -> Function:
 def jit(function: Function) -> Function:
     """Compile a kernel at its first call from Python, unless its machine code is cached.
 
-    Kernels also allocate no memory: all arrays are arguments. They are called from Python only:
+    Kernels allocate no memory: all arrays are arguments. They are called from Python only:
     machine code of the package cannot be linked into other kernels.
     """
     kernel: Any = numba.njit(pipeline_class=KernelCompiler, **OPTIONS)(function)

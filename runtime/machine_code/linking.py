@@ -98,7 +98,7 @@ class PartCompiler(Compiler):
     library = Part
 
     def compile_extra(self, func: Any) -> Any:
-        """Compile a function into a library of this kind, if Numba has all of PRIVATE."""
+        """Compile a function into a `library`, if Numba's code libraries have all of PRIVATE."""
         name = f"{func.__module__}.{func.__qualname__}"
         library = self.library(self.state.targetctx.codegen(), name)
         if all(hasattr(library, name) for name in PRIVATE):

@@ -23,10 +23,10 @@ from ..spline.joints import linked
 Jets = Callable[[Array, Array], Array]
 
 OPEN_BOX, ISOLATED = KINDS.index("open"), KINDS.index("isolated")
-# A box is thin if its width is at most THIN times its length, both relative to the domain. Its grid
-# is one row of PLACES points; that of other boxes has SIDE points along each side.
+# A box counts as thin if its width is at most THIN times its length, both relative to the domain.
+# Its grid is one row of PLACES points; that of other boxes has SIDE points along each side.
 PLACES, SIDE, THIN = 257, 65, 1e-3
-# Points are neighbours if their distance is at most NEIGHBOURS steps of the grid. Points are
+# Points count as neighbours if their distance is at most NEIGHBOURS steps of the grid. Points are
 # rounded to multiples of 1/HALVES steps, and of those that become equal one is kept.
 NEIGHBOURS, HALVES = 1.5, 2.0
 # From each grid point there are at most STEPS Gauss–Newton steps. They end when the angles between

@@ -66,7 +66,7 @@ def unmoved(spline: Spline, numbers: Indices, uv: Array) -> tuple[UndecidedNorma
 
 
 def part_of(arrays: Fields, kept: NDArray[np.bool_]) -> Fields:
-    """Return the fields of the samples with True in `kept`."""
+    """Return the fields of the samples for which the mask `kept` is True."""
     return arrays if kept.all() else {name: array[kept] for name, array in arrays.items()}
 
 

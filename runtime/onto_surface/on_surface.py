@@ -152,8 +152,8 @@ class OnSurface(OnSpline):
     ) -> FieldsOfSamples:
         """Return the requested fields of the samples at hits.
 
-        Samples that coincide on the surface are one sample. A hit without a point of the surface
-        has no sample; its box is undecided.
+        Of samples that coincide on the surface, only one is returned. A hit without a point of the
+        surface has no sample; its box is undecided.
         """
         arrays, left = self._found(normals, hits)
         return as_fields(arrays, fields, dtype)._replace(undecided=left)
@@ -161,7 +161,7 @@ class OnSurface(OnSpline):
     def near_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return a sample for each hit: a point of the spline, or of the surface if one is found.
+        """Return the samples at hits, on the spline where no point of the surface is found.
 
         Of samples that coincide on the surface, only one is returned.
         """

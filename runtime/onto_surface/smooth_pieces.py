@@ -27,7 +27,8 @@ from .proved import ProvedSurface
 # The largest number of pieces: each takes 20 ms to be fitted and searched.
 MOST_PIECES = 2000
 FEWEST_CELLS = 4
-# A piece is degenerate, and gets no samples, if its size is less than this times the largest size.
+# A piece counts as degenerate, and gets no samples, if its size is less than this times the largest
+# size.
 NO_SIZE = 1e-6
 # Pieces whose Gaussian images have less than this solid angle have no samples at prescribed
 # normals.
@@ -62,7 +63,7 @@ def geometries_of(
 def proved_or_fitted(
     surface: Surface | AnySpline, cells: Sequence[int] | None, on: str | None
 ) -> tuple[OnPatches | ProvedSurface, ...]:
-    """Return a geometry for each piece: a `ProvedSurface` if possible, else that of its spline."""
+    """Return a geometry for each piece: a `ProvedSurface` if possible, else one with its spline."""
     if place_of_samples(surface, on) == "spline":
         return geometries_of(surface, cells, on)
     return tuple(

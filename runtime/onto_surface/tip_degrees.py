@@ -39,12 +39,10 @@ RAYS = 1 << 11
 PARTS, TIMES = 32, 4
 PRODUCTS_AT_A_TIME = 1 << 20
 ROUNDING = 1e-9
-# Rays that differ by less are one ray.
-SAME_RAY = 1e-6
-# A side is collapsed if this number of its points coincide.
+# A side counts as collapsed if this number of its points coincide.
 ALONG = 65
-# A tip is inside a trim if a nearby parameter line is. The distance of this line from the collapsed
-# line of the tip is BESIDE, relative to the domain.
+# A tip counts as inside a trim if a nearby parameter line is. The distance of this line from the
+# collapsed line of the tip is BESIDE, relative to the domain.
 BESIDE = 1e-6
 
 

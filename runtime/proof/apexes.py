@@ -21,16 +21,16 @@ from .components import Undecided
 from .kernels.answers import OPEN_BOX
 from .kernels.cell_bounds import SMOOTH
 
-# A side of the domain is collapsed if PLACES points along it agree up to SAME_POINT, relative to
-# the size, plus ROUNDINGS units in the last place of the largest coordinate of all sides: files
-# cut surfaces at tips with 12 digits.
+# A side of the domain counts as collapsed if PLACES points along it agree up to ROUNDINGS units in
+# the last place of the largest coordinate of all sides. The coordinates of the point itself are no
+# scale: near the origin they are small, but their rounding errors are not.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the index of the Taylor coefficient of u v; those of u and v are 1 and 2
 BOXES_AT_A_TIME = 1 << 14  # 8 MB of bounds
 # Collapsed lines inside the domain are searched between LINES equidistant lines. The first of these
 # is SHIFT steps from the side, so that none of them is likely to be collapsed itself.
 LINES, SHIFT = 32, 0.381966
-# A box is beside a line if its distance is at most this, relative to the domain.
+# A box counts as beside a line if its distance is at most this, relative to the domain.
 BESIDE = 1e-6
 # A collapsed side with one normal is the only point of a box beside it with this normal if two
 # conditions hold: the width of the box is at most SMALL, relative to the domain, and the normals at
@@ -107,9 +107,9 @@ class Apex:
         return normals, np.sign(a * c - b * b)
 
     def decided(self, open_: Undecided, normals: Array) -> Undecided:
-        """Return the undecided boxes, without boxes beside the line that have no point.
+        """Return the undecided boxes, without those beside the line that are proved to be empty.
 
-        `normals` (S, 3) are those of the query, with the indices `open_.numbers`.
+        `open_.numbers` are indices of the normals (S, 3) of the query.
         """
         sides = open_.boxes.copy()
         low, high = sides.reshape(-1, 2, 2)[:, self.axis].T

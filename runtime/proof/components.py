@@ -19,8 +19,8 @@ from .kernels.answers import CURVE, ISOLATED, OPEN_BOX, WHERE, Answers
 from .kernels.degree import LARGEST
 from .kernels.sorting import Sorted
 
-# Two boxes touch if their distance is at most the larger of their widths, or at most this share of
-# the domain.
+# Two boxes count as touching if their distance is at most the larger of their widths, or at most
+# this share of the domain.
 NEAR = 3e-6
 
 

@@ -200,7 +200,8 @@ class Pole:
         )
         by_u, by_r = bounds.by_q
         condition = by_u * bounds.along[0] + by_r * bounds.along[1]
-        # Errors of x, x_u and x_r: those of h, and those of q1 and q2 times the slope.
+        # Errors of h, of h_u and of h_r; to each, the error of the vector (q1, q2), or of its
+        # derivative by u or r, is added, times the slope.
         of_q = np.linalg.norm(found[0, :3, :2], axis=1)
         value, around, away = (found[0, :3, 2] + bounds.slope * of_q).tolist()
         plane = self.basis[:, :2]

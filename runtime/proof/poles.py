@@ -26,7 +26,7 @@ WIDEST, SMALLEST = 0.05, 2.0**-8
 # The positions of Taylor coefficients.
 U1, V1, U1V1 = 1, 2, 4
 ROUNDING = 2.0**-40
-# A cap is in a plane if its normals at PLACES² points differ by at most SMOOTH.
+# A cap counts as lying in a plane if its normals at PLACES² points differ by at most SMOOTH.
 PLACES, SMOOTH = 16, 1e-9
 
 

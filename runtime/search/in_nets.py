@@ -45,8 +45,8 @@ ALL = slice(None)
 TURNED = tuple(
     (x.end, k, x.start, x.end_beside, x.middle, x.start_beside) for k, x in enumerate(EDGES)
 )
-# At a singular point: the least cosine between the requested normal and the normal of the patch
-# next to the point, for which the point is accepted.
+# A singular point is accepted if the angle between the requested normal and the normal of the patch
+# next to the point has a cosine above this.
 SAME_NORMAL = 0.999
 # Normals whose distance from the normal of a pole is less than this are decided by wedges. It is
 # far more than the angle at which rounding of forms matters (1e-14), and far less than the size of

@@ -40,7 +40,7 @@ PATCHES_AT_A_TIME = 1 << 14
 def find(
     spline: AnySpline, normals: Array, threads: int | None = None, progress: bool = False
 ) -> Hits:
-    """Return all hits: the pairs of a patch and one of the unit normals (S, 3), which it has."""
+    """Return all hits: pairs of one of the unit normals (S, 3) and a patch that has this normal."""
     check_memory("search", len(normals))
     return Hits.joined(list(find_in_turn(spline, normals, threads, progress)))
 

@@ -61,5 +61,5 @@ class CellMeasure:
         return float(self.areas[~self.curved(density)].sum()) / total if total > 0.0 else 1.0
 
     def curved_solid_angle(self, density: float) -> float:
-        """Return the solid angle of the Gaussian image of curved cells, with multiplicity."""
+        """Return the sum of the solid angles of the Gaussian images of curved cells."""
         return float(self.solid_angles[self.curved(density)].sum())
