@@ -16,9 +16,9 @@ GAUSS = 1.0 / math.sqrt(3.0)
 
 @jit
 def signed_solid_angles(jets, size, frame, found):
-    """Write K times the area element of a cell (k,) at 2-jets (k, 6, 3), 0 at singular points.
+    """Write K times the area element at points with the 2-jets (k, 6, 3); 0 at singular points.
 
-    Lengths are multiplied by `size`.
+    Area elements are for the parameters in units of cells; lengths are multiplied by `size`.
     """
     for k in range(jets.shape[0]):
         patch = patch_of_jet(jets, k, size, frame[2], frame[3])

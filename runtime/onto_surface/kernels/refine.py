@@ -27,7 +27,7 @@ NOT_FOUND, FOUND = 0, 1
 # In cells of the spline: the largest length of a step, and of all steps together. A point farther
 # away belongs to another sample.
 LONGEST_STEP, FARTHEST = 1.0, 3.0
-# The part of a step that is undone if it does not reduce the angle.
+# The part of a step that is undone if the step does not reduce the angle.
 TAKEN_BACK = 0.5
 # The iteration fails if the squared sine of the angle is not below this part of the previous one.
 SLOW = 0.25

@@ -32,7 +32,8 @@ HOT = 17
 # The columns of `noise`: rounding errors of x_s, of x_t, and of second derivatives; how far bounds
 # hold; the tolerances of n·x_s and of n·x_t at joints.
 FIRST_S, FIRST_T, SECOND, REACH, TOLERANCE_S, TOLERANCE_T = range(6)
-# The first of three columns each: remainders of the coordinates of x_s, and of x_t.
+# In `noise`: the first of the three columns with bounds of the remainder of x_s, and the first of
+# the three columns for x_t.
 LEFT_S, LEFT_T = 6, 9
 NOISE = 12
 # Normals of both sides of a joint differ by at most this angle, in radians.
@@ -40,10 +41,10 @@ SMOOTH = 1e-9
 # Chords of cones: above WIDE, the half angle is too wide to tell n from −n; OPEN means that normals
 # have no bound.
 WIDE, OPEN = 1.3, 2.1
-# A cell is regular if the contraction factors of Newton's simplified method are below this, for the
-# directions of the Bernstein ordinates of its normals.
+# A cell counts as regular if the contraction factors of Newton's simplified method are below this,
+# for the directions of the Bernstein ordinates of its normals.
 REGULAR = 0.8
-# A Hessian counts as singular if its determinant, relative to its entries, is smaller than this.
+# A Hessian whose determinant is smaller than this, relative to its entries, counts as singular.
 FLAT = 1e-9
 
 
@@ -447,7 +448,8 @@ def write_cone(cells, j):
         )
         tangent = max(tangent, (length(off) + error) / (height - error))
     cosine = 1.0 / math.sqrt(1.0 + tangent * tangent)
-    # 2 − 2 cos = 2 tan² cos² / (1 + cos); and the rounding of a squared distance of unit vectors.
+    # The square of the chord is 2 − 2 cos = 2 tan² cos² / (1 + cos). It is enlarged by the rounding
+    # error of the square of a distance between unit vectors.
     square = 2.0 * (tangent * cosine) ** 2 / (1.0 + cosine)
     cone[j, 3] = math.sqrt(square * (1.0 + 16.0 * EPS) + 32.0 * EPS)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...machine_code.jit import inline, loop
 
-# Boxes touch if their distance is at most this multiple of their size.
+# Boxes count as touching if their distance is at most this multiple of their size.
 TOUCHING = 1e-6
 
 

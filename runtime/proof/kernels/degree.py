@@ -67,11 +67,11 @@ PATH = 6
 # How a box lies along a parameter: inside of the domain, over a whole period, at the lower or at
 # the upper end of the domain.
 INSIDE, SEAM, BEFORE, AFTER = range(4)
-# A hull is small if it is at most LARGEST times the domain. Its index is computed along the border
-# of a larger box, since the gradient is too small next to the hull. On each side the box is larger
-# by a fraction of the domain (those in AROUND are tried in turn) or, if that is more, by GROWN
-# times the hull. For a large hull only fractions from FAR on are tried, and BEYOND replaces GROWN.
-# The border has up to LANES cells, whose half width across the border is THIN times the box.
+# A hull counts as small if it is at most LARGEST times the domain. Its index is computed along the
+# border of a larger box, since the gradient is too small next to the hull. On each side the box is
+# larger by a fraction of the domain (those in AROUND are tried in turn) or, if that is more, by
+# GROWN times the hull. For a large hull only fractions from FAR on are tried, and BEYOND replaces
+# GROWN. The border has up to LANES cells, whose half width across the border is THIN times the box.
 LARGEST, AROUND, THIN = 0.01, (3e-6, 1e-4, 1e-3, 1e-2, 3e-2), 2.0**-7
 FAR, BEYOND = 1e-2, 0.1
 

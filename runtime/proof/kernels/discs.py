@@ -245,7 +245,7 @@ def decide_discs(tape, work, disc, normals, numbers, first, last, domain, answer
             row[2 + angle] = min(frame[BY_U] * error / (r - of_r), 0.5 * turn)
         row[2 + angle] += 4.0 * EPS * (abs(start) + turn)
         row[4] = d
-        # The box is the whole disc: all angles, and beyond the pole.
+        # The box without other solutions is the whole disc: all angles, and r < 0 beyond the pole.
         row[5 + 2 * angle], row[6 + 2 * angle] = start - 2.0 * turn, start + 3.0 * turn
         edge, beyond = end + inward * frame[WHOLE] * size, end - inward * size
         row[7 - 2 * angle], row[8 - 2 * angle] = min(edge, beyond), max(edge, beyond)

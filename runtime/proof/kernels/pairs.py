@@ -41,7 +41,7 @@ ROWS = 39
 # States of a pair: no solution; one solution; another evaluation is needed; not decided here; one
 # solution, near a side of the cell.
 NONE, ONE, MORE, HARD, EDGE = 0.0, 1.0, 2.0, 3.0, 4.0
-# The largest allowed product of the inverse of the Hessian with its change.
+# The largest allowed product of the inverse of the Hessian with the change of the Hessian.
 CONTRACTING = 0.95
 # A solution is accurate enough if its error bound is below this multiple of the rounding error.
 CLOSE = 4.0

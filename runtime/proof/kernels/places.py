@@ -69,16 +69,16 @@ DEEPEST, FOLDS = 24, (1, 4, 8, 14, 19)
 # count as a curve if their number grows by more than the factor GROWTH on TIMES consecutive levels.
 # At most MOST cells and 4 MOST boxes are processed.
 MANY, GROWTH, TIMES, MOST = 256, 1.6, 3, 1024
-# The columns of boxes: u, v, the index of a cell, and half the widths relative to the cell's.
+# The columns of boxes: u, v, the index of a cell, half the widths relative to those of the cell.
 BOX_COLUMNS = 5
 # A box is cut into two if one side is more than SLENDER times as long as the other, relative to the
 # sides of its cell.
 # Contraction leaves at least the part SHRUNK of a side, so that clusters have a width.
 SLENDER, SHRUNK = 4.0, 2.0**-5
-# A cluster is a curve of solutions if from the centre of each of its boxes (of CHECKED boxes, if
-# there are more) at most SETTLING steps lead to a solution within BESIDE half widths. A Hessian
-# counts as one of rank 1 if its determinant is less than RANK times the square of its larger
-# eigenvalue.
+# A cluster counts as a curve of solutions if from the centre of each of its boxes (of CHECKED
+# boxes, if there are more) at most SETTLING steps lead to a solution within BESIDE half widths. A
+# Hessian counts as one of rank 1 if its determinant is less than RANK times the square of its
+# larger eigenvalue.
 SETTLING, CHECKED, BESIDE, RANK = 32, 64, 4.0, 1e-4
 # From this level on, boxes may be open because of rounding if their number more than doubles on a
 # level.
@@ -290,7 +290,10 @@ def decide_clusters(tape, work, index, boxes, count, domain, number, n, last, an
 
 @loop
 def give_up(tape, work, index, boxes, rows, count, domain, number, n, answers):
-    """List all undecided boxes, the first `count` rows, as clusters; return if there was room."""
+    """List the undecided boxes, which are the first `count` rows, as clusters.
+
+    Return whether there was room.
+    """
     cells = index.cells
     hulls = cluster(rows, count, cells, domain[4:], boxes.hulls, boxes.owner)
     for i in range(hulls):

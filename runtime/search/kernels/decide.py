@@ -150,7 +150,7 @@ def note(D, U, V, W, forms, signs):
 
 @inline
 def exact_forms(patch, n, forms, signs):
-    """Write D, U, V to `forms` (3,) and the signs of U, V, W to `signs` (3,), all 0 before.
+    """Write D, U, V to `forms` (3,) and the signs of U, V, W to `signs` (3,), both 0 at first.
 
     If a zero among U, V, W leaves undecided whether the patch has the normal, the normal is
     displaced to n + (ε₁, ε₂, ε₃), with n ≫ ε₁ ≫ ε₂ ≫ ε₃ ≫ ε₁². A form is then a sum of ten

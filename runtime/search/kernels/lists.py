@@ -134,7 +134,7 @@ def direction(inverse, face, s, t):
 
 @jit
 def write_caps(inverse, faces, level, caps):
-    """Write a cap that contains each bin: its axis, and its radius as a chord."""
+    """For each bin, write a cap that contains the bin: axis and radius, the latter as a chord."""
     grid = np.int64(1) << level
     half = 1.0 / grid
     for k in range(faces):
@@ -210,7 +210,7 @@ def list_pieces(cones, caps, frame, faces, level, stretch, least, keys):
 
 @jit
 def count_keys(keys, shift, starts):
-    """Add the number of keys with the leading bits b to starts[b + 1]."""
+    """For each value b of leading bits, add the number of keys with these bits to starts[b + 1]."""
     for k in range(keys.size):
         starts[np.uint64((keys[k] >> shift) + 1)] += 1
 

@@ -169,7 +169,7 @@ def weighted(builder: Any, weight: Any, x: Any) -> Any:
 
 @operation(operator.mul, Wide, Wide)
 def product(builder: Any, x: Any, y: Any) -> Any:
-    """Emit a call of the product function of these types."""
+    """Emit a call of the function that multiplies two numbers of these types."""
     name = f"wide_product_{x.type.width}_{y.type.width}"
     function = builder.module.globals.get(name)
     if function is None:

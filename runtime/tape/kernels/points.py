@@ -135,10 +135,10 @@ def multiply(registers, a, b, at, count):
 
 @loop
 def compose(registers, a, at, count):
-    """Write a function of a register to another register.
+    """Apply a function to the register at `a`, and write the result to the register at `at`.
 
-    Before, the slots of 1, u and v of the result have the value f of the function and its Taylor
-    coefficients f1 and f2, at the value of the first register.
+    Before the call, the result has in its slots of 1, u and v the value of the function and its
+    Taylor coefficients f1 and f2, at the value of the first register.
     """
     for k in range(count):
         x = taylor_at(registers, a, k)
