@@ -21,8 +21,8 @@ from ..surface.surface import Surface
 Whole = TypeVar("Whole", Spline, Surface)
 Evaluated = Callable[[Array, Array], Array]
 
-# The boundary of a condition is searched in a cell if it may come closer to the centre of the cell
-# than AROUND times the distance of the farthest corner.
+# The boundary of a condition is searched in a cell if it may come close to the centre of the cell:
+# closer than AROUND times the distance between the centre and the farthest corner.
 AROUND = 1.25
 
 

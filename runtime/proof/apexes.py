@@ -62,9 +62,10 @@ class Apex:
 
         Such a side is where a surface goes only part of the way around a smooth pole. The results
         are the remaining boxes, rows (k, 6) of `ProvedPlaces.places`, and the indices (k,) of their
-        normals. A box beside the side is decided if the normals at its far side are different from
-        that of the side, and K has one sign there: it has the point of the side if its normal is
-        that of the side, and no point if it is another one.
+        normals. A box beside the side can be decided if the normals at its far side are different
+        from the normal of the side, and K has one sign there. Then it contains the point of the
+        side if its normal is that of the side, and no point if its normal differs more than twice
+        as much as the normals at the far side. Otherwise it remains undecided.
         """
         sides = open_.boxes.reshape(-1, 2, 2)
         away = np.abs(sides[:, self.axis] - self.end)

@@ -136,8 +136,8 @@ def with_kinds(open_: Undecided, around: Array, places: Sorted, domain: Array) -
 def _others(number: int, path: Array, boxes: Array, places: Sorted, periods: Array) -> float:
     """Return the sum of the indices of the regular points inside a path around a component.
 
-    They are those with the normal of index `number` in the box `path` (4,). The sum is NaN if this
-    box meets more than one of the boxes (k, 4) of components.
+    These points have the normal with the index `number`, and lie in the box `path` (4,). The sum is
+    NaN if this box meets more than one of the boxes (k, 4) of components.
     """
     low, high = path[0::2], path[1::2]
 

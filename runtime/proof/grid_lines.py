@@ -89,10 +89,10 @@ def creases_of(
 def _with_seam(
     tape: Tape, axis: int, domain: Domain, boundary: Boundary, jumps: Sequence[float]
 ) -> list[tuple[float, float]]:
-    """Return the parameter of each line, from below and from above.
+    """For each line, return the parameter at its lower side and the parameter at its upper side.
 
-    The lines are those at `jumps`, where both numbers are equal, and the seam of a periodic spline,
-    where they are the upper and the lower bound of the domain.
+    They are equal for the lines at `jumps`. At the seam of a periodic spline they are the upper and
+    the lower bound of the domain.
     """
     lines = [(x, x) for x in jumps]
     if boundary[axis][0] == "periodic" and len(tape.spline.breaks_u) > 0:

@@ -374,8 +374,8 @@ class ProvedIndex:
         """Return each solution of `answers` once, without those in `parts`, and undecided boxes.
 
         `parts` are the solutions found without bisection, and `count` is the number of normals. If
-        two solutions may or may not be the same, their boxes are undecided: they are in the answers
-        that are returned.
+        it is unknown whether two solutions are the same, their boxes are undecided boxes of the
+        answers that are returned.
         """
         slow = np.concatenate([x.places for x in answers])
         of_slow = np.concatenate([x.numbers for x in answers])

@@ -100,7 +100,8 @@ def poles_of(tape: Tape, domain: Domain, boundary: Boundary, cells: tuple[int, i
 def _cap_of(tape: Tape, domain: Domain, angle: int, end: float, size: float) -> Cap | None:
     """Return the cap around a pole, of at most `size`; None if its normals have no bounds.
 
-    `angle` is the index of the parameter that runs around the pole; the other one is `end` there.
+    `angle` is the index of the parameter that runs around the pole; the other parameter has the
+    value `end` at the pole.
     """
     inward = 1.0 if end == domain[1 - angle][0] else -1.0
     smallest = SMALLEST * size
