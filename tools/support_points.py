@@ -193,10 +193,11 @@ def _farthest(gauss_map: GaussMap, normals: Array) -> SupportPoints:
 
 
 def _compare_with_splines(found: SupportPoints, gauss_map: GaussMap, normals: Array) -> None:
-    """Raise the errors to bounds that follow from splines: their values plus their distances.
+    """Raise the errors to the bounds that the splines of the surface give.
 
-    The distances are those of the splines from the surface. Points of the surface at the parameters
-    of farthest points of splines are added first.
+    A bound is the largest n·x on a spline plus the distance of the spline from the surface, less
+    the value found. Before that, points of the surface at the parameters of the farthest points of
+    splines are added.
     """
     on_splines = [(x, _farthest(kept_map(x.spline), normals)) for x in on_grids(gauss_map._fitted)]
     for piece, near in on_splines:

@@ -70,7 +70,8 @@ class Clouds:
         """
         if self.seed is None:
             return np.arange(self.points, dtype=np.int64) % count
-        # The key includes the length of the seed; otherwise (1,) and (1, 0) would be the same.
+        # The key includes the length of the seed; otherwise the seeds (1,) and (1, 0) would draw
+        # the same points.
         key = (len(self.seed), 0, part)
         rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=key))
         if count >= self.points:

@@ -95,8 +95,8 @@ def _faces_above(
 ) -> dict[int, set[int]]:
     """Return, for each damaged entity (root), the set of faces that refer to it.
 
-    A face may refer to it directly or through other entities. Roots and faces are given by their
-    entity numbers.
+    A face may refer to a root directly or through other entities. Roots and faces are given by
+    their entity numbers.
     """
     users: dict[int, list[int]] = {}
     for k, every in references.items():

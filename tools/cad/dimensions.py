@@ -41,8 +41,8 @@ def dimensions_of(
 def _cone(origin: Array, z: Array, sizes: Sequence[float], v: float) -> Dimensions:
     """Return the dimensions of a cone; an empty dict if its angle is zero.
 
-    `v` is the middle of the domain along v. It tells which nappe of the cone is the face: the axis
-    points from the apex to this nappe.
+    `v` is the middle of the domain along v. It tells on which nappe of the cone the face lies: the
+    axis points from the apex to this nappe.
     """
     radius, angle = sizes
     if angle == 0.0:

@@ -28,7 +28,7 @@ from .sewing import Border, Sewn, sewn
 from .shells import shells_of
 from .surface_geometry import geometry_of_surface
 
-# Boundaries coincide within this distance, relative to the size of all surfaces.
+# Boundaries count as coincident within this distance, relative to the size of all surfaces.
 TOLERANCE = 1e-6
 
 

@@ -134,7 +134,7 @@ def is_part_file(source: str | None) -> bool:
 
     The suffix of the path, the first bytes of the file or the names of its arrays decide.
 
-    `read_cad` goes by the content of files, and takes any suffix.
+    Unlike this function, `read_cad` decides by the content of a file alone, whatever its suffix.
     """
     if source is None:
         return False

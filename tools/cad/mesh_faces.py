@@ -14,7 +14,7 @@ from .mesh_edges import SampledEdges
 # Shapely's constrained triangulations have no interior points; SciPy's have no constraints; the
 # library `triangle` is not free for all uses. The predicates of pythoncdt are exact.
 EXTRA = "pythoncdt", "mesh", "a mesh of a CAD part"
-# Parameter pairs closer than this, relative to the face, are equal.
+# Parameter pairs closer than this, relative to the face, count as equal.
 SAME = 1e-11
 
 

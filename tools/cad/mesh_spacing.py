@@ -32,14 +32,15 @@ PLACES = 33
 # A face counts as ruled if its normals turn by less than this along a parameter, in radians. A
 # straight edge as long as the part takes as many vertices as a turn of normals by this angle.
 RULED = 1e-6
-# Between two values of a parameter, the angle of the normal counts as at least their distance,
-# relative to the domain, times LEAST times the larger one of the total angles along u and along v.
+# Between two values of a parameter, the normal counts as turning by at least LEAST times the larger
+# one of the total angles along u and along v, times the difference of the values relative to the
+# domain.
 LEAST = 1e-3
 # The weight of the turning angle of an edge, relative to the angles of normals.
 CURVED = 0.5
 # The largest step, relative to the mean step.
 LONGEST = 3.0
-# The distance between the planes of different faces, in radians.
+# The planes of different faces are parallel to one another, at this distance, in radians.
 APART = 100.0
 
 

@@ -17,8 +17,8 @@ from .records import Net
 
 Array = NDArray[np.float64]
 
-# Ends of domains closer than this, relative to the period or the length, are equal: CAD systems
-# compare parameters to 1e-9, and faces leave larger gaps along their seams.
+# Ends of domains closer than this, relative to the period or the length, count as equal: CAD
+# systems compare parameters to 1e-9, and faces leave larger gaps along their seams.
 SAME_END = 1e-7
 
 

@@ -273,7 +273,7 @@ def _cut(
 
 
 def _lines(spans: Sequence[Span], tolerance: float) -> list[dict[Span, bool]]:
-    """Group spans that coincide: the value of a span is True if it runs against the first one."""
+    """Return groups of coincident spans, with True for a span that runs against the first one."""
     lines, between = list[dict[Span, bool]](), defaultdict[Any, list[dict[Span, bool]]](list)
     for span in spans:
         # Spans that are collapsed to points share only vertices.

@@ -204,7 +204,7 @@ def _arcs_of(curve: Curve) -> CurveArcs | None:
 
 
 def _kinds(tape: Tape, intervals: Array) -> NDArray[np.int8]:
-    """Return the kinds (k,) of intervals (k, 2), plus 4 where they should be halved."""
+    """Return the kinds (k,) of intervals (k, 2), plus 4 for intervals that should be halved."""
     centres = intervals.mean(axis=1)
     half = np.maximum(intervals[:, 1] - centres, centres - intervals[:, 0])
     zero = np.zeros_like(half)

@@ -20,7 +20,7 @@ ACROSS = 8
 JUMP, REMAINS, BISECTIONS = 0.1, 0.4, 8
 # Intervals are divided at this part, and not at 1/2, which by symmetry may be exactly where K = 0.
 HALF = 0.47
-# On a break, K changes its sign along at least this part of the line.
+# K counts as changing its sign on a line if it does so along at least this part of the line.
 ALONG = 0.75
 # |K| below this part of its maximum counts as 0.
 FLAT = 1e-6

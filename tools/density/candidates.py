@@ -128,7 +128,7 @@ class Block:
     """A part of the candidates, with its own hash grids."""
 
     def __init__(self, rows: Array, radius: float, order: Numbers, candidates: Array) -> None:
-        """Write sorted rows to `candidates`, of the same shape, and their indices to `order`."""
+        """Sort rows into grids: write them to `candidates`, and their indices to `order`."""
         count = len(rows)
         box, sizes = np.empty((2, 3)), np.zeros(LEVELS)
         finest, coarsest = measure(rows, box, sizes)

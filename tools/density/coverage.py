@@ -72,7 +72,7 @@ class _Distances:
         normals = rows[:, 3:6]
         cosines = np.einsum("mx,mx->m", normals, self.samples[nearest, 3:])
         left = np.flatnonzero((cosines < SAME_SIDE) & normals.any(axis=1))
-        # The nearest sample is on the other side of a wall or of an edge.
+        # For these points, the nearest sample is on the other side of a wall or of an edge.
         radius = math.sqrt(self.space.area / len(self.samples)) or 1.0
         while len(left) and radius < 2.0 * self.space.size:
             candidates = Candidates(rows[left], radius, self.space.threads)

@@ -69,7 +69,7 @@ FOR_NORMALS = 0.05
 NORMALS_APART, CANDIDATES = 0.2, 200_000
 # The smallest chord between the normals of the candidates for such samples.
 LEAST_CHORD = math.radians(0.5)
-# Normals of samples are distinct if they differ when rounded to this number of decimals.
+# Normals of samples count as distinct if they differ when rounded to this number of decimals.
 DIGITS = 6
 # Each piece gets a sample if there are at least this many samples per piece.
 SAMPLES_A_PIECE = 2

@@ -107,8 +107,8 @@ def _density(density: str | float | None, default: str) -> str | float:
 def _check_that_they_fit(density: str | float, given: list[str]) -> None:
     """Raise InputError for a count, angle or coverage that a density does not support."""
     fitting = {
-        # No angle: next to open boundaries, normals alone leave gaps wider than their covering
-        # radius.
+        # An angle is not supported: next to open boundaries, normals alone leave gaps wider than
+        # their covering radius.
         "gauss": [["normals"], ["count"]],
         "balanced": BALANCED,
         "aligned": [x for x in BALANCED if "normals" not in x],

@@ -151,7 +151,7 @@ class Trims:
     @cached_property
     def _joined(self) -> Joined:
         """The cells of all loops, and their shifts, concatenated."""
-        # Loops do not cache their own cells, which take as much memory.
+        # The cells of single loops are not cached, since they would take as much memory again.
         cells, shifts = zip(*(x.in_cells() for x in self._loops), strict=True)
         segments = _starts(x.segments for x in cells)
         return Joined(

@@ -69,7 +69,7 @@ def units_of(samples: Samples) -> dict[str, str]:
 
 
 def names_with_units(samples: Samples) -> list[str]:
-    """Return the names of columns, which contain known units of lengths and curvatures."""
+    """Return the names of columns, with the unit in names of lengths and curvatures, if known."""
     units, known = units_of(samples), samples.report.unit is not None
     return [
         f"{column} [{units[name]}]" if known and "L" in UNITS.get(name, "") else column

@@ -39,10 +39,11 @@ def checked_crs(crs: str | int | None, name: str) -> Any:  # noqa: ANN401
 
 
 def target_crs(source: Any, target: Any, x: Array, y: Array, name: str) -> Any:  # noqa: ANN401
-    """Return the CRS of points, which has lengths: `target` if given, else `source`, else UTM.
+    """Return the CRS of points, whose coordinates are lengths, not degrees.
 
-    x and y are coordinates in `source`; UTM is used if `source` has degrees. The result is None if
-    neither is given. Raises InputError if `target` has degrees, or if no zone of UTM fits.
+    It is `target` if given; else `source` or, if `source` has degrees, UTM. x and y are coordinates
+    in `source`. The result is None if neither is given. Raises InputError if `target` has degrees,
+    or if no zone of UTM fits.
     """
     if target is not None and target.is_geographic:
         raise InputError(

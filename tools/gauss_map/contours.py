@@ -119,7 +119,7 @@ def _segments(spline: Spline, view: View) -> tuple[Array, Indices, list[bool], F
 
 
 def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
-    """Return the index of the nearest segment of each position (k, 2), and its foot, 0 to 1."""
+    """Return the indices of the nearest segments of positions (k, 2), and the feet, from 0 to 1."""
     number = min(CANDIDATES, len(ends))
     near = tree_of(ends.mean(axis=1)).query(places, k=number)[1].reshape(len(places), number)
     start, step = ends[near, 0], ends[near, 1] - ends[near, 0]

@@ -19,7 +19,7 @@ from ...runtime.surface.derivatives import normals_of_jets
 from .polylines import distances, refined
 
 OfPlaces = Callable[[Array], Array]
-# Curves whose ends are closer than this, relative to their size, are closed.
+# Curves whose ends are closer than this, relative to their size, count as closed.
 CLOSED = 1e-6
 # The point whose normal is nearest to a given one is searched among PLACES points of a curve,
 # between the two neighbours of the nearest vertex; ROUNDS times in all, each time between the two

@@ -27,7 +27,8 @@ from .parabolic import checked_tolerance, traced_curves
 PARTS_OF_SIDE = 16
 # The tolerance of the curves to which angles are measured.
 TOLERANCE = 1e-3
-# Parameter pairs within this distance of a boundary, relative to the domain, are on it.
+# Parameter pairs within this distance of a boundary, relative to the domain, count as points of the
+# boundary.
 ON_BORDER = 1e-9
 
 

@@ -240,7 +240,10 @@ def _normal_at(patch: Patches, place: Array) -> Array:
 
 
 def _directions(patch: Patches) -> list[tuple[float, float, int]]:
-    """Return s, t, of unit length, and the multiplicity of all real parabolic lines."""
+    """Return the coefficients s, t of all real parabolic lines, and their multiplicities.
+
+    (s, t) are unit vectors.
+    """
     angle, roots = _roots(patch)
     angles = [math.atan2(1.0, float(x.real)) + angle for x in roots if abs(x.imag) <= DOUBLE_ROOT]
     return [(math.cos(x), math.sin(x), count) for x, count in _merged(sorted(angles))]
@@ -276,7 +279,7 @@ def _turned(coefficients: Array, angle: float) -> Array:
 
 
 def _merged(angles: list[float]) -> list[tuple[float, int]]:
-    """Merge directions that are nearly equal, given as angles; return means and numbers."""
+    """Group nearly equal angles, given in order; return the mean and the size of each group."""
     groups: list[list[float]] = []
     for angle in angles:
         if groups and angle - groups[-1][-1] <= DOUBLE_ROOT:

@@ -14,7 +14,7 @@ from .sign_changes import with_borders
 # Nodes are shifted by this share of a cell, so that curves on lines of symmetry do not pass through
 # them.
 OFFSET = 0.2360679774997897
-# K is known where its error is below this, relative to |K| or to 1 plus the median of |K|.
+# K counts as known where its error is below this, relative to |K| or to 1 plus the median of |K|.
 RESOLVED = 1e-2
 TINY = float(np.finfo(float).tiny)
 

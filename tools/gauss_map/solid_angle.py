@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 # The least cosine between the normals of one triangle and their mean; wider triangles are
 # subdivided.
 NARROW = 0.5
-# A sum of unit normals shorter than this has no direction.
+# A sum of unit normals shorter than this counts as having no direction.
 SMALL = 1e-9
 # Around a singular point inside a triangle, wide triangles remain at any depth. Triangles that are
 # wide after DEPTH subdivisions are omitted: a solid angle of about 2^-26 (deeper, rounding errors

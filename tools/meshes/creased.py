@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...runtime.base.checks import checked_array
 from .mesh import Mesh
 
-# Normals at a point are equal if they agree to this number of decimals.
+# Normals at a point count as equal if they agree to this number of decimals.
 DIGITS = 9
 # These fields have defaults only because the last fields of `Mesh` have defaults.
 _GIVEN: Any = None

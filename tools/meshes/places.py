@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# A position within this distance of an open side or a pole, relative to the domain, lies on it.
+# A position within this distance of an open side or a pole, relative to the domain, counts as a
+# position on the side or at the pole.
 ON_SIDE = 1e-9
 # The spacing of points on a boundary follows from the distance to the k-th nearest sample, with
 # this k.

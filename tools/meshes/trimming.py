@@ -26,8 +26,8 @@ Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 Triangulate = Callable[[Vertices], tuple[Indices, Indices, Indices]]
 
-# A sample closer to the boundary than this, relative to the spacing of samples, lies on it: the
-# chords of the boundary are about as close to its curves.
+# A sample closer to the boundary than this, relative to the spacing of samples, counts as a sample
+# on the boundary: the chords of the boundary are about as close to its curves.
 ON_LINE = 5e-3
 # About as many points fill the outside as there are vertices, but at least FEWEST and at most MOST.
 # Their distance from the boundary is at least AWAY, relative to the gaps between its vertices; the

@@ -28,7 +28,8 @@ Indices = NDArray[np.int64]
 
 # The least number of steps per cell in which an open side is measured.
 STEPS_A_CELL = 16
-# A sample closer to an open side than this, relative to the spacing, lies on it.
+# A sample closer to an open side than this, relative to the spacing, counts as a sample on the
+# side.
 ON_LINE = 1e-6
 # Of samples closer to each other than this, relative to their mean distance in the domain, only the
 # first one is a vertex: triangulations displace points by a tenth of this distance.

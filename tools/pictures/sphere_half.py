@@ -79,7 +79,7 @@ def draw_sphere(
 
 
 def _kinds(samples: Samples, normals: NDArray[np.float64]) -> list[_Kind]:
-    """Return the normals of each kind; each prescribed normal is in one kind, and there once."""
+    """Return the normals of each kind; each prescribed normal occurs once, in one of the kinds."""
     index, kind = samples.normal_index, samples.kind
     found, first = np.unique(index[index >= 0], return_index=True)
     missed = np.ones(len(normals), dtype=bool)

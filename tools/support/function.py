@@ -432,8 +432,8 @@ class SupportFunction:
     def scaled(self, factor: float) -> SupportFunction:
         """Return s h: the surface of the points s x.
 
-        For s < 0 the points are also reflected in the origin, and keep their normals (as p_u × p_v
-        does): the radii change sign.
+        For s < 0 the points are also reflected in the origin, and keep their normals, since p_u ×
+        p_v is multiplied by s² > 0. So the radii change sign.
 
         Parameters
         ----------

@@ -25,7 +25,8 @@ from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface
 from ..sampling.sample import sample
 
-# For fields of an offset, the other fields of the samples from which they are computed.
+# For each of these fields of an offset, the field of the samples that its computation needs besides
+# the field itself.
 NEEDED = {
     "points": ("normals",),
     "gaussian_curvature": ("mean_curvature",),
@@ -134,7 +135,7 @@ def _curvatures(samples: Samples, d: float) -> dict[str, Array]:
 
 
 def folded(samples: Samples, distance: float) -> Flags:
-    """Return whether an offset folds at samples, or the samples are singular: K is infinite."""
+    """Return a mask of samples at which an offset folds, or which are singular: K is infinite."""
     with np.errstate(all="ignore"):
         return _growth(samples, distance)[1] | np.isinf(samples.gaussian_curvature)
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 Vector = NDArray[np.float64]
 
-# A sum that is smaller than its terms by this factor suffers from cancellation.
+# A sum counts as affected by cancellation if it is smaller than its terms by this factor.
 CANCELLED = math.ldexp(1.0, -20)
 
 

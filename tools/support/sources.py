@@ -53,8 +53,8 @@ class Source(Protocol):
         ...
 
 
-# At a pole, |x_u × x_v| is below this part of the larger of |x_u|² and |x_v|². Three rays leave the
-# pole, at these fractions of a turn from the given point.
+# A point counts as a pole if |x_u × x_v| is below this part of the larger of |x_u|² and |x_v|².
+# Three rays leave the pole, at these fractions of a turn from the given point.
 COLLAPSED, RAYS = 1e-7, (0.0, 1 / 3, 2 / 3)
 
 

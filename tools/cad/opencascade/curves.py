@@ -24,7 +24,7 @@ DEGREE, MOST_SPANS = 13, 1024
 ROUNDING = 4e-15
 # The length of the extension of a line beyond its domain, relative to the domain.
 BEYOND = 0.1
-# Parameters are equal up to this distance, relative to the period.
+# Parameters count as equal up to this distance, relative to the period.
 SAME = 1e-9
 
 

@@ -30,7 +30,7 @@ OF_BOX, OF_WIDTH, LEAST = 1e-4, 1e-3, 1e-7
 # Wider gaps between consecutive curves, relative to the box, are errors unless the tolerances of
 # the edges allow them.
 GAP = 1e-2
-# Points are equal up to this distance, relative to the box.
+# Points count as equal up to this distance, relative to the box.
 SAME = 1e-12
 # Numbers of at least this modulus stand for infinity in Open CASCADE.
 INFINITE = 1e50
