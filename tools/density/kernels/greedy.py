@@ -14,7 +14,8 @@ from ....runtime.directions.kernels.vectors import dot, row_vector
 from ....runtime.machine_code.jit import inline, jit, loop
 from .hash_grids import CELL, DENSITY, NORMAL, SQUARE, bucket_of
 
-# The cosine of the largest angle between normals on the same side of a surface.
+# Two points are on the same side of the surface if the cosine of the angle between their normals is
+# at least this: 60 degrees.
 SAME_SIDE = 0.5
 
 
