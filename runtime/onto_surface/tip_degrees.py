@@ -39,6 +39,8 @@ RAYS = 1 << 11
 PARTS, TIMES = 32, 4
 PRODUCTS_AT_A_TIME = 1 << 20
 ROUNDING = 1e-9
+# Two rays count as one if their distance is at most this.
+SAME_RAY = 1e-6
 # A side counts as collapsed if this number of its points coincide.
 ALONG = 65
 # A tip counts as inside a trim if a nearby parameter line is. The distance of this line from the
@@ -49,10 +51,9 @@ BESIDE = 1e-6
 class Fan(NamedTuple):
     """Rays (k, 3) from a point of one surface or patch, in anticlockwise order.
 
-    The rays are in anticlockwise order. `bends` (k,) are the lengths of their second differences;
-    `ray_at` returns the rays at fractional indices (m,). All normals n with n·axis < cosine have
-    the degree `outside`. On a spline of nets, the parameters are those in the patch with the index
-    `patch`.
+    `point` is its position, `uv` one of its parameter pairs; on a spline of nets, these are the
+    parameters in the patch with the index `patch`. `bends` (k,) are the lengths of the second
+    differences of the rays; `ray_at` returns the rays at fractional indices (m,).
     """
 
     point: Array
@@ -64,9 +65,9 @@ class Fan(NamedTuple):
 
 
 class Tip(NamedTuple):
-    """A tip of a surface: its position, one of its parameter pairs, and its rays (k, 3).
+    """A tip of a surface: the fans around it are joined to rays (k, 3) all around.
 
-    The rays, `bends` and `ray_at` are those of a `Fan` all around the tip. All normals n with
+    `point`, `uv`, `patch`, `bends` and `ray_at` are those of a `Fan`. All normals n with
     n·axis < cosine have the degree `outside`.
     """
 

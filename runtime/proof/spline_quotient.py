@@ -19,7 +19,6 @@ from ..tape.kernels.spline_bounds import SLACK
 from ..tape.kernels.splines import COORDINATES, Polynomials
 from ..tape.tapes import BINARY, LEAVES, TapeWriter, moved_tape
 
-
 # A side counts as collapsed if its coefficients differ by at most this many roundings of the
 # largest one.
 ROUNDINGS = 2.0**10
