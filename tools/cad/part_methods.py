@@ -1,7 +1,7 @@
 """The methods of `Part` that are defined in modules which import `Part`.
 
-Each method is loaded on first access, so that this module imports none of them. They are declared
-in `part_methods.pyi`.
+Each method is loaded on first access, so that this module imports no other module of parts.
+`part_methods.pyi` declares the methods.
 """
 
 from __future__ import annotations

@@ -187,8 +187,8 @@ class Span:
 class Sewn:
     """Edges between vertices (V, 3), and the wire along each boundary; see `EdgeRecord` and `Wire`.
 
-    `apart` is the largest distance between two edges of one face each that nearly coincide, see
-    `NEARLY`; None if there are no such edges.
+    `apart` is the largest distance between two edges that have one face each and nearly coincide
+    (see `NEARLY`); None if there are no such edges.
     """
 
     vertices: Array

@@ -17,8 +17,9 @@ from .cover import STEP, Cover
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-# Normals at candidates are covered within 1 − MARGIN of the requested angle. The rest is for points
-# between candidates: along boundaries, normals turn by this angle over half a step.
+# Normals at candidates are covered within 1 − MARGIN times the requested angle. MARGIN times this
+# angle is left for points between candidates: along boundaries, normals turn by so much over half a
+# step.
 MARGIN = 0.02
 # The radii of the greedy choice of normals fall from this multiple of the last radius.
 FIRST = 2.0

@@ -83,7 +83,7 @@ class Cells:
         return self
 
     def write(self, rows: Indices, cells: Cells) -> None:
-        """Replace the cells with the indices `rows` by as many other cells."""
+        """Replace the cells with the indices `rows` by the same number of other cells."""
         for mine, others in zip(self._arrays, cells._arrays, strict=True):
             mine[rows] = others
 

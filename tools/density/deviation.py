@@ -17,7 +17,8 @@ from .space import Space
 
 # The initial number of test points per sample, and the least number of test points.
 PLACES, FEWEST = 16, 20_000
-# Then cells that may contain a larger angle than any found so far are cut, at most this often.
+# After the first test points, cells that may contain a larger angle than any found so far are cut,
+# at most this often.
 CUTS = 6
 # At first there are at most MOST test points. If more are needed, their cells are cut further, at
 # most BLOCK of them at a time, to bound the memory.

@@ -318,7 +318,7 @@ class Filling:
         return cover
 
     def _by_count_and_coverage(self, count: int) -> Cover:
-        """Return a cover with `count` samples and the requested coverage, if so many suffice.
+        """Return a cover with `count` samples and the requested coverage, if `count` suffices.
 
         The radius is the smallest one, found by bisection, at which this coverage does not take
         more samples than the count.

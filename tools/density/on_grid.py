@@ -77,7 +77,7 @@ def _by_errors(
 def _by_count_and_distance(
     space: Space, count: int, distance: float, show_count: Callable[[int], object]
 ) -> Cover:
-    """Return a cover with `count` samples and a scaled coverage, if so many samples suffice."""
+    """Return a cover with `count` samples and a scaled coverage, if `count` samples suffice."""
     apart = min((1.0 - MARGIN) * distance, _usual_distance(space, count))
     even = space.uniform
     for part in PARTS:

@@ -46,7 +46,8 @@ def progressive_order(
 def _spacings(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the local spacing (N,) at each point, which is positive.
 
-    If most points coincide, it is at least the spacing of as many points in a square.
+    If most points coincide, it is at least the spacing of the same number of points spread evenly
+    over a square, whose side is the extent of all points.
     """
     distances = tree_of(points).query(points, k=NEIGHBOURS + 1, workers=-1)[0][:, 1:].mean(axis=1)
     least = float(np.median(distances)) * 1e-3

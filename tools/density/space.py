@@ -174,7 +174,7 @@ class Space:
 
     @property
     def distance(self) -> float:
-        """A bound of the distance between the sampled surface and that of the cells.
+        """A bound of the distance between the sampled surface and the surface of the cells.
 
         The bound is in the unit L of the surface. Cells may be evaluated on a spline.
         """

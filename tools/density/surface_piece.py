@@ -17,7 +17,9 @@ from .kernels.sizing import TargetDensity
 from .piece import Piece, boxes_between
 from .space import Space
 
-# About this number of boxes along u and along v; their sides are lines between cells.
+
+# A domain is divided into about this number of boxes along u and along v. Their sides are lines
+# between cells of the spline.
 BOXES = 32
 
 

@@ -19,9 +19,10 @@ NARROW = 0.5
 # A sum of unit normals shorter than this counts as having no direction.
 SMALL = 1e-9
 # Around a singular point inside a triangle, wide triangles remain at any depth. Triangles that are
-# wide after DEPTH subdivisions are omitted: a solid angle of about 2^-26 (deeper, rounding errors
-# are larger). Along a curve of singular points, the number of wide triangles soon exceeds
-# MOST_WIDE, and about 2^-12 is omitted. The integral along the boundary adds at most LEFT_OUT.
+# wide after DEPTH subdivisions are omitted, which loses a solid angle of about 2^-26; after more
+# subdivisions, rounding errors would be larger than this loss. Along a curve of singular points,
+# the number of wide triangles soon exceeds MOST_WIDE, and about 2^-12 is omitted. The integral
+# along the boundary adds at most LEFT_OUT.
 DEPTH = 26
 MOST_WIDE = 20_000
 LEFT_OUT = 2.0**-6

@@ -28,7 +28,8 @@ Indices = NDArray[np.int64]
 # Triangles (k, 3), and for their corners (k, 3) 1, or −1 where the corner is a mirrored copy.
 Triangulation = tuple[Indices, Indices]
 
-# The latitudes of an open side: the lowest, that of a side opposite to a pole, and the highest.
+# The latitude of an open side is between the first and the last of these; it is the second one if
+# the opposite side is a pole.
 LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
 # Random displacements of points, relative to their mean distance; the second is for a second
 # attempt. Without them, four or more points of a lattice that lie on one circle might be

@@ -43,8 +43,8 @@ def trimmed_triangles(
     """Return the vertices of a mesh, its triangles inside the trim, and their sides and neighbours.
 
     Also return whether the triangles are complete: they end only at the boundary of the surface.
-    `vertices` cover the whole domain, `points` are those of the samples, `lengths` (2,) those of
-    the surface along u and v; `triangulate` is like `_triangles` of `meshing.py`.
+    `vertices` cover the whole domain, `points` are the points of the samples, `lengths` (2,) the
+    lengths of the surface along u and v; `triangulate` is like `_triangles` of `meshing.py`.
     """
     own = vertices.chosen(vertices.sample >= 0)
     tree = tree_of(points[own.sample] * spline.scale)

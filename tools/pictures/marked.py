@@ -34,7 +34,7 @@ def marked(
 ) -> Marked | None:
     """Return a normal with many visible samples, or None if no visible sample is at a normal.
 
-    Among the normals with at least as many visible samples as the mean, the normal nearest to the
+    Among the normals with at least the mean number of visible samples, the normal nearest to the
     direction BETWEEN is chosen. The rows of `view` are the directions right, up, and towards the
     viewer.
     """

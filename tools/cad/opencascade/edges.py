@@ -61,8 +61,8 @@ def topology_of(
     """Return all edges of faces, and their order around each face.
 
     The smoothness that a file claims is often wrong, and is ignored. Faces that failed, or have an
-    edge without p-curve, have no wires. Parameters that are lengths are multiplied by `factor`, as
-    those of the faces will be.
+    edge without p-curve, have no wires. Parameters that are lengths are multiplied by `factor`; the
+    parameters of the faces themselves are multiplied later.
     """
     numbers, known, wires = indexed_shapes(), list[Known](), list[Wires]()
     for k, (face, record) in enumerate(zip(placed, faces, strict=True)):
