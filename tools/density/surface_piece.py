@@ -17,7 +17,6 @@ from .kernels.sizing import TargetDensity
 from .piece import Piece, boxes_between
 from .space import Space
 
-
 # A domain is divided into about this number of boxes along u and along v. Their sides are lines
 # between cells of the spline.
 BOXES = 32
