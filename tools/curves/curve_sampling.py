@@ -466,7 +466,8 @@ def _samples(
 def _straight_share(spline: CurveSpline | CurveArcs, normals: int) -> float:
     """Return the share of the length where κ ≈ 0, which has no samples.
 
-    An arc is straight if an arc of the same length with constant curvature would get no sample.
+    An arc counts as straight if an arc of the same length with constant curvature would get no
+    sample.
     """
     joints = spline.scale * spline.evaluate(spline.joints)
     lengths = np.hypot(*np.diff(joints, axis=0).T)

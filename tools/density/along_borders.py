@@ -40,9 +40,9 @@ class BorderLines:
 def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Array, Array]:
     """Return the closed polygons of all trimmed pieces, with vertices at most `FINE` apart.
 
-    Return the pieces (L,), starts (L + 1,) and places (k, 2) of `BorderLines`. Also return the
-    vertices (k, 2) moved into the domains, modulo periods, and for each vertex the limit (k,) of
-    the nearest one of the `first` cells.
+    The polygons are given by the pieces (L,), starts (L + 1,) and places (k, 2) of `BorderLines`.
+    Also return the vertices (k, 2) moved into the domains, modulo periods, and for each vertex the
+    limit (k,) of the nearest one of the `first` cells.
     """
     used = np.unique(first.pieces)
     numbers, lines = list[int](), [np.empty((0, 2))]

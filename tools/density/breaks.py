@@ -82,8 +82,8 @@ def _values(forms: Array, scales: Array) -> Array:
 def _changes(low: Array, high: Array) -> Array:
     """Return the changes (k,) from `low` to `high`, both (3, l, k).
 
-    The change of each of the three values is its mean over l; the largest one of the three counts.
-    K changes its sign only if it does so along most of a line; see `ALONG`.
+    The changes of each of the three values are averaged over l; the largest of the three means
+    counts. K counts as changing its sign only if it does so along most of a line; see `ALONG`.
     """
     along_u, along_v, signs = np.abs(high - low).mean(axis=1)
     return np.maximum(np.maximum(along_u, along_v), np.where(signs < 2.0 * ALONG, 0.0, signs))

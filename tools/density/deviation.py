@@ -49,8 +49,8 @@ def widest_angle(
 ) -> float:
     """Return the largest angle found from a normal of the surface to the nearest one of `normals`.
 
-    The angle is in degrees, the normals are those (N, 3) of samples. Return `least` if it is
-    larger, which saves the search for smaller angles. Cells whose places have larger angles than
+    The angle is in degrees; `normals` (N, 3) are the normals of samples. Angles below `least` are
+    not searched: if no angle is larger, return `least`. Cells whose places have larger angles than
     `least` are appended to `wider`.
     """
     if len(normals) == 0:

@@ -26,9 +26,9 @@ BOXES = 32
 class SurfacePiece(Piece):
     """A sampled surface with its spline, as a piece.
 
-    With `exactly`, candidates are evaluated from the derivatives of the surface, which are finite
-    differences if it has no others; otherwise from those of the spline. `polygons` is empty:
-    samples beside the boundary would be too close to the boundary vertices of meshes.
+    With `exactly`, candidates are evaluated from the derivatives of the surface (finite differences
+    if the surface has no others), otherwise from the derivatives of the spline. `polygons` is
+    empty: samples beside the boundary would be too close to the boundary vertices of meshes.
     """
 
     geometry: OnSpline

@@ -44,7 +44,7 @@ class CriticalZeros(NamedTuple):
 def critical_zeros(grid: SignGrid, size: float) -> CriticalZeros:
     """Return the critical points of K where it is zero.
 
-    Curves within `size` of a critical point, relative to the domain, pass through it.
+    Curves within `size` of a critical point, relative to the domain, count as passing through it.
     """
     curvature = grid.curvature
     (low, high), extent = curvature.ends, curvature.extent

@@ -139,7 +139,7 @@ class PatchNormals:
 def _on_line(patch: Patch, n: Vector) -> bool:
     """Return whether n is the normal along a parabolic line, or of the whole patch.
 
-    The forms U, V and D vanish at n.
+    The forms U, V and D must vanish at n.
     """
     line = python_function(lines.parabolic_line)
     rows = [line(patch, n, s, t) for s, t in ((1, 0), (0, 1))]

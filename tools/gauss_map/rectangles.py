@@ -10,7 +10,7 @@ from ...runtime.base.aliases import Array, Flags
 
 
 def merged(cells: Flags, lines: Sequence[Array]) -> Array:
-    """Return the cells of a grid that are True as rectangles, merged along v and then along u.
+    """Return rectangles that consist of the True cells of a grid, merged along v, then along u.
 
     `lines` are the parameters u and v of the nodes.
     """

@@ -73,9 +73,9 @@ def offset(samples: Samples, distance: float, trimmed: bool) -> Samples:
 
 
 def _nearer(samples: Samples, d: float, base: OffsetOf) -> Flags:
-    """Return whether samples, moved by d, are nearer to their surface than the whole offset.
+    """Return whether samples, moved by d, are nearer to their surface than the total distance.
 
-    The whole offset is the sum of d and of earlier offsets. Distances are measured to samples of
+    The total distance is the sum of d and of earlier offsets. Distances are measured to samples of
     the surface, so that none is too small.
     """
     surface = base.spline if base.surface is None else base.surface
