@@ -50,9 +50,11 @@ def grid() -> str:
 
 
 def differences() -> str:
-    """Return the weights of first and second derivatives at 0 from values at unit steps, by shift.
+    """Return tables of finite-difference weights for first and second derivatives at 0, as source.
 
-    For each shift from −4 to 4, the points are the shift and four steps on either side of it.
+    Each table has a row for each shift from −4 to 4; the nodes of this row are the nine integers
+    from shift − 4 to shift + 4. Two more tables have the differences from the weights of the
+    formula without the two nodes farthest from 0.
     """
     half = STENCIL // 2
     rows = [[shift + x for x in range(-half, half + 1)] for shift in range(-half, half + 1)]

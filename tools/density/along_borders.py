@@ -82,7 +82,8 @@ def places_along(
     """Return parameters just inside boundaries, about step/√w apart; w is the target density.
 
     Normals of neighbours differ by about `turn` radians at most. Return the pieces (k,), the
-    parameters (k, 2), and the limits (k,). Along each line, the points on its left come first.
+    parameters (k, 2), and the least radii of curvature (k,), the `limits` of `Cells`. The result is
+    sorted by polygon and, for each polygon, by side: left of it, right of it, on it.
     """
     owner, number, share = _spaced(lines, target, step, turn)
     steps = lines.places[number + 1] - lines.places[number]

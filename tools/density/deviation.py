@@ -86,7 +86,7 @@ def _largest(
         nonlocal found
         chords = np.where(cells.rows[:, 3:6].any(axis=1), chords_of(cells), 0.0)
         found = max(found, float(chords.max(initial=0.0)))
-        # Upper bounds of the chords anywhere in the cells.
+        # For each cell, a bound of the chord from any of its normals to the normal of the sample.
         bounds = chords + cells.chords
         far = np.flatnonzero(bounds > found)
         for start in range(0, len(far) if cuts else 0, BLOCK):

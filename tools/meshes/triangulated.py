@@ -32,8 +32,9 @@ LARGEST_DEVIATION = 30.0
 # at most the share PART of all triangles has an angle below ENOUGH.
 SMALLEST = (5.0, 10.0, 15.0, 20.0, 25.0)
 PART, ENOUGH = 0.05, 25.0
-# A bound is given up if more than this share of the samples would be left out: where the spacing
-# doubles from one sample to the next, no better triangles exist, and collapses would go on.
+# A bound of SMALLEST is given up if the mesh would lose more than this share of its samples to it.
+# Where the spacing doubles from one sample to the next, no better triangles exist, and more and
+# more edges would be collapsed.
 MOST_LOST = 0.1
 # The arrays that flips and collapses change.
 CHANGED = ("triangles", "sides", "neighbours")

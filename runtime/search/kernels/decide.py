@@ -181,9 +181,10 @@ def exact_forms(patch, n, forms, signs):
 
 @jit
 def decide_exactly(mu, scale, patches, normals, first, last, forms, decided):
-    """Decide the pairs (patches[k], normals[k]) with k in [first, last); write them to `decided`.
+    """Find the signs of U, V, W exactly for pairs (patches[k], normals[k]), k in [first, last).
 
-    A pair whose integers would be too long is not decided. `forms` (3,) is a work array.
+    Write the results to `decided`. If the integers for a pair would be too long, the pair remains
+    undecided. `forms` (3,) is a work array.
     """
     columns = mu.shape[1] - 2
     exponent = math.frexp(scale)[1] - 1

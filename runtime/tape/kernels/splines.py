@@ -21,10 +21,11 @@ MOST_COEFFICIENTS = 160  # of one polynomial, which fit into registers
 class Polynomials(NamedTuple):
     """The polynomials of a spline.
 
-    For u and for v, breaks (k + 1,) are the ends of spans, `smooth` (k + 1,) the numbers of
-    continuous derivatives there, and frames (k, 2) the middle of each span and the factor. Periods
-    (2, 2) are the lower end and the length of the periods, 0 without one. Coefficients (k, l, p +
-    1, q + 1, 4) are by powers of s and t, with bounds of their errors.
+    For u and for v, `breaks` (k + 1,) are the ends of the k spans, `smooth` (k + 1,) the numbers of
+    continuous derivatives at these ends, and `frames` (k, 2) the middle m and the factor f of each
+    span: s = (u − m) f, t likewise. `periods` (2, 2) has a row for u and a row for v: the lower end
+    and the length of the period; the length is 0 if there is no period. `coefficients`
+    (k, l, p + 1, q + 1, 4) are those of powers of s and t; `errors` are bounds of their errors.
     """
 
     breaks_u: NDArray[np.float64]

@@ -54,7 +54,8 @@ class Room(NamedTuple):
     """Room for the samples of a list, at most m of them, and for the fine points of a cell.
 
     near: (6, m) float32, points relative to the first candidate of the bucket, and unit normals.
-    squares: (m + 1,) float32, squared distances from a candidate, FAR for another side.
+    squares: (m + 1,) float32, squared distances of the samples from a candidate; FAR for a sample
+        that is not on its side of the surface. The entry after the last sample is the minimum.
     bits: (m + 1,) int32, a view of `squares`: floats ≥ 0 and their bits have the same order.
     few: (m,) int32, samples that may be nearest to a fine point, by their positions in the list.
     moments: (m, 4), the moments of the samples, see `add_moments`.
