@@ -51,12 +51,16 @@ def components_in(
     sides = trim.sides(open_.boxes, normals[open_.numbers])
     open_ = open_._replace(border=open_.border | (sides == 0))
     found, left = [_rows(open_, known & (sides > 0))], ~known & (sides >= 0)
+    cut = dict[bytes, Undecided]()  # the pieces of a box and a normal, which queries may repeat
     for k in np.flatnonzero(known & (sides == 0)).tolist():
-        one = _rows(open_, [k])
+        one, normal = _rows(open_, [k]), normals[open_.numbers[k]]
         if one.kinds[0] == ISOLATED:
             pieces = _rows(one, trim.contains(one.uv))
         else:
-            pieces = _pieces(trim, one, normals[one.numbers[0]], jets)
+            key = one.boxes.tobytes() + normal.tobytes()
+            if key not in cut:
+                cut[key] = _pieces(trim, one, normal, jets)
+            pieces = cut[key]._replace(numbers=np.repeat(one.numbers, len(cut[key].numbers)))
         found.append(pieces)
         left[k] = len(pieces.numbers) == 0
     whole = Undecided._make(np.concatenate(x) for x in zip(*found, strict=True))
