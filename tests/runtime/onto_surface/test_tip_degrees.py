@@ -47,7 +47,7 @@ def directions() -> Array:
 def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, along_u: bool) -> None:
     surface, nets = lemon(name, along_u), None
     if on == "nets":
-        nets = gm.Spline.from_nets(gm.fit(surface, (64, 64)).control_nets)
+        nets = gm.Spline.from_nets(gm.fit(surface, (24, 24)).control_nets)
     image = gm.GaussMap(nets) if nets else gm.GaussMap(surface, cells=(64, 64), on=on)
     n = directions()
     np.testing.assert_array_equal(image.degree(n), 1)
