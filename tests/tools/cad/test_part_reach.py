@@ -105,7 +105,8 @@ def test_seams_are_no_edges_and_circles_are_exact() -> None:
 def test_summaries_name_the_reach_and_the_error_of_edges(
     whole: Any, unit: str, least: float
 ) -> None:
-    samples = gm.sample(whole, 60, density="uniform", reach=gm.Reach((0, 0, 2), 170, from_edges=0.05))
+    reach = gm.Reach((0, 0, 2), 170, from_edges=0.05)
+    samples = gm.sample(whole, 60, density="uniform", reach=reach)
     assert samples.report.reach == (0.0, 0.0, 1.0, 170.0, 0.0, 0.0, 0.0, 0.05)
     error = samples.report.edge_error
     assert error is not None
