@@ -3,7 +3,8 @@
 On a line u = u₁ that is collapsed to a point, x_v = 0. By the mean value theorem n·x_v(u, v) =
 (u − u₁) n·x_uv(ξ, v) with ξ between u₁ and u, on both sides of the line. So at a point beside the
 line with the normal n, n·x_u = 0, and n·x_uv = 0 at some ξ. If bounds over a box that touches the
-line exclude one of both, the box has no point with this normal.
+line exclude one of both, or show that all normals are more than 90° from n, the box has no point
+with this normal.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from ..domain.domain import Domain
 from ..spline.tips import SAME_POINT
 from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
+from .ball import Ball
 from .components import Undecided
 from .kernels.answers import OPEN_BOX
 from .kernels.cell_bounds import SMOOTH
@@ -26,7 +28,9 @@ from .kernels.cell_bounds import SMOOTH
 # scale: near the origin they are small, but their rounding errors are not.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the index of the Taylor coefficient of u v; those of u and v are 1 and 2
-BOXES_AT_A_TIME = 1 << 14  # 8 MB of bounds
+BOXES_AT_A_TIME = 1 << 9
+# A box beside a line is cut into ALONG parts: derivatives turn by up to 360° along the line.
+ALONG = 32
 # Collapsed lines inside the domain are searched between LINES equidistant lines. The first of these
 # is SHIFT steps from the side, so that none of them is likely to be collapsed itself.
 LINES, SHIFT = 32, 0.381966
@@ -126,7 +130,11 @@ class Apex:
         (beside,) = np.nonzero(~keep)
         for first in range(0, len(beside), BOXES_AT_A_TIME):
             rows = beside[first : first + BOXES_AT_A_TIME]
-            keep[rows] = self._may_have_points(sides[rows], normals[open_.numbers[rows]])
+            given = normals[open_.numbers[rows]]
+            keep[rows] = may = self._may_have_points(sides[rows], given)
+            parts = _cut(sides[rows[may]], 1 - self.axis)
+            may = self._may_have_points(parts, np.repeat(given[may], ALONG, axis=0))
+            keep[rows[keep[rows]]] = may.reshape(-1, ALONG).any(axis=1)
         return Undecided._make(x[keep] for x in open_)
 
     def _may_have_points(self, boxes: Array, normals: Array) -> Flags:
@@ -134,13 +142,36 @@ class Apex:
         sides = boxes.reshape(-1, 2, 2)
         half = (sides[:, :, 1] - sides[:, :, 0]) / 2.0
         bounds = bounds_over_boxes(self.tape, sides.mean(axis=2), half)
-        none = np.zeros(len(boxes), np.bool_)
+        none = np.zeros(len(boxes), np.bool_) if self.inside else self._is_opposite(bounds, normals)
         for order in (1 + self.axis, MIXED):
             value = np.einsum("kx,kx->k", bounds[:, 0, order], normals)
             reach = np.einsum("kx,kx->k", bounds[:, 1, order], np.abs(normals))
             size = np.einsum("kx,kx->k", np.abs(bounds[:, 0, order]), np.abs(normals))
             none |= np.abs(value) > reach * (1.0 + 1e-12) + 1e-15 * size
         return ~none
+
+    def _is_opposite(self, bounds: Array, normals: Array) -> Flags:
+        """Return whether all normals over boxes at a side are more than 90° from normals (k, 3).
+
+        By the mean value theorem, x_u × x_v is (u − u₁) times a vector within the bounds of
+        x_u × x_uv beside a side u = u₁, and (v − v₁) times one of x_uv × x_v beside v = v₁.
+        """
+        first, second = (1, MIXED) if self.axis == 0 else (MIXED, 2)
+        a, b = ([Ball(*bounds[:, :, k, x].T) for x in range(3)] for k in (first, second))
+        volume = Ball.of(np.zeros(len(bounds)))
+        for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+            volume = volume + (a[y] * b[z] - a[z] * b[y]) * normals[:, x]
+        inward = 1.0 if self.end == self.domain[self.axis][0] else -1.0
+        return np.asarray(inward * volume.middle < -volume.radius)
+
+
+def _cut(boxes: Array, axis: int) -> Array:
+    """Return the boxes (ALONG k, 4) into which boxes (k, 4) are cut along u (axis 0) or v."""
+    low, high = boxes[:, 2 * axis, None], boxes[:, 2 * axis + 1, None]
+    ends, parts = low + (high - low) * np.linspace(0.0, 1.0, ALONG + 1), boxes.repeat(ALONG, axis=0)
+    ends[:, -1:] = high
+    parts[:, 2 * axis], parts[:, 2 * axis + 1] = ends[:, :-1].ravel(), ends[:, 1:].ravel()
+    return parts
 
 
 def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:

@@ -281,3 +281,15 @@ def test_poles_of_halves_are_one_point() -> None:
         np.testing.assert_allclose(
             found.gaussian_curvature[:2], whole.gaussian_curvature, rtol=1e-3
         )
+
+
+@pytest.mark.parametrize("digits", [7, 8])
+def test_poles_of_rounded_halves_have_no_points_with_the_opposite_normal(digits: int) -> None:
+    """Rounding gives the collapsed sides no single normal: they are not decided as poles are."""
+    turned, _ = np.linalg.qr(np.array([(3.0, 1, 2), (1, 4, 1), (2, -1, 5)]))
+    net = conics(MERIDIAN, ARCS[:5], turned @ np.diag([3.0, 2, 1]), digits=digits)
+    poles = np.array([(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)])
+    found = gm.GaussMap(net.part(1, 0, 5).surface).points(poles @ turned.T)
+    assert set(found.normal_index) == {0, 1}
+    side = np.linalg.det(turned) * np.sign(found.points @ turned[:, 2])
+    assert len(set((side * poles[found.normal_index, 2]).tolist())) == 1
