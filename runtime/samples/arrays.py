@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from ..base.checks import checked_array, checked_rows, listed
 from ..base.errors import InputError
+from ..base.memory import check_memory
 from ..base.tolerances import DERIVATIVE_ERROR, PATCH_ERROR
 from ..spline.nets import AnySpline
 from ..surface.surface import Surface
@@ -24,6 +25,7 @@ from .fields import (
     DERIVED,
     REAL_NAMES,
     Component,
+    bytes_of,
     dtype_of,
     missing_fields,
     row_shape,
@@ -284,6 +286,9 @@ class SampleArrays:
     def __getitem__(self, key: ArrayLike | slice) -> Self:
         """Return the samples that a slice, a mask, an array of indices or one index selects."""
         rows = key if isinstance(key, slice) else checked_rows(key, len(self))
+        if not isinstance(rows, slice) and len(rows) > len(self):  # indices may be repeated
+            dtype = _common_dtype(self.arrays())
+            check_memory("stored", len(rows), bytes_of(tuple(self.arrays()), dtype))
         arrays = {name: array[rows] for name, array in self.arrays().items()}
         return type(self)(
             **arrays, report=self.report,

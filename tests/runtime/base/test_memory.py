@@ -173,6 +173,7 @@ def test_commands(
         lambda: gm.sample(TORUS, coverage=5e-4, density="uniform", cells=(8, 8)),
         lambda: gm.curves.sample(CIRCLE, 10**8),
         lambda: gm.fit(TORUS, (10**4, 10**4)),
+        lambda: gm.sample(TORUS, normals=np.eye(3))[np.broadcast_to(np.int8(0), 10**7)],
     ],
 )
 def test_calls(call: Callable[[], Any], one_gib: None) -> None:
