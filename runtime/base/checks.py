@@ -128,6 +128,14 @@ def _size(values: object) -> int:
     return size
 
 
+def _check_size(values: object, name: str) -> None:
+    """Raise InputError for a sequence of Python with too many entries to become an array."""
+    if not isinstance(values, np.ndarray) and (size := _size(values)) > MOST_CONVERTED:
+        raise InputError(
+            f"{name} has {size:,} entries, too many for a sequence of Python; give a NumPy array."
+        )
+
+
 def text(value: object, name: str) -> str:
     """Return a str, also from NumPy's str_; InputError, with `name`, for any other value."""
     if not isinstance(value, str):
@@ -216,10 +224,7 @@ def real_values(values: ArrayLike, name: str) -> NDArray[Any]:
     """Return real numbers as an array, without a copy where possible; see `real_array`."""
     if np.ma.is_masked(values):
         raise InputError(f"{name} has masked entries; fill them or leave them out.")
-    if not isinstance(values, np.ndarray) and (size := _size(values)) > MOST_CONVERTED:
-        raise InputError(
-            f"{name} has {size:,} entries, too many for a sequence of Python; give a NumPy array."
-        )
+    _check_size(values, name)
     try:
         array = np.asarray(values)
     except Exception:  # objects raise anything: tensors that require gradients RuntimeError
@@ -279,6 +284,7 @@ def checked_rows(key: ArrayLike, count: int) -> NDArray[Any]:
 
     A single number counts as an array of length 1.
     """
+    _check_size(key, "the key of samples")
     try:
         rows = np.asarray(key)
     except Exception:  # ragged lists, and objects that raise anything

@@ -233,6 +233,7 @@ class TestIndexing:
             (np.ones(0, bool), "the mask has 0 entries"),
             ([12], "out of range: there are 12 samples"),
             ([-13], "out of range"),
+            (range(10**9), "too many for a sequence"),
         ],
         ids=str,
     )
