@@ -42,7 +42,7 @@ class BuildKernels(build_py):
                 command.append("--usual")
             environment = os.environ | {"PYTHONPATH": str(folder)}
             subprocess.run(command, env=environment, cwd=folder, check=True)
-        # Others should write neither machine code nor sources.
+        # Machine code that others can write is not run, and neither should sources be.
         for path in (folder / "gaussmap").rglob("*"):
             path.chmod(path.stat().st_mode & ~0o022)
 

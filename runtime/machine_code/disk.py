@@ -10,9 +10,9 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-import stat
 import tempfile
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import cache
@@ -21,9 +21,11 @@ from typing import IO, Any
 
 from numba.core import config as numba_config
 
+from ..base.errors import GaussmapWarning
 from .entries import replace_file
 from .processors import changed_options, identity
 from .sources import PACKAGE, digest
+from .trust import is_private, private_content
 
 config: Any = numba_config  # Numba creates its attributes at run time
 # Folders of other sources are removed after this many days without use.
@@ -31,7 +33,6 @@ DAYS_KEPT = 30
 # In seconds: the longest wait for another process that compiles, and the polling interval.
 LONGEST_WAIT, POLL = 120.0, 0.02
 SUFFIX = ".kernel"
-OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
 @cache
@@ -41,22 +42,28 @@ def kept_folder() -> Path | None:
     It is in NUMBA_CACHE_DIR if that is set, otherwise next to the sources, or else in the user's
     cache folder. A folder that others can write to is not used: its entries could run anything.
     """
-    asked = config.CACHE_DIR
+    asked, refused = config.CACHE_DIR, None
     for base in [Path(asked)] if asked else [PACKAGE / "__pycache__", *_of_user()]:
         folder = base / f"kernels-{digest()}"
-        with suppress(OSError):
-            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-            if _is_private(folder):
-                tempfile.TemporaryFile(dir=folder).close()
-                remove_unused(folder)
-                return folder
+        try:
+            base.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(mode=0o700, exist_ok=True)
+            if not is_private(folder.lstat()):
+                refused = folder
+                continue
+            tempfile.TemporaryFile(dir=folder).close()
+        except OSError:
+            continue
+        remove_unused(folder)
+        return folder
+    if refused is not None:
+        warnings.warn(
+            f"kernels are compiled in each process: others than you may write to '{refused}', "
+            "so that what is kept there is not used; remove it, or set NUMBA_CACHE_DIR.",
+            GaussmapWarning,
+            stacklevel=2,
+        )
     return None
-
-
-def _is_private(folder: Path) -> bool:
-    """Return whether only the user, or root, can write to a folder."""
-    found = folder.lstat()
-    return os.name == "nt" or (found.st_uid in (os.geteuid(), 0) and not found.st_mode & OTHERS)
 
 
 def _of_user() -> list[Path]:
@@ -69,14 +76,14 @@ def _of_user() -> list[Path]:
 def load(folder: Path, key: str, processor: object) -> bytes | None:
     """Return an entry compiled for a processor, possibly damaged; None if there is none."""
     with suppress(OSError):
-        return _path(folder, key, processor).read_bytes()
+        return private_content(_path(folder, key, processor))
     return None
 
 
 def save(folder: Path, key: str, processor: object, entry: bytes) -> None:
     """Write an entry atomically; ignore errors of the disk."""
     with suppress(OSError):
-        replace_file(_path(folder, key, processor), entry)
+        replace_file(_path(folder, key, processor), entry, 0o600)
 
 
 def lock_of(folder: Path, key: str, processor: object) -> FileLock:
@@ -87,7 +94,8 @@ def lock_of(folder: Path, key: str, processor: object) -> FileLock:
 def entries_in(folder: Path) -> Iterator[bytes]:
     """Yield all entries of a folder, in the order of their file names."""
     for path in sorted(folder.glob(f"*{SUFFIX}")):
-        yield path.read_bytes()
+        if (content := private_content(path)) is not None:
+            yield content
 
 
 def _path(folder: Path, key: str, processor: object) -> Path:

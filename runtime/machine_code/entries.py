@@ -26,6 +26,7 @@ from .signatures import as_json, as_types
 
 CHECKSUM = 32  # bytes of SHA-256
 WORD = 8  # bytes of the size of a head
+BINARY = getattr(os, "O_BINARY", 0)  # of Windows
 
 
 def key_of(function: Callable[..., Any], signature: Any) -> str:
@@ -110,11 +111,12 @@ def opened(content: bytes) -> bytes | None:
     return data if hashlib.sha256(data).digest() == checksum else None
 
 
-def replace_file(path: Path, content: bytes) -> None:
-    """Write a file atomically."""
+def replace_file(path: Path, content: bytes, mode: int = 0o644) -> None:
+    """Write a file atomically; its permissions are at most `mode`."""
     part = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
     try:
-        part.write_bytes(content)
+        with open(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY | BINARY, mode), "wb") as file:
+            file.write(content)
         os.replace(part, path)
     finally:
         part.unlink(missing_ok=True)

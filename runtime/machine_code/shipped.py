@@ -5,7 +5,8 @@ kernels, the series of Numba, Python and the platform are those of the build, an
 the level. Otherwise kernels are compiled here. The results are the same, bit for bit.
 
 The file consists of `MAGIC`, the size of a header, the header (sealed JSON), and the entries that
-it lists. It is read from the folder of the package only: machine code could do anything.
+it lists. It is read from the folder of the package only, and not if more people can write it than
+the sources: machine code could do anything.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from numba.core import config as numba_config
 from .entries import WORD, opened, replace_file, sealed
 from .processors import changed_options, identity, level_here, runs_here
 from .sources import PACKAGE, digest
+from .trust import is_as_safe_as_sources
 
 config: Any = numba_config  # Numba creates its attributes at run time
 MAGIC = b"gaussmap kernels 2\n"
@@ -100,6 +102,6 @@ def _pack_of_package() -> Pack | None:
     if path is None or config.DISABLE_JIT or os.environ.get(SWITCH) == "0":
         return None
     try:
-        return Pack(path)
+        return Pack(path) if is_as_safe_as_sources(path) else None
     except (OSError, ValueError):  # missing, or damaged
         return None
