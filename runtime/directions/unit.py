@@ -94,6 +94,12 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     return _normalized(vectors, _largest(vectors))
 
 
+def unit_or_zero(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return vectors (k, 3) divided by their lengths; zero vectors stay 0."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
+
+
 def _normalized(vectors: NDArray[np.float64], largest: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return vectors divided by their lengths; `largest` are their largest |components|."""
     exponents = np.frexp(largest)[1]

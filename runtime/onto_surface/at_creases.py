@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..base.aliases import Array, Flags, Indices
+from ..directions.unit import unit_or_zero
 from ..domain.trim import Trim
 from ..proof.grid_lines import PLACES, creases_of, lines_of
 from ..samples.fields import Component
@@ -109,8 +110,10 @@ class Corner(NamedTuple):
         the index 0 are left out. Where the index depends on a slope that is 0 up to `TURNED`, the
         degree is NaN and the point `unsure`.
         """
-        facing = normals @ _unit(np.cross(self.tangents, np.roll(self.tangents, -1, 0))).sum(axis=0)
-        slopes = normals @ _unit(self.tangents).T
+        facing = normals @ unit_or_zero(np.cross(self.tangents, np.roll(self.tangents, -1, 0))).sum(
+            axis=0
+        )
+        slopes = normals @ unit_or_zero(self.tangents).T
         zero = np.abs(slopes) <= TURNED
         degrees = np.full((len(normals), len(RISES)), np.nan)
         for k, (rises, degree) in enumerate(zip(RISES, DEGREES, strict=True)):
@@ -195,7 +198,9 @@ class Creases:
         slopes = [np.einsum("kx,kx->k", x, given) for x in across]
         lengths = [np.linalg.norm(x, axis=1) for x in across]
         slack = [SMOOTH * x for x in lengths]
-        facing = sum(np.einsum("kx,kx->k", _unit(np.cross(x[:, 1], x[:, 2])), given) for x in jets)
+        facing = sum(
+            np.einsum("kx,kx->k", unit_or_zero(np.cross(x[:, 1], x[:, 2])), given) for x in jets
+        )
         unsure = (np.abs(slopes[0]) <= slack[0]) | (np.abs(slopes[1]) <= slack[1])
         keep = (facing > 0.0) & (unsure | (slopes[0] * slopes[1] < 0.0))
         # At a pole, x_s is 0 and the creases that end there have no direction across.
@@ -412,9 +417,3 @@ def _product(normals: Array, bounds: tuple[Array, Array]) -> tuple[Array, Array]
     return (
         np.einsum("kx,kx->k", normals, bounds[0]), np.einsum("kx,kx->k", np.abs(normals), bounds[1])
     )  # fmt: skip
-
-
-def _unit(vectors: Array) -> Array:
-    """Return vectors (k, 3) divided by their lengths; zero vectors stay 0."""
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)

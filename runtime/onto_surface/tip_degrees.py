@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from ..base.aliases import Array
 from ..base.kept import kept
+from ..directions.unit import unit_or_zero
 from ..domain.domain import Boundary, Domain
 from ..domain.trim import Trim
 from ..spline.joints import EDGES
@@ -98,9 +99,9 @@ class Tip(NamedTuple):
                 found[which == k] = fans[k].ray_at(numbers[which == k] - starts[k])
             return found
 
-        normals = _unit(np.cross(rays, np.roll(rays, -1, axis=0)))
+        normals = unit_or_zero(np.cross(rays, np.roll(rays, -1, axis=0)))
         normals = normals[normals.any(axis=1)]
-        mean = _unit(normals.sum(axis=0)[None])
+        mean = unit_or_zero(normals.sum(axis=0)[None])
         if not np.abs(rays @ mean[0]).max() > ROUNDING:
             return None  # a smooth pole, whose opposite meridians have other parameters
         cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
@@ -275,7 +276,7 @@ class Tipped(NamedTuple):
             return np.stack((fixed, along) if axis == 0 else (along, fixed), axis=1)
 
         def ray_at(numbers: Array) -> Array:
-            return _unit(self.jets(*uv_at(numbers).T.copy())[:, 1 + axis] * way)
+            return unit_or_zero(self.jets(*uv_at(numbers).T.copy())[:, 1 + axis] * way)
 
         numbers = np.arange(parts + 1.0)
         if self.trim is not None and not self.trim.contains(uv_at(numbers[1:-1], BESIDE)).all():
@@ -325,7 +326,7 @@ def _tips_of_nets(spline: NetSpline) -> list[Tip]:
         leaving = EDGES[int((starts & ~ends)[patch].argmax())]
         coming = EDGES[int((ends & ~starts)[patch].argmax())]
         net, corners = nets[patch], [leaving.start, coming.end]
-        rays = _unit(net[[leaving.middle, coming.middle]] - net[corners])
+        rays = unit_or_zero(net[[leaving.middle, coming.middle]] - net[corners])
         if np.linalg.norm(rays[1] - rays[0]) > SAME_RAY:
             uv = np.eye(3)[corners[0], :2]
             found.append(
@@ -336,13 +337,7 @@ def _tips_of_nets(spline: NetSpline) -> list[Tip]:
 
 def _between(rays: Array, shares: Array) -> Array:
     """Return the unit rays (m, 3) between two rays, for shares of the way from one to the other."""
-    return _unit(rays[0] + shares[:, None] * (rays[1] - rays[0]))
-
-
-def _unit(vectors: Array) -> Array:
-    """Return vectors (k, 3) divided by their lengths; zero vectors stay 0."""
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
+    return unit_or_zero(rays[0] + shares[:, None] * (rays[1] - rays[0]))
 
 
 def _degrees(rays: Array, normals: Array) -> NDArray[np.int64]:

@@ -18,7 +18,7 @@ from ..domain.domain import Domain
 from ..spline.tips import SAME_POINT
 from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
-from .ball import Ball
+from .ball import Ball, cross
 from .components import Undecided
 from .kernels.answers import OPEN_BOX
 from .kernels.cell_bounds import SMOOTH
@@ -158,9 +158,8 @@ class Apex:
         """
         first, second = (1, MIXED) if self.axis == 0 else (MIXED, 2)
         a, b = ([Ball(*bounds[:, :, k, x].T) for x in range(3)] for k in (first, second))
-        volume = Ball.of(np.zeros(len(bounds)))
-        for x, y, z in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-            volume = volume + (a[y] * b[z] - a[z] * b[y]) * normals[:, x]
+        x, y, z = (along * n for along, n in zip(cross(a, b), normals.T, strict=True))
+        volume = x + y + z
         inward = 1.0 if self.end == self.domain[self.axis][0] else -1.0
         return np.asarray(inward * volume.middle < -volume.radius)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,3 +74,8 @@ class Ball:
         unknown = ~np.isfinite(radius)
         inverse = Ball(np.where(unknown, 0.0, middle), np.where(unknown, np.inf, radius))
         return inverse * other
+
+
+def cross(a: Sequence[Ball], b: Sequence[Ball]) -> list[Ball]:
+    """Return the components of the cross product of two vectors of balls."""
+    return [a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3] for k in range(3)]

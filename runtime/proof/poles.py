@@ -16,7 +16,7 @@ from ..base.aliases import Array
 from ..domain.domain import Boundary, Domain
 from ..tape.kernels.points import Tape
 from ..tape.tapes import bounds_over_boxes, jets_of
-from .ball import Ball
+from .ball import Ball, cross
 from .discs import NARROW, SECTORS, PoleDisc, pole_disc
 from .kernels.answers import CURVE, OPEN_BOX, Answers
 
@@ -149,10 +149,7 @@ def _cone(
         for k in (V1 if angle == 0 else U1, U1V1)
     )
     first, second = (mixed, across) if angle == 0 else (across, mixed)
-    normal = [
-        first[(k + 1) % 3] * second[(k + 2) % 3] - first[(k + 2) % 3] * second[(k + 1) % 3]
-        for k in range(3)
-    ]
+    normal = cross(first, second)
     middle = inward * np.stack([x.middle for x in normal], axis=1)
     radius = np.linalg.norm([x.radius for x in normal], axis=0)
     lengths = np.linalg.norm(middle, axis=1)

@@ -286,10 +286,10 @@ class SampleArrays:
     def __getitem__(self, key: ArrayLike | slice) -> Self:
         """Return the samples that a slice, a mask, an array of indices or one index selects."""
         rows = key if isinstance(key, slice) else checked_rows(key, len(self))
+        arrays = self.arrays()
         if not isinstance(rows, slice) and len(rows) > len(self):  # indices may be repeated
-            dtype = _common_dtype(self.arrays())
-            check_memory("stored", len(rows), bytes_of(tuple(self.arrays()), dtype))
-        arrays = {name: array[rows] for name, array in self.arrays().items()}
+            check_memory("stored", len(rows), bytes_of(arrays, _common_dtype(arrays)))
+        arrays = {name: array[rows] for name, array in arrays.items()}
         return type(self)(
             **arrays, report=self.report,
             spline=self.spline, surface=self.surface, offset_of=self.offset_of,
