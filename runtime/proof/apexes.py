@@ -28,8 +28,9 @@ from .kernels.cell_bounds import SMOOTH
 # scale: near the origin they are small, but their rounding errors are not.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the index of the Taylor coefficient of u v; those of u and v are 1 and 2
-BOXES_AT_A_TIME = 1 << 9
-# A box beside a line is cut into ALONG parts: derivatives turn by up to 360° along the line.
+BOXES_AT_A_TIME = 1 << 12  # 2 MB of bounds, or 64 MB if all boxes are cut
+# A box beside a line that is longer than 1/ALONG of the line is cut into ALONG parts, since the
+# derivatives may turn by 360° along the line.
 ALONG = 32
 # Collapsed lines inside the domain are searched between LINES equidistant lines. The first of these
 # is SHIFT steps from the side, so that none of them is likely to be collapsed itself.
@@ -127,28 +128,35 @@ class Apex:
         sides[:, 2 * self.axis], sides[:, 2 * self.axis + 1] = (
             np.minimum(low, first), np.maximum(high, last),
         )  # fmt: skip
+        along = 1 - self.axis
+        lengths = sides[:, 2 * along + 1] - sides[:, 2 * along]
         (beside,) = np.nonzero(~keep)
         for first in range(0, len(beside), BOXES_AT_A_TIME):
             rows = beside[first : first + BOXES_AT_A_TIME]
             given = normals[open_.numbers[rows]]
-            keep[rows] = may = self._may_have_points(sides[rows], given)
-            parts = _cut(sides[rows[may]], 1 - self.axis)
-            may = self._may_have_points(parts, np.repeat(given[may], ALONG, axis=0))
-            keep[rows[keep[rows]]] = may.reshape(-1, ALONG).any(axis=1)
+            keep[rows] = self._may_have_points(sides[rows], given)
+            wide = keep[rows] & (lengths[rows] > np.ptp(self.domain[along]) / ALONG)
+            parts = _cut(sides[rows[wide]], along)
+            given = np.repeat(given[wide], ALONG, axis=0)
+            may = self._may_have_points(parts, given, sharply=not self.inside)
+            keep[rows[wide]] = may.reshape(-1, ALONG).any(axis=1)
         return Undecided._make(x[keep] for x in open_)
 
-    def _may_have_points(self, boxes: Array, normals: Array) -> Flags:
-        """Return whether boxes (k, 4) that touch the line may have points with normals (k, 3)."""
+    def _may_have_points(self, boxes: Array, normals: Array, sharply: bool = False) -> Flags:
+        """Return whether boxes (k, 4) that touch the line may have points with normals (k, 3).
+
+        With `sharply`, boxes at a side whose normals are all opposite are excluded, too.
+        """
         sides = boxes.reshape(-1, 2, 2)
         half = (sides[:, :, 1] - sides[:, :, 0]) / 2.0
         bounds = bounds_over_boxes(self.tape, sides.mean(axis=2), half)
-        none = np.zeros(len(boxes), np.bool_) if self.inside else self._is_opposite(bounds, normals)
+        none = np.zeros(len(boxes), np.bool_)
         for order in (1 + self.axis, MIXED):
             value = np.einsum("kx,kx->k", bounds[:, 0, order], normals)
             reach = np.einsum("kx,kx->k", bounds[:, 1, order], np.abs(normals))
             size = np.einsum("kx,kx->k", np.abs(bounds[:, 0, order]), np.abs(normals))
             none |= np.abs(value) > reach * (1.0 + 1e-12) + 1e-15 * size
-        return ~none
+        return ~(none | self._is_opposite(bounds, normals)) if sharply else ~none
 
     def _is_opposite(self, bounds: Array, normals: Array) -> Flags:
         """Return whether all normals over boxes at a side are more than 90° from normals (k, 3).
