@@ -1,9 +1,9 @@
-"""Apexes: collapsed sides of the domain and collapsed lines inside, and the points beside them.
+"""Apexes: sides of the domain, and parameter lines inside it, that are collapsed to a point.
 
-On a line u = u₁ that is collapsed to a point, x_v = 0. By the mean value theorem n·x_v(u, v) =
-(u − u₁) n·x_uv(ξ, v) with ξ between u₁ and u, on both sides of the line. So at a point beside the
-line with the normal n, n·x_u = 0, and n·x_uv = 0 at some ξ. If bounds over a box that touches the
-line exclude one of both, or show that all normals are more than 90° from n, the box has no point
+On a line u = u₁ that is collapsed to a point, x_v = 0. By the mean value theorem n·x_v(u, v) = (u −
+u₁) n·x_uv(ξ, v) with ξ between u₁ and u, on both sides of the line. So at a point beside the line
+with the normal n, n·x_u = 0, and n·x_uv = 0 at some ξ. If bounds over a box that touches the line
+exclude one of these zeros, or show that all normals are more than 90° from n, the box has no point
 with this normal.
 """
 
