@@ -17,7 +17,10 @@ Dimensions = dict[str, Any]
 def dimensions_of(
     geometry: Geometry, domain: Sequence[Sequence[float]], is_reversed: bool
 ) -> Dimensions:
-    """Return the value of `Face.dimensions`. The module `saving` describes `geometry.numbers`."""
+    """Return the dimensions of a geometry, by name, as `Face.dimensions` has them.
+
+    The module `saving` says what the numbers of a geometry are.
+    """
     if geometry.kind not in ("plane", "cylinder", "cone", "sphere", "torus"):
         return {}
     origin, x, y, z = geometry.numbers[:12].reshape(4, 3).copy()

@@ -218,7 +218,10 @@ class FacePiece(Piece):
         self, normals: Array, numbers: Indices, places: Array,
         undecided: Sequence[UndecidedNormal] = (),
     ) -> Samples:  # fmt: skip
-        """Return samples with normals[numbers] (k, 3) at `places` (k, 7); see `with_components`."""
+        """Return samples at `places`; sample i has the normal with index numbers[i] in `normals`.
+
+        `places` (k, 7) has the columns that `with_components` returns.
+        """
         check_memory("stored", len(numbers), bytes_of(ARRAY_NAMES_OF_PART, np.float64))
         given, uv, codes = normals[numbers], places[:, :2], places[:, CODE].astype(np.uint8)
         fields = self.fields_at(uv, uv, ARRAY_NAMES_OF_PART, np.float64)

@@ -29,8 +29,8 @@ from .results import PartSpace
 
 # Normals are compared at this number of values of each parameter, and at all knots.
 PLACES = 33
-# A face counts as ruled if its normals turn by less than this along a parameter, in radians. A
-# straight edge as long as the part takes as many vertices as a turn of normals by this angle.
+# An angle in radians. A face counts as ruled if its normals turn by less than this along u or along
+# v. A straight edge that is as long as the part counts as a turn of normals by this angle.
 RULED = 1e-6
 # Between two values of a parameter, the normal counts as turning by at least LEAST times the larger
 # one of the total angles along u and along v, times the difference of the values relative to the
@@ -38,9 +38,9 @@ RULED = 1e-6
 LEAST = 1e-3
 # The weight of the turning angle of an edge, relative to the angles of normals.
 CURVED = 0.5
-# The largest step, relative to the mean step.
+# The largest step in the plane of a face, relative to the mean step of all faces.
 LONGEST = 3.0
-# The planes of different faces are parallel to one another, at this distance, in radians.
+# The planes of faces are parallel to one another, at this distance; lengths in them are radians.
 APART = 100.0
 
 

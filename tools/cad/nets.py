@@ -17,8 +17,9 @@ from .records import Net
 
 Array = NDArray[np.float64]
 
-# Ends of domains closer than this, relative to the period or the length, count as equal: CAD
-# systems compare parameters to 1e-9, and faces leave larger gaps along their seams.
+# Ends of domains count as equal if their distance, relative to the period or the length, is below
+# this. It is more than the 1e-9 to which CAD systems compare parameters, since faces may leave
+# wider gaps along their seams.
 SAME_END = 1e-7
 
 
@@ -41,8 +42,8 @@ def nurbs_of_curve(net: Net, along: Array, length: Interval) -> Nurbs:
 def curve_of_net(net: Net) -> Nurbs:
     """Return a NURBS curve as the line v = 0 of a surface.
 
-    The surface extends along the direction in which the curve is shortest, so that its normals turn
-    at kinks of the curve.
+    The curve is translated along the direction in which it extends least, so that the normals of
+    the surface jump at kinks of the curve.
     """
     points = net.points - net.points.mean(axis=0)
     direction = np.linalg.svd(points, full_matrices=True)[2][-1]
@@ -52,8 +53,8 @@ def curve_of_net(net: Net) -> Nurbs:
 def line_of(start: Array, way: Array, ends: Interval) -> Nurbs:
     """Return the line start + t way in the plane y = 0, for t in the interval `ends`.
 
-    As in `curve_of_net`, it is the line v = 0 of a surface, with u = t; the surface extends along
-    y.
+    The surface that is returned consists of this line, at v = 0 with u = t, and its translates
+    along y.
     """
     middle, half = start + sum(ends) / 2.0 * way, (ends[1] - ends[0]) / 2.0 * way
     across = np.array([(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)])

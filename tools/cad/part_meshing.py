@@ -163,7 +163,10 @@ def _inward(mesh: PartMesh, whole: PartSpace, rows: Indices) -> str:
 def mesh_and_soundness(
     part: Part, whole: PartSpace, count: int, failed: Mapping[int, str], spaced: type[Spacing]
 ) -> tuple[PartMesh, bool]:
-    """Return a mesh, and whether no further face failed and no triangle points inward."""
+    """Return a mesh, and whether it is sound: no triangle points inward, and no face is missing.
+
+    Faces in `failed` were missing from the beginning, and do not count.
+    """
     lacking = dict(failed)
     while True:
         meshing = Meshing.of(part, whole, count, lacking, spaced)

@@ -15,7 +15,7 @@ REACHED, SAMPLING = "gaussmap.tools.cad.reached", "gaussmap.tools.cad.part_sampl
 
 
 class Methods:
-    """The methods that `Whole`, the base class of `Part`, calls, and others that use a part."""
+    """Public methods of `Part`, and private functions that `Part` and its base class call."""
 
     plot = Later(PLOT, "plot_part")
     select = Later(SELECTION)

@@ -48,7 +48,10 @@ class PlacedShape:
 
 @dataclass
 class Document:
-    """The shapes of a file; `styles` are names and colours of subshapes, for all placements."""
+    """The placed shapes of a file.
+
+    `styles` are the names and colours of subshapes, by shape without its placement.
+    """
 
     pieces: list[PlacedShape]
     styles: dict[Key, Style] = field(default_factory=dict)
