@@ -30,7 +30,8 @@ BORDER, CLOSE, TRIALS = 0.5, 0.95, 4
 # Numbers of lines u = const from 1 − AROUND to 1 + AROUND times an estimate are tried. All with
 # errors of at most AS_GOOD times the least error count as equally good.
 AROUND, AS_GOOD = 0.12, 1.005
-# Gaps may be wider than requested by this factor, since the number of steps is an integer.
+# Half the diagonals of cells may exceed the requested distance by this factor, since the numbers of
+# lines are integers.
 SLACK = 1.02
 # Chords that are equal when rounded to this number of decimals count as equal.
 DIGITS = 9
@@ -89,10 +90,10 @@ class AlignedGrid:
         return steps_for_count(self.forms, count, distance)
 
     def grid_for(self, most: int, distance: float) -> Grid:
-        """Return about the finest grid of at most `most` samples, for a scaled distance.
+        """Return about the finest grid with at most `most` samples inside the trim.
 
-        Half the diagonals of its cells are at most `distance` in space if `most` samples suffice
-        for that.
+        Half the diagonal of each cell in space is at most the scaled `distance` if `most` samples
+        suffice for that.
         """
         whole, grid = float(most), self.grid(self.steps_for(most, distance), most)
         if self.geometry.spline.trim is None:
@@ -129,10 +130,10 @@ class AlignedGrid:
         return self._at(cells, rows, columns, (len(lines[0]), len(lines[1])))
 
     def _numbers(self, steps: Steps, lengths: list[Array], most: int) -> list[Indices]:
-        """Return the numbers of lines in the parts of both axes, for lengths of the parts in steps.
+        """Return the numbers of lines in the parts of both axes; `lengths` are lengths in steps.
 
         The lines have at most `most` crossings, unless one line in each part already gives more.
-        The errors are about as small as possible.
+        The numbers are chosen for about the smallest error, see `_excess`.
         """
         total, found = float(lengths[0].sum()), []
         scale = math.sqrt(most / (total * float(lengths[1].sum())))

@@ -14,7 +14,7 @@ from .cells import Cells
 from .kernels.sizing import TargetDensity
 from .trims import Trims
 
-# Boundaries are measured in steps of at most this part of the domain.
+# Neighbouring vertices of the polygons are at most this part of the domain apart.
 FINE = 1.0 / 48.0
 # In the search for the nearest cells, domains are scaled to width 1, and different pieces are
 # shifted this far apart.
@@ -42,7 +42,7 @@ def polygons_of(trims: Trims, first: Cells) -> tuple[Indices, Indices, Array, Ar
 
     The polygons are given by the pieces (L,), starts (L + 1,) and places (k, 2) of `BorderLines`.
     Also return the vertices (k, 2) moved into the domains, modulo periods, and for each vertex the
-    limit (k,) of the nearest one of the `first` cells.
+    least radius of curvature (k,): the limit of the nearest cell of `first`.
     """
     used = np.unique(first.pieces)
     numbers, lines = list[int](), [np.empty((0, 2))]

@@ -17,11 +17,11 @@ from .cover import STEP, Cover
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-# Normals at candidates are covered within 1 − MARGIN times the requested angle. MARGIN times this
-# angle is left for points between candidates: along boundaries, normals turn by so much over half a
-# step.
+# Each candidate has a normal within 1 − MARGIN times the requested angle of the normal of a sample.
+# The rest of the angle is left for points between candidates: along boundaries, the normal turns by
+# MARGIN times the angle from a candidate to the point halfway to the next one.
 MARGIN = 0.02
-# The radii of the greedy choice of normals fall from this multiple of the last radius.
+# Normals are chosen greedily for radii that fall to `near` from this multiple of `near`.
 FIRST = 2.0
 
 
@@ -33,12 +33,15 @@ def chord_of(angle: float) -> float:
 def cover_normals(cover: Cover, angle: float) -> float:
     """Add samples until all normals of the surface are near normals of samples.
 
-    At the end, the nearest normal of a sample is at most `angle` degrees away.
+    At the end, each normal of the surface is within `angle` degrees of the normal of a sample.
 
-    If the prescribed normals are dense enough for that, only normals at the boundary of the
-    Gaussian image are uncovered: the nearest prescribed normal may lie outside of the image. Return
-    the largest angle from any normal to the nearest normal of a sample, in degrees; `angle` if
-    there are singular points, next to which normals are known only at the places of cells.
+    If the prescribed normals are dense enough for the angle, normals are uncovered only at the
+    boundary of the Gaussian image, where the nearest prescribed normal may lie outside of the
+    image.
+
+    Return a bound, in degrees, of the angle from any normal of the surface to the nearest normal of
+    a sample. The bound is `angle` if there are singular points: next to these, normals are known
+    only at the places of cells.
     """
     limit = chord_of(angle)
     cover.evaluate_exactly()
@@ -61,7 +64,7 @@ def cover_normals(cover: Cover, angle: float) -> float:
 
 
 def _distances(trees: Sequence[KDTree], rows: Array, threads: int | None) -> Array:
-    """Return the chords (M,) from the normals of rows to the nearest normals in trees.
+    """Return the chord (M,) from the normal of each row to the nearest normal in the trees.
 
     The chord is 0 for a row without a normal.
     """
@@ -80,8 +83,9 @@ def choose_apart(
 ) -> Indices:
     """Choose some of the normals (M, 3): all are within the chord `near` of a chosen normal.
 
-    Return the indices of at most `most` normals, the widest gaps first; the radii of gaps fall from
-    `widest`. The `known` normals (N, 3), no two nearly equal, count as chosen.
+    Return the indices of at most `most` chosen normals. The widest gaps are filled first: the
+    radius of the choice falls from `widest` to `near`. The normals `known` (N, 3) count as chosen;
+    no two of them may be nearly equal.
     """
     rows, radius = np.arange(len(normals)), widest or FIRST * near
     if known is not None:
@@ -102,8 +106,9 @@ def _apart(
 ) -> tuple[Indices, float]:
     """Return the indices of normals farther than `near` from known normals, and the first radius.
 
-    The first radius of the choice is slightly above the largest distance from known normals, and at
-    most `widest`; with a smaller one, fewer distances are updated.
+    The first radius of the choice is at most `widest`. If possible, it is only slightly larger than
+    the distance of any normal from the nearest known normal: the smaller this radius, the fewer
+    distances are updated.
     """
     distances = tree_of(known).query(normals, workers=thread_count(threads))[0]
     far = (distances > near) & normals.any(axis=1)

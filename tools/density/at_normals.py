@@ -40,8 +40,8 @@ class Given:
     """Samples at normals (S, 3) on some pieces of a space, with `density` normals per steradian.
 
     If `same_normals` is False, each piece has its own normals, and `normals` are those of all
-    pieces, concatenated. `estimated` are the indices of pieces whose points are not proved to be
-    all.
+    pieces, concatenated. `estimated` are the indices of the pieces without a proof that all points
+    are found.
     """
 
     space: Space

@@ -29,7 +29,7 @@ MOST = 64
 
 
 def breaks_along(geometry: OnSpline, axes: tuple[Axis, Axis], forms: Array, along: int) -> Array:
-    """Return the breaks, in cells, along u (`along` is 0) or along v (`along` is 1).
+    """Return the positions of breaks, in cells, along u (`along` is 0) or along v (`along` is 1).
 
     `forms` (7, k, l) are the fundamental forms at the midpoints of axes.
     """
@@ -72,8 +72,8 @@ def _forms_at(geometry: OnSpline, places: Array, others: Array, along: int) -> A
 def _values(forms: Array, scales: Array) -> Array:
     """Return values (3, l, k) that may jump: the turning of the normal along u and v, and K.
 
-    The rates of turning are relative to `scales`; K is replaced by its sign, about 0 where K is
-    tiny.
+    The rates of turning are divided by `scales`; K is replaced by its sign, or by a number near 0
+    if |K| is tiny.
     """
     signs = forms[6] / (np.abs(forms[6]) + FLAT * scales[2])
     return np.stack([np.sqrt(forms[3] / scales[0]), np.sqrt(forms[5] / scales[1]), signs])

@@ -87,7 +87,7 @@ class Cells:
         for mine, others in zip(self._arrays, cells._arrays, strict=True):
             mine[rows] = others
 
-    # --- what covers need of them -----------------------------------------------------------------
+    # --- radii and chords -------------------------------------------------------------------------
 
     @property
     def radii(self) -> Array:
@@ -98,7 +98,7 @@ class Cells:
     def chords(self) -> Array:
         """The largest chord (M,) between the normal at each place and a normal of its cell.
 
-        It is 2 if it is unknown.
+        An unknown chord is 2.
         """
         return self.numbers[:, CHORD]
 

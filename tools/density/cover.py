@@ -47,8 +47,9 @@ class Cover:
 
     A point is covered if a sample is within radius/√w, where w is the target density of the space.
     Lengths are scaled as in `Space`. The samples are rows of `points` (N, 6), point and unit
-    normal, and `curvatures` (N,), K. The first `given` samples are those `at_normals`. The added
-    samples lie at the places of the cells `added`, first the samples of the `grid`, if it exists.
+    normal, and `curvatures` (N,), K. The first samples, `given` of them, are the samples
+    `at_normals`. The added samples lie at the places of the cells `added`, first the samples of the
+    `grid`, if it exists.
 
     Samples are chosen among the places of `cells`. Cells for a radius have numbers; cells for a
     count have sides instead, see `Space.light`. `show_count` is called with the number of samples
@@ -134,9 +135,9 @@ class Cover:
         if self.count > self.fixed:
             for missing in MISSING[1:]:
                 assert self._sides is not None
-                # A fine point is at most 0.75 radii of its cell from the place of the cell. The
-                # sample nearest to the fine point is therefore within `wide` of the place, except
-                # in a gap.
+                # The distance of a fine point from the place of its cell is at most 0.75 times the
+                # radius of the cell. The sample nearest to the fine point is therefore within
+                # `wide` of the place, except in a gap.
                 wide = (1.0 + 1.5 * FINE) * self.radius
                 voronoi = Voronoi(self._candidates, self.cells, self._sides, self.points, wide)
                 self.move_to_centres(voronoi)
@@ -220,7 +221,7 @@ class Cover:
             self._replace_added(space.light(added, keep=True)[0])
 
     def renew_distances(self, widest: float) -> None:
-        """Recompute the distances of all candidates from the samples, within `widest`."""
+        """Recompute the distances from candidates to samples that are at most `widest`."""
         self._candidates.reset_distances()
         self._candidates.update_distances(self.points, widest)
 
@@ -312,7 +313,7 @@ class Cover:
     def _joined(self) -> Cover:
         """Append pending samples to the arrays, and return the cover.
 
-        Added samples are pending until then, since one concatenation of many is faster.
+        Added samples are kept in a list first, since it is faster to concatenate many at once.
         """
         if self._waiting:
             added = joined(self._waiting)

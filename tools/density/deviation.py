@@ -20,8 +20,8 @@ PLACES, FEWEST = 16, 20_000
 # After the first test points, cells that may contain a larger angle than any found so far are cut,
 # at most this often.
 CUTS = 6
-# At first there are at most MOST test points. If more are needed, their cells are cut further, at
-# most BLOCK of them at a time, to bound the memory.
+# At first there are at most MOST test points. If more are needed, the cells of the first ones are
+# cut, at most BLOCK cells at a time, to bound the memory.
 MOST, BLOCK = 1 << 21, 1 << 16
 
 

@@ -37,16 +37,18 @@ HEXAGON = 3.0 * math.sqrt(3.0)
 GREEDY = 1.85
 # Density "balanced": the covering radius of the added samples, relative to that of the normals.
 WIDER = 2.0
-# Density "balanced": the floor of the target density, relative to the mean of κ²; the ceiling of κ,
-# relative to the root of the floor, for a count or a coverage; and the ceiling of κ for an angle,
-# which is lower: with 20, samples on narrow faces are as close as the radius of these faces, and a
-# wing with a round trailing edge takes 6 times as many.
+# Density "balanced": FLOOR is the floor of the target density, relative to the mean of κ².
+# MOST_CURVED is the ceiling of κ, relative to the root of the floor, for a count or a coverage;
+# MOST_FOR_NORMALS is the same for an angle. With 20 for an angle, too, samples on narrow faces
+# would be as close as the radius of these faces, and a wing with a round trailing edge would have 6
+# times as many samples.
 FLOOR, MOST_CURVED, MOST_FOR_NORMALS = 0.8, 20.0, 10.0
-# For an angle, κ is capped in the mean of κ², too: mean and ceiling are iterated until the ratio of
-# consecutive means exceeds this.
+# For an angle, the ceiling also applies to κ in the mean of κ². Since the ceiling depends on this
+# mean, both are iterated until the ratio of consecutive means exceeds SETTLED.
 SETTLED = 0.9
-# An angle is refused if it takes more than MOST_FOR_ANGLE samples, minutes of work, and more
-# samples than it takes on SPHERES spheres: then narrow faces are the reason, and not a small angle.
+# An angle is refused if it takes more than MOST_FOR_ANGLE samples, which are minutes of work, and
+# more samples than SPHERES spheres take for the same angle: then the reason is narrow faces, and
+# not that the angle is small.
 MOST_FOR_ANGLE, SPHERES = 2e6, 300.0
 # The largest number of searches for points at which the angle is too large, on parts with narrow
 # tips.
@@ -63,9 +65,10 @@ LATTICE = 0.1
 # If some of several pieces have no lattice, this part of a count is placed where normals are
 # farthest from those of all samples.
 FOR_NORMALS = 0.05
-# For samples placed where normals are farthest from those of all samples: the chord between the
-# normals of candidates, relative to the spacing of as many points on a sphere as the cover has
-# samples; and about the number of candidates minus the number of samples.
+# Some samples are placed where normals are farthest from those of all samples. NORMALS_APART is the
+# chord between the normals of candidates for these samples, relative to the covering radius of as
+# many normals, evenly spaced on the sphere, as the cover will have samples. CANDIDATES is about the
+# number of candidates minus the number of samples.
 NORMALS_APART, CANDIDATES = 0.2, 200_000
 # The smallest chord between the normals of the candidates for such samples.
 LEAST_CHORD = math.radians(0.5)
@@ -213,8 +216,9 @@ class Filling:
     def _floor(self, ceiling: float) -> float:
         """Return the floor of "balanced" for a target density with a ceiling."""
         request, space = self.request, self.space.between(self.space.target.floor, ceiling)
-        # If normals or an angle are requested, they fix the radius. Then the integral counts as at
-        # least the solid angle of all normals that may have samples, also for a flat surface.
+        # Requested normals or a requested angle determine the radius. The integral of κ² is then
+        # replaced by the solid angle of all normals that may have samples if this is larger, as for
+        # a flat surface.
         absolute = request.normals is not None or request.angle is not None
         least = request.solid_angle if absolute else FLAT_SURFACE
         return FLOOR * max(space.integral, least) / space.area

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
 # The spacing grows by at most GROWTH/s² for each unit of distance, where s is the angle in radians
-# that normals turn by from one sample to the next. Measured with 500 to 2,000 samples: with 0.3, up
-# to a twentieth of the samples on steep bends with coarse sampling are superfluous in meshes; with
-# 0.1, other places lose more samples than these bends need.
+# that normals turn by from one sample to the next. GROWTH was measured on meshes of 500 to 2,000
+# samples. With 0.3, up to a twentieth of the samples on steep bends are superfluous if the sampling
+# is coarse; with 0.1, these bends get more samples than they need, at the expense of other places.
 GROWTH = 0.15
 # The size of a cell is bounded by the sizes of this number of nearest cells.
 NEAREST = 8
@@ -29,8 +29,8 @@ TWO_TRIANGLES = math.sqrt(3.0) / 2.0
 class Sources:
     """Prescribed sizes at tree nodes; the last size, inf, is for points far from all nodes.
 
-    At other points the size is that of the nearest node plus `growth` times its distance. Beyond
-    `reach` of all nodes it is too large to matter.
+    At other points the size is that of the nearest node plus `growth` times its distance. If no
+    node is within `reach`, the size is too large to matter.
     """
 
     tree: KDTree
@@ -39,7 +39,7 @@ class Sources:
     reach: float
 
     def sizes_at(self, points: Array, reach: float) -> Array:
-        """Return bounds (M,) of the size at points (M, 3); inf with no node within `reach`."""
+        """Return bounds (M,) of the size at points (M, 3); inf if no node is within `reach`."""
         distances, rows = self.tree.query(points, distance_upper_bound=reach)
         return self.sizes[rows] + self.growth * distances
 

@@ -14,8 +14,8 @@ from .request import Request
 from .shares import apportioned
 from .space import Space
 
-# The covering radius of samples with round cells that follow the curvature, relative to the sizing
-# function.
+# The covering radius of n samples without a grid, relative to the sizing function, is estimated as
+# WIDEST times the root of 1/n times the integral of the target density.
 WIDEST = 1.0
 # If no coverage is requested, gaps in flat regions may be wider by this factor than the target
 # density prescribes.
@@ -105,5 +105,5 @@ def _grid_of(space: Space, count: int, distance: float) -> Grid:
 
 
 def _usual_distance(space: Space, count: int) -> float:
-    """Return the covering radius of `count` samples without a grid."""
+    """Return an estimate of the coverage, scaled, of `count` samples without a grid."""
     return WIDEST * math.sqrt(space.integral / count / space.smallest)

@@ -25,10 +25,10 @@ class Piece(ABC):
     """A smooth surface on a rectangle of parameters, or its part inside a trim, such as a face.
 
     `label` is its name in messages, `trim` the part of the domain that belongs to it, None for the
-    whole domain. `indices` are fields that are constant on the piece, and the index of its first
-    patch. The distance between points of the surface and points of `jets` is at most `distance`, in
-    the unit L of the surface. Curvature at scales below `finest` (2,), lengths in u and v, is
-    noise.
+    whole domain. `indices` are the names and values of fields that are constant on the piece, such
+    as `face_index`, and the index of the first patch, `patch_index`. The distance between points of
+    the surface and points of `jets` is at most `distance`, in the unit L of the surface. Curvature
+    at scales below `finest` (2,), lengths in u and v, is noise.
     """
 
     label: str
@@ -70,7 +70,7 @@ class Piece(ABC):
     def proved_at(self, normals: Array, threads: int | None) -> list[Samples] | None:
         """Return all points with unit normals (S, 3), with a proof; None without a proof.
 
-        The list is empty if there are no points and no undecided normals.
+        The returned list is empty if there are no points and no undecided normals.
         """
         return None
 

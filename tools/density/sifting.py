@@ -20,8 +20,8 @@ def sifted(
 ) -> tuple[Cells, Indices]:
     """Return the cells that are not entirely outside their trims, and the owners of these cells.
 
-    `whole` becomes True for cells that no boundary intersects. Owners are elements of `owner` (M,),
-    by default indices in `cells`.
+    `whole` becomes True for cells that no boundary intersects. The owner of a cell is its element
+    of `owner` (M,), by default its index in `cells`.
     """
     whole = cells.whole | ~trims.trimmed[cells.pieces]
     open_, clear = np.flatnonzero(~whole), whole.copy()
@@ -68,9 +68,9 @@ def beside(trims: Trims, lost: Cells, pixels: Indices) -> tuple[Indices, Array]:
 
 
 def _subplaces(trims: Trims, pieces: Indices, boxes: Array) -> tuple[Flags, Array]:
-    """Return whether boxes (M, 4) have subplaces inside the trim, and the most central of them.
+    """Return whether each box (M, 4) has subplaces inside the trim, and the most central of these.
 
-    The most central subplace (M, 2) of a box is nearest to the mean of its subplaces inside.
+    The most central subplace (M, 2) of a box is the nearest to the mean of its subplaces inside.
     """
     steps = (np.arange(SUB) + 0.5) / SUB
     grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)

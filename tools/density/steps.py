@@ -29,11 +29,12 @@ SHARES, SEARCHES, COARSE = np.linspace(0.15, 0.95, 7), 4, 24
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 # The longest and the shortest step, as parts of the domain.
 LONGEST, SHORTEST = 0.5, 1e-9
-# The angle that takes a count of samples is searched up to WIDEST, until the relative error of the
-# count is below CLOSE, at most TRIALS times.
+# The angle at which a grid has a given count of samples is searched below WIDEST, in at most TRIALS
+# trials, until the relative error of the count is below CLOSE.
 WIDEST, CLOSE, TRIALS = math.pi, 0.002, 12
-# A distance that alone takes more than 1/LARGER of a count is increased until it takes about
-# 1/LARGER of the count.
+# If a grid for the requested distance, without regard to the angle, has more than 1/LARGER times
+# the requested count of samples, the distance is increased until the grid has about 1/LARGER times
+# the count.
 LARGER = 1.1
 
 
@@ -116,7 +117,7 @@ def equal_steps(forms: Forms, angle: float, distance: float) -> Steps:
 def steps_for_count(forms: Forms, count: float, distance: float) -> Steps:
     """Return the steps with the smallest angle for a count of samples, within a distance.
 
-    If the distance takes more samples, it is increased.
+    A distance for which the count does not suffice is increased; see `LARGER`.
     """
     coarse = forms.coarser(COARSE)
     fewest = equal_steps(coarse, WIDEST, distance).count
@@ -177,7 +178,7 @@ def _steps_at_share(
 
 
 def _typical(forms: Forms) -> float:
-    """Return an estimate of the number of samples of a grid times its squared angle."""
+    """Return an estimate of n a², where n is the number of samples of a grid and a its angle."""
     u, v = (np.sqrt(forms.third[k].max(axis=1 - k // 2)) for k in (0, 2))
     lengths = (u * forms.widths[0]).sum() * (v * forms.widths[1]).sum()
     return max(float(lengths) / 2.0, 1e-9)

@@ -31,8 +31,8 @@ class Trims:
         self.pieces = pieces
         self.trimmed = np.array([x.trim is not None for x in pieces], dtype=np.bool_)
         self.domains = np.array([x.domain for x in pieces])
-        # The index of each piece in `_loops`, −1 for a piece without an entry; and for each piece
-        # with u reversed the sum of the bounds of u, NaN for other pieces.
+        # For each piece, `_place` is the index of its loops in `_loops`, −1 if its trim is
+        # evaluated alone; `_totals` is the sum of the bounds of u if u is reversed, otherwise NaN.
         self._place, self._totals = np.full(len(pieces), -1), np.full(len(pieces), np.nan)
         self._loops = list[Loops]()
         for k in np.flatnonzero(self.trimmed).tolist():
@@ -116,7 +116,7 @@ class Trims:
         )
 
     def _allow(self, pieces: Indices, places: Array) -> Flags:
-        """Return whether parameters (k, 2) on loops fulfil all other conditions of the trims."""
+        """Return whether parameters (k, 2) fulfil all conditions of trims that are not loops."""
         allowed = np.ones(len(places), np.bool_)
         others = np.flatnonzero(self._place[pieces] < 0)
         for k, rows in grouped(pieces[others]):
