@@ -109,7 +109,7 @@ class BoundaryArc:
             if self._lengths(np.array([before, 0.5 * (before + t)])).max() > self._limit:
                 groups.append([])
         groups[-1].append(1.0)
-        # The first and the last group contain the ends of the arc: their singular points are
+        # The zeros in the first and in the last group belong to the ends of the arc, which are
         # corners of the patch.
         return tuple(min(x, key=lambda t: self._lengths(np.array([t]))[0]) for x in groups[1:-1])
 

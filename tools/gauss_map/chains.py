@@ -17,7 +17,7 @@ def chained(pieces: Sequence[Ends]) -> list[tuple[list[tuple[int, bool]], bool]]
     """Chain pieces, given by the nodes at their ends, into curves.
 
     A curve continues through a node at which exactly two pieces end. For each curve, return a list
-    of pairs, the index of a piece and whether the piece is reversed, and whether the curve is
+    of its pieces, each with its index and True if it is reversed, and then True if the curve is
     closed.
     """
     at_node: dict[Hashable, list[int]] = {}

@@ -99,8 +99,9 @@ def polylines_of(spline: Spline, view: View, uv: Array) -> tuple[Indices, ...]:
 def _segments(spline: Spline, view: View) -> tuple[Array, Indices, list[bool], Flags]:
     """Return the segments (k, 2, 2) of all curves, in cells and in order, and their sections (k,).
 
-    A curve is one section; where it leaves the trim, another section begins. Also return, for each
-    section, whether it is closed, and a mask (k,) of the segments outside of the trim.
+    A curve inside the trim is one section; each segment outside of the trim begins another section.
+    Also return, for each section, whether it is closed, and a mask (k,) of the segments outside of
+    the trim.
     """
     ends, sections, closed = [np.empty((0, 2, 2))], [np.empty(0, dtype=np.int64)], list[bool]()
     left = [np.empty(0, dtype=np.bool_)]
@@ -119,7 +120,11 @@ def _segments(spline: Spline, view: View) -> tuple[Array, Indices, list[bool], F
 
 
 def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
-    """Return the indices of the nearest segments of positions (k, 2), and the feet, from 0 to 1."""
+    """Return the segments nearest to positions (k, 2), and the positions of the feet on them.
+
+    The segments are given by their indices (k,), the feet (k,) by numbers from 0 to 1, at the start
+    and at the end of the segment.
+    """
     number = min(CANDIDATES, len(ends))
     near = tree_of(ends.mean(axis=1)).query(places, k=number)[1].reshape(len(places), number)
     start, step = ends[near, 0], ends[near, 1] - ends[near, 0]

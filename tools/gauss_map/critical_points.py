@@ -10,8 +10,8 @@ from ...runtime.base.aliases import Array, Flags
 from .polylines import different
 from .sign_grid import SignGrid
 
-# The number of steps of Newton's method, which converges slowly where K is of order four, and the
-# length of a final step, relative to the domain.
+# The number of steps of Newton's method, which converges slowly where K vanishes to the fourth
+# order; and the length of a final step, relative to the domain.
 NEWTON_STEPS, ARRIVED = 40, 1e-10
 # K counts as zero at a critical point if its second derivatives there predict a zero within this
 # distance, relative to the domain.

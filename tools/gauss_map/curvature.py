@@ -18,7 +18,7 @@ from ...runtime.surface.derivatives import Function, differences
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.tapes import jets_of
 
-# The error of a second derivative that a formula gives, relative to its length.
+# The error of a second derivative that a formula gives, relative to the length of this vector.
 ROUNDING = 1e-13
 # K counts as zero if it is below its estimated error times this.
 SURE = 4.0

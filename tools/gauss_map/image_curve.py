@@ -21,9 +21,10 @@ from .polylines import distances, refined
 OfPlaces = Callable[[Array], Array]
 # Curves whose ends are closer than this, relative to their size, count as closed.
 CLOSED = 1e-6
-# The point whose normal is nearest to a given one is searched among PLACES points of a curve,
-# between the two neighbours of the nearest vertex; ROUNDS times in all, each time between the two
-# neighbours of the nearest point so far. The last points are joined by chords.
+# The point of a curve whose normal is nearest to a given one is searched in ROUNDS rounds. Each
+# round tests PLACES points: first between the two neighbours of the nearest vertex, then between
+# the two neighbours of the nearest point of the round before. Angles are measured to the chords
+# between the points of the last round.
 PLACES, ROUNDS = 9, 5
 
 

@@ -290,9 +290,9 @@ def _merged(angles: list[float]) -> list[tuple[float, int]]:
 
 
 def _row(patch: Patches, s: complex, t: complex) -> tuple[NDArray[Any], NDArray[Any], float]:
-    """Return l and the unit normal of the line l·(u, v, 1) = 0 with a given direction.
+    """Return l of the parabolic line l·(u, v, 1) = 0 with a given direction, and its unit normal.
 
-    Also return the length of the normal before normalization.
+    All points of the line have this normal. Also return its length before normalization.
     """
     normals = np.array(patch.apply(formulas.parabolic_normal, s, t))[..., 0]
     lengths = np.linalg.norm(normals, axis=1)
@@ -303,7 +303,7 @@ def _row(patch: Patches, s: complex, t: complex) -> tuple[NDArray[Any], NDArray[
 
 
 def _line(patch: Patches, s: float, t: float) -> tuple[float, Array] | None:
-    """Return ρ and the normal of the line s u + t v + ρ = 0; None for a line at infinity."""
+    """Return ρ of the line s u + t v + ρ = 0 and its normal; None for a line at infinity."""
     row, normal, length = _row(patch, s, t)
     slope = float(row[:2] @ [s, t])
     if length <= patch.normal_noise[0] or abs(slope) <= VANISHING * patch.tangent[0]:

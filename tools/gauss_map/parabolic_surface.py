@@ -15,18 +15,18 @@ from .image_curve import Zeros
 from .sign_grid import SignGrid
 from .zero_curves import zero_curves
 
-# The grid has at least CELLS cells along u and along v, and at most MOST_CELLS. It is refined if
-# curves are closer to each other than a cell, or smaller than a cell, and if more than the fraction
-# CROWDED of its cells contains curves.
+# The grid has at least CELLS cells along u and along v, and at most MOST_CELLS. It is refined in
+# each of three cases: curves are closer to each other than a cell, a curve is smaller than a cell,
+# or more than the fraction CROWDED of the cells contains curves.
 CELLS, MOST_CELLS, CROWDED = 128, 512, 1 / 8
 # A larger share of the domain without a known curvature causes a warning.
 WORTH_A_WARNING = 1e-4
 # Isolated zeros of K whose cells are this close, in cells, count as one zero.
 TOGETHER = 4
-# Derivatives of K below this bound count as zero. The derivative in the direction in which the
-# normal is constant is relative to the gradient of K; it vanishes all along a curve with a single
-# normal, such as the top circle of a torus. The gradient is relative to its maximum on the curve;
-# it vanishes where curves cross.
+# Derivatives of K below this bound count as zero. There are two of them. The derivative in the
+# direction in which the normal is constant, relative to the length of the gradient of K, vanishes
+# all along a curve with a single normal, such as the top circle of a torus. The length of the
+# gradient, relative to its maximum on the curve, vanishes where curves cross.
 NO_CHANGE = 1e-6
 
 

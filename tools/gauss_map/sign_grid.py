@@ -23,12 +23,12 @@ class SignGrid:
     """K at the nodes of a grid, and the changes of its sign.
 
     `values` are values of K. Where K is zero up to its error, or unknown, the value has the sign of
-    a neighbour, or is NaN if no neighbour has a sign. So a curve through nodes is crossed once or
-    not at all, whatever the signs of rounding errors. `flat` are the cells at whose corners K is
-    zero up to its error, or unknown, but not unknown at all of them. `unknown` are the other cells
-    with NaN at a corner, `crossed` the cells with both signs, and `near_curves` the neighbours of
-    cells with both signs or with NaN at a corner. `areas` are the areas of cells, relative to the
-    domain.
+    a neighbour, or is NaN if no neighbour has a sign. So the sign changes at most once across a
+    curve through nodes, whatever the signs of rounding errors. `flat` are the cells at whose
+    corners K is zero up to its error or unknown, and zero at one corner or more. `unknown` are the
+    other cells with NaN at a corner, `crossed` the cells with both signs, and `near_curves` the
+    neighbours of cells with both signs or with NaN at a corner. `areas` are the areas of cells,
+    relative to the domain.
     """
 
     def __init__(self, curvature: Curvature, cells: tuple[int, int]) -> None:

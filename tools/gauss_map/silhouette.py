@@ -101,9 +101,9 @@ def silhouette(
     They lie on the contour generator, whose projection along `direction`, or from `viewpoint`, is
     the outline, hidden parts included. Along a direction, the outline is concave where K < 0. The
     points are found on the spline that approximates the surface, and moved to the surface like
-    samples. Along a direction, the surface may have no nearby point with the same normal next to
-    parabolic points. There, points are moved to the contour generator of the surface, and their
-    normal differs from that of their `normal_index`.
+    samples. Next to parabolic points, the surface may have no point with the same normal nearby.
+    Along a direction, such a point is moved to the contour generator of the surface; its normal
+    then differs from the one with its `normal_index`.
 
     Parameters
     ----------

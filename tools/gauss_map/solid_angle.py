@@ -48,9 +48,10 @@ def solid_angles(normals: Array) -> Array:
 
     For the full accuracy, singular points must be corners of triangles, at which N is exactly zero.
 
-    `normals` (k, 3, 3, 3) are the control normals of each two corners. The result is the integral
-    of the Gaussian curvature over the surface: negative where it is hyperbolic, with overlaps
-    counted by their multiplicity. It is exact up to rounding, about 1e-15 for each triangle.
+    `normals` (k, 3, 3, 3) are the polar forms: a control normal for each pair of corners. The
+    result is the integral of the Gaussian curvature over the surface: negative where it is
+    hyperbolic, with overlaps counted by their multiplicity. It is exact up to rounding, about 1e-15
+    for each triangle.
     """
     result = np.zeros(len(normals))
     owners, poles, narrow = _narrow(normals)

@@ -80,8 +80,7 @@ def _to_saddles(grid: SignGrid, line: Array, blocks: list[tuple[Array, int]]) ->
 def _zeros_between(grid: SignGrid, low: Indices, high: Indices) -> Array:
     """Return the zeros (k, 2) of K between nodes (k, 2) of different sign.
 
-    The sign of a node where K is zero up to its error comes from its neighbours, here as in the
-    grid.
+    At a node where K is zero up to its error, the sign is that of a neighbour, as in `SignGrid`.
     """
     from scipy.optimize.elementwise import find_root
 
