@@ -145,8 +145,8 @@ def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
     def segment(*ends: tuple[float, float]) -> Segment:
         return place(*ends[0]), place(*ends[1]), np.array(ends) / (m, n)
 
-    # (di, dj) is the corner of a cell between a patch and the next one, counterclockwise from the
-    # south.
+    # The patches of a cell are counted counterclockwise from the south; (di, dj) is the corner of
+    # the cell between patch `turn` and the next one.
     for turn, (di, dj) in enumerate([(1, 0), (1, 1), (0, 1), (0, 0)]):
         for i, j in np.argwhere(known[..., turn] != known[..., (turn + 1) % 4]).tolist():
             yield segment((i + 0.5, j + 0.5), (i + di, j + dj))

@@ -29,9 +29,9 @@ class CreasedMesh(Mesh):
     Attributes
     ----------
     corner_normals : (T, 3, 3) float64 array
-        The unit normals at the corners of triangles, on the face of the triangle. Where a face has
-        none, as at the apex of a cone, the normal inside the triangle or patch, or 0 if that is
-        undefined, too.
+        The unit normals at the corners of triangles, on the face of the triangle. Where the face
+        has no normal, as at the apex of a cone, it is replaced by the normal inside the triangle
+        or patch, or by 0 if that is undefined, too.
     face_index : (T,) int64 array
         The index of each triangle's face in `part.faces`, or of its patch.
 

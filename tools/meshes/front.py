@@ -25,8 +25,8 @@ PIXELS, AT_ONCE = 400, 4096
 POINTS = 1 << 15
 # Edges are divided into steps that are as long as the size of the mesh divided by this number.
 STEPS = 256
-# Triangles up to this far below a point, relative to the size of the mesh, hide it: they may be
-# those of a solid in contact.
+# A triangle up to this far below a point, relative to the size of the mesh, hides the point: the
+# triangle may belong to a solid in contact.
 BELOW = 1e-9
 
 
@@ -87,8 +87,8 @@ class FreeAlong:
     It holds if a ray from the point along the axis does not enter the mesh, that is, meets no
     triangle from outside. `below` are the triangles that rays along the axis meet from outside, in
     the coordinates of `rows` (3, 3), whose last row is the axis. Triangles up to `slack` below the
-    point count as met, as those of a solid in contact. Shadows end below the boundary edges of
-    `below`; the tree `edges` has points on these edges, `step` apart.
+    point count as met: they may belong to a solid in contact. Shadows end below the boundary edges
+    of `below`; the tree `edges` has points on these edges, `step` apart.
     """
 
     rows: Array

@@ -25,8 +25,8 @@ Flags = NDArray[np.bool_]
 # The largest step in the measurement of a polyline, relative to the spacing of samples, and the
 # largest number of steps.
 FINE, MOST_STEPS = 0.125, 200_000
-# The smallest spacing by which the length of a step is divided, relative to the mean step; and the
-# least measure of a step.
+# To get the measure of a step, its length is divided by the spacing, or by SHORTEST times the mean
+# length of a step if this is larger. A measure is at least LEAST.
 SHORTEST, LEAST = 1e-3, 1e-12
 # A polyline has a corner where it turns by more than this within one spacing.
 CORNER = math.radians(30.0)

@@ -53,7 +53,7 @@ class Mesh(Methods):
     domain : ((u0, u1), (v0, v1)) of float or None
         The rectangle of the parameters, if known.
     boundary : pair of pairs of str or None
-        The boundary conditions of the domain, see `Surface`; "pole" for any side that is one point.
+        The boundary conditions of the domain, see `Surface`; "pole" for each collapsed side.
     unit : str
         The unit of length, such as "mm"; empty if unknown.
 

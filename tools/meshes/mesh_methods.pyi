@@ -1,4 +1,4 @@
-"""The methods of `Mesh` that files define; `mesh_methods.py` loads them."""
+"""The methods of `Mesh` that `files` defines; `mesh_methods.py` loads them."""
 
 class Methods:
     from ..files.of_meshes import to_pyvista as to_pyvista

@@ -49,7 +49,8 @@ def mesh(
     Parameters
     ----------
     angle : float, optional
-        In degrees, as in `Samples.mesh`; for normals that are not all over the sphere.
+        The largest deviation of triangles from normals, in degrees, as in `Samples.mesh`. Give it
+        if the normals do not cover the sphere.
     prefer : {"shape", "normals"}, default "shape"
         As in `Samples.mesh`; for "normals", the mesh is convex.
     progress : bool, default False

@@ -87,9 +87,9 @@ def _hits(solid: Any, begins: Array, along: Array) -> Iterator[tuple[Indices, In
 def _solid(obstacle: object, closed: bool) -> tuple[Any, Array, float]:
     """Return a mesh of trimesh that traces rays in double precision, its centre and its scale.
 
-    Raises InputError if it is open and should be closed. trimesh rounds coordinates to some
-    decimals and merges equal points: so the mesh is moved to the origin and scaled to a size of
-    about 1.
+    Raises InputError if the obstacle is open and should be closed. trimesh rounds coordinates to
+    some decimals and merges equal points: so the mesh is moved to the origin and scaled to a size
+    of about 1.
     """
     trimesh = from_extra("trimesh", "rays", PURPOSE)
     corners: Any = obstacle

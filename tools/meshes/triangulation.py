@@ -31,9 +31,10 @@ Triangulation = tuple[Indices, Indices]
 # The latitude of an open side is between the first and the last of these; it is the second one if
 # the opposite side is a pole.
 LATITUDES = (math.pi / 18, math.pi / 3, math.pi / 2.25)
-# Random displacements of points, relative to their mean distance; the second is for a second
-# attempt. Without them, four or more points of a lattice that lie on one circle might be
-# triangulated differently in their copies. If no points are copied, the first attempt has none.
+# Random displacements of points in a first and in further attempts, relative to the mean distance
+# of points. Without them, four or more points of a lattice that lie on one circle might be
+# triangulated differently in their copies. If no points are copied, an attempt without
+# displacements comes first.
 DISPLACEMENTS = (1e-6, 1e-3)
 # Free points keep this distance from open sides.
 INSIDE = 5e-10

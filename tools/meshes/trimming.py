@@ -29,9 +29,10 @@ Triangulate = Callable[[Vertices], tuple[Indices, Indices, Indices]]
 # A sample closer to the boundary than this, relative to the spacing of samples, counts as a sample
 # on the boundary: the chords of the boundary are about as close to its curves.
 ON_LINE = 5e-3
-# About as many points fill the outside as there are vertices, but at least FEWEST and at most MOST.
-# Their distance from the boundary is at least AWAY, relative to the gaps between its vertices; the
-# distance of added vertices on open sides is at least ASIDE.
+# Points fill the domain outside of the boundary: those of a lattice that has about as many points
+# in the whole domain as there are vertices, but at least FEWEST and at most MOST. Their distance
+# from the boundary vertices is more than AWAY gaps; that of added vertices on open sides is more
+# than ASIDE gaps (see `_is_away`).
 FEWEST, MOST, AWAY, ASIDE = 400, 4000, 0.7, 0.3
 # The largest number of times that points are added to the boundary.
 ROUNDS = 8
@@ -146,7 +147,7 @@ class _Trim:
     def _is_away(self, positions: Array, gaps: float) -> Flags:
         """Return whether positions are more than `gaps` gaps away from the boundary vertices.
 
-        The gap is the longer step from the nearest boundary vertex to the next ones.
+        A gap is the length of the longer one of the two steps at the nearest boundary vertex.
         """
         if not self.lines:
             return np.ones(len(positions), dtype=bool)
