@@ -339,8 +339,9 @@ def find(spline: CurveSpline | CurveArcs, normals: Array) -> Hits:
 def _places(spline: CurveSpline | CurveArcs, angles: Array) -> NDArray[np.int64]:
     """Return for each joint the number of sorted angles below the angle of its normal.
 
-    Full turns are counted. Along straight arcs the normal is constant. The ends of an open curve
-    belong to the curve: the angles there are moved outwards by the rounding error of the normal.
+    For each full turn of the normal, the number of all angles is added. Along straight arcs the
+    normal is constant. The ends of an open curve belong to the
+    curve: the angles there are moved outwards by the rounding error of the normal.
     """
     ends, turns = spline.angles[0].copy(), spline.angles[1].copy()
     curved = np.flatnonzero(~spline.straight)

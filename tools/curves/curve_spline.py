@@ -274,7 +274,7 @@ class CurveSpline(Turning):
     def _arcs(self, piece: NDArray[np.int64]) -> Arc:
         """Return the arcs of the pieces with the indices (k,), multiplied by `scale`.
 
-        They are relative to the coefficients of the pieces.
+        The points of a piece are relative to its coefficient.
         """
         steps = self.scale * np.diff(self.coefficients, axis=0)
         return python_function(formulas.arc)(
