@@ -438,8 +438,8 @@ def lines_of(geometry: OnPatches) -> Iterator[Segments | NetEdges]:
 def _of_trim(geometry: OnSpline, line: Array) -> Segments:
     """Return the segments of a polyline (k, 2) in the unit square, a boundary of the trim.
 
-    The segments of a predicate's boundary have errors: distances of its points from chords between
-    their neighbours.
+    On the boundary of a predicate, the errors of the segments are the distances of its points from
+    the chords between their neighbours.
     """
     spline, middles = geometry.spline, (line[1:] + line[:-1]) / 2.0
     around = wrapped(middles, spline.boundary)

@@ -25,8 +25,8 @@ from ...runtime.spline.nets import AnySpline
 from ...runtime.surface.surface import Surface
 from ..sampling.sample import sample
 
-# For each of these fields of an offset, the field of the samples that its computation needs besides
-# the field itself.
+# To compute one of these fields of an offset, the samples must have the same field, and the fields
+# given here.
 NEEDED = {
     "points": ("normals",),
     "gaussian_curvature": ("mean_curvature",),
@@ -34,9 +34,9 @@ NEEDED = {
 }
 
 
-# Distances from a surface are measured to samples of it. Their number is at least LEAST, and
-# PER_SQUARE times the square of the size of the surface over the distance, so that gaps are about
-# 0.2 times the distance. SHORTEST is the least distance, relative to the size.
+# Distances from a surface are measured to samples of it. For a surface of the size a and a distance
+# d, their number is at least LEAST and at least PER_SQUARE (a/d)², so that gaps are about 0.2 d.
+# SHORTEST is the least d/a.
 LEAST, PER_SQUARE, SHORTEST = 20_000, 15.0, 1.0 / 180.0
 ROUNDING = 64.0  # of distances, in units of the last place of coordinates
 
@@ -76,7 +76,7 @@ def _nearer(samples: Samples, d: float, base: OffsetOf) -> Flags:
     """Return whether samples, moved by d, are nearer to their surface than the total distance.
 
     The total distance is the sum of d and of earlier offsets. Distances are measured to samples of
-    the surface, so that none is too small.
+    the surface: they may be too large, but not too small.
     """
     surface = base.spline if base.surface is None else base.surface
     if surface is None:
