@@ -88,7 +88,7 @@ def _mark(
     scene: Scene,
     size: float,
 ) -> None:
-    """Mark points that have a normal; draw it as arrows if points are few and heights not rescaled.
+    """Mark points that have one normal, with arrows if they are few and heights are not rescaled.
 
     If there are many points, marks have about the `size` of samples, in points of print.
     """
