@@ -31,7 +31,7 @@ function frontOf(plot) {
 
 const BESIDE = 1e-9; // a pixel on the side of two triangles is on one of them
 
-/** Whether a sample is visible. On a thin sheet, samples of both sides are tested on the side of the viewer. */
+/** Whether a sample is visible. It is lifted to the side of the viewer: a thin sheet hides no samples of its own. */
 function isSeen(front, i, viewer) {
     const side = dot(i, viewer) < 0 ? -LIFT : LIFT; // it is drawn above the triangles, too
     const [x, y, depth] = onScreen(front.matrix, front.box, lifted(points, i, 0, side), lifted(points, i, 1, side),

@@ -1,4 +1,5 @@
-// The page: a selection on the surface lights up on the sphere, and one on the sphere on the surface.
+// The page: a selection on the surface lights up on the sphere, and a selection on the sphere
+// lights up on the surface.
 
 const MANY = 60; // points with large dots
 let state = null; // what is picked: {normal}, {sample} or {face}

@@ -47,7 +47,7 @@ function normalAt(plot, x, y) {
 
 const SNAP = 7; // pixels
 
-/** The normal of the sample drawn within SNAP pixels; else the normal nearest to n if all are prescribed, or n. */
+/** The normal drawn within SNAP pixels of x, y; else, if all normals are prescribed, the nearest to n; else n. */
 function snapped(plot, n, x, y) {
     const matrix = camera(plot), box = plot.getBoundingClientRect();
     let least = SNAP, highest = -2, drawn = null, nearest = null;

@@ -102,9 +102,9 @@ def view(
       one, or if several samples have it, as on planes. Made with ``normals=icosphere(…)``,
       samples are all points with that normal.
     - else one sample for each connected group of samples, of one sign of K, whose normals are
-      within an angle of it: the nearest one in normal. That counts preimages correctly where
-      samples are dense relative to the angle, which a slider changes, and not next to
-      parabolic lines, where two preimages are about to meet.
+      within an angle of the selected direction: the sample nearest in normal. That counts
+      preimages correctly where samples are dense relative to the angle, which a slider
+      changes, but not next to parabolic lines, where two preimages are about to meet.
 
     Examples
     --------
