@@ -72,12 +72,13 @@ def terrain(
         before scale and offset are applied. NaN and masked entries are always missing. Parts of the
         surface that depend on missing heights are left out, see `Surface.from_grid`.
     crs : str or int, optional
-        The coordinate reference system of the points, such as "EPSG:32617" or its number, in
-        lengths. By default that of the source or, if the source is in degrees, the zone of UTM that
-        contains the middle of the source (UPS beyond 84° of latitude).
+        The coordinate reference system of the points, such as "EPSG:32617" or its number; its
+        coordinates must be lengths, not degrees. By default that of the source or, if the source
+        is in degrees, the zone of UTM that contains the middle of the source (UPS beyond 84° of
+        latitude).
     source_crs : str or int, optional
         The CRS of the source if it states none, or a wrong one; ``"EPSG:4326"`` for longitudes x
-        and latitudes y. Without it, `crs` is the CRS of the source.
+        and latitudes y. If neither is known, `crs` is the CRS of the source, too.
     origin : (float, float) or (float, float, float), optional
         The origin subtracted from x, y and z, so that numbers are small: single precision (float32,
         .stl, .glb) rounds world coordinates to decimetres.
