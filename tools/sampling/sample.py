@@ -85,9 +85,9 @@ def sample(
         |K|^α; see Notes. Splines of nets (`Spline.from_nets`) have "gauss" only.
     reach : (axis, angle) or Reach, optional
         Only points whose normal is within an angle, in degrees, of a direction (3,) are sampled,
-        such as that of a probe, a camera or a printer; a `Reach` also knows slopes and aspects, and
-        keeps a distance from edges.
-        Count, angle and coverage refer to these points. Not with ``density="aligned"``.
+        such as that of a probe, a camera or a printer. A `Reach` can also limit slopes and
+        aspects, and keep samples away from edges. Count, angle and coverage refer to the points
+        that remain. Not with ``density="aligned"``.
     cells : (int, int), optional
         The numbers of cells along u and v of the spline that approximates the surface, see `fit`.
     on : {"surface", "spline"}, optional

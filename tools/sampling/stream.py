@@ -180,7 +180,7 @@ def _chunk(found: Samples, start: int, total: int, listed: bool) -> Samples:
     """Return samples at a block of normals, whose `normal_index` refers to all normals.
 
     The block begins at the normal with the index `start`; there are `total` normals. The report has
-    undecided normals if they are `listed`: if the normals were prescribed.
+    the undecided normals if `listed`, which means that the normals were prescribed.
     """
     arrays: dict[str, Any] = found.arrays()
     if start and "normal_index" in arrays:
