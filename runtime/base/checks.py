@@ -111,8 +111,9 @@ def listed(values: object) -> list[Any] | None:
 
 
 def _size(values: object) -> int:
-    """Return the number of entries of a sequence or array, nested ones included; 1 for others.
+    """Return the number of entries of a sequence or array, including those of nested sequences.
 
+    The number is 1 for any other object.
     A view of an array, or a `range`, may have more entries than fit into memory.
     """
     size, depth = 1, 0

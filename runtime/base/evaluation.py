@@ -90,7 +90,7 @@ def returned(
 def _shapes_that_differ(values: object, shape: tuple[int, ...]) -> list[tuple[int, ...]]:
     """Return the shapes of a list of coordinates if they differ; otherwise [].
 
-    They differ if some coordinates are constants.
+    For example, a coordinate may be a number where the other coordinates are arrays.
     """
     if not isinstance(values, tuple | list) or shape[1:] or [len(values)] != [*shape]:
         return []

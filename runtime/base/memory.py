@@ -24,9 +24,9 @@ PROC, CONTROL_GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
 
 
 class Cost(NamedTuple):
-    """The peak memory of a request: `each` bytes for an item, and `rows` copies of stored rows.
+    """The peak memory of a request: for each item, `each` bytes, and `rows` times its stored bytes.
 
-    `things` names the items; `instead` is advice for requests that are too large.
+    `things` is the name of the items; `instead` is advice for requests that are too large.
     """
 
     things: str
@@ -112,8 +112,8 @@ def _limits() -> Iterator[tuple[float, float]]:
 def _limits_of_group(path: str) -> Iterator[tuple[float, float]]:
     """Yield limits and used parts of the memory of a control group and of its ancestors.
 
-    In a container the path may be a path on the host, which does not exist here; then the root is
-    the group of the process.
+    `path` is the group of the process, as the system gives it. In a container this may be a path on
+    the host, which does not exist here; the root is then the group of the process.
     """
     group = CONTROL_GROUPS / path.lstrip("/")
     for each in (group, *group.parents):

@@ -1,4 +1,4 @@
-"""The scale of coordinates: powers of two that bring them to about 1, their limits and rounding."""
+"""Scales of coordinates: powers of two that bring them to about 1, and limits of coordinates."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def _in_threads(
 
 
 def interruptible(work: Callable[[], Result]) -> Result:
-    """Return work(), a long compiled call, run by a thread: Ctrl-C does not wait for it."""
+    """Return work(), a long compiled call; another thread runs it, so that Ctrl-C need not wait."""
     if getattr(_HERE, "is_worker", False):
         return work()
     return next(_in_threads(lambda _: work(), (0,), 1))

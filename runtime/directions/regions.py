@@ -17,9 +17,10 @@ from ..base.tolerances import TRIPLE_PRODUCT_ERROR
 from .unit import as_normals, unit_vector
 
 UP = np.array([0.0, 0.0, 1.0])
-# In a row of `Reach._numbers`, this in place of an angle or a distance means unobstructed rays.
+# A row of `Reach._numbers` with this number in place of an angle or a distance is the condition of
+# unobstructed rays.
 FREE = -1.0
-# Errors of edges are named if they are larger than this part of the distance from edges.
+# Texts name the error of edges if it is larger than this part of the distance from edges.
 WORTH_NAMING = 1e-9
 
 
@@ -187,7 +188,7 @@ class Reach:
         return {"reach": self._numbers, "edge_error": error if self._from_edges else None}
 
     def _said(self, unit: str | None = None, error: float | None = None) -> str:
-        """Return the conditions in words; an `error` of edges is named if it exceeds rounding."""
+        """Return the conditions in words, with the `error` of edges if it exceeds rounding."""
         said = [
             f"normals within {cap.angle:g}° of ({', '.join(f'{x + 0.0:.3g}' for x in cap.axis)})"
             for cap in self._caps

@@ -73,7 +73,7 @@ class Loops:
             here = (i >= -1) & (i <= cells[0]) & (j >= -1) & (j <= cells[1])
             marks = np.zeros((cells[0] + 2, cells[1] + 2), dtype=np.bool_)
             marks[i[here] + 1, j[here] + 1] = True
-            # The cells that contain a point, and their neighbours.
+            # Mark the cells that contain one of the points, and the neighbours of these cells.
             rows = marks[:-2] | marks[1:-1] | marks[2:]
             passed |= rows[:, :-2] | rows[:, 1:-1] | rows[:, 2:]
         return passed

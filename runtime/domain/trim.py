@@ -176,14 +176,14 @@ class Trim:
         return np.min([part.sides(boxes, normals) for part in self.parts], axis=0)
 
     def with_boundary(self, boundary: Boundary) -> Trim:
-        """Return the trim with other boundary conditions, found for its surface."""
+        """Return the trim with the given boundary conditions of its surface."""
         if boundary == self.boundary:
             return self
         parts = [replace(x, boundary=boundary) if isinstance(x, Loops) else x for x in self.parts]
         return Trim(self.domain, boundary, tuple(parts))
 
     def turned(self, boundary: Boundary) -> Trim:
-        """Return the trim after a reversal of u; `boundary` are the conditions after that."""
+        """Return the trim after a reversal of u, with the new boundary conditions `boundary`."""
         low, high = self.domain[0]
         parts = tuple(Turned.of(part, low + high) for part in self.parts)
         return replace(self, boundary=boundary, parts=parts)

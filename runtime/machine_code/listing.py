@@ -24,7 +24,7 @@ PACKAGE = signatures.__name__.partition(".")[0]  # this module may be __main__
 
 
 def compiled_in(folder: Path) -> dict[str, list[Any]]:
-    """Return the signatures of this package's kernels that are cached in a folder, by kernel."""
+    """Return the signatures of this package's kernels in a folder, by the kernel's name."""
     found: dict[str, list[Any]] = defaultdict(list)
     for entry in entries_in(folder):
         name, kinds = signature_in(entry) or ("", [])
@@ -34,7 +34,7 @@ def compiled_in(folder: Path) -> dict[str, list[Any]]:
 
 
 def _is_named(name: str) -> bool:
-    """Return whether a kernel is one of this package, not of a test or a user."""
+    """Return whether a name is that of a kernel of this package, not of a test or a user."""
     if not name.startswith(f"{PACKAGE}."):
         return False
     try:

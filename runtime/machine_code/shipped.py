@@ -5,8 +5,8 @@ kernels, the series of Numba, Python and the platform are those of the build, an
 the level. Otherwise kernels are compiled here. The results are the same, bit for bit.
 
 The file consists of `MAGIC`, the size of a header, the header (sealed JSON), and the entries that
-it lists. It is read from the folder of the package only, and not if more people can write it than
-the sources: machine code could do anything.
+it lists. It is read from the folder of the package only, and only if everybody who can write it can
+also write the sources: machine code could do anything.
 """
 
 from __future__ import annotations
