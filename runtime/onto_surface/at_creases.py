@@ -3,9 +3,9 @@
 At such a point of a crease u = c, n is perpendicular to x_v, and n·x_u has different signs on both
 sides. So across the crease the height n·x has a maximum or a minimum. Along the crease it has a
 maximum or a minimum, too, or neither. The index of the point is 1 for two maxima or two minima, −1
-for one of each, and else 0. On a surface that rounds the crease off, the indices of the points near
-it with this normal have the same sum. For creases u = c and v = c alike, w is the parameter along
-the crease, and s the parameter across it.
+for a maximum and a minimum, and else 0. If the crease is rounded off, the point is replaced by
+points with this normal whose indices have the same sum. For creases u = c and v = c alike, w is the
+parameter along the crease, and s the parameter across it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from ..tape.tapes import bounds_over_boxes, jets_of
 DEEPEST, MANY, STEPS = 20, 4096, 12
 # The normals of both sides are known up to the angle SMOOTH. Points of one crease and normal that
 # are closer than APART, relative to the length of the crease in w, are one component. The signs of
-# n·x_w before and after a component are taken at this distance from it.
+# n·x_w before and after a component are taken at the distance APART from the component.
 SMOOTH, APART = 1e-9, 1e-6
 # The box of a corner has the radius SMOOTH, relative to the domain; within it, normals are assumed
 # to turn by at most the angle TURNED.
@@ -393,7 +393,7 @@ def _sides(tape: Tape, lines: Array, ends: Array) -> _Sides:
 
 
 def _may_be_zero(normals: Array, bounds: tuple[Array, Array], all_pairs: bool = False) -> Flags:
-    """Return whether n·x may be 0, given bounds of the vector x and n up to the angle SMOOTH.
+    """Return whether n·x may be 0, for a vector x within bounds and n known up to SMOOTH radians.
 
     The result is a mask (k,) for normals (k, 3) and bounds of k vectors; with `all_pairs`, a mask
     (S, k) for S normals and k vectors.

@@ -27,7 +27,7 @@ OPEN_BOX, ISOLATED = KINDS.index("open"), KINDS.index("isolated")
 # Its grid is one row of PLACES points; that of other boxes has SIDE points along each side.
 PLACES, SIDE, THIN = 257, 65, 1e-3
 # Points count as neighbours if their distance is at most NEIGHBOURS steps of the grid. Points are
-# rounded to multiples of 1/HALVES steps, and of those that become equal one is kept.
+# rounded to multiples of 1/HALVES steps, and of points that become equal only one is kept.
 NEIGHBOURS, HALVES = 1.5, 2.0
 # From each grid point there are at most STEPS Gauss–Newton steps. They end when the angles between
 # the normal and the tangents differ from 90° by at most SETTLED; points at which these angles still
@@ -41,9 +41,9 @@ def components_in(
 ) -> tuple[Undecided, Undecided]:
     """Return the known components inside a trim, and the boxes that remain undecided.
 
-    A component is known if its kind is. A component that the boundary of the trim cuts gets a row
-    for each of its pieces inside the trim, or an undecided box if no piece is found. `jets` returns
-    the 2-jets of the surface at u and v (k,). The normals (S, 3) are unit vectors.
+    A component counts as known if its kind is known. A component that the boundary of the trim cuts
+    gets a row for each of its pieces inside the trim, or an undecided box if no piece is found.
+    `jets` returns the 2-jets of the surface at u and v (k,). The normals (S, 3) are unit vectors.
     """
     known = open_.kinds != OPEN_BOX
     if trim is None or len(known) == 0:

@@ -49,7 +49,7 @@ def unmoved(spline: Spline, numbers: Indices, uv: Array) -> tuple[UndecidedNorma
     """Return an undecided box for each normal with points of a spline that could not be moved.
 
     `uv` (k, 2) are the parameters of these points, `numbers` (k,) the indices of their normals, in
-    increasing order. A box contains the points of its normal, and one cell around each.
+    increasing order. A box contains all these points of its normal, with one cell around each.
     """
     if len(numbers) == 0:
         return ()

@@ -46,7 +46,8 @@ MOST_STEPS = 32
 class Parameters:
     """A parametrization of a surface, by u and v or by the coordinates of a chart at a pole.
 
-    `jets` returns its 2-jets; `box` has the bounds of both parameters and what happens there. The
+    `jets` returns the 2-jets of the surface by these parameters. `box` has the bounds of both
+    parameters, and says whether a parameter is periodic, clamped to its bounds, or unbounded. The
     factor `size` scales the surface so that its cells have sides of about 1. Rounding errors of
     normals are up to `noise`.
     """

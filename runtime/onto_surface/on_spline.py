@@ -195,7 +195,7 @@ class OnPatches:
     def near_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits; `OnSurface` includes hits without a point of the surface."""
+        """Return the samples at hits; in `OnSurface`, some are points of the spline only."""
         return self.at_hits(normals, hits, fields, dtype)
 
     def share_at(self, normals: Array, hits: Hits) -> float:

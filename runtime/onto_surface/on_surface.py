@@ -152,8 +152,8 @@ class OnSurface(OnSpline):
     ) -> FieldsOfSamples:
         """Return the requested fields of the samples at hits.
 
-        Of samples that coincide on the surface, only one is returned. A hit without a point of the
-        surface has no sample; its box is undecided.
+        Of samples that coincide on the surface, only one is returned. A hit for which no point of
+        the surface is found has no sample, and its normal has an undecided box.
         """
         arrays, left = self._found(normals, hits)
         return as_fields(arrays, fields, dtype)._replace(undecided=left)
@@ -161,9 +161,10 @@ class OnSurface(OnSpline):
     def near_hits(
         self, normals: Array, hits: Hits, fields: Sequence[str], dtype: DTypeLike
     ) -> FieldsOfSamples:
-        """Return the samples at hits, on the spline where no point of the surface is found.
+        """Return the samples at hits, including hits for which no point of the surface is found.
 
-        Of samples that coincide on the surface, only one is returned.
+        The samples at such hits are points of the spline. Of samples that coincide on the surface,
+        only one is returned.
         """
         return as_fields(self._moved_once(normals, hits), fields, dtype)
 
@@ -205,14 +206,14 @@ class OnSurface(OnSpline):
             yield as_fields(arrays, fields, dtype)._replace(undecided=left)
 
     def _found(self, normals: Array, hits: Hits) -> tuple[Fields, tuple[UndecidedNormal, ...]]:
-        """Return the samples on the surface, and an undecided box for each hit without a sample."""
+        """Return the samples on the surface, and the undecided boxes of hits without a sample."""
         arrays = self._moved_once(normals, hits)
         left = np.flatnonzero(~arrays[FLAG_NAMES[0]])
         numbers, uv = arrays["normal_index"][left], arrays["uv"][left]
         return part_of(arrays, arrays[FLAG_NAMES[0]]), unmoved(self.spline, numbers, uv)
 
     def _moved_once(self, normals: Array, hits: Hits) -> Fields:
-        """Return the samples of `_moved`, but only one of samples that coincide on the surface."""
+        """Return the samples of `_moved`; of samples that coincide on the surface, only one."""
         arrays = self._moved(normals, hits)
         return part_of(arrays, self._kept_once(arrays))
 

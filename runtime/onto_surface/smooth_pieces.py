@@ -75,7 +75,7 @@ def proved_or_fitted(
 def _with_cells(
     surface: Surface | AnySpline, cells: Sequence[int] | None
 ) -> list[tuple[Surface | AnySpline, tuple[int, int] | None]]:
-    """Return each piece of a surface with the numbers of cells of its spline, or None."""
+    """Return each piece of a surface with the numbers of cells of its spline, None if not given."""
     if isinstance(surface, Surface) and (pieces := pieces_to_sample(surface)):
         return [(x, cells_of_piece(surface, x, cells)) for x in pieces]
     return [(surface, None if cells is None else pair_of_cells(cells))]

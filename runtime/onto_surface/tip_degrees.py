@@ -44,8 +44,8 @@ ROUNDING = 1e-9
 SAME_RAY = 1e-6
 # A side counts as collapsed if this number of its points coincide.
 ALONG = 65
-# A tip counts as inside a trim if a nearby parameter line is. The distance of this line from the
-# collapsed line of the tip is BESIDE, relative to the domain.
+# A tip counts as inside a trim if the parameter line at the distance BESIDE (relative to the
+# domain) from the collapsed line of the tip is inside.
 BESIDE = 1e-6
 
 
@@ -84,7 +84,10 @@ class Tip(NamedTuple):
 
     @classmethod
     def of(cls, fans: Sequence[Fan]) -> Tip | None:
-        """Return the tip of fans that begin where the one before ends; None if all are coplanar."""
+        """Return the tip of fans in anticlockwise order; None if all rays are in one plane.
+
+        Each fan begins with the ray with which the fan before it ends.
+        """
         rays = np.concatenate([x.rays[:-1] for x in fans])
         bends = np.concatenate([x.bends[:-1] for x in fans])
         starts = np.cumsum([0, *(len(x.rays) - 1 for x in fans)])
@@ -105,7 +108,8 @@ class Tip(NamedTuple):
         if not np.abs(rays @ mean[0]).max() > ROUNDING:
             return None  # a smooth pole, whose opposite meridians have other parameters
         cosine = float((normals @ mean[0]).min(initial=1.0)) - float(bends.max()) - ROUNDING
-        # Only a cap smaller than a half-sphere contains the arcs between the normals in it, too.
+        # A cap that contains all normals contains the arcs between them only if it is smaller than
+        # a half-sphere.
         cosine = cosine if cosine > 0.0 else -math.inf
         outside = int(_degrees(rays, -mean)[0]) if mean.any() else 0
         point, uv, patch = fans[0].point, fans[0].uv, fans[0].patch
@@ -291,9 +295,9 @@ class Tipped(NamedTuple):
 
 
 def tips_of_fans(fans: Sequence[Fan], same: float) -> Iterator[tuple[list[int], Tip]]:
-    """Yield the indices of fans that are a cone all around a tip, and the tip.
+    """Yield each tip, with the indices of the fans that form the cone around it.
 
-    Points within the distance `same` are one point.
+    The points of two fans count as one if their distance is at most `same`.
     """
     if not fans:
         return
@@ -315,7 +319,7 @@ def tips_of_fans(fans: Sequence[Fan], same: float) -> Iterator[tuple[list[int], 
 
 
 def _tips_of_nets(spline: NetSpline) -> list[Tip]:
-    """Return the tips of nets; between the tangents of its edges, a patch is flat at the tip."""
+    """Return the tips of nets; at a tip, the rays of a patch lie between tangents of two edges."""
     tips, nets, found = tips_of(spline), spline.control_nets, list[Fan]()
     if tips is None:
         return []
