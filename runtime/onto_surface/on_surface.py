@@ -255,8 +255,8 @@ class OnSurface(OnSpline):
     ) -> Fields:
         """Return fields of samples on the surface at parameters (k, 2).
 
-        At singular points of the surface, the fields are those of the spline; `normals` and the
-        signs of `K` are for these.
+        At singular points of the surface, the fields are those of the spline, with the given
+        `normals` and the signs of `K`; see `OnSpline.at_parameters`.
         """
         assert self.surface is not None
         points, directions, gaussian, mean = evaluate_on_surface(

@@ -70,8 +70,9 @@ class PoleChart:
     def next_to(self, uv: Array) -> Flags:
         """Return a mask (k,) of the parameters (k, 2) at which fields are evaluated by the chart.
 
-        They are those of `near` if derivatives are finite differences, which have large relative
-        errors on small circles around the pole, and else those closer than NEAR.
+        If derivatives are finite differences, which have large relative errors on small circles
+        around the pole, these are the parameters selected by `near`; otherwise they are those
+        closer to the pole than NEAR, relative to the domain.
         """
         if self.surface.differences is not None:
             return self.near(uv)

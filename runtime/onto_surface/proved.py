@@ -239,8 +239,8 @@ class ProvedSurface:
     ) -> None:  # fmt: skip
         """Replace curvatures at collapsed sides, which are 0, by those at nearby points.
 
-        x_u × x_v is 0 on a collapsed side. Its points are recognized by error bounds of u and v
-        that are as large as half the domain.
+        x_u × x_v is 0 on a collapsed side. Points of such a side are recognized by an error bound
+        of u or v that is as large as half the domain.
         """
         known = K if len(K) > 0 else H
         wide = places[: len(known), 2:4] >= 0.5 * np.ptp(self.surface.domain, axis=1)

@@ -123,9 +123,9 @@ def reached(
 
 
 def with_conditions(whole: Whole, jets: Evaluated, reach: Reach) -> Whole:
-    """Return the part of a spline or a surface that satisfies the conditions of a reach on points.
+    """Return the part of a spline or a surface whose points satisfy the conditions of a reach.
 
-    Its condition on normals is ignored.
+    The caps of the reach, which are conditions on normals, are ignored.
     """
     conditions = [OnPoints(jets, x) for x in reach._conditions]
     if not conditions:

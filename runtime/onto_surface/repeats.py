@@ -25,9 +25,10 @@ def kept_once(spline: Spline, arrays: Fields, at_pole: Flags) -> Flags:
 
     Samples are repeated if they have the same normal, sign of K and point, and the same parameters
     modulo periods; next to a pole, parameters are ignored. Of repeated samples one is kept, if
-    possible one that is in its patch. With each sample that is removed away from poles, a sample
-    that was not moved is removed, too, with the same normal and the other sign of K: it is on the
-    other side of a fold that the surface does not have. So the sum of the signs does not change.
+    possible one that is in its patch. Each time that a sample away from poles is removed, a second
+    sample is removed: one that was not moved, with the same normal and the other sign of K. It is
+    on the other side of a fold that the surface does not have. So the sum of the signs of K at the
+    samples of a normal does not change.
     """
     kept, found, normal_index = np.ones_like(at_pole), arrays[FLAG_NAMES[0]], arrays["normal_index"]
     left = left_patch(spline, arrays)

@@ -24,8 +24,8 @@ from .kernels.answers import OPEN_BOX
 from .kernels.cell_bounds import SMOOTH
 
 # A side of the domain counts as collapsed if PLACES points along it agree up to ROUNDINGS units in
-# the last place of the largest coordinate of all sides. The coordinates of the point itself are no
-# scale: near the origin they are small, but their rounding errors are not.
+# the last place of the largest coordinate of all sides. The coordinates of the collapsed side alone
+# give no scale: near the origin they are small, but their rounding errors are not.
 PLACES, ROUNDINGS = 17, 64.0
 MIXED = 4  # the index of the Taylor coefficient of u v; those of u and v are 1 and 2
 BOXES_AT_A_TIME = 1 << 12  # 2 MB of bounds, or 64 MB if all boxes are cut
@@ -33,7 +33,7 @@ BOXES_AT_A_TIME = 1 << 12  # 2 MB of bounds, or 64 MB if all boxes are cut
 # derivatives may turn by 360° along the line.
 ALONG = 32
 # Collapsed lines inside the domain are searched between LINES equidistant lines. The first of these
-# is SHIFT steps from the side, so that none of them is likely to be collapsed itself.
+# lines is SHIFT steps from the side, so that it is unlikely that one of them is itself collapsed.
 LINES, SHIFT = 32, 0.381966
 # A box counts as beside a line if its distance is at most this, relative to the domain.
 BESIDE = 1e-6
@@ -48,9 +48,10 @@ SMALL, LEAST, WIDE, ONE = 1e-2, 1e-5, 0.5, 4.0 * SMOOTH
 class Apex:
     """A line u = `end` (axis 0) or v = `end` (axis 1) that is collapsed to a point of the surface.
 
-    The line is a side of the domain, or `inside` it; `end` may have a rounding `error`. `tape` is
-    that of the surface, and `period` that of the parameter, or 0. `normal` is the limit of the
-    normals at a side, or None if it is not the same all along the side.
+    The line is a side of the domain, or `inside` the domain; `end` may have a rounding `error`.
+    `tape` is that of the surface; `period` is the period of the parameter that is constant on the
+    line, or 0. `normal` is the limit of the normals at a side, or None if the limit is not the same
+    all along the side.
     """
 
     tape: Tape
@@ -68,9 +69,10 @@ class Apex:
         Such a side is where a surface goes only part of the way around a smooth pole. The results
         are the remaining boxes, rows (k, 6) of `ProvedPlaces.places`, and the indices (k,) of their
         normals. A box beside the side can be decided if the normals at its far side are different
-        from the normal of the side, and K has one sign there. Then it contains the point of the
-        side if its normal is that of the side, and no point if its normal differs more than twice
-        as much as the normals at the far side. Otherwise it remains undecided.
+        from the normal of the side, and K has one sign there. The box then contains the point of
+        the side if the normal of the box (the prescribed one) is that of the side. It contains no
+        point if its normal differs from that of the side more than twice as much as the normals at
+        the far side do. Otherwise the box remains undecided.
         """
         sides = open_.boxes.reshape(-1, 2, 2)
         away = np.abs(sides[:, self.axis] - self.end)
@@ -161,8 +163,9 @@ class Apex:
     def _is_opposite(self, bounds: Array, normals: Array) -> Flags:
         """Return whether all normals over boxes at a side are more than 90° from normals (k, 3).
 
-        By the mean value theorem, x_u × x_v is (u − u₁) times a vector within the bounds of
-        x_u × x_uv beside a side u = u₁, and (v − v₁) times one of x_uv × x_v beside v = v₁.
+        By the mean value theorem, x_u × x_v beside a side u = u₁ is (u − u₁) times a vector within
+        the bounds of x_u × x_uv. Beside a side v = v₁ it is (v − v₁) times a vector within the
+        bounds of x_uv × x_v.
         """
         first, second = (1, MIXED) if self.axis == 0 else (MIXED, 2)
         a, b = ([Ball(*bounds[:, :, k, x].T) for x in range(3)] for k in (first, second))
@@ -182,9 +185,9 @@ def _cut(boxes: Array, axis: int) -> Array:
 
 
 def apexes_of(tape: Tape, domain: Domain, periods: Array) -> tuple[Apex, ...]:
-    """Return the sides of a domain and the lines inside that are collapsed, up to rounding.
+    """Return the collapsed sides of a domain, and the collapsed lines inside the domain.
 
-    `periods` (2,) are those of u and v, 0 if there are none.
+    They are collapsed up to rounding. `periods` (2,) are those of u and v, or 0.
     """
     lines = [(axis, end) for axis in (0, 1) for end in domain[axis]]
     sides = len(lines)

@@ -33,15 +33,15 @@ from .polar_tapes import PolarTapes, polar_tapes
 from .spline_quotient import mapped_spline
 
 SECTORS = 512
-# If bounds over SECTORS sectors are too wide, NARROW times as many are used. Quotients of splines
-# need these always, since they contain powers of u in each knot span. Bounds are taken over RINGS
+# If bounds over SECTORS sectors are too wide, NARROW times as many sectors are used; for quotients
+# of splines always, since they contain powers of u in each knot span. Bounds are taken over RINGS
 # rings of decreasing radii, or over RINGS_OF_QUOTIENTS for quotients, which are exact at the pole.
 NARROW, RINGS, RINGS_OF_QUOTIENTS = 4, 8, 2
 # Bounds are computed up to this distance from the pole, relative to the radius of the disc.
 WHOLE = 2.0
 # The radius of a disc is at least this fraction of the height of a row of cells.
 SMALLEST = 2.0**-8
-# In a disc the Hessian changes by at most this fraction of it.
+# The change of the Hessian in a disc, relative to the Hessian at the pole, is at most this.
 CHANGE = 0.4
 # Bounds must hold at least up to this multiple of the radius of a disc.
 BEYOND = 1.25
@@ -200,8 +200,8 @@ class Pole:
         )
         by_u, by_r = bounds.by_q
         condition = by_u * bounds.along[0] + by_r * bounds.along[1]
-        # Errors of h, of h_u and of h_r; to each, the error of the vector (q1, q2), or of its
-        # derivative by u or r, is added, times the slope.
+        # Errors of h, of h_u and of h_r. The errors of the vector (q1, q2) and of its derivatives
+        # by u and by r, times the slope, are included.
         of_q = np.linalg.norm(found[0, :3, :2], axis=1)
         value, around, away = (found[0, :3, 2] + bounds.slope * of_q).tolist()
         plane = self.basis[:, :2]

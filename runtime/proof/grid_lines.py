@@ -35,9 +35,9 @@ def jumps_of(tape: Tape, axis: int, low: float, high: float) -> Array:
 
 
 def lines_of(tape: Tape, axis: int, ends: Array, count: int) -> Array:
-    """Return about `count` + 1 values of u (axis 0) or v for grid lines, including those of jumps.
+    """Return about `count` + 1 values of u (axis 0) or v for grid lines, with nearly equal spacing.
 
-    They lie between both `ends`, which are included; the spacing is nearly equal.
+    The first and the last value are the `ends`; all values of `jumps_of` are included.
     """
     low, high = ends.tolist()
     pieces = np.unique([low, high, *jumps_of(tape, axis, low, high)])

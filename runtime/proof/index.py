@@ -59,9 +59,9 @@ CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
 # this share of the domain.
 MOST_OPEN = 0.25
 # The domain of a mirrored parameter is extended beyond its upper end, by this share of its length.
-# A point near the seam is found in this strip and again at the lower end: it is kept in the first
-# half of the strip, and otherwise at the lower end. The strip is far wider than rounding errors, so
-# that both decisions agree.
+# A point in this strip is found twice: in the strip and at the lower end. If it is in the first half
+# of the strip, the solution in the strip is kept, otherwise the one at the lower end. The strip is
+# far wider than rounding errors, so that exactly one of both is kept.
 BEYOND = 2.0**-30
 NO_PAIRS = np.empty((0, 2), np.int64)
 
@@ -247,7 +247,7 @@ class ProvedIndex:
 
         A point at the lower end of a mirrored parameter is also in the strip beyond the upper end,
         with the opposite normal. Solutions in the first half of the strip are moved to the upper
-        end, and the same ones at the lower end are left out.
+        end, and solutions for the same points at the lower end are left out.
         """
         keep, rows = np.ones(len(places.numbers), np.bool_), places.places
         for axis in self.seams:
@@ -371,11 +371,11 @@ class ProvedIndex:
         parts: list[Places],
         count: int,
     ) -> tuple[Places, list[Answers]]:
-        """Return each solution of `answers` once, without those in `parts`, and undecided boxes.
+        """Return the solutions of `answers` that are not in `parts`, each once, and more answers.
 
         `parts` are the solutions found without bisection, and `count` is the number of normals. If
-        it is unknown whether two solutions are the same, their boxes are undecided boxes of the
-        answers that are returned.
+        it is unknown whether a solution is the same as another one, it is left out, and its box is
+        an undecided box of the answers that are returned.
         """
         slow = np.concatenate([x.places for x in answers])
         of_slow = np.concatenate([x.numbers for x in answers])

@@ -120,9 +120,9 @@ def _regular_places(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return parameters (k, 2) of regular points, and p_u × p_v (k, 3) at these points.
 
-    A point is singular if |p_u × p_v| is negligible relative to its value at the centre of the
-    patch; the parameters of a singular point are moved slightly towards the centre, the others are
-    kept.
+    A point counts as singular if |p_u × p_v| is negligible relative to its value at the centre of
+    the patch. The parameters of a singular point are moved slightly towards the centre; those of
+    other points are kept.
     """
 
     def normals(places: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -195,7 +195,7 @@ def _first_of_each_place(
 ) -> NDArray[np.bool_]:
     """Return a mask of the hits to keep.
 
-    A hit `near` the boundary is left out if it coincides with another hit that is kept.
+    A hit `near` the open boundary is left out if it coincides with another hit that is kept.
     """
     keep = np.ones(len(place), dtype=bool)
     if not near.any():

@@ -21,9 +21,10 @@ BESIDE, DIRECTION = 64.0, np.array([1.0, 1e-2, 1e-4])
 
 
 def have_lines(spline: NetSpline, patches: Indices, normals: Array) -> Flags:
-    """Return for each of k patches whether a line in it has its normal in (k, 3), up to rounding.
+    """Return a mask (k,) of the patches with a line all of whose points have the given normal.
 
-    The result is False for patches with a singular corner or a collapsed edge, at poles and tips.
+    `normals` (k, 3) has a normal for each of the k `patches`; forms count as 0 up to rounding. The
+    mask is False for patches with a collapsed edge, or with a singular corner at a pole.
     """
     topology = spline.topology
     forms = python_function(formulas.forms)(spline.patch(patches), vector(normals))

@@ -29,7 +29,7 @@ from .kernels.search import PATCHES, Memory, Pairs, search
 from .lines import beside_lines, have_lines, places_at
 from .patch_index import MOST_PATCHES, Index, index_of, open_sides, ordered, sorted_keys
 
-# At most so many normals are searched together, and at most so many hits are sorted together.
+# The largest number of normals that are searched together, and of hits that are sorted together.
 NORMALS_AT_A_TIME, MOST_HITS = 1 << 20, 1 << 23
 # The number of normals that a thread takes at a time, and the initial capacity of its arrays of
 # keys.
@@ -159,7 +159,7 @@ def _with_lines(
     spline: AnySpline, normals: Array, certain: list[Indices], undecided: Indices,
     bounds: Array, developable: int, threads: int | None,
 ) -> Hits:  # fmt: skip
-    """Return the hits as `_decided`, but displace the normals that lines in nets have."""
+    """Return the hits as `_decided` does, but displace the normals that lines in nets have."""
     numbers, lines = undecided >> 32, np.empty(0, np.int64)
     if isinstance(spline, NetSpline) and len(undecided) > 0:
         lines = np.unique(numbers[have_lines(spline, undecided & NUMBER, normals[numbers])])
