@@ -66,7 +66,8 @@ def write(
         - `.las`, `.laz`: points, with all other columns as extra dimensions, and the CRS of a
           `terrain`, whose `origin` is added again; coordinates are rounded to 1e-8 of the
           extent. Need `points`, and the extra "gis" (laspy).
-        - `.gpkg`, `.geojson`: the same for programs of GIS, with `slope` and `aspect` (pyogrio).
+        - `.gpkg`, `.geojson`: points with all other columns, `slope` and `aspect`, and the CRS, for
+      programs of GIS. They need the extra "gis" (pyogrio).
     fields : sequence of str, optional
         The fields to write, such as ``("points", "normals")``; by default all fields of the
         samples.
@@ -312,8 +313,9 @@ def offset(self: Samples, distance: float, *, trimmed: bool = False) -> Samples:
     Warns
     -----
     GaussmapWarning
-        If the offset folds, because d passes a radius of curvature on that side: the number of such
-        samples (if they have curvatures), and the smallest radius. Normals stay there, too.
+        If the offset folds, because d passes a radius of curvature on that side. The warning gives
+        the number of samples at which it folds (if they have curvatures), and the smallest radius
+        on that side. Normals do not change where the offset folds.
 
     Examples
     --------
@@ -340,8 +342,8 @@ def unobstructed(
 
     The segment from the sample to the point x + d n of `offset` must not enter the part, or another
     obstacle. A probe has a width: for a ball of radius r, take the samples ``offset(r)``, which are
-    its centres. Rays are tested against a mesh of the obstacle, so that the result may be wrong for
-    segments that pass within the distance between mesh and surface.
+    its centres. Segments are tested against a mesh of the obstacle, so that the result may be wrong
+    for a segment that passes the obstacle at less than the distance between mesh and obstacle.
 
     Parameters
     ----------
@@ -406,15 +408,15 @@ def unobstructed(
 def visible(self: Silhouette, *, by: Mesh | None = None) -> NDArray[np.bool_]:
     """Return which points of a silhouette are seen: no part of the surface is before them.
 
-    Along a direction, the eye is infinitely far away, and looks along the direction.
+    For a silhouette along a direction, the eye is infinitely far away and looks in this direction.
 
     Parameters
     ----------
     by : Mesh, optional
         A mesh of the surface, against which rays are tested. By default a mesh of 10,000 samples is
         made, which takes most of the time: for many views, make one mesh and pass it.
-        Next to cusps of the outline, where rays pass the surface within about the distance of the
-        mesh from it, the result may be wrong.
+        The result may be wrong next to cusps of the outline, where a ray passes the surface at less
+        than about the distance between mesh and surface.
 
     Returns
     -------

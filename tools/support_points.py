@@ -39,7 +39,8 @@ STEPS_A_CELL = 2
 # Sets of directions are halved until at most PAIRS pairs of a direction and a segment that may be
 # farthest in it are left in each set.
 PAIRS = 1 << 13
-# Steps of Newton's method, and of bisection where the boundary of a trim crosses a side.
+# The numbers of steps of Newton's method, and of bisection where the boundary of a trim crosses a
+# segment.
 STEPS, BISECTIONS = 6, 50
 # Newton's method starts at these positions in undecided boxes.
 IN_BOXES = (np.indices((3, 3)).reshape(2, -1).T + 0.5) / 3.0
@@ -438,8 +439,8 @@ def lines_of(geometry: OnPatches) -> Iterator[Segments | NetEdges]:
 def _of_trim(geometry: OnSpline, line: Array) -> Segments:
     """Return the segments of a polyline (k, 2) in the unit square, a boundary of the trim.
 
-    On the boundary of a predicate, the errors of the segments are the distances of its points from
-    the chords between their neighbours.
+    If the trim has a predicate, the boundary is known only at the points of the polyline. The
+    `errors` are then the distances of these points from the chords between their neighbours.
     """
     spline, middles = geometry.spline, (line[1:] + line[:-1]) / 2.0
     around = wrapped(middles, spline.boundary)

@@ -59,9 +59,9 @@ CELL_ROOM, PAIRS, ROOM = 2048, 1 << 15, 1 << 12
 # this share of the domain.
 MOST_OPEN = 0.25
 # The domain of a mirrored parameter is extended beyond its upper end, by this share of its length.
-# A point in this strip is found twice: in the strip and at the lower end. If it is in the first half
-# of the strip, the solution in the strip is kept, otherwise the one at the lower end. The strip is
-# far wider than rounding errors, so that exactly one of both is kept.
+# A point in this strip is found twice: in the strip and at the lower end. In the first half of the
+# strip, the solution in the strip is kept, otherwise the one at the lower end. The strip is far
+# wider than rounding errors, so that exactly one of both is kept.
 BEYOND = 2.0**-30
 NO_PAIRS = np.empty((0, 2), np.int64)
 

@@ -141,5 +141,8 @@ def _checked_workers(client: Any, plan: Plan) -> int:  # noqa: ANN401
 
 
 def state_of(folder: Path) -> tuple[str, str, bool]:
-    """Return a worker's version of gaussmap, its digest of formulas, and if it sees `folder`."""
+    """Return a worker's version of gaussmap, its digest of formulas, and whether it sees `folder`.
+
+    A worker sees the folder if the settings of the data set exist at this path.
+    """
     return __version__, digest(), (folder / SETTINGS).is_file()

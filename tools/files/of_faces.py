@@ -39,7 +39,7 @@ def _text(value: float | str | None) -> str:
     if isinstance(value, str) and value.startswith(FORMULA):
         value = f"'{value}"
     line = io.StringIO()
-    # The writer quotes a name with any line break only if its line terminator contains both
-    # characters.
+    # The writer quotes a name that contains \r or \n only if this character is in the line
+    # terminator.
     csv.writer(line, lineterminator="\r\n").writerow(["" if value is None else value, ""])
     return line.getvalue()[:-3]

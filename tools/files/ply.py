@@ -34,8 +34,8 @@ from .reading import UnusableError
 if TYPE_CHECKING:
     from ..meshes.mesh import Mesh
 
-# NumPy's type for each name of a type: names of the standard, newer names that some programs write,
-# and two names that belong to neither.
+# NumPy's type for each name of a type: the names of the standard, newer names that some programs
+# write, and names of 64-bit integers, which are in neither group.
 _TYPES = {
     **{"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4"},
     **{"int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4"},

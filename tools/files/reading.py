@@ -43,7 +43,8 @@ def regular_file(path: Path | str) -> BufferedReader:
 def opened(path: Path, kind: str, content: str) -> Iterator[BufferedReader]:
     """Yield an open file; any error while reading it becomes a FileError that names the path.
 
-    Both words are for error messages: `kind` follows "is no", `content` is what the file holds.
+    Error messages contain both words: `kind`, which follows "is no", and `content`, which names the
+    content of the file.
     """
     try:
         file = regular_file(path)  # tells an error here from one in the content

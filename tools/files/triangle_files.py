@@ -20,7 +20,7 @@ _STL_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribu
 
 
 def write_obj(mesh: Mesh, path: Path) -> None:
-    """Write vertices, texture coordinates, normals, and triangles, as indices of these, as text."""
+    """Write vertices, texture coordinates and normals, and triangles as indices of these three."""
     # trimesh is not used: it writes a fixed number of decimals, which loses small numbers.
     split = mesh.split  # a vertex for each of its normals
     texture = split_at_seams(split.uv, split.triangles, split.domain, split.boundary)
