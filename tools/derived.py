@@ -67,7 +67,7 @@ def write(
           `terrain`, whose `origin` is added again; coordinates are rounded to 1e-8 of the
           extent. Need `points`, and the extra "gis" (laspy).
         - `.gpkg`, `.geojson`: points with all other columns, `slope` and `aspect`, and the CRS, for
-      programs of GIS. They need the extra "gis" (pyogrio).
+          programs of GIS. They need the extra "gis" (pyogrio).
     fields : sequence of str, optional
         The fields to write, such as ``("points", "normals")``; by default all fields of the
         samples.

@@ -194,11 +194,11 @@ def _farthest(gauss_map: GaussMap, normals: Array) -> SupportPoints:
 
 
 def _compare_with_splines(found: SupportPoints, gauss_map: GaussMap, normals: Array) -> None:
-    """Raise the errors to the bounds that the splines of the surface give.
+    """Raise the `errors` of known points to bounds that the splines of the surface give.
 
-    A bound is the largest n·x on a spline plus the distance of the spline from the surface, less
-    the value found. Before that, points of the surface at the parameters of the farthest points of
-    splines are added.
+    First, the points of the surface at the parameters of the farthest points of the splines are
+    added. The bound is then the largest n·x on a spline, plus the distance of the spline from the
+    surface, minus the value n·x of the known point.
     """
     on_splines = [(x, _farthest(kept_map(x.spline), normals)) for x in on_grids(gauss_map._fitted)]
     for piece, near in on_splines:

@@ -25,7 +25,7 @@ WORTH_NAMING = 1e-9
 
 
 class Cap(NamedTuple):
-    """The directions within an angle, in degrees, of a unit vector."""
+    """The directions whose angle with the unit vector `axis` is at most `angle` degrees."""
 
     axis: NDArray[np.float64]
     angle: float

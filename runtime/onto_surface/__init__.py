@@ -1,1 +1,1 @@
-"""From the spline to the surface: samples are moved to it and evaluated on it."""
+"""From the spline to the surface: samples are moved to the surface and evaluated there."""

@@ -406,7 +406,7 @@ def _may_be_zero(normals: Array, bounds: tuple[Array, Array], all_pairs: bool = 
 
 
 def _may_be_between(normals: Array, sides: _Sides) -> Flags:
-    """Return a mask (k,): whether n·x_s may have different signs on both sides, or be 0 on one."""
+    """Return a mask (k,): whether n·x_s may be 0 on a side, or have different signs on both."""
     slopes = [_product(normals, x) for x in (sides.before, sides.after)]
     zero = [_may_be_zero(normals, x) for x in (sides.before, sides.after)]
     return zero[0] | zero[1] | (slopes[0][0] * slopes[1][0] < 0.0)

@@ -20,7 +20,8 @@ from .kernels.refine import chart_jets, jet_of_pole
 
 # Samples of the spline are moved in the chart if they are within this number of cells of the pole.
 # Within four cells the spline is inaccurate and may have folds; its samples are up to a cell away
-# from those of the surface. For 1 cell, samples are lost; above 3, only rounding errors change.
+# from those of the surface. With one cell, samples are lost; from three cells on, more cells change
+# samples by rounding errors only.
 POLE_CELLS = 6
 # Closer to a pole than this share r of the domain, the 2-jet at the pole is used, with an error of
 # order r. Derivatives by the angle would have cancellation errors of up to ε/r².
@@ -43,7 +44,7 @@ class PoleChart:
 
     @property
     def inward(self) -> float:
-        """1 if the parameter towards the pole increases away from it, −1 if it decreases."""
+        """1 if the parameter that is constant at the pole increases away from the pole, else −1."""
         return math.copysign(1.0, self.other - self.end)
 
     @property

@@ -57,7 +57,7 @@ def index_of(
 ) -> ProvedIndex | None:
     """Return the index of a surface, or None if its derivatives have no bounds somewhere.
 
-    A `domain` is that of the search, instead of the surface's own.
+    If a `domain` is given, points are searched in it, and not in the domain of the surface.
     """
     if surface.tape is None:
         return None

@@ -92,9 +92,9 @@ def _starts(values: Indices) -> Indices:
 
 
 def _paired(rows: Indices, keys: Indices, others: Indices) -> Indices:
-    """Return, for each key, as many rows with this key as `others` has entries equal to the key.
+    """Return, for each key, as many rows with this key as there are entries of the key in `others`.
 
-    If fewer rows have the key, all of them are returned.
+    `keys` are those of `rows`. If fewer rows have the key, all of these rows are returned.
     """
     if len(rows) == 0 or len(others) == 0:
         return rows[:0]

@@ -84,9 +84,10 @@ def _with_cells(
 def cells_of_piece(
     surface: Surface, piece: Surface, cells: Sequence[int] | None
 ) -> tuple[int, int] | None:
-    """Return the numbers of cells (m, n) of a piece, from those of the whole surface, `cells`.
+    """Return the numbers of cells (m, n) of a piece.
 
-    They are multiplied by the piece's share of the domain along u and along v.
+    They are the numbers of `cells` of the whole surface, times the share of the domain that the
+    piece has along u and along v.
     """
     if cells is None:
         return None

@@ -353,7 +353,7 @@ def _length(x: Ball, y: Ball) -> float:
 
 
 def _is_steady(bounds: Bounds, middle: Array) -> bool:
-    """Return whether the Hessian changes little, relative to a regular matrix `middle` (3,)."""
+    """Return whether the Hessian differs little from a regular matrix, given by `middle` (3,)."""
     y11, y12, y22 = middle.tolist()
     hessian = np.array([[y11, y12], [y12, y22]])
     if not np.isfinite(hessian).all() or np.linalg.det(hessian) == 0.0:

@@ -74,7 +74,7 @@ def creases_of(
     x = tape.spline
     smooth = (x.smooth_u, x.smooth_v)[axis]
     jumps = jumps_of(tape, axis, *domain[axis]).tolist() if (smooth == 0).any() else []
-    # A parameter closer to a knot than SLACK is on both sides of it in bounds over boxes.
+    # In bounds over boxes, a parameter closer to a knot than SLACK is on both sides of the knot.
     step = 4.0 * SLACK * sum(map(abs, domain[axis]))
     lines = _with_seam(tape, axis, domain, boundary, jumps)
     if boundary[axis] == ("open", "open") and _is_closed(tape, axis, domain):

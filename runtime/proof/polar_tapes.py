@@ -88,9 +88,9 @@ def _with_slopes(
 
 
 def _applied(writer: TapeWriter, name: str, x: Traced, slope: Slope) -> tuple[Traced, Slope]:
-    """Write the function `name` of a row to the tape; return its value and its derivative.
+    """Record the operation `name` of the row x on the tape; return its value and its derivative.
 
-    `slope` is the derivative of the row; the chain rule gives the derivative of the value.
+    `slope` is the derivative of the row x; the chain rule gives the derivative of the value.
     """
     value = Traced(writer, writer.write(name, x.row))
     if isinstance(slope, float):

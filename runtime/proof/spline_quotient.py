@@ -130,10 +130,11 @@ def _as_polynomials(
 
 
 def _replayed(writer: TapeWriter, tape: Tape, first: int, is_rational: bool) -> list[int] | None:
-    """Copy the operations of a tape to `writer`, applied to the rows from `first` on.
+    """Copy the operations of a tape to `writer`, with other coordinates of the spline.
 
-    These rows replace the coordinates of the spline. Constants that are added to coordinates are
-    left out. Return the rows of the outputs; None if these are not linear in the coordinates.
+    The rows of `writer` from `first` on replace the coordinates. Constants that are added to
+    coordinates are left out. Return the rows of the outputs; None if the outputs are not linear in
+    the coordinates.
     """
     rows: list[int] = []
     linear: list[bool] = []
@@ -194,7 +195,8 @@ def mapped_spline(tape: Tape, matrix: Array) -> Tape | None:
 def _linear_form(tape: Tape) -> tuple[Array, int | None] | None:
     """Return the matrix by which the outputs depend on x, y, z; None if they are not linear.
 
-    The second result is the row of the inverse weight by which they are multiplied, or None.
+    The second result is the row of the inverse weight by which the outputs are multiplied, or None
+    if they are not multiplied by it.
     """
     forms: list[tuple[Array, int | None] | None] = []
     for row, (code, a, b, last) in enumerate(tape.operations.tolist()):

@@ -137,7 +137,7 @@ def listed(cones: Array) -> Lists:
     level = _level_of(cones, faces, tangent)
     caps = np.empty((faces << 2 * level, 4))
     write_caps(inverse, faces, level, caps)
-    # The least cosine between a direction in a bin and the axis of the face of the cube it is on.
+    # The least cosine between a direction in a bin and the axis of the cube's face with the bin.
     least = (1.0 - 1e-12) / math.sqrt(1.0 + 2.0 * tangent**2)
     keys = np.empty(0, np.int64)
     room = KEYS_PER_PIECE * len(cones)
@@ -166,8 +166,8 @@ def _frame_of(cones: Array) -> tuple[Array, float]:
     x, y, height = directions @ axes.T
     if not (height - chords > 0.5).all():
         return everything
-    # The tangent of the largest angle between a direction of a cone and the mean axis: the exact
-    # value for the axes of cones, plus a bound for the half angles of cones.
+    # A bound of the tangent of the largest angle between a direction of a cone and the mean axis:
+    # the tangent for the axis of the cone, plus a bound of what its half angle adds.
     far = (np.hypot(x, y) / height + chords / (height * (height - chords))).max()
     tangent = max(float(far) * (1.0 + 1e-9), NARROWEST_CAP)
     if tangent > WIDEST_CAP:
