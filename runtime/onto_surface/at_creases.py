@@ -50,10 +50,10 @@ SECOND = (3, 5)
 class OnCreases(NamedTuple):
     """Points of creases at given normals, one for each component, sorted by normal.
 
-    `numbers` (k,) are the indices of the normals; `degrees` (k,) are −1, 0 or 1, what the docstring
-    of the module calls the index of a point. The parameters of all points of a component differ by
-    at most `radius` (k, 2) from `uv` (k, 2). A point is `unsure` if its normal is that of one side,
-    up to rounding.
+    `numbers` (k,) are the indices of the normals. `degrees` (k,) are the indices −1, 0 or 1 that
+    the docstring of the module defines, or NaN where the index is unknown. The parameters of all
+    points of a component differ by at most `radius` (k, 2) from `uv` (k, 2). A point is `unsure` if
+    its normal is that of one side, up to rounding, or if its index is unknown.
     """
 
     numbers: Indices
