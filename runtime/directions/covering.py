@@ -37,9 +37,9 @@ def covering_radius(normals: ArrayLike) -> float:
     Notes
     -----
     Each facet of the convex hull of the normals bounds an empty cap around its own normal; the
-    covering radius is the largest angle of these caps. It refers to the whole sphere: for normals
-    within a hemisphere, such as those of a small `cap`, it is 180° minus the radius of the smallest
-    cap that contains them.
+    covering radius is the largest angle of these caps. It refers to the whole sphere. For normals
+    within a hemisphere, such as those of a small `cap`, the covering radius is 180° minus the
+    radius of the smallest cap that contains the normals.
 
     Examples
     --------

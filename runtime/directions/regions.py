@@ -127,7 +127,7 @@ class Reach:
             turned = np.radians([middle + half - 90.0, middle - half + 90.0])
             sides = np.stack([np.sin(turned), np.cos(turned), 0.0 * turned], axis=1)
             caps += [Cap(side, 90.0) for side in sides]
-        # The whole sphere needs no test beside other caps.
+        # Caps of 180° are the whole sphere; they are left out if there are other caps.
         self._caps = tuple(x for x in caps if x.angle < 180.0 or len(caps) == 1)
         self._from_edges = None if from_edges is None else positive_number(from_edges, "from_edges")
         self._along = caps[0].axis if yes_or_no(unobstructed, "unobstructed") else None
@@ -209,7 +209,8 @@ class Reach:
 def _pair(values: Sequence[float], name: str, most: float) -> tuple[float, float]:
     """Return a pair of angles in degrees; InputError if it is out of range or of order.
 
-    The second angle is positive and at most `most`. A `slope` is the least and the largest angle.
+    The second angle must be positive and at most `most`. If `name` is "slope", the pair must be the
+    least and the largest angle.
     """
     first, second = finite_array(values, (2,), name).tolist()
     if not 0.0 < second <= most or (name == "slope" and not 0.0 <= first < second):

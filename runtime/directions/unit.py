@@ -77,7 +77,7 @@ def in_pieces(
 ) -> NDArray[np.float64]:
     """Return the rows [first, last) of a long array with `width` columns.
 
-    The function `rows` returns any range of rows; threads call it for PIECE rows at a time.
+    The function `rows` computes a range of these rows; threads call it for PIECE rows at a time.
     """
     check_memory("normals", last - first)
     result = np.empty((last - first, width))

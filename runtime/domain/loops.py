@@ -96,7 +96,7 @@ class Loops:
         return sides
 
     def _inwards(self, uv: Array) -> Array:
-        """Return points (k, 2), in which points on open sides are moved inwards, by very little."""
+        """Return the points (k, 2); points on open sides are moved inwards, see INSIDE."""
         return uv.clip(*self.limits)
 
     @cached_property

@@ -45,8 +45,8 @@ class TrimPart(Protocol):
 class Trim:
     """The part of a domain that belongs to a surface: where all conditions hold.
 
-    `Surface.trimmed` makes it, and a grid with missing points has one. It pickles if its predicates
-    do.
+    `Surface.trimmed` makes a trim, and the surface of a grid with missing points has a trim. A trim
+    can be pickled if its predicates can.
 
     Attributes
     ----------
@@ -300,7 +300,7 @@ def trimmed(trim: Trim | None, domain: Domain, boundary: Boundary, *parts: TrimP
 
 
 def with_uv(trim: Trim | None, fields: Sequence[str]) -> tuple[str, ...]:
-    """Return names of fields of samples; if there is a trim, "uv" is among them."""
+    """Return the names of `fields`; if there is a trim, "uv" is added."""
     return (*fields, "uv") if trim is not None and "uv" not in fields else tuple(fields)
 
 

@@ -46,7 +46,7 @@ BESIDE_POLE = 1e-6
 
 
 def count_of(arrays: Fields) -> int:
-    """Return the number of samples from their fields."""
+    """Return the number of samples, given the arrays of their fields."""
     return len(next(iter(arrays.values())))
 
 

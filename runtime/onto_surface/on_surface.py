@@ -1,4 +1,4 @@
-"""Sampling of surfaces without a proof: points are searched on the spline, and moved from there."""
+"""Sampling of surfaces without a proof: points are found on a spline, and moved to the surface."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ TRIED = 1 << 12
 
 
 def place_of_samples(surface: object, on: str | None) -> str:
-    """Return "surface" or "spline": on which of both the samples of a surface lie.
+    """Return where the samples of a surface lie: "surface" or "spline".
 
     Raises UnknownNameError for another word, InputError if samples cannot lie on the surface.
     """

@@ -121,7 +121,11 @@ def with_area(geometries: Sequence[OnSpline]) -> list[tuple[int, OnSpline]]:
 
 
 def _size_of(geometry: OnSpline, is_one_of_many: bool) -> float:
-    """Return the size of a piece; 0 if it is one of several, and the trim leaves nothing of it."""
+    """Return the size of a piece.
+
+    If the trim leaves nothing of it, the size of one of several pieces is 0; for a single piece,
+    SurfaceError is raised.
+    """
     try:
         return geometry.size
     except SurfaceError:

@@ -104,7 +104,7 @@ class Pole:
     def of(
         cls, tapes: PolarTapes, around: tuple[float, float], turned: float, radius: float
     ) -> Pole | None:
-        """Return a pole; None without a tangent plane there, or with creases closer than `radius`.
+        """Return a pole; None if it has no tangent plane, or if creases are closer than `radius`.
 
         `turned` is the sign of x_u × x_r relative to the oriented normal.
         """

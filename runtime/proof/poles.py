@@ -131,7 +131,7 @@ def _normals_in(tape: Tape, box: Array) -> Array:
 def _cone(
     tape: Tape, domain: Domain, angle: int, side: tuple[float, float], size: float
 ) -> tuple[Array, float] | None:
-    """Return axis and half angle of a cone that contains the normals of a strip; None without one.
+    """Return axis and half angle of a cone with all normals of a strip; None if there is none.
 
     `side` has the value at the pole of the parameter towards it, and 1 if this parameter increases
     away from the pole, or −1 if it decreases; `size` is the width of the strip.

@@ -156,8 +156,9 @@ def uncancelled(
 
     `poles` (k,) has the index of the pole at which a hit is, or −1. Around a pole the Gaussian
     image of a spline may be folded, by rounding, or because the principal curvatures of the surface
-    are different there. The number of hits that remain is the winding number of the image around
-    the normal, which is 1 at a regular point of the surface. If no hit would remain, all are kept.
+    at the pole are different. The number of hits that remain is the winding number of the image
+    around the normal, which is 1 at a regular point of the surface. If no hit would remain, all
+    hits are kept.
     """
     keep = np.ones(len(numbers), dtype=bool)
     at = np.flatnonzero(poles >= 0)

@@ -106,7 +106,7 @@ class Dataset:
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """The fields of the samples, a tuple of str; some parts may lack some of them."""
+        """The fields of the samples, a tuple of str; a part may lack some of these fields."""
         return self.settings.fields
 
     @property
