@@ -342,7 +342,7 @@ def unobstructed(
 
     The segment from the sample to the point x + d n of `offset` must not enter the part, or another
     obstacle. A probe has a width: for a ball of radius r, take the samples ``offset(r)``, which are
-    its centres. Segments are tested against a mesh of the obstacle, so that the result may be wrong
+    centres of the ball. Segments are tested against a mesh of the obstacle; the result may be wrong
     for a segment that passes the obstacle at less than the distance between mesh and obstacle.
 
     Parameters

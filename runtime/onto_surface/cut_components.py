@@ -1,8 +1,8 @@
 """Components of the set of points with one normal, cut by the boundary of a trim.
 
 A component that is a curve or a region is sampled: Gauss–Newton steps lead from the points of a
-grid on its box to points with the normal. Those inside the trim, joined to their neighbours, are
-the pieces.
+grid on its box to points with the normal. Each piece consists of points with the normal inside the
+trim that are linked by chains of neighbours.
 """
 
 from __future__ import annotations

@@ -37,10 +37,10 @@ ALONG = 32
 LINES, SHIFT = 32, 0.381966
 # A box counts as beside a line if its distance is at most this, relative to the domain.
 BESIDE = 1e-6
-# A collapsed side with one normal is the only point of a box beside it with this normal if two
-# conditions hold: the width of the box is at most SMALL, relative to the domain, and the normals at
-# its far side (or at the distance LEAST, if that is farther) differ from the normal of the side,
-# but by at most WIDE. The normal of the side has errors up to ONE.
+# If a collapsed side has one normal, a box beside the side has no other point with this normal if
+# two conditions hold: the width of the box is at most SMALL, relative to the domain; the normals at
+# the far side of the box (or at the distance LEAST, if that is farther) differ from the normal of
+# the collapsed side, but by at most WIDE. The normal of the collapsed side has errors up to ONE.
 SMALL, LEAST, WIDE, ONE = 1e-2, 1e-5, 0.5, 4.0 * SMOOTH
 
 
