@@ -94,14 +94,14 @@ def draw_samples(axes: Axes, samples: gm.curves.CurveSamples) -> None:
 def caption_4(samples: gm.curves.CurveSamples) -> str:
     """Return the caption, with the numbers of points that a normal has."""
     points = np.bincount(samples.normal_index, minlength=NORMALS)
-    counts = listed(f"{(points == k).sum()} belong to {k}" for k in np.unique(points))
+    counts = listed(f"{(points == k).sum()} have {k}" for k in np.unique(points))
     return (
         f"Uniform normals on the circle (left) are mapped to points of a curve (right) that are "
         f"dense where |κ| is large; a normal and its points have the same number. Blue points "
         f"have a positive curvature, orange points a negative one. Of the {NORMALS} normals "
-        f"{counts} points; as the curve turns round once, each has one blue point more than orange "
-        f"ones. The curve "
-        f"has {samples.report.inflections} inflections; in polar coordinates it is "
+        f"{counts} points. Each normal has one blue point more than orange ones, since the tangent "
+        f"of the curve turns round once. The curve has {samples.report.inflections} "
+        f"inflections; in polar coordinates it is "
         f"$`r = {latex_of(RADIUS)}`$."
     )
 

@@ -163,10 +163,10 @@ def caption_3(
     elliptic = (bow_tie.area + bow_tie.solid_angle) / 2
     hyperbolic = (bow_tie.area - bow_tie.solid_angle) / 2
     return (
-        f"Patches (left) and the domains of their support functions (right), the Gaussian images, "
-        f"each pair seen from the same side. An edge and the arc to which it is mapped have the "
-        f"same colour. Thin lines are the spherical conics on which the arcs lie, where three "
-        f"quadratic cones intersect the sphere, and their opposites. Top: the patch of Fig. 2 "
+        f"Patches (left) and their Gaussian images (right), the domains of their support "
+        f"functions; each pair is seen from the same side. An edge and the arc to which it is "
+        f"mapped have the same colour. The arcs lie on spherical conics (thin lines), in which "
+        f"three quadratic cones and their opposites intersect the sphere. Top: the patch of Fig. 2 "
         f"fills a triangle of {triangle.area:.3f} sr. Middle: all points of the edge v = 0 have "
         f"the same normal, so that one side shrinks to a point and leaves a biangle of "
         f"{biangle.area:.3f} sr. Bottom: the parabolic line of the same surface cuts this patch "

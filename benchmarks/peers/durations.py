@@ -48,7 +48,7 @@ the fit of the spline included; more than {stream:,} points come in chunks (`gm.
 
 {table}
 
-A new process takes {warm} s for its first 10⁴ points, with imports and loading of machine code
+For its first 10⁴ points, a new process takes {warm}, imports and loading of machine code included
 ([details](install.md#compiled-kernels)).
 
 A grid of parameters is faster, if there is a closed form: {ratio} times at {largest:,} points. Use
@@ -98,7 +98,7 @@ def durations(measured: Duration) -> str:
     words = WORDS.format(
         stream=STREAMED,
         table="TABLE",
-        warm=f"{measured.warm[0]:.1f} (default {measured.warm[1]:.1f})",
+        warm=f"{measured.warm[0]:.1f} s at given normals and {measured.warm[1]:.1f} s by default",
         ratio=f"{measured.at_normals[largest] / measured.grid[largest]:.1f}",
         largest=largest,
     )

@@ -19,10 +19,11 @@ the points that have them.
 - **Normals are represented well**: G is the largest angle between a normal of the surface and that
   of the nearest sample in normal space. gaussmap has the smaller G in {best} of {compared}
   comparisons.
-- **Places are not**, with points at given normals alone: these are rare where the surface is nearly
-  flat. E is the largest angle between the normals of a point and of its nearest sample in space.
-  gaussmap has the smaller E in only {nearest} of {compared} comparisons. The default,
-  `density="balanced"`, fills the gaps between these points, at less speed ([measured](quality.md)).
+- **Positions are represented badly** by points at given normals alone: such points are rare where
+  the surface is nearly flat. E is the largest angle between the normals of a point and of its
+  nearest sample in space. gaussmap has the smaller E in only {nearest} of {compared} comparisons.
+  The default, `density="balanced"`, fills the gaps between such points, at less speed
+  ([measured](quality.md)).
 
 The table has the range of the speed of gaussmap relative to each of the other packages, for 10⁶
 points, and the number of surfaces on which gaussmap has the smaller error. The columns are

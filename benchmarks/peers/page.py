@@ -60,9 +60,9 @@ mesh this B-spline, too, except for the torus, which is one of their primitives.
 computes trigonometric functions along its two sides only. Meshes have exact normals at their
 vertices; samples on meshes have interpolated normals. gaussmap is given the normals of a Fibonacci
 lattice, whose computation is not timed; with `count=…, density="gauss"` it computes these normals,
-and finds the number of normals that is needed. The recipes draw points at random. Samples of
-gaussmap and of NumPy's recipe also have curvatures and parameters. Each package uses its default
-number of threads; the default of gaussmap is one for each core.
+and finds the number of normals that is needed. The packages whose names contain "recipe" draw
+points at random. Samples of gaussmap and of NumPy's recipe also have curvatures and parameters.
+Each package uses its default number of threads; the default of gaussmap is one for each core.
 """
 
 SCALE = """\
