@@ -57,7 +57,8 @@ PLASTIC = 0.7548776662466927
 SHORTEST_STEP, LONGEST_STEP = 2.0**-17, 2.0**-11
 # Normals of the surface with a larger error than this (radians), near singular points, are ignored.
 NORMAL_ERROR = 1e-4
-# The rounding error of a difference of two coordinates, relative to the largest one: 8 roundings.
+# The rounding error of a difference of two coordinates, relative to the largest coordinate: 8
+# roundings.
 DIFFERENCE = 2.0**-49
 # The surface is evaluated again at AROUND points around each of the WORST test points, within a
 # cell, and its normal at every EACH_AROUND-th of them. At most one of the WORST is in each of
@@ -273,10 +274,11 @@ def variation(
 ) -> tuple[float, float]:
     """Return how much the error of a spline varies along u, and along v, where it is largest.
 
-    If cells are too long along u, the error varies between the middle of a cell and its ends along
-    u; if they are too long along v only, it varies less along u. With `slopes`, the place is where
-    the angle between normals is largest, and each variation is divided by the length of the tangent
-    x_u or x_v: errors along the shorter tangent turn normals more.
+    If cells are too long along u, the error varies along u between the middle and the ends of a
+    cell; if cells are too long along v only, the error varies less along u. By default the
+    variation is measured where the distance is largest. With `slopes`, it is measured where the
+    angle between normals is largest, and divided by the length of the tangent x_u or x_v: errors
+    along the shorter tangent turn normals more.
     """
     found, place = [], comparison.steepest if slopes else comparison.farthest
     for axis in (0, 1):
@@ -299,8 +301,9 @@ def variation(
 def _places(counts: Counts) -> Array:
     """Return test points (2, k) as fractions of the domain: on lines along u and v, and scattered.
 
-    The first two lines along u, and along v, are next to the sides. The number of steps is one more
-    than a multiple of EACH_ON_LINES, so that the points with normals differ from line to line.
+    The first two lines along u, and along v, are next to the sides. The number of steps on a line
+    is one more than a multiple of EACH_ON_LINES, so that the test points with normals are at other
+    positions on the next line.
     """
     along = (np.arange(counts.steps, dtype=np.float64) + GOLDEN) / counts.steps
     numbers = np.arange(1, counts.lines + 1, dtype=np.float64)

@@ -278,7 +278,7 @@ def _fitted(surface: Surface, cells: Sequence[int]) -> Spline:
     domain, boundary, trim = surface.domain, surface.boundary, surface.trim
     if trim is None or all(np.isfinite(x).all() for x in values[:2]):
         return fit_values(values, domain, boundary, surface.name)
-    # Somewhere outside of the trim, the callable has no values.
+    # The callable has no values at some parameters outside of the trim.
     values = values.filled_by(continued)
     known = known_of(*from_values(values), domain, boundary)
     spline = fit_values(values.filled_by(completed), domain, boundary, surface.name)

@@ -140,7 +140,7 @@ def refined(
 
 
 def _improved(goal: Tolerance, before: Comparison, after: Comparison) -> bool:
-    """Return whether an error that exceeded the goal decreased to at most IMPROVED times itself."""
+    """Return whether an error above the goal is at most IMPROVED times its earlier value."""
     pairs = zip(goal.excess(before), goal.excess(after), strict=True)
     return any(old > 1.0 and new <= IMPROVED * old for old, new in pairs)
 

@@ -18,11 +18,11 @@ from ..directions.regions import Reach
 from ..spline.developable import CellMeasure
 from ..spline.nets import AnySpline
 
-# Missing or inaccurate parts cause a warning if they are a larger share of the area, of the length
-# of a curve, or of the samples.
+# Missing or inaccurate parts cause a warning if their share of the area, of the length of a curve,
+# or of the samples is larger than this.
 WORTH_A_WARNING = 0.01
-# A requested count is missed if the number of samples differs from it by more than this share of it
-# plus FEW: on a symmetric surface several samples appear or vanish together.
+# A requested count is missed if the number of samples differs from it by more than this share of
+# the count plus FEW: on a symmetric surface several samples appear or vanish together.
 COUNT_TOLERANCE, FEW = 0.02, 5
 # The surfaces on which samples may lie.
 PLACES = ("surface", "spline")
@@ -82,8 +82,8 @@ def _floats(values: Iterable[Any]) -> tuple[float, ...]:
     return tuple(float(x) for x in values)
 
 
-# The functions that make plain values of entries, which may be numbers of NumPy or lists from JSON:
-# one for each annotated type.
+# For each annotated type of an entry, the function that makes a plain value of it. The entry may be
+# a number of NumPy, or a list from JSON.
 PLAIN: dict[str, Callable[[Any], Any]] = {
     "str": str,
     "int": int,
@@ -271,8 +271,8 @@ def sampling_report(
 ) -> SamplingReport:
     """Return the report of a sampling with `density` normals per steradian.
 
-    `arrays` are the fields of the samples, and `known` other entries of the report. `cells` are
-    measures of the cells on the surface; by default the measures on the spline are used.
+    `arrays` are the fields of the samples, and `known` other entries of the report. `cells` are the
+    measures of cells on the surface; by default they are measured on the spline.
     """
     misfit, place = spline.misfit, spline.georeference
     return SamplingReport(
@@ -299,7 +299,7 @@ def warn_of(
     coverage: float | None = None,
     filled: bool = False,
 ) -> None:
-    """Warn if samples leave out a part of the surface, are not on it, or miss a requested number.
+    """Warn if samples leave out a part of the surface, are off it, or miss a requested number.
 
     If the samples are `filled`, developable regions have samples as well.
     """

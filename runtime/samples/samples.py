@@ -64,8 +64,9 @@ class Samples(SampleArrays, Methods):
         requested.
     uv_radius : (N, 2) float64 array or None
         At prescribed normals whose points are proved to be complete: bounds of the errors of `uv`;
-        for a `component` that is not regular, bounds of the differences from `uv` to all of its
-        points. NaN on faces of parts where points are estimated. None for other samples.
+        for a `component` that is not regular, bounds of the differences between `uv` and the
+        parameters of all points of the component. NaN on faces of parts where points are estimated.
+        None for other samples.
     component : (N,) uint8 array or None
         For samples at prescribed normals: the kind of the component of points with this normal that
         a sample represents, see `Component`. None for other samples, which are regular. Samples
@@ -177,7 +178,7 @@ class Samples(SampleArrays, Methods):
 
 
 def spline_or(samples: Samples, spline: AnySpline | None, moved: OffsetOf | None = None) -> Spline:
-    """Return `spline`, or if it is None the spline of the samples, or a spline of their surface.
+    """Return `spline` or, if it is None, the samples' spline, or else a spline of their surface.
 
     For samples of an offset, spline and surface are taken from `moved`, from which the samples were
     moved. Raises InputError if there is no spline.

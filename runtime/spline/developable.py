@@ -11,7 +11,7 @@ import numpy as np
 from ..base.aliases import Array, Flags
 from ..domain.domain import widened
 
-# Regions that 10,000 normals would sample count as curved, even with fewer normals.
+# A region counts as curved if 10,000 normals would sample it, even if fewer normals are requested.
 LEAST_DENSITY = 10_000 / (4 * math.pi)
 
 
@@ -42,9 +42,9 @@ class CellMeasure:
     def curved(self, density: float) -> Flags:
         """Return a mask (m n,) of the cells that are curved enough to be sampled.
 
-        `density` is the number of normals per steradian. A cell is curved enough if |K| times the
-        density is at least 1, where the diagonal of the bounding box is the unit of length: a
-        surface of area 1 with this |K| would have a sample.
+        `density` is the number of normals per steradian; the unit of length is the diagonal of the
+        bounding box. A cell is curved enough if |K| times the density is at least 1: a surface of
+        area 1 with this |K| would have a sample.
         """
         return self.curvatures * max(density, LEAST_DENSITY) >= 1.0
 

@@ -245,10 +245,11 @@ class Topology:
 
     @cached_property
     def polar(self) -> tuple[Indices, Indices]:
-        """For each edge (3 T,), its end at a smooth pole, and the first edge with its tangent.
+        """For each edge (3 T,), its end at a smooth pole, and an edge with the same tangent there.
 
         The end is 0 or 1, and −1 if no end or both ends are at poles. Edges have the same tangent
-        at a pole if they form a joint, or meet at a singular corner of a patch.
+        at a pole if they form a joint, or meet at a singular corner of a patch. Of all edges that
+        have the same tangent, the one with the lowest index is returned.
         """
         shared, fan = self.corners
         row = np.arange(3 * len(self.nets))
@@ -316,15 +317,16 @@ class Topology:
 
 
 def _firsts(numbers: Indices) -> Iterator[tuple[int, int]]:
-    """For each index in `numbers`, yield its first position in the flat array, and the index."""
+    """Yield, for each value in `numbers`, its first position in the flat array, and the value."""
     values, places = np.unique(numbers, return_index=True)
     return zip(places.tolist(), values.tolist(), strict=True)
 
 
 def _touches(curve: Array, point: Array, size: float) -> bool:
-    """Return whether a parabolic arc is nearer to a point than `size`, but not at its ends.
+    """Return whether an inner point of a parabolic arc is within the distance `size` of `point`.
 
-    `curve` (3, 3) are the Bézier points of the arc.
+    The inner point is the point of the arc nearest to `point`. If an end of the arc is nearest, the
+    result is False. `curve` (3, 3) are the Bézier points of the arc.
     """
     start, middle, end = curve - point
     a, b = start - 2.0 * middle + end, 2.0 * (middle - start)

@@ -60,7 +60,10 @@ class Known:
         return self.patches[found]
 
     def cells_of_border(self, domain: Domain, cells: tuple[int, int]) -> Flags | None:
-        """Return a mask (m, n) of the cells at the boundary; None for cells of another grid."""
+        """Return a mask (m, n) of the cells next to a boundary of the known patches.
+
+        Returns None if the known patches have another domain or other cells.
+        """
         if (domain, cells) != (self.domain, self.cells):
             return None
         least, most = extremes_around(self.patches.reshape(*cells, 4).astype(np.float64))

@@ -144,9 +144,10 @@ def completed(points: Array) -> Array:
 def continued(points: Array) -> Array:
     """Return points (m, n, 3), in which some missing points, NaN or infinite, are extrapolated.
 
-    A missing point up to FAR steps from the nearest known point gets the value of the quadratic
-    through three points on the line through both, from the nearest known point on. Other missing
-    points become NaN.
+    Take the line from a missing point to the nearest known point. The missing point gets the value
+    of the quadratic through the nearest known point and the two points that follow on this line, in
+    steps of the same length, if these are in the grid. Missing points that are more than FAR rows
+    or columns from the nearest known point become NaN.
     """
     bad: Flags = np.any(~np.isfinite(points), axis=2)
     places, nearest = np.argwhere(bad), _nearest(bad).T

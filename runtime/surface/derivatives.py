@@ -198,8 +198,9 @@ def differences(
     (shift_u, inward_u), (shift_v, inward_v) = (
         shifts_inside(x, step, *ends) for x, step, ends in zip((u, v), steps, bounds, strict=True)
     )
-    # The third line of points is the diagonal that leads away from the nearer bounds of u and v:
-    # there it can be shifted by the larger one of the two shifts.
+    # The third line of nodes is the diagonal that leads away from the nearer bounds of u and v. If
+    # its nodes are shifted by the larger one of the shifts along u and v, they stay between the
+    # bounds.
     shift = np.maximum(np.abs(shift_u), np.abs(shift_v)) * inward_u
     sign = inward_u * inward_v
     central = np.arange(-HALF, HALF + 1)[:, None]

@@ -32,9 +32,8 @@ PROBES = np.array([0.25, 0.75])  # parameters for a trial of the derivatives; an
 def as_position(position: Sequence[Any], symbols: Sequence[sympy.Symbol]) -> tuple[Any, ...]:
     """Return the coordinates: three expressions in two symbols, or two expressions in one symbol.
 
-    Raises InputError if they are unusable.
-    Symbols in the expressions that have the names of `symbols` are replaced by these, whatever
-    their assumptions are.
+    A symbol in the expressions that has the name of one of `symbols` is replaced by this one, even
+    if the assumptions of the two differ. Raises InputError if the expressions are unusable.
     """
     by_name = {symbol.name: symbol for symbol in symbols}
     expressions = [as_expression(entry, by_name) for entry in _coordinates(position, len(symbols))]

@@ -40,8 +40,9 @@ def nurbs_of(degrees: Any, knots: Any, control_points: Any, weights: Any) -> Nur
         )
     )
     factors = np.ones(points.shape[:2]) if weights is None else _weights(weights, points.shape[:2])
-    # A control point whose weight outweighs all others must be near the centre. Otherwise the
-    # coordinates of the surface differ little, relative to their size, and lose digits.
+    # The centre must be near the control points with large weights: the surface is near these
+    # points. If the centre were far away, coordinates relative to it would differ little, relative
+    # to their size, and lose digits.
     heavy = points[factors >= LIGHT * factors.max()]
     centre = heavy.min(axis=0) / 2 + heavy.max(axis=0) / 2
     points = points - centre

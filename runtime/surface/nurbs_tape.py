@@ -114,7 +114,7 @@ def _basis(knots: tuple[float, ...], degree: int, middle: float, scale: float) -
 
 
 def _polynomials(net: Net, along_u: Axis, along_v: Axis) -> Polynomials:
-    """Return the coefficients on all pairs of spans, with bounds of their rounding errors."""
+    """Return the polynomials on all pairs of spans, with bounds of their rounding errors."""
     p, q = (int(x) for x in net.degrees)
     rows = along_u.first[:, None] + np.arange(p + 1)
     columns = along_v.first[:, None] + np.arange(q + 1)

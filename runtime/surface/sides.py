@@ -39,7 +39,7 @@ LEAST_STEP, MOST_STEP = 1e-4, 1e-2
 KINK, KINK_OF_DATA = 1e-2, 0.3
 
 # If the surface has different points at the two bounds of a parameter, the difference is compared
-# with the change of its points when the parameter changes by this many units in the last place.
+# with the change of the points if the parameter changes by this many units in the last place.
 ROUNDINGS = 2.0
 
 
@@ -230,8 +230,8 @@ def close_seams(surface: SurfaceValues, vertices: Array) -> None:
 def _by_rounding(surface: SurfaceValues, axis: int, rows: Array, far: float) -> str:
     """Return the clause of a message on the distance `far` between the points at both bounds.
 
-    It says whether the rounding error of the parameter explains this distance: 2π, for example, is
-    not a float64 number.
+    The clause says whether the rounding error of a bound explains this distance: 2π, for example,
+    is not a float64 number.
     """
     low, high = surface.domain[axis]
     first, last = rows[0], rows[-1]

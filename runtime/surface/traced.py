@@ -23,8 +23,9 @@ from ..tape.tapes import TapeWriter, bounds_over_boxes, values_of
 Sides = NDArray[np.int8]
 Function = Callable[..., Any]  # of u and v: arrays, or traced numbers
 
-# The number of points where the callable is compared with its tape. Their values may differ by
-# ROUNDING times the error bound of the tape, since the callable may have larger rounding errors.
+# The number of points where the callable is compared with its tape. The values of callable and tape
+# may differ by ROUNDING times the error bound of the tape, since the callable may have larger
+# rounding errors.
 PLACES = 48
 ROUNDING = 64.0
 
@@ -263,7 +264,10 @@ class Traced:
 
 @dataclass(frozen=True, eq=False)
 class AbsoluteValue(Traced):
-    """The absolute value of a traced number; comparisons are those of the number, smooth at 0."""
+    """The absolute value of a traced number x.
+
+    Comparisons with |x| become comparisons with x and −x, whose tapes are smooth at x = 0.
+    """
 
     of: Traced
 
