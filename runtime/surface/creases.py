@@ -20,9 +20,9 @@ CREASE_ANGLE = 0.1
 # The largest ratio of tangent lengths that counts as smooth. At this ratio, splines of surfaces
 # have no folds; from a ratio of 5 on, they have some.
 LARGEST_JUMP = 3.0
-# x_u or x_v counts as zero at a point of a knot line if |x_u × x_v| is below SINGULAR times the
-# largest |x_u| |x_v| on the line. Then the normal is evaluated beside the line, at a distance of
-# BESIDE times the knot span.
+# x_u or x_v counts as zero at a point of a knot line if |x_u × x_v| is at most SINGULAR times the
+# largest |x_u| times the largest |x_v| on the line. Then the normal is evaluated beside the line, at
+# a distance of BESIDE times the knot span.
 BESIDE, SINGULAR = 1e-4, 1e-9
 
 
