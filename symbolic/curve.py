@@ -6,9 +6,10 @@ The normal is the tangent p_t turned clockwise by 90°: it points outward on a c
 circle. The curvature is positive there, like the mean curvature of a sphere with outward normals,
 and negative where a curve bends towards its normal.
 
-The spline has a piece between any two neighbouring integers and one coefficient per piece, the
-middle control point of its arc; so its functional is that of an edge on the boundary of a surface
-(`edge_point`, `edge_point_from_vertices`).
+The spline has a piece between any two neighbouring integers. Each piece has one coefficient, the
+middle control point of its arc. Therefore a coefficient is computed from values by the same
+functional as the middle point of an edge on the boundary of a surface (`edge_point`,
+`edge_point_from_vertices`).
 """
 
 from __future__ import annotations

@@ -169,7 +169,8 @@ def _rows(
 def _signed_terms(printer: TextPrinter | MathPrinter, value: sp.Expr) -> list[str]:
     """Print the terms of a sum; put terms with the same coefficient, up to its sign, in brackets.
 
-    Two such terms are only bracketed if the sum has no others.
+    If only two terms have the same coefficient, they are bracketed only if the sum has no other
+    terms.
     """
     groups: dict[sp.Expr, list[sp.Expr]] = {}
     terms = printer._as_ordered_terms(value) if value.is_Add else [value]

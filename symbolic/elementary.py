@@ -56,11 +56,12 @@ FUNCTIONS = {
     "atan": Function(
         sp.atan(x), {1 + x**2: 1 / w}, {"w": 1 / (1 + x**2)}, cancelling=sp.Rational(5, 3)
     ),
-    # Rounding x² adds x² units to the error of w. Therefore the sums of absolute values are
-    # multiplied by 1 + x²; they are at most 2/√π.
+    # The rounding of x² adds x² units to the relative error of w = exp(−x²). Therefore `cancelling`
+    # is a bound of the sums of absolute values multiplied by 1 + x²: these products are at most
+    # 2/√π.
     "erf": Function(sp.erf(x), {sp.exp(-(x**2)): w}, cancelling=sp.Rational(8, 7)),
-    # sin(x)/x is the integral of cos(t x) over t from 0 to 1, which gives the slopes. The bound of
-    # terms that cancel is for |x| ≥ 1.
+    # sin(x)/x is the integral of cos(t x) over t from 0 to 1, which gives the slopes. `cancelling`
+    # is a bound for |x| ≥ 1.
     "sinc": Function(
         sp.sin(x) / x, {sp.sin(x): x * y, sp.cos(x): w}, cancelling=sp.Integer(3),
         slopes=tuple(1 / (sp.factorial(k) * (k + 2)) for k in range(HIGHEST + 1)),
@@ -205,7 +206,7 @@ PARTS, PRECISION = (33, 33), 150
 def _parts_of_quarter() -> list[Any]:
     """Return numbers whose sum is π/2.
 
-    The products of all but the last with small integers are exact.
+    Products of small integers with these numbers are exact, except with the last number.
     """
     rest: Any = sp.Rational((sp.pi / 2).evalf(PRECISION))
     parts = []
@@ -228,7 +229,7 @@ def _horner(function: Any, first: int, last: int, result: Any = sp.S.Zero) -> An
 
 
 def _sinc_series(order: int) -> Any:  # noqa: ANN401
-    """Return a Taylor coefficient of sin(x)/x at x as a series in x and z = x², by its order."""
+    """Return the Taylor coefficient of sin(x)/x of an order, at x, as a series in x and z = x²."""
     result: Any = sp.S.Zero
     for power in range(LAST, order - 1, -2):
         coefficient = (-1) ** (power // 2) * sp.binomial(power, order) / sp.factorial(power + 1)

@@ -116,8 +116,8 @@ def unpacked(argument: str, symbols: Sequence[sp.Symbol]) -> list[str]:
 def grouped(symbols: Sequence[sp.Symbol]) -> list[tuple[Group | None, tuple[sp.Symbol, ...]]]:
     """Return pairs of a group and its symbols, in the order of `symbols`.
 
-    Symbols that are all the fields of a named tuple are together; any other symbol is alone, with
-    None.
+    Consecutive symbols that are all the fields of a named tuple, in order, form a group. Any other
+    symbol is alone, with None in place of the group.
     """
     result: list[tuple[Group | None, tuple[sp.Symbol, ...]]] = []
     place = 0

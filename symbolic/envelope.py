@@ -65,10 +65,11 @@ def derivatives_of_extension(function: sp.Expr, order: int) -> sp.Matrix:
 
 
 def _to_second_order() -> tuple[sp.Expr, dict[sp.Symbol, sp.Expr]]:
-    """Return a polynomial in n with given derivatives at a point c, and a substitution of n for c.
+    """Return a polynomial f(n) of degree 2 about a point c, and the substitution that sets c to n.
 
-    At c its value is h, its gradient dh, and its second derivatives are h_xx, …. So it can replace
-    any function, since first and second derivatives at c do not depend on higher terms.
+    At c, f has the value h, the gradient dh and the second derivatives h_xx, …. Therefore f can
+    stand for any function: first and second derivatives at c do not depend on terms of higher
+    order.
     """
     (c,) = vectors("c")
     step = n.column - c.column

@@ -7,11 +7,11 @@ The parabolic lines come from one determinant, whatever the rank of [a b c]. Alo
 
 and one normal n serves a whole line s u + t v + ρ = 0 if and only if it is perpendicular to all
 three. Indeed, n·f1 = n·f2 = 0 makes (A, B, C) a multiple of (s², st, t²), and n·f3 = 0 makes (P, Q)
-one of (s, t), so that n·p_u = 0 and n·p_v = 0 are the same equation. The directions are hence the
-roots of the binary cubic det[f1 f2 f3]. If det[a b c] ≠ 0 then f1 × f2 = det[a b c] (s² a* + st b*
-+ t² c*). If a, b, c span a plane with normal n0, and λ1 a + λ2 b + λ3 c = 0, the binary cubic is
-λ(s,t) (t n0·d − s n0·e) with λ(s,t) = λ1 s² + λ2 st + λ3 t²: the last factor is the line at
-infinity, with the normal n0, and the other two are lines in fixed directions. If a, b, c are
+a multiple of (s, t), so that n·p_u = 0 and n·p_v = 0 are the same equation. The directions are
+hence the roots of the binary cubic det[f1 f2 f3]. If det[a b c] ≠ 0 then f1 × f2 = det[a b c] (s²
+a* + st b* + t² c*). If a, b, c span a plane with normal n0, and λ1 a + λ2 b + λ3 c = 0, the binary
+cubic is λ(s,t) (t n0·d − s n0·e) with λ(s,t) = λ1 s² + λ2 st + λ3 t²: the last factor is the line
+at infinity, with the normal n0, and the other two are lines in fixed directions. If a, b, c are
 multiples of one vector (a graph), the binary cubic vanishes and D(N) is a constant.
 """
 

@@ -28,8 +28,8 @@ MOST_BITS = 2048  # twice what a float64 can hold
 MOST_PLAIN_BITS = 32  # bits of numbers whose roots and functions SymPy may evaluate exactly
 MOST_EXACT = 30  # numbers and operations in a constant that is not a float
 
-# A function costs SymPy about a microsecond times the square of the steps of its arguments. A query
-# of the sign of an argument costs as much as ASKING more steps.
+# A function costs SymPy about a microsecond times the square of the number of steps of its
+# arguments. A query of the sign of an argument costs as much as ASKING additional steps.
 MOST_WORK = 1_000_000
 ASKING = 80
 MOST_DERIVED = 100_000  # numbers and operations in second derivatives

@@ -18,12 +18,14 @@ SHORT = 20
 
 
 def grid() -> str:
-    """Return the constants of the grid: positions around a cell that patches and fitting read.
+    """Return the constants of the grid, as source: which coefficients and vertices formulas read.
 
-    NEIGHBOURS and CORNERS have a row for each of the four patches. VERTICES are the indices of the
-    vertices that the formula `coefficient_from_vertices` reads, counted from the vertex one step
-    south and west of the cell's vertices. TRIANGLE_NEIGHBOURS are the indices, from 0 to 8, of the
-    coefficients that the formula `triangle` reads.
+    NEIGHBOURS and CORNERS have a row for each of the four patches of a cell: the positions,
+    relative to the centre of the cell, of neighbouring coefficients, and of the corners b200 and
+    b020 of the patch. VERTICES are the indices of the vertices that the formula
+    `coefficient_from_vertices` reads, counted from the vertex one step south and west of the cell's
+    vertices. TRIANGLE_NEIGHBOURS are the indices, from 0 to 8, of the coefficients that the formula
+    `triangle` reads.
     """
     neighbours, corners = (
         [[list(spline.quarter_turns(x, turns)) for x in places] for turns in range(4)]

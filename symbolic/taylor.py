@@ -24,7 +24,8 @@ from .notation import CubicTaylorSymbol, TaylorSymbol, scalar
 Coefficients = dict[str, Any]
 Symbols = Mapping[sp.Symbol, sp.Symbol]
 
-# The largest absolute values of a, b, f, with their errors, are called s, t, F.
+# The largest absolute values of a, b, f, increased by bounds of their errors, have the names s, t,
+# F.
 LARGEST = str.maketrans("abf", "stF")
 
 s, t = sp.symbols("s t")  # u and v relative to the point

@@ -28,10 +28,11 @@ def _functions_in(source: str) -> tuple[str, ...]:
 
 
 def wholes(formula: Formula, formulas: Iterable[Formula]) -> list[str]:
-    """Return the names of the formulas that contain this one.
+    """Return the names of those `formulas` that contain `formula`.
 
-    A formula contains this one if it has more than half of its outputs, since `compose` drops
-    outputs that are not needed.
+    A formula counts as containing `formula` if it has further definitions, if all definitions that
+    both have are equal, and if more than half of the outputs of `formula` are among its
+    definitions. Not all outputs are required, since `compose` drops outputs that are not needed.
     """
     mine = dict(formula.definitions)
 
