@@ -27,8 +27,8 @@ PLACES = 64
 # boundary. At most TRIALS grids are tried, until the samples of the grid and the reserved samples
 # together are at least CLOSE times the requested count, and at most the count.
 BORDER, CLOSE, TRIALS = 0.5, 0.95, 4
-# Numbers of lines u = const from 1 − AROUND to 1 + AROUND times an estimate are tried. All with
-# errors of at most AS_GOOD times the least error count as equally good.
+# Numbers of lines u = const from 1 − AROUND to 1 + AROUND times an estimate are tried. Numbers of
+# lines whose errors are at most AS_GOOD times the least error count as equally good.
 AROUND, AS_GOOD = 0.12, 1.005
 # Half the diagonals of cells may exceed the requested distance by this factor, since the numbers of
 # lines are integers.
@@ -41,8 +41,8 @@ DIGITS = 9
 class AlignedGrid:
     """Makes graded grids on a piece, from fundamental forms on a raster of parameters.
 
-    The forms are those at the midpoints of the subintervals of `axes`, the intervals of u and v.
-    `piece` is the index of the piece in `space`.
+    `axes` are the intervals of u and v; the forms are evaluated at the midpoints of their
+    subintervals. `piece` is the index of the piece in `space`.
     """
 
     space: Space
@@ -75,7 +75,7 @@ class AlignedGrid:
         )
 
     def steps(self, angle: float, distance: float) -> Steps:
-        """Return the steps between lines for the fewest samples within an angle and a distance.
+        """Return the steps between the lines of a grid with as few samples as errors allow.
 
         Half the diagonal of each cell between neighbouring lines is at most `angle`, in radians, in
         normal space, and at most `distance`, scaled as in `Space`, in space.
@@ -83,9 +83,9 @@ class AlignedGrid:
         return equal_steps(self.forms, angle, distance)
 
     def steps_for(self, count: float, distance: float) -> Steps:
-        """Return the steps between lines for a number of samples and a scaled distance.
+        """Return the steps between the lines of a grid with `count` samples, for a scaled distance.
 
-        The number counts all samples on the domain, also those outside the trim.
+        The count includes samples outside the trim.
         """
         return steps_for_count(self.forms, count, distance)
 
@@ -130,7 +130,7 @@ class AlignedGrid:
         return self._at(cells, rows, columns, (len(lines[0]), len(lines[1])))
 
     def _numbers(self, steps: Steps, lengths: list[Array], most: int) -> list[Indices]:
-        """Return the numbers of lines in the parts of both axes; `lengths` are lengths in steps.
+        """Return the numbers of lines in the parts of both axes, whose lengths are given in steps.
 
         The lines have at most `most` crossings, unless one line in each part already gives more.
         The numbers are chosen for about the smallest error, see `_excess`.
@@ -171,11 +171,12 @@ class AlignedGrid:
         return max(angle / steps.angle, distance / (SLACK * steps.distance))
 
     def _between(self, lines: list[Array], number: int) -> Array:
-        """Return midpoints, in cells, between neighbours on the grid, the largest angles first.
+        """Return midpoints between neighbours on the grid, the largest angles first.
 
-        The angles are those between the normals of neighbours. Only neighbours along the parameter
-        with the shorter distance in space are considered: a sample between neighbours along the
-        other parameter would be the nearest one, in space, to points of other rows.
+        The midpoints are given in cells of the spline. The angles are measured between the normals
+        of neighbours. Only neighbours along the parameter with the shorter distance in space are
+        considered: a sample between neighbours along the other parameter would be the nearest one,
+        in space, to points of other rows.
         """
         places, chords = [], []
         for axis in (0, 1):
@@ -187,10 +188,11 @@ class AlignedGrid:
         return np.concatenate(places)[order[:number]]
 
     def _middles(self, lines: list[Array], axis: int) -> tuple[Array, Array, Array]:
-        """Return the midpoints (k, 2), in cells, between neighbours along parameter `axis`, 0 or 1.
+        """Return the midpoints (k, 2) between neighbours along parameter `axis`, 0 or 1.
 
-        Also return distances in space (2, k), of neighbours along this parameter and along the
-        other one; and the chords (k,) between the normals of neighbours along this parameter.
+        The midpoints are given in cells of the spline. Also return distances in space (2, k), of
+        neighbours along this parameter and along the other one; and the chords (k,) between the
+        normals of neighbours along this parameter.
         """
         steps = [np.gradient(x) if len(x) > 1 else np.full(1, np.inf) for x in lines]
         steps[axis] = np.diff(lines[axis])
@@ -229,7 +231,8 @@ def axes_with(geometry: OnSpline, breaks: tuple[Array, Array]) -> tuple[Axis, Ax
 def forms_on(geometry: OnSpline, axes: tuple[Axis, Axis]) -> Array:
     """Return the fundamental forms (7, k, l) at the midpoints of a raster.
 
-    They are E, F, G, e, f, g and D of `OnSpline.forms`. Parameters are measured in cells.
+    They are E, F, G, e, f, g and D of `OnSpline.forms`. The unit of parameters is a cell of the
+    spline.
     """
     u, v = (x.middles for x in axes)
     cells = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)

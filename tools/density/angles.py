@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 # The rest of the angle is left for points between candidates: along boundaries, the normal turns by
 # MARGIN times the angle from a candidate to the point halfway to the next one.
 MARGIN = 0.02
-# Normals are chosen greedily for radii that fall to `near` from this multiple of `near`.
+# The greedy choice of normals begins with gaps whose radius is this multiple of the requested one.
 FIRST = 2.0
 
 

@@ -37,7 +37,7 @@ class PieceSamples(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """Samples at normals (S, 3) on some pieces of a space, with `density` normals per steradian.
+    """Samples at normals (S, 3) on some pieces of a `Space`, with `density` normals per steradian.
 
     If `same_normals` is False, each piece has its own normals, and `normals` are those of all
     pieces, concatenated. `estimated` are the indices of the pieces without a proof that all points
@@ -128,8 +128,8 @@ def at_lattices(
 ) -> Given:
     """Return samples at lattices of `density` normals per steradian, one lattice for each piece.
 
-    While there are more than `most` samples, coarser lattices are searched. A piece has no samples
-    if less than half a sample is expected.
+    As long as more than `most` samples are found, coarser lattices are searched. A piece has no
+    samples if less than half a sample is expected.
     """
     pieces = list(pieces)
     while True:

@@ -56,7 +56,7 @@ class Border:
 
     @cached_property
     def _sums(self) -> NDArray[np.signedinteger]:
-        """(n + 1, n + 1): the number of boundary pixels below and left of each corner.
+        """(n + 1, n + 1): the number of boundary pixels below and left of each corner of a pixel.
 
         If the trim does not know where its boundary is, all pixels count as boundary pixels.
         """

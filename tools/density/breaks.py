@@ -29,9 +29,10 @@ MOST = 64
 
 
 def breaks_along(geometry: OnSpline, axes: tuple[Axis, Axis], forms: Array, along: int) -> Array:
-    """Return the positions of breaks, in cells, along u (`along` is 0) or along v (`along` is 1).
+    """Return the positions of breaks along u (`along` is 0) or along v (`along` is 1).
 
-    `forms` (7, k, l) are the fundamental forms at the midpoints of axes.
+    The unit is a cell of the spline. `forms` (7, k, l) are the fundamental forms at the midpoints
+    of axes.
     """
     scales = np.array([forms[3].max(), forms[5].max(), np.abs(forms[6]).max()])
     if not scales.all():

@@ -32,9 +32,9 @@ class Cells:
 
     `whole` (M,) is True for cells that no boundary intersects. `limits` (M,) are least radii of
     curvature, which replace smaller ones; 0 if unknown. `rows` (M, 8) and `numbers` (M, 7) are
-    those of kernels/cells.py, lengths and curvatures scaled as in `Space`. They take most of the
-    memory: both are (M, 0) for cells that are not evaluated; `numbers` is (M, 0) for cells that
-    keep only their rows.
+    those of kernels/cells.py, lengths and curvatures scaled as in `Space`. These two arrays take
+    most of the memory: both are (M, 0) for cells that are not evaluated; `numbers` is (M, 0) for
+    cells that keep only their rows.
     """
 
     pieces: Indices

@@ -24,8 +24,8 @@ ATTEMPTS = 20
 IN_PROPORTION, DITHER = 6, 0.008
 # The largest number of normals per requested sample (a thin Gaussian image has few samples).
 NORMALS_PER_SAMPLE = 100
-# If points of the spline cannot be moved to the surface, the number of hits is corrected this many
-# times.
+# If points of the spline cannot be moved to the surface, the number of points to be found on the
+# spline is corrected this many times.
 CORRECTIONS = 3
 # For larger counts, the density is extrapolated from this count.
 PILOT = 1_000_000
@@ -94,13 +94,13 @@ def choose(geometry: OnPatches, count: int, progress: bool) -> Chosen:
 
 
 def _with_samples(geometry: OnPatches, chosen: Chosen, hits: int) -> float:
-    """Return an estimate of how many of the hits at the chosen normals become samples."""
+    """Return an estimate of the number of samples at the chosen normals."""
     assert chosen.found is not None
     return hits * geometry.share_at(*chosen.found)
 
 
 def _adapted(geometry: OnPatches, count: int, progress: bool) -> tuple[Chosen, int]:
-    """Return a lattice with a density adapted to about `count` hits, and the number of its hits."""
+    """Return a lattice with a density for about `count` hits (see `Chosen`), and their number."""
     spline, threads = geometry.spline, geometry.threads
     lattice = Lattice.around(spline, geometry.reach)
     densest = lattice.density_of(NORMALS_PER_SAMPLE * max(count, 1000))

@@ -43,7 +43,7 @@ BLOCK = 1 << 18
 
 
 class Cover:
-    """The samples of a space: given samples, and samples that are added until it is covered.
+    """The samples of a `Space`: given samples, and samples that are added until it is covered.
 
     A point is covered if a sample is within radius/√w, where w is the target density of the space.
     Lengths are scaled as in `Space`. The samples are rows of `points` (N, 6), point and unit
@@ -51,9 +51,9 @@ class Cover:
     `at_normals`. The added samples lie at the places of the cells `added`, first the samples of the
     `grid`, if it exists.
 
-    Samples are chosen among the places of `cells`. Cells for a radius have numbers; cells for a
-    count have sides instead, see `Space.light`. `show_count` is called with the number of samples
-    whenever it grows.
+    Samples are chosen among the places of `cells`. In a cover for a radius the cells have
+    `numbers`, in a cover for a count they have sides instead, see `Space.light`. `show_count` is
+    called with the number of samples whenever it grows.
 
     The first `fixed` samples, given or on the grid, are never removed.
 
@@ -125,10 +125,11 @@ class Cover:
         self.fill_up(count)
 
     def spread(self, count: int) -> None:
-        """Add samples until there are `count`: choose most of them, then move and fill gaps, twice.
+        """Add samples until there are `count`: choose most of them, then move them and fill gaps.
 
-        A move takes each sample towards the centre of the smallest ball around its Voronoi cell:
-        Lloyd's method for a high power of the distance instead of its square.
+        Moving and filling are done twice. A move takes each sample towards the centre of the
+        smallest ball around its Voronoi cell: Lloyd's method for a high power of the distance
+        instead of its square.
         """
         free = count - self.count
         self.to_count(count - round(MISSING[0] * free))
@@ -221,7 +222,7 @@ class Cover:
             self._replace_added(space.light(added, keep=True)[0])
 
     def renew_distances(self, widest: float) -> None:
-        """Recompute the distances from candidates to samples that are at most `widest`."""
+        """Recompute all distances of at most `widest` between candidates and samples."""
         self._candidates.reset_distances()
         self._candidates.update_distances(self.points, widest)
 

@@ -29,10 +29,10 @@ def coverage(space: Space, samples: Array, asked: float = math.inf) -> float:
     there is no such sample, all samples count.
 
     Points and the distance are scaled as in `Space`. The method is branch and bound: a cell is cut
-    if it may contain a point farther than a limit from all samples. The limit is `asked` if
-    d ≤ asked < TIGHT d, where d is the largest distance of a place from the nearest sample;
-    otherwise it is TIGHT d. If the cells are on a spline and the samples on the surface, twice the
-    distance between spline and surface is added. The bound is infinite if there are no samples.
+    if it may contain a point farther than a limit from all samples. Let d be the largest distance
+    of a place from the nearest sample. The limit is the requested coverage `asked` if d ≤ asked <
+    TIGHT d, otherwise TIGHT d. If the cells are on a spline and the samples on the surface, twice
+    the distance between spline and surface is added. The bound is infinite if there are no samples.
     """
     if len(samples) == 0:
         return math.inf

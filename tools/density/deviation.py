@@ -72,7 +72,7 @@ def _largest(
 ) -> float:
     """Return the largest angle found, in degrees, but at least `least`.
 
-    `chords_of` returns, for cells, the chords of the angles at their places.
+    `chords_of` returns the chord of the angle at the place of each cell.
     """
     even = space.uniform.exact
     begin = found = chord_of(least)

@@ -35,7 +35,8 @@ HEXAGON = 3.0 * math.sqrt(3.0)
 # If a greedy cover of n samples has the covering radius r, relative to the sizing function, the
 # integral of the target density is about n r² times this.
 GREEDY = 1.85
-# Density "balanced": the covering radius of the added samples, relative to that of the normals.
+# Density "balanced": the covering radius of the added samples, relative to the sizing function,
+# divided by the covering radius of the lattice of normals, in radians.
 WIDER = 2.0
 # Density "balanced": FLOOR is the floor of the target density, relative to the mean of κ².
 # MOST_CURVED is the ceiling of κ, relative to the root of the floor, for a count or a coverage;
@@ -60,7 +61,7 @@ WIDEST_GAP = 1000.0
 # smaller number leaves more samples for the wide gaps of the density |K|.
 SAVED = 0.25
 # A piece has samples at the normals of a lattice only if these samples are at least this part of
-# all samples: the fit of its spline takes the time of many samples.
+# all samples: fitting its spline takes as long as computing many samples.
 LATTICE = 0.1
 # If some of several pieces have no lattice, this part of a count is placed where normals are
 # farthest from those of all samples.
@@ -70,7 +71,7 @@ FOR_NORMALS = 0.05
 # many normals, evenly spaced on the sphere, as the cover will have samples. CANDIDATES is about the
 # number of candidates minus the number of samples.
 NORMALS_APART, CANDIDATES = 0.2, 200_000
-# The smallest chord between the normals of the candidates for such samples.
+# The smallest chord between the normals of candidates for these samples.
 LEAST_CHORD = math.radians(0.5)
 # Normals of samples count as distinct if they differ when rounded to this number of decimals.
 DIGITS = 6
@@ -95,7 +96,7 @@ def fill(
     progress: bool,
     each_once: Callable[[Given], Given] | None = None,
 ) -> Cover:
-    """Sample a space whose target density has no floor; raises the errors of `sample`.
+    """Sample a `Space` whose target density has no floor; raises the errors of `sample`.
 
     With `each_once`, a point that several pieces share at a prescribed normal is returned once.
     """
@@ -127,7 +128,7 @@ def _covered_tips(cover: Cover, angle: float) -> float:
 
 
 def fields_of(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str, NDArray[Any]]:
-    """Return fields of all samples of a cover: the samples at normals, then the added samples."""
+    """Return fields of all samples of a `Cover`: the samples at normals, then the added samples."""
     added = cover.added
     order = np.argsort(added.pieces, kind="stable")
     added = added[order]
@@ -156,7 +157,7 @@ def _of_piece(
 
 @dataclass(frozen=True, eq=False)
 class Filling:
-    """The sampling of a space for a request.
+    """The sampling of a `Space` for a request.
 
     `show_count` is called with the number of samples whenever it grows; `each_once` is as in
     `fill`.
@@ -191,14 +192,14 @@ class Filling:
         return self._to_radius(space, Given(space), self._asked)
 
     def reached(self, cover: Cover) -> float:
-        """Return a bound of the scaled distance of a point from the nearest sample on its side."""
+        """Return a bound of scaled distances from points to the nearest sample on their side."""
         asked = math.inf if self.request.coverage is None else self.request.coverage
         return coverage(self.space, cover.points, asked * self.space.unit)
 
     # --- the target density -----------------------------------------------------------------------
 
     def balanced(self, *, capped: bool = False) -> Space:
-        """Return the space with the floor of "balanced", and with a ceiling if `capped`.
+        """Return the `Space` with the floor of "balanced", and with a ceiling if `capped`.
 
         For an angle, the floor is computed from the density with this ceiling: without the ceiling,
         tiny fillets would make all flat parts dense.
@@ -284,9 +285,9 @@ class Filling:
         return self._to_radius(space, given, radius)
 
     def _to_radius(self, space: Space, given: Given, radius: float) -> Cover:
-        """Return a cover of a space for a radius, with a sample on each piece.
+        """Return a cover of a `Space` for a radius, with a sample on each piece.
 
-        If the pieces are too many, some may have none.
+        If there are too many pieces (see SAMPLES_A_PIECE), some may have no sample.
         """
         cover = self._new(space, given)
         cover.to_radius(radius)
@@ -368,7 +369,7 @@ class Filling:
     def _for_count(self, space: Space, count: int) -> Given:
         """Return samples at lattices of normals that leave enough of `count` for filling gaps."""
         seen = space.solid_angles(count / (4 * math.pi))
-        # The number of filling samples that go with a lattice of one normal per steradian.
+        # If the lattice has one normal per steradian, this is the number of filling samples.
         filling = space.integral / (GREEDY * (WIDER * spacing(1.0)) ** 2)
         chosen, density = np.arange(len(seen)), 0.0
         for _ in range(2):  # with all pieces, then with pieces that have a lattice
@@ -378,7 +379,7 @@ class Filling:
         return at_lattices(space, density, chosen, self.progress, count)
 
     def _at_lattices(self, radius: float, space: Space) -> Given:
-        """Return the samples at lattices of normals for a covering radius."""
+        """Return samples at lattices of normals whose density follows from a covering radius."""
         density = 2.0 / (HEXAGON * (radius / WIDER) ** 2)
         expected = density * space.solid_angles(density)
         least = max(LATTICE * space.integral / (GREEDY * radius**2), 0.5)

@@ -49,7 +49,7 @@ class Grid:
 
     @property
     def border(self) -> int:
-        """The number of samples at the boundary of a trim: a crossing beside them has no sample."""
+        """The number of samples at the boundary of a trim, next to a crossing without a sample."""
         inside = np.zeros(self.lines, dtype=np.bool_)
         on = self.rows >= 0
         inside[self.columns[on], self.rows[on]] = True

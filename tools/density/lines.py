@@ -14,10 +14,11 @@ FEWEST = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """An interval of a parameter, in cells, with k subintervals between the `edges` (k + 1,).
+    """An interval of a parameter, with k subintervals between the `edges` (k + 1,).
 
-    The edges increase. Those with the indices `breaks`, which include the first and the last edge,
-    separate parts. The first and the last line of a part are half a step away from its ends.
+    The unit is a cell of the spline. The edges increase. The edges with the indices `breaks`, which
+    include the first and the last edge, separate parts. The first and the last line of a part are
+    half a step away from its ends.
     """
 
     edges: Array

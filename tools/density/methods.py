@@ -200,7 +200,7 @@ def normal_deviation(
 
 
 def _space_of(samples: Samples, spline: AnySpline | None, threads: int | None) -> Space:
-    """Return the sampled space: the pieces of a part, a spline, or the pieces of a surface.
+    """Return the sampled `Space`: the pieces of a part, a spline, or the pieces of a surface.
 
     Without a spline, these are all pieces of the surface that have an area.
     """
@@ -213,6 +213,6 @@ def _space_of(samples: Samples, spline: AnySpline | None, threads: int | None) -
 
 
 def space_on(spline: Spline, surface: Surface | None, threads: int | None) -> Space:
-    """Return the space of a surface that has a spline; without a surface, that of the spline."""
+    """Return the `Space` of a surface with its spline or, without a surface, of the spline."""
     on = OnSpline(spline, threads) if surface is None else OnSurface(spline, threads, surface)
     return space_of([on], threads)

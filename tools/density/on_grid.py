@@ -15,7 +15,7 @@ from .shares import apportioned
 from .space import Space
 
 # The covering radius of n samples without a grid, relative to the sizing function, is estimated as
-# WIDEST times the root of 1/n times the integral of the target density.
+# WIDEST √(I/n), where I is the integral of the target density.
 WIDEST = 1.0
 # If no coverage is requested, gaps in flat regions may be wider by this factor than the target
 # density prescribes.

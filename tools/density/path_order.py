@@ -39,7 +39,7 @@ def path_order(points: Array) -> Indices:
 
 
 def _candidates(points: Array, numbers: Indices) -> list[tuple[int, int]]:
-    """Return pairs of neighbouring points (k, 3), nearest first, as pairs of indices.
+    """Return pairs of neighbouring points (k, 3) as pairs of indices, sorted by distance.
 
     The indices of the points are `numbers` (k,).
     """

@@ -107,8 +107,8 @@ def _density(density: str | float | None, default: str) -> str | float:
 def _check_that_they_fit(density: str | float, given: list[str]) -> None:
     """Raise InputError for a count, angle or coverage that a density does not support."""
     fitting = {
-        # An angle is not supported: next to open boundaries, normals alone leave gaps wider than
-        # their covering radius.
+        # The density "gauss" does not support an angle: next to open boundaries, the normals of
+        # samples leave gaps wider than the covering radius of the prescribed normals.
         "gauss": [["normals"], ["count"]],
         "balanced": BALANCED,
         "aligned": [x for x in BALANCED if "normals" not in x],

@@ -53,8 +53,8 @@ MOST_LOST = 4
 FEWEST_PIXELS, MOST_PIXELS = 64, 512
 # Cells that the boundary intersects are cut in two steps if they are cut into more parts than this.
 AT_ONCE = 64
-# The least size of a cell, relative to the domain of its piece, and to the square root of the area
-# of the piece.
+# A cell is not cut further if its sides are at most this part of the sides of the domain of its
+# piece, or if its radius is at most this part of the square root of the area of the piece.
 DEEPEST = 2.0**-14
 MOST_CELLS = 2e9
 # The factor by which the chord of `cut_by_normals` is increased while cells are too many.
@@ -194,7 +194,7 @@ class Space:
         tiny = np.finfo(np.float64).tiny
         weights = np.maximum(cells.numbers[:, AREA], tiny)
         flat = np.bincount(cells.pieces[chosen], weights[chosen], count)
-        # Areas of cells at boundaries are approximate; those of pieces are exact.
+        # Areas of cells at boundaries are approximate; areas of pieces are exact.
         known = np.maximum(np.bincount(cells.pieces, weights, count), tiny)
         return float(np.sum(flat / known * self.areas) / self.area)
 
@@ -387,7 +387,7 @@ class Space:
         return self.known(self._inside(cells, self._fewest if pixels is None else pixels))
 
     def halves(self, cells: Cells) -> Cells:
-        """Return cells bisected across their longer sides, without those outside the trim."""
+        """Return cells bisected across their longer sides, without halves outside the trim."""
         along_u = cells.numbers[:, ALONG_U] >= cells.numbers[:, ALONG_V]
         return self.evaluated(halved(cells, along_u))
 
@@ -528,8 +528,8 @@ class Space:
     def grade(self, pieces: Indices, rows: Array, *, far: bool = False) -> Array:
         """Raise densities w in rows (M, 8) of cells so that the sizes 1/√w obey the sources.
 
-        `pieces` (M,) are those of the cells. Return the bounds (M,) of the sizes; bounds that are
-        too large to matter are inf, unless `far`.
+        `pieces` (M,) are the pieces of the cells. Return the bounds (M,) of the sizes; unless
+        `far`, bounds that are too large to matter are inf.
         """
         sizes = np.full(len(rows), np.inf)
         if self.sources:

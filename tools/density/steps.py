@@ -4,8 +4,8 @@ A cell with the steps a along u and b along v has a diagonal of the length
 
     √(e a² + 2 |f| a b + g b²)    and    √(E a² + 2 |F| a b + G b²)
 
-in normal space and in space, where e, f, g are the entries of the third fundamental form and E, F,
-G those of the first. Lines u = const have the steps a(u), lines v = const the steps b(v).
+in normal space and in space, where e, f, g are the entries of the third fundamental form, and E, F,
+G the entries of the first. Lines u = const have the steps a(u), lines v = const the steps b(v).
 """
 
 from __future__ import annotations
@@ -115,9 +115,10 @@ def equal_steps(forms: Forms, angle: float, distance: float) -> Steps:
 
 
 def steps_for_count(forms: Forms, count: float, distance: float) -> Steps:
-    """Return the steps with the smallest angle for a count of samples, within a distance.
+    """Return the steps of a grid with `count` samples, with the smallest angle.
 
-    A distance for which the count does not suffice is increased; see `LARGER`.
+    Half the diagonals of cells are at most `distance` in space. A distance for which the count does
+    not suffice is increased; see `LARGER`.
     """
     coarse = forms.coarser(COARSE)
     fewest = equal_steps(coarse, WIDEST, distance).count
@@ -188,7 +189,7 @@ def _steps(forms: Forms, limits: tuple[float, float], share: float) -> Steps:
     """Return the steps for limits of the squared diagonals in normal space and in space.
 
     At first, steps along u are `share` times the longest that the limits allow. Then steps along v,
-    and at last those along u, are as long as possible.
+    and at last steps along u, are as long as possible.
     """
     along = np.empty(len(forms.widths[0])), np.empty(len(forms.widths[1]))
     shared_steps(*forms.arrays, limits, share, SHORTEST, LONGEST, *along)

@@ -1,4 +1,4 @@
-"""A surface or a spline as a piece of a space."""
+"""A surface or a spline as a piece of a `Space`."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def space_of(
     threads: int | None,
     target: TargetDensity = TargetDensity(floor=1.0),  # noqa: B008 - it does not change
 ) -> Space:
-    """Return the space of the pieces of a surface that have an area.
+    """Return the `Space` of the pieces of a surface that have an area.
 
     Raises SurfaceError if no piece has an area.
     """

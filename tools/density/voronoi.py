@@ -18,9 +18,10 @@ AT_ONCE = 1 << 12
 class Voronoi:
     """The sample nearest to each point of a fine grid in the cells of candidates.
 
-    Cell k is that of candidate k. The fine points are those of kernels/voronoi.py, linear in the
-    parameters; in cells that a boundary intersects, only the place of the cell counts. For a
-    candidate, the samples (N, 6) within radius/√w are considered, and some samples near them.
+    Cell k belongs to candidate k. The fine points of a cell are defined in kernels/voronoi.py; they
+    are linear in the parameters; in cells that a boundary intersects, only the place of the cell
+    counts. For a candidate, the samples (N, 6) within radius/√w are considered, and some samples
+    near them.
     """
 
     def __init__(
