@@ -16,9 +16,9 @@ Segment = tuple[Hashable, Hashable, Array]
 def chained(pieces: Sequence[Ends]) -> list[tuple[list[tuple[int, bool]], bool]]:
     """Chain pieces, given by the nodes at their ends, into curves.
 
-    A curve continues through a node at which exactly two pieces end. For each curve, return a list
-    of its pieces, each with its index and True if it is reversed, and then True if the curve is
-    closed.
+    A curve continues through a node at which exactly two pieces end. Return a pair for each curve:
+    the list of its pieces, and whether it is closed. A piece is given by its index, and whether it
+    is reversed.
     """
     at_node: dict[Hashable, list[int]] = {}
     for number, ends in enumerate(pieces):

@@ -69,7 +69,7 @@ def places_along(spline: Spline, view: View, count: int) -> tuple[Array, tuple[I
 
 
 def _wrapped(spline: Spline, cells: Array) -> Array:
-    """Convert positions (k, 2), in cells, to parameters; positions beyond a seam are wrapped."""
+    """Convert positions (k, 2), in cells of the spline, to parameters, wrapped across seams."""
     u, v = (spline.frame[:2] + cells * spline.frame[2:]).T
     return np.stack(brought_inside(u, v, spline.domain, spline.boundary), axis=1)
 
@@ -122,8 +122,8 @@ def _segments(spline: Spline, view: View) -> tuple[Array, Indices, list[bool], F
 def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
     """Return the segments nearest to positions (k, 2), and the positions of the feet on them.
 
-    The segments are given by their indices (k,), the feet (k,) by numbers from 0 to 1, at the start
-    and at the end of the segment.
+    The segments are given by their indices (k,), the feet (k,) by numbers from 0 at the start of
+    the segment to 1 at its end.
     """
     number = min(CANDIDATES, len(ends))
     near = tree_of(ends.mean(axis=1)).query(places, k=number)[1].reshape(len(places), number)
@@ -140,7 +140,7 @@ def _feet(ends: Array, places: Array) -> tuple[Indices, Array]:
 def _lines(spline: Spline, view: View) -> list[tuple[list[Array], bool]]:
     """Return the curves of the contour generator.
 
-    For each curve, return its parts (k, 2), in cells, and whether it is closed.
+    For each curve, return its parts (k, 2), in cells of the spline, and whether it is closed.
     """
     parts = next((x for x in PARTS if x * x * np.prod(spline.cells) <= MOST_CELLS), PARTS[-1])
     counts = np.array(spline.cells) * parts

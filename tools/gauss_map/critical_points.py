@@ -16,10 +16,10 @@ NEWTON_STEPS, ARRIVED = 40, 1e-10
 # K counts as zero at a critical point if its second derivatives there predict a zero within this
 # distance, relative to the domain.
 TOUCHING = 1e-7
-# The largest distance of a critical point from its nearest node, in cells: as found by Newton's
-# method, and as estimated by differences between nodes.
+# The largest distance of a critical point from its nearest node, in cells of the grid: for a point
+# found by Newton's method, and for an estimate from differences between nodes.
 FARTHEST, FARTHEST_BY_NODES = 2.0, 1.5
-# Critical points closer than this, in cells, count as one point.
+# Critical points closer to each other than this, in cells of the grid, count as one point.
 SAME = 1e-2
 # K counts as constant in one principal direction of its Hessian if its growth in that direction is
 # less than this fraction of its growth in the other direction. The second number is for differences
@@ -118,7 +118,7 @@ def _eigenvalues(hessian: Array) -> Array:
 
 
 def _half_distance_is_less(size: float | Array, K: Array, hessian: Array) -> Flags:
-    """Return a mask of the critical points where the curves K = 0 are closer than 2 `size`.
+    """Return a mask of the critical points at which two curves K = 0 are less than 2 `size` apart.
 
     At a saddle, the curves are the branches of the hyperbola 2 K − λ x² + μ y² = 0.
     """

@@ -115,7 +115,7 @@ class PatchNormals:
 
     @cached_property
     def _shortest(self) -> float:
-        """The least sum of the moduli of the components of N for which its direction is certain."""
+        """The least |N_x| + |N_y| + |N_z| at which the direction of N is certain."""
         return NEAR_SINGULAR_POINT * (2.0 * self._sizes[0] + self._sizes[1]) ** 2
 
     def _decide(self, members: Members, rows: NDArray[np.intp], normals: Array) -> None:

@@ -20,9 +20,10 @@ from .patches import Patches
 
 # The parameters u, v of the corners of a patch.
 CORNERS = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
-# A point of an edge within this distance of a corner, in cells, counts as the corner.
+# A point of an edge within this distance of a corner, in cells of the spline, counts as the corner.
 AT_CORNER = 1e-9
-# The distance from a segment, in cells, at which the sign of K is taken on both sides.
+# The distance from a segment, in cells of the spline, at which the sign of K is taken on both
+# sides.
 ASIDE = 1e-7
 CURVED = PatchClass.MIXED, PatchClass.ELLIPTIC, PatchClass.HYPERBOLIC
 

@@ -21,7 +21,8 @@ from .zero_curves import zero_curves
 CELLS, MOST_CELLS, CROWDED = 128, 512, 1 / 8
 # A larger share of the domain without a known curvature causes a warning.
 WORTH_A_WARNING = 1e-4
-# Isolated zeros of K whose cells are this close, in cells, count as one zero.
+# Isolated zeros of K count as one zero if the blocks of cells around them touch; a block reaches
+# this many cells from the cell of the zero.
 TOGETHER = 4
 # Derivatives of K below this bound count as zero. There are two of them. The derivative in the
 # direction in which the normal is constant, relative to the length of the gradient of K, vanishes

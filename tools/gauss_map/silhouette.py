@@ -40,11 +40,13 @@ from ...runtime.surface.surfaces import named
 from ..density.chosen_normals import NEAR_ENOUGH, NORMALS_PER_SAMPLE
 from .contours import View, places_along, polylines_of
 
-# The fields for the normal of a sample, and for the patch where it was found.
+# The fields for the index of the normal of a sample, and for the index of the patch where it was
+# found.
 KEYS = ("normal_index", "patch_index")
 # The indices of x_uu, x_uv, x_vv, x_u, x_v in jets: the vectors of the osculating patch.
 SECOND_JET = (3, 4, 5, 1, 2)
-# The largest number of steps of Newton's method, and their total reach, in cells.
+# The largest number of steps of Newton's method, and their largest total length, in cells of the
+# spline.
 MOST_STEPS, FARTHEST = 12, 2.0
 # The largest number of attempts to reach `count` by changing the number of normals.
 TRIES = 6
@@ -101,9 +103,9 @@ def silhouette(
     They lie on the contour generator, whose projection along `direction`, or from `viewpoint`, is
     the outline, hidden parts included. Along a direction, the outline is concave where K < 0. The
     points are found on the spline that approximates the surface, and moved to the surface like
-    samples. Next to parabolic points, the surface may have no point with the same normal nearby.
-    Along a direction, such a point is moved to the contour generator of the surface; its normal
-    then differs from the one with its `normal_index`.
+    samples. Next to parabolic points, the surface may have no nearby point with the same normal;
+    along a direction, the point is then moved to the contour generator of the surface, and its
+    normal differs from the normal with its `normal_index`.
 
     Parameters
     ----------
@@ -303,7 +305,7 @@ def great_circle(axis: NDArray[np.float64], count: int) -> NDArray[np.float64]:
 def _by_count(
     geometry: OnSpline, axis: NDArray[np.float64], count: int, progress: bool
 ) -> tuple[NDArray[np.float64], Hits]:
-    """Return normals on a great circle that have about `count` samples, and their hits."""
+    """Return normals on a great circle that have about `count` samples, and their `Hits`."""
     size, best, nearest = count, None, math.inf
     for _ in range(TRIES):
         normals = great_circle(axis, size)

@@ -22,7 +22,7 @@ SMALL = 1e-9
 # wide after DEPTH subdivisions are omitted, which loses a solid angle of about 2^-26; after more
 # subdivisions, rounding errors would be larger than this loss. Along a curve of singular points,
 # the number of wide triangles soon exceeds MOST_WIDE, and about 2^-12 is omitted. The integral
-# along the boundary adds at most LEFT_OUT.
+# along the boundary restores a solid angle of at most LEFT_OUT.
 DEPTH = 26
 MOST_WIDE = 20_000
 LEFT_OUT = 2.0**-6

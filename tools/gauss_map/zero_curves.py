@@ -18,8 +18,8 @@ from .sign_grid import SignGrid
 ACCURACY = 1e-14
 # A vertex within this distance of a node, relative to the side, counts as the node.
 AT_NODE = 1e-9
-# Largest distance, in cells, from a saddle to the boundary of its block. Curves that cross at a
-# small angle need a large block.
+# Largest distance, in cells of the grid, from a saddle to the boundary of its block. Curves that
+# cross at a small angle need a large block.
 LARGEST_BLOCK = 16
 
 
