@@ -21,7 +21,8 @@ Flags = NDArray[np.bool_]
 
 # The number of steps, per cell, into which polylines are cut.
 STEPS_A_CELL = 8
-# The distance from the midpoint of a segment, on both sides, at which the trim is tested.
+# The trim is tested on both sides of a segment, at this distance from its midpoint, in the unit
+# square.
 ASIDE = 1e-7
 # The boundary of a predicate is searched on a grid with NODES_A_CELL nodes per cell, but at least
 # FEWEST and at most MOST nodes along each parameter, and then by bisection. Then, PASSES times, a

@@ -86,7 +86,7 @@ class MeasuredLine:
         lengths: Array,
         on_line: float,
     ) -> None:
-        """Move vertices opposite to close samples; samples within `on_line` become vertices.
+        """Move vertices to the feet of close samples; samples within `on_line` become vertices.
 
         `samples` are the positions and the indices of the samples in the tree. A vertex moves to
         the foot of the perpendicular from a sample, in the domain scaled by `lengths` (2,), the

@@ -29,10 +29,10 @@ Triangulate = Callable[[Vertices], tuple[Indices, Indices, Indices]]
 # A sample closer to the boundary than this, relative to the spacing of samples, counts as a sample
 # on the boundary: the chords of the boundary are about as close to its curves.
 ON_LINE = 5e-3
-# Points fill the domain outside of the boundary: those of a lattice that has about as many points
-# in the whole domain as there are vertices, but at least FEWEST and at most MOST. Their distance
-# from the boundary vertices is more than AWAY gaps; that of added vertices on open sides is more
-# than ASIDE gaps (see `_is_away`).
+# The domain outside of the boundary is filled with points of a lattice. In the whole domain the
+# lattice has about as many points as there are vertices, but at least FEWEST and at most MOST. The
+# points in use are more than AWAY gaps from the boundary vertices, and added vertices on open sides
+# more than ASIDE gaps (see `_is_away`).
 FEWEST, MOST, AWAY, ASIDE = 400, 4000, 0.7, 0.3
 # The largest number of times that points are added to the boundary.
 ROUNDS = 8
