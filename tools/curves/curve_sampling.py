@@ -248,8 +248,8 @@ def sample(
     pieces : int, optional
         The number of arcs of the spline, see `fit`; samples then lie on the spline.
     on : {"curve", "spline"}, optional
-        The curve on which samples lie. By default the curve itself, if its derivatives can be
-        bounded, and else the spline, as for curves given by points and with `pieces`.
+        The curve on which samples lie. By default the curve itself if its derivatives can be
+        bounded and `pieces` is not given; otherwise the spline, as for curves given by points.
 
     Returns
     -------
@@ -340,8 +340,8 @@ def _places(spline: CurveSpline | CurveArcs, angles: Array) -> NDArray[np.int64]
     """Return for each joint the number of sorted angles below the angle of its normal.
 
     For each full turn of the normal, the number of all angles is added. Along straight arcs the
-    normal is constant. The ends of an open curve belong to the
-    curve: the angles there are moved outwards by the rounding error of the normal.
+    normal is constant. The ends of an open curve belong to the curve: the angles there are moved
+    outwards by the rounding error of the normal.
     """
     ends, turns = spline.angles[0].copy(), spline.angles[1].copy()
     curved = np.flatnonzero(~spline.straight)
@@ -381,7 +381,7 @@ def _merge_joints(angles: Array, turns: NDArray[np.int64], errors: Array, start:
 
 
 def _by_count(spline: CurveSpline | CurveArcs, count: int) -> tuple[Array, Hits]:
-    """Return uniform normals with about `count` samples, and their hits."""
+    """Return uniform normals with about `count` samples, and their `Hits`."""
     curved = np.flatnonzero(~spline.straight)
     total = float(np.abs(spline.turning_angles[curved]).sum())
     if total == 0.0:
@@ -406,7 +406,7 @@ def _by_count(spline: CurveSpline | CurveArcs, count: int) -> tuple[Array, Hits]
 
 
 def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
-    """Return the samples on a spline at hits of unit normals (S, 2)."""
+    """Return the samples on a spline at the `hits` of unit normals (S, 2)."""
     mine, piece = normals[hits.normal_index], hits.piece_index
     n, arcs = plane_vector(mine), spline._arcs(piece)
     A = mine[:, 0] * arcs.a.x + mine[:, 1] * arcs.a.y
@@ -421,7 +421,7 @@ def filled(spline: CurveSpline, normals: Array, hits: Hits) -> CurveSamples:
 
 
 def filled_on_curve(arcs: CurveArcs, normals: Array, hits: Hits) -> CurveSamples:
-    """Return the samples at hits of unit normals (S, 2), on the curve itself."""
+    """Return the samples at the `hits` of unit normals (S, 2), on the curve itself."""
     mine = normals[hits.normal_index]
     t = arcs.parameters(hits.piece_index, mine)
     samples = _samples(arcs, normals, hits, t, *arcs.at(t, mine))
@@ -439,7 +439,7 @@ def _samples(
     points: Array,
     curvature: Array,
 ) -> CurveSamples:
-    """Return samples at hits of unit normals (S, 2), with their report."""
+    """Return samples at the `hits` of unit normals (S, 2), with their report."""
     mine = normals[hits.normal_index]
     report = CurveReport(
         curve=spline.name,
