@@ -36,8 +36,8 @@ from .meshes.places import on_side, uv_at, wrapped
 
 # Sides of the domain are cut into this number of segments for each cell.
 STEPS_A_CELL = 2
-# Sets of directions are halved until at most PAIRS pairs of a direction and a segment that may be
-# farthest in it are left in each set.
+# A set of directions is halved until it has at most PAIRS pairs of a direction and a segment that
+# may be farthest in this direction.
 PAIRS = 1 << 13
 # The numbers of steps of Newton's method, and of bisection where the boundary of a trim crosses a
 # segment.

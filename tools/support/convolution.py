@@ -133,7 +133,7 @@ def convolve(
     -------
     Convolution
         `Samples`: the sums, with the points of both surfaces. If `on` in the report is "surface",
-        the report has `proved`, `undecided` (boxes of the first surface, then of the second) and
+        the report has `proved`, `undecided` (entries of the first surface, then of the second) and
         `unrefined`. If it is "spline", the report has `fit_distance`, `fit_rms` and `fit_angle`:
         the sums of the distances of both surfaces, and the larger one of their angles.
 

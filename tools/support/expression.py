@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # The number of normals evaluated at a time, so that intermediate results stay in the cache.
 AT_A_TIME = 1 << 13
-# The order of the entries of Hessians that functions return.
+# The order in which a compiled function returns the entries of a Hessian.
 ENTRIES = (0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)
 
 
