@@ -86,7 +86,7 @@ def plot(
         Elevation and azimuth of the viewer, in degrees.
     axes : Axes3D, or (Axes3D, Axes), optional
         Existing axes to draw into: the surface only, or the surface and the sphere. They get no
-        title, legend or scale of colours. The parts that are left out are those hidden in `view`.
+        title, legend or scale of colours. Samples and lines hidden in `view` are left out.
     normals : (S, 3) array_like, optional
         The prescribed normals of the samples: those without a sample are drawn in grey.
     face_numbers : bool, default False
@@ -192,7 +192,7 @@ def plot_samples(
 ) -> Figure:
     """Draw the samples on their surface, and the unit sphere with their normals.
 
-    Sums of `convolve` are drawn on their mesh; without one, all of them are visible.
+    Sums of `convolve` are drawn on their mesh; without a mesh, all of them are visible.
 
     Parameters
     ----------

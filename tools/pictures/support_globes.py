@@ -89,8 +89,8 @@ def values_on_globe(
 
     It is NaN far from all normals.
 
-    The points are the gradients of h at the normals. So h(n) is n·x, with the point x of the
-    nearest normal, up to an error of the order of the squared angle between n and this normal.
+    A sample with the normal m is at the point x = ∇h(m). So h(n) is n·x, with x for the m nearest
+    to n, up to an error of the order of the squared angle between n and m.
     """
     x, y = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, PIXELS)])
     across = np.maximum(np.hypot(x, y), 1.0)  # pixels outside are clipped
