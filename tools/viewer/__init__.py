@@ -1,1 +1,1 @@
-"""Pages for browsers with samples and their normals: a click on one marks the other."""
+"""Pages for browsers: samples and their normals, where a click on a sample marks its normal."""

@@ -102,7 +102,7 @@ const EYE = { x: 1.0, y: -1.45, z: 0.95 };
 const config = { displayModeBar: false, responsive: true, scrollZoom: true, plotGlPixelRatio: count > 10000 ? 1 : 2 };
 const unit = [[-1.05, 1.05], [-1.05, 1.05], [-1.05, 1.05]];
 
-// A picture fills this part of its frame; a smaller change of its scale than ENOUGH is not made.
+// A picture fills this part of its frame; its scale is changed only by more than ENOUGH.
 const FILLED = 0.94, ENOUGH = 0.01;
 
 /** Scale a scene so that, with the current camera, its points (rows of three numbers) fill the frame. */
