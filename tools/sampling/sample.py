@@ -145,8 +145,8 @@ def sample(
     "balanced" has fewer normals, and samples that fill the gaps: the distance of any point from the
     nearest sample is at most r/max(κ, √λ). κ is the larger of |κ₁| and |κ₂|, so that normals of
     neighbouring samples differ by about r radians; with `angle`, r is twice the angle. λ is 0.8
-    times the mean of κ², or follows from `coverage`. With a count, a coverage or an angle, κ is
-    capped at 20 √λ; with an angle, also in the mean of κ².
+    times the mean of κ², or follows from `coverage`. With a count or a coverage, κ is capped at
+    20 √λ; with an angle, it is capped at 10 √λ, also in the mean of κ².
 
     "aligned" is for `count`, `angle` and `coverage`. The spacing of its lines u = const and v =
     const follows the rate at which the normal turns. It takes fewer samples for the same angles if

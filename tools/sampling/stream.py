@@ -65,9 +65,9 @@ def sample_stream(
     Returns
     -------
     generator of Samples
-        The chunks, at least one; all but the last one of each block of 1,048,576 normals are full,
-        unless a spline is trimmed. The report of a chunk has the number of its samples, and does
-        not count developable patches.
+        The chunks, at least one. In each block of 1,048,576 normals, all chunks but the last are
+        full, unless a spline is trimmed. The report of a chunk has the number of its samples, and
+        does not count developable patches.
 
     Raises
     ------
