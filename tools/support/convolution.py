@@ -198,7 +198,7 @@ def convolve(
 def _sums(
     one: Branches, two: Branches, i: NDArray[np.int64], j: NDArray[np.int64]
 ) -> dict[str, Any]:
-    """Return the fields of the sums of branches i of one surface and j of the other."""
+    """Return the fields of the sums: branch i[k] of one surface plus branch j[k] of the other."""
     names = ("points", "normals", "support", "gaussian_curvature", "mean_curvature")
     arrays: dict[str, NDArray[Any]] = {x: new_field(x, len(i), np.float64) for x in names}
 
