@@ -31,7 +31,7 @@ class Cells:
     """M cells: indices of their `pieces` (M,), boxes (M, 4) as u0, v0, u1, v1, and places (M, 2).
 
     `whole` (M,) is True for cells that no boundary intersects. `limits` (M,) are least radii of
-    curvature, which replace smaller ones; 0 if unknown. `rows` (M, 8) and `numbers` (M, 7) are
+    curvature, which replace smaller radii; 0 if unknown. `rows` (M, 8) and `numbers` (M, 7) are
     those of kernels/cells.py, lengths and curvatures scaled as in `Space`. These two arrays take
     most of the memory: both are (M, 0) for cells that are not evaluated; `numbers` is (M, 0) for
     cells that keep only their rows.

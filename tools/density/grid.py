@@ -31,9 +31,9 @@ class Grid:
         return len(self.rows)
 
     def __add__(self, other: Grid) -> Grid:
-        """Return the samples of this grid, followed by those of the grid of another piece.
+        """Return the samples of this grid, followed by the samples of the grid of another piece.
 
-        The line indices of the other grid follow those of this one.
+        The line indices of the other grid follow the line indices of this grid.
         """
         rows, columns = (
             np.concatenate([x, np.where(y < 0, -1, y + first)])
@@ -66,7 +66,7 @@ class Grid:
 def lines_of(grid: Grid | None, count: int, fields: Sequence[str]) -> dict[str, Indices]:
     """Return the fields row and column, as far as they are in `fields`, for `count` samples.
 
-    The first samples are those of the grid; for all others, row and column are −1.
+    The first samples are the samples of the grid; for all other samples, row and column are −1.
     """
     found = {name: np.full(count, -1, dtype=np.int64) for name in GRID_NAMES if name in fields}
     if grid is not None:

@@ -33,7 +33,7 @@ CANDIDATES = 8
 
 
 class View(NamedTuple):
-    """An eye: `at` is its position or, if it is `far`, the direction in which it looks."""
+    """An eye: `at` is its position or, for an eye that is `far`, the direction of its view."""
 
     at: Array
     far: bool

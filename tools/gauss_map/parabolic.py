@@ -32,8 +32,8 @@ class ParabolicPoint:
         The point in space.
     box : (2, 2) float64 array
         Lowest and highest parameters of the rectangle that isolates it. If the rectangle is longer
-        than the tolerance, it contains a curve of such points, or a closed curve too small to
-        trace, or K is zero up to its error on all of it.
+        than the tolerance, it contains a curve of such points or a closed curve too small to
+        trace, or K is zero up to its error in the whole rectangle.
 
     Examples
     --------

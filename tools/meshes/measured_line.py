@@ -33,8 +33,8 @@ CORNER = math.radians(30.0)
 # A sample closer to the boundary than this, relative to the spacing there, gets a vertex opposite
 # to it, so that no triangle of a sample and two boundary vertices is flat.
 CLOSE = 0.25
-# A sample gets such a vertex only if it is also closer than this in the domain, scaled to the unit
-# square: in space, another part of the surface may be near.
+# A close sample gets a vertex opposite to it only if it is also closer to the boundary than this in
+# the domain, scaled to the unit square: in space, another part of the surface may be near.
 DEEPEST = 0.125
 # Measures that differ by less than this belong to one vertex.
 EQUAL = 1e-6

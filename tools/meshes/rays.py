@@ -52,7 +52,7 @@ def visible(points: Array, normals: Array, to_eye: Array, surface: Mesh) -> Flag
 
     `to_eye` (N, 3) are vectors to the eye, at least long enough to leave the mesh. Rays begin on
     both sides of the surface, farther from it than the mesh is. A point is seen if one of its rays
-    is free: the surface around it does not count as hiding it.
+    is free: the surface around a point does not hide the point.
     """
     trimesh = from_extra("trimesh", "rays", PURPOSE)
     solid, middle, scale = _solid(surface, closed=False)

@@ -1,6 +1,6 @@
 // Selected samples, drawn over Plotly's pictures, since Plotly takes seconds to change one of many traces.
 // Samples are discs, or circles where the surface is seen from behind. Hidden samples are not drawn, except
-// the few large ones, which are empty circles if they are hidden.
+// the few large samples, which are empty circles if they are hidden.
 
 const canvases = {};
 const marks = { surface: { rows: points, parts: [] }, sphere: { rows: normals, parts: [], circle: null } };

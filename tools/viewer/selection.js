@@ -25,8 +25,9 @@ function groups(members, oneKind) {
 
 const dot = (i, n) => normals[3 * i] * n[0] + normals[3 * i + 1] * n[1] + normals[3 * i + 2] * n[2];
 
-/** Samples with normals within an angle of n (`members`), and the ones that light up (`best`): those with
- * exactly the normal n if it is prescribed or several samples have it, else the nearest one of each group. */
+/** The samples with normals within an angle of n (`members`), and the samples that light up (`best`). These are
+ * the samples with exactly the normal n, if it is prescribed or several samples have it; otherwise the sample
+ * nearest in normal of each group. */
 function preimages(n, degrees) {
     const least = Math.cos(degrees * Math.PI / 180) - 1e-7, members = [];
     for (let i = 0; i < count; i++) if (dot(i, n) >= least) members.push(i);
