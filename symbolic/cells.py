@@ -29,9 +29,9 @@ def gradient(corners: Sequence[Corner]) -> sp.Matrix:
 
 
 def turning(corners: Sequence[Corner], place: Corner) -> sp.Expr:
-    """Return the angle between the normal of the plane through `corners` and that at `place`.
+    """Return the angle between the plane through `corners` and the tangent plane at `place`.
 
-    It is approximated by the length of the difference of both gradients, for small angles.
+    For small angles, it is approximated by the length of the difference of their gradients.
     """
     off = gradient(corners) - sp.Matrix([kappa1 * place[0], kappa2 * place[1]])
     return sp.sqrt(sp.simplify(off.dot(off)))

@@ -170,7 +170,7 @@ def fit(
 
 
 def _fit_to(surface: Surface, asked: Tolerance | None) -> Spline:
-    """Return a spline of a surface within a tolerance, or else within the default tolerance."""
+    """Return a spline of a surface within a tolerance; None stands for the default tolerance."""
     spline = _fitted(surface, DEFAULT_CELLS if asked is None else FEWEST_CELLS)
     probe = probe_of(surface, DEFAULT_CELLS)
     goal = (asked or DEFAULT).of_size(probe.diagonal, probe.largest)

@@ -15,8 +15,8 @@ from .comparison import Comparison, Misfit
 # A spline is an improvement if at most this part of an error remains. Halving the cells leaves an
 # eighth of an error of order 3, and a half of an error of order 1, as at folds.
 IMPROVED = 0.75
-# Cells are halved along both u and v, or along only one of them if the error varies more than this
-# many times as much along it.
+# Cells are halved along u only if the error varies more than this many times as much along u as
+# along v, along v only in the opposite case, and along both otherwise.
 DOMINANT = 4.0
 # The smallest angle that is measured, in degrees.
 LEAST_ANGLE = 1e-4

@@ -176,7 +176,7 @@ def regular(
     fields: Sequence[str],
     memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
 ) -> dict[str, NDArray[Any]]:
-    """Return {"component": codes of `count` regular points}, or {} if it is not in `fields`."""
+    """Return {"component": codes of `count` regular points}; {} without "component" in `fields`."""
     found = {x: new_field(x, count, dtype_of(x, "f8"), memory) for x in GIVEN_NAMES if x in fields}
     for array in found.values():
         array[:] = Component.REGULAR

@@ -28,7 +28,7 @@ class Samples(SampleArrays, Methods):
 
     With ``dtype=numpy.float32``, all numbers except the indices are float32. Fields that were not
     requested (`fields` of `sample`) are missing: reading them raises MissingFieldError, an
-    AttributeError. All arrays are C-contiguous; one that is not is copied.
+    AttributeError. All arrays are C-contiguous; given arrays that are not are copied.
 
     With ``on="surface"`` (see `sample`), points, normals and curvatures are those of the surface at
     `uv`. A sample with a `normal_index` has the prescribed normal; the normal of the surface at its

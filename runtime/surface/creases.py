@@ -87,7 +87,7 @@ def _turning(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
 def _jump(nurbs: Nurbs, axis: int, below: float, above: float) -> float:
     """Return the largest ratio of the lengths of x_u (axis 0) or x_v on both sides of a line.
 
-    The larger length is divided by the smaller one. The ratio is 1 where both lengths are
+    The larger length is divided by the smaller one. The ratio counts as 1 where both lengths are
     negligible, compared with the largest length on the line.
     """
     low, high = nurbs.domain[axis]

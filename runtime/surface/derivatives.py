@@ -244,11 +244,11 @@ def _doubts(values: Array, shifts: Indices, least: Array) -> Array:
 def shifts_inside(
     values: Array, step: float | Array, low: float | Array, high: float | Array
 ) -> tuple[Indices, Indices]:
-    """Return shifts (k,) of the nodes of differences at `values` (k,), and inward directions.
+    """Return the shifts (k,) of nodes around `values` (k,) that keep them between the bounds.
 
-    A shift is the number of steps by which nodes are moved so that they stay between the bounds. A
-    direction (k,) is 1 or −1 and leads away from the nearer bound. The step and the bounds are
-    numbers, or arrays (k,).
+    The nodes are those of differences; a shift is a number of steps. Also return the inward
+    directions (k,): 1 or −1, away from the nearer bound. The step and the bounds are numbers, or
+    arrays (k,).
     """
     before = np.clip(np.floor((values - low) / step), 0, HALF)
     after = np.clip(np.floor((high - values) / step), 0, HALF)

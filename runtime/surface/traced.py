@@ -139,7 +139,7 @@ def _agree(function: Function, tape: Tape, domain: Domain) -> bool:
 
 
 def row_of(writer: TapeWriter, value: object) -> int:
-    """Return the row of the tape that holds a traced number, or a constant, which is appended.
+    """Return the row of a traced number on the tape; a constant is appended to the tape.
 
     Raises TypeError for any other value.
     """
@@ -241,9 +241,9 @@ class Traced:
         return self.written("sqrt", self * self + self.written("square", other))
 
     def arctan2(self, other: object) -> Traced:
-        """Return the polar angle of the point (other, self), computed as twice its half.
+        """Return the polar angle of the point (other, self), by the tangent of half the angle.
 
-        At the angle π the tangent of the half is unbounded.
+        At the angle π this tangent is unbounded.
         """
         size = self.written("sqrt", self.written("square", other) + self * self)
         return self.written("atan", self / (size + other)) * 2.0
