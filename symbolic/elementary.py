@@ -68,8 +68,8 @@ FUNCTIONS = {
     ),
     "sign": Function(sp.sign(x)),
 }  # fmt: skip
-# The codes of the operations of tapes. The operation "spline" has four rows of results: its own,
-# and those of three "coordinate" after it.
+# The codes of the operations of tapes. The operation "spline" has four rows of results: its own
+# row, and the rows of the three operations "coordinate" that follow it.
 BASIC = (
     "u",
     "v",

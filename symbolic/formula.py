@@ -20,7 +20,7 @@ Named = Iterable[tuple[str, sp.Expr]]
 
 
 class Content(NamedTuple):
-    """The content of a formula: its inputs, all its definitions, and those that are outputs."""
+    """The content of a formula: its inputs, all its definitions, and which symbols are outputs."""
 
     inputs: tuple[sp.Symbol, ...]
     definitions: tuple[Definition, ...]

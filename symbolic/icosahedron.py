@@ -77,7 +77,7 @@ def face_radius() -> sp.Expr:
 
 
 def tables() -> dict[str, tuple[str, Any]]:
-    """Return the tables for kernels, by name: a sentence, and correctly rounded numbers."""
+    """Return the tables for kernels, by name; each is a sentence and correctly rounded numbers."""
     sides = [tuple(combinations(face, 2)) for face in FACES]
     owners = [next(k for k, pairs in enumerate(sides) if edge in pairs) for edge in EDGES]
     holders = [next(k for k, face in enumerate(FACES) if corner in face) for corner in range(12)]

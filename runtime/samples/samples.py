@@ -58,10 +58,10 @@ class Samples(SampleArrays, Methods):
         at prescribed normals whose points are proved to be complete: no spline is used for these.
     on_surface : (N,) bool array or None
         Whether the sample is on the surface, with the normal of the surface up to 1e-9. False at
-        singular points, and for a sample of a silhouette that could not be moved there from the
-        spline. Its normal, K and H are then those of the spline; those of the surface at its `uv`
-        may be entirely different, even the sign of K. None with ``on="spline"``, or if it was not
-        requested.
+        singular points, and for a sample of a silhouette that could not be moved from the spline to
+        the surface. The normal, K and H of such a sample are those of the spline; the surface at
+        its `uv` may have an entirely different normal, K and H, even another sign of K. None with
+        ``on="spline"``, or if it was not requested.
     uv_radius : (N, 2) float64 array or None
         At prescribed normals whose points are proved to be complete: bounds of the errors of `uv`;
         for a `component` that is not regular, bounds of the differences between `uv` and the

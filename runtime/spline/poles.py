@@ -4,10 +4,10 @@ The coefficients around a pole are exactly in one plane, so that the pole has on
 patches next to a pole have an edge that is collapsed to a point p. The first ring of coefficients
 is at p + d, with a vector d for each coefficient, and the ghosts are at p − d. The normal of a
 patch at p is along the cross product of two sums of neighbouring vectors d. If all vectors d lie in
-one plane, it is the same for all patches, and their Gaussian images close around it without a gap.
-On a smooth surface the distances of d from such a plane are of third order in the size of a cell.
-They must be exactly zero: therefore each d is rounded to x a + y b with integers x, y and two
-vectors a, b of integers, all in units of the rounding of the coordinates.
+one plane, this normal is the same for all patches, and the Gaussian images of the patches close
+around it without a gap. On a smooth surface the distances of d from such a plane are of third order
+in the size of a cell. They must be exactly zero: therefore each d is rounded to x a + y b with
+integers x, y and two vectors a, b of integers, all in units of the rounding of the coordinates.
 """
 
 from __future__ import annotations

@@ -248,9 +248,10 @@ class SurfaceValues(Immutable):
     def tape(self) -> Tape | None:
         """The tape of operations that compute the surface, which gives bounds of its derivatives.
 
-        It is known for the catalogue, for SymPy expressions, and for callables made of NumPy
-        functions, if these are smooth elementary functions; otherwise it is None. A callable is
-        called once with arrays of objects.
+        It is known for the catalogue, for SymPy expressions and callables made of smooth elementary
+        functions (of NumPy), for NURBS unless their degrees or nets are large, and for affine
+        images of such surfaces; otherwise it is None. A callable is called once with arrays of
+        objects.
 
         Examples
         --------

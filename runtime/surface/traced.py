@@ -326,5 +326,5 @@ class Joined(Condition):
     parts: tuple[Condition, ...]
 
     def sides(self, boxes: Array) -> Sides:
-        """Return the values (k,) on boxes (k, 4), joined from those of the parts."""
+        """Return the values (k,) on boxes (k, 4), joined from the values of the parts."""
         return self.join(*(x.sides(boxes) for x in self.parts))
