@@ -68,8 +68,8 @@ ALIGNED = _aligned()
 # The same angle for a regular hexagon, divided by κ₁ sqrt(A), for κ₁ = κ₂. Equilateral triangles of
 # the area A/2 have the same circumradius.
 HEXAGON = _hexagon()
-# The distance between the patch and an equilateral triangle, divided by κ₁ A, for κ₁ = κ₂: R²/2, at
-# the centre of the triangle.
+# For κ₁ = κ₂, the largest distance between the patch and an equilateral triangle of the area A/2,
+# divided by κ₁ A. The distance is κ₁ R²/2, at the centre of the triangle; R is its circumradius.
 CHORD = HEXAGON**2 / 2
 
 

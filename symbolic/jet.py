@@ -111,10 +111,8 @@ ORDERS = ((2, 0), (1, 1), (0, 2), (1, 0), (0, 1))
 def _along_polar(jet: Sequence[sp.Expr]) -> list[sp.Expr]:
     """Return derivatives of a surface by φ and r from those by s and t, for cos φ = x, sin φ = y.
 
-    Both are derivatives of the orders ORDERS.
-
-    First and second derivatives by s and t determine those by φ and r, so that a quadratic patch
-    can replace the surface.
+    The orders of the derivatives are ORDERS. First and second derivatives by s and t determine
+    those by φ and r, so that a quadratic patch can replace the surface.
     """
     phi, psi, radius = sp.symbols("phi psi radius", real=True)
     s = radius * sp.cos(psi) - r * sp.cos(phi)

@@ -93,9 +93,10 @@ def _planar(offsets: Array) -> Array | None:
 
 
 def _axes(offsets: Array) -> tuple[Array, float]:
-    """Return an orthonormal basis (2, 3) of the plane of a ring, and the ring's smaller radius.
+    """Return an orthonormal basis (2, 3) of the plane of a ring, and the width of the ring.
 
     The normal of the plane is the vector area of the ring, which turns counterclockwise around it.
+    The width is the root mean square of the offsets along the narrower principal axis.
     """
     normal = np.cross(offsets, np.roll(offsets, -1, axis=0)).sum(axis=0)
     _, _, rows = np.linalg.svd(normal[None] / (np.abs(normal).max() or 1.0))
