@@ -1,7 +1,6 @@
 """What all tests share: which of them are slow, and how many random examples they try."""
 
 import gc
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
@@ -15,19 +14,26 @@ settings.register_profile("large", max_examples=200, deadline=None)
 settings.load_profile("quick")
 
 HERE = Path(__file__).parent
-# Files of tests that run formulas and kernels: `make coverage` runs them without compilation, and
-# reads no other file. In the files of SOME it runs only the tests marked `kernels`.
+# Files of tests that run formulas and kernels: `make coverage` runs them without compilation, but
+# for tests marked `compiled`, and reads no other file. In the files of SOME it runs only the tests
+# marked `kernels`.
 OF_KERNELS = (
     "generated", "tools/curves", "tools/density", "tools/gauss_map", "runtime/tape", "tools/meshes",
-    "tools/support", "runtime/search/test_exact.py", "runtime/search/test_search.py",
-    "runtime/search/test_wide_integers.py", "runtime/directions/test_unit.py",
-    "runtime/proof/test_proved_small.py", "runtime/onto_surface/test_refinement.py",
+    "tools/support", "runtime/search/test_search.py", "runtime/search/test_wide_integers.py",
+    "runtime/directions/test_unit.py", "runtime/proof/test_proved_small.py",
     "runtime/surface/test_nurbs.py", "runtime/spline/test_spline.py",
 )  # fmt: skip
 SOME = (
-    "runtime/domain/test_trim.py",
-    "runtime/spline/test_developable.py", "tools/gauss_map/test_silhouette.py",
-    "tools/support/test_offset.py", "symbolic/test_emit.py",
+    "runtime/domain/test_trim.py", "runtime/onto_surface/test_refinement.py",
+    "runtime/search/test_exact.py", "runtime/spline/test_developable.py", "symbolic/test_emit.py",
+    *(f"tools/density/test_{name}.py" for name in (
+        "aligned", "chosen_normals", "cover", "density", "progressive", "trims", "voronoi",
+    )),
+    "tools/gauss_map/test_parabolic.py", "tools/gauss_map/test_silhouette.py",
+    "tools/meshes/test_texture.py", "tools/meshes/test_weights.py",
+    *(f"tools/support/test_{name}.py" for name in (
+        "convolution", "offset", "support", "support_operations",
+    )),
 )  # fmt: skip
 # What `make verify` runs, and `make test` does not even read: pages, pictures and measurements.
 SLOW = ("docs", "benchmarks")
@@ -35,8 +41,8 @@ SLOW = ("docs", "benchmarks")
 
 def pytest_configure(config: pytest.Config) -> None:
     for marker in (
-        "compiled: needs compiled kernels (too slow under NUMBA_DISABLE_JIT=1)",
-        "kernels: runs formulas and kernels; `make coverage` runs it without compilation",
+        "compiled: `make coverage` leaves it out of a file of OF_KERNELS",
+        "kernels: `make coverage` runs it without compilation",
         "quick_for(*ids): slow, but for the parameters with one of these ids",
         "slow: takes long and seldom fails; run by `make verify`, and not by `make test`",
     ):
@@ -75,11 +81,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         quick = item.get_closest_marker("quick_for")
         if quick and not set(quick.args).intersection(item.name[:-1].split("[", 1)[1].split("-")):
             item.add_marker("slow")
-    if os.environ.get("NUMBA_DISABLE_JIT", "0") != "0":
-        skip = pytest.mark.skip(reason="too slow without compilation")
-        for item in items:
-            if item.get_closest_marker("compiled"):
-                item.add_marker(skip)
 
 
 @pytest.fixture(scope="session")

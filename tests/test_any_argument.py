@@ -27,10 +27,7 @@ LONGEST_MESSAGE = 300
 STEP = 26
 
 # Warnings are answers, too.
-pytestmark = [
-    pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning"),
-    pytest.mark.compiled,
-]
+pytestmark = pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 
 
 # --- what users may hand over ---------------------------------------------------------------------

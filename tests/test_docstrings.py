@@ -68,7 +68,6 @@ def test_attributes_are_documented_and_used_in_an_example(name: str) -> None:
     assert [x for x in attributes if not re.search(rf"\.{x}\b", source)] == []
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", DOCUMENTED)
 def test_examples_run(name: str, tmp_path, monkeypatch, request) -> None:
     monkeypatch.chdir(tmp_path)

@@ -27,7 +27,6 @@ def test_the_readme_is_short() -> None:
     assert len(CELLS) == 9
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     "source", [*blocks("python"), *(pytest.param(x, marks=pytest.mark.slow) for x in CELLS)]
 )
@@ -36,7 +35,6 @@ def test_python(source: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     exec(compile(source, "README.md", "exec"), {"__name__": "__main__"})
 
 
-@pytest.mark.compiled
 def test_command_line(tmp_path, monkeypatch, capsys, main):
     monkeypatch.chdir(tmp_path)
     x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))

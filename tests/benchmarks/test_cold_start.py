@@ -7,8 +7,6 @@ from gaussmap.benchmarks import cold_start
 
 CALL = "gm.fit('torus', cells=(3, 4)).evaluate(0.5, 0.5)"
 
-pytestmark = [pytest.mark.compiled, pytest.mark.slow]
-
 
 @pytest.fixture(autouse=True)
 def one_call(monkeypatch: pytest.MonkeyPatch) -> None:

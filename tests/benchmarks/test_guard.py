@@ -108,7 +108,6 @@ def test_the_writing_limit_writes_every_sample(threads):
     assert all((array == 1).all() for array in arrays)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", [x for x in guard.CASES if x != "fit-grid"])
 def test_cases_of_sampling_fill_the_arrays_that_are_written(name):
     work, arrays = guard.CASES[name]()
@@ -118,7 +117,6 @@ def test_cases_of_sampling_fill_the_arrays_that_are_written(name):
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0)
 
 
-@pytest.mark.compiled
 def test_fitting_makes_as_many_cells_as_are_written():
     work, arrays = guard.CASES["fit-grid"]()
     made = work()

@@ -10,7 +10,6 @@ from gaussmap.benchmarks.peers.forms import FORMS
 from gaussmap.benchmarks.peers.metrics import Places
 from gaussmap.benchmarks.peers.peer import Turns
 
-pytestmark = pytest.mark.compiled
 FORM = pytest.mark.parametrize("form", FORMS, ids=lambda x: x.name)
 
 

@@ -30,7 +30,6 @@ def nearest(samples, places):
 # --- ways -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("form", [Torus(), UNTUNED[0]], ids=lambda x: x.name)
 def test_the_exact_method_takes_the_normals_of_gauss(form):
     """Samples have exact twins: the spline of 64 × 64 cells turns normals by about 5e-4 at most
@@ -80,8 +79,6 @@ def few(monkeypatch):
     monkeypatch.setattr(measure, "quality", lambda form, places, mesh: mesh)
 
 
-@pytest.mark.compiled
-@pytest.mark.slow
 def test_a_surface_is_measured(few):
     gone = Peer("gone", "", "no_such_package_here", ways.perfect, 0)
     mesher = meshers.Mesher("mesh", ways.PERFECT, lambda form, count: count)
@@ -99,7 +96,6 @@ def test_a_surface_is_measured(few):
     assert {key for key, x in on.found.items() if x.times > 0.0} == {(ways.PERFECT, 400)}
 
 
-@pytest.mark.compiled
 def test_without_a_closed_form_a_way_is_missing(few):
     way = Peer("inverse", "", "numpy", lambda form, count: form.preimages(np.zeros((1, 3))), 0)
     on = measure.measured(surfaces.Hills(), (way,), (), str)

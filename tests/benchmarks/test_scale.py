@@ -21,7 +21,6 @@ def test_a_series_grows_with_patches_and_samples():
     assert series.slope() < 1.0
 
 
-@pytest.mark.compiled
 def test_measuring_up_to_a_size():
     samples, patches = scale.measure(10_000)
     assert [count for _, count, _ in samples.rows] == [1_000, 10_000]
@@ -31,7 +30,6 @@ def test_measuring_up_to_a_size():
     assert all(seconds > 0.0 for series in (samples, patches) for *_, seconds in series.rows)
 
 
-@pytest.mark.compiled
 def test_larger_sizes_come_in_chunks(monkeypatch):
     asked = []
 

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 from gaussmap.docs import animation
 from gaussmap.docs.dark import dark as dark_of
 from gaussmap.tools.pictures.palette import ELLIPTIC, HYPERBOLIC, INK, MARK
@@ -35,7 +34,6 @@ def test_a_dozen_seconds_in_two_megabytes() -> None:
     assert (pictures[0][:2] == 255).all()  # white, also beside the text
 
 
-@pytest.mark.slow
 def test_the_dark_one_differs_by_its_colours_only() -> None:
     light, dark = (frames(x) for x in (animation.FILE, animation.DARK))
     assert light[1] == dark[1]
@@ -59,8 +57,6 @@ def test_normals_leave_the_sphere_and_land_on_the_torus() -> None:
     assert after - before > 80  # two points
 
 
-@pytest.mark.slow
-@pytest.mark.compiled
 def test_the_committed_one_is_that_of_a_fresh_run(tmp_path: Path) -> None:
     animation.draw(tmp_path / "a.gif", tmp_path / "b.gif")
     fresh, committed = (frames(x) for x in (tmp_path / "a.gif", animation.FILE))

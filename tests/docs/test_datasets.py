@@ -87,7 +87,6 @@ def check(known: dict[str, object]) -> None:
     assert rows[1][2] == pytest.approx(1.0, rel=1e-2)  # K of the unit sphere
 
 
-@pytest.mark.compiled
 def test_examples(folder, monkeypatch, capsys):
     for name in ("duckdb", "pandas", "polars"):
         pytest.importorskip(name)
@@ -98,8 +97,6 @@ def test_examples(folder, monkeypatch, capsys):
     assert printed[1] == "3 (256, 3) (256, 3) 2 1"
 
 
-@pytest.mark.slow
-@pytest.mark.compiled
 def test_all_examples(tmp_path, monkeypatch):
     for name in ("duckdb", "pandas", "polars", "cloudpickle"):
         pytest.importorskip(name)

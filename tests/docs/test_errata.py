@@ -10,7 +10,6 @@ from gaussmap.docs import errata, orders, poles
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-@pytest.mark.slow
 def test_errata_are_up_to_date():
     assert (DOCS / "errata.md").read_text(encoding="utf-8") == errata.page(), "run `make errata`"
 

@@ -16,8 +16,6 @@ from matplotlib import colormaps
 from matplotlib.colors import to_rgb
 from matplotlib.image import imread, imsave
 
-pytestmark = [pytest.mark.compiled, pytest.mark.slow]
-
 PAGE = figures.FOLDER.with_suffix(".md")
 DPI = 200
 # Inches.

@@ -58,8 +58,6 @@ def test_committed_notebook_shows_what_it_does(script):
     assert not [x for x in outputs if x.output_type == "error" or x.get("name") == "stderr"]
 
 
-@pytest.mark.slow
-@pytest.mark.compiled
 @EACH
 def test_notebook_runs(script, tmp_path):
     ended = run(notebooks.__file__, script.stem, "--to", str(tmp_path), folder=tmp_path)
@@ -69,7 +67,6 @@ def test_notebook_runs(script, tmp_path):
     assert not [x for x in outputs if x.get("name") == "stderr"]
 
 
-@pytest.mark.slow
 def test_a_cell_that_fails_is_an_error(tmp_path):
     (tmp_path / "wrong.py").write_text("# %%\n1 / 0\n", encoding="utf-8")
     lines = [

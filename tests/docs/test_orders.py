@@ -9,8 +9,6 @@ from gaussmap.docs import markdown, orders, poles
 from gaussmap.docs.exact import angles
 from gaussmap.docs.orders import ANGLES, QUANTITIES, SUPPORT
 
-pytestmark = pytest.mark.compiled
-
 GRIDS = (16, 32)
 NORMALS = gm.fibonacci(3_000)
 CUBIC = ("monkey_saddle", "enneper")

@@ -30,7 +30,6 @@ def test_light_and_dark_are_exchanged_and_hues_stay() -> None:
 
 
 @pytest.mark.parametrize("name", figures.DEMO)
-@pytest.mark.quick_for("torus")
 def test_small_copies_of_the_pictures_of_the_demo(name: str) -> None:
     files = [ROOT / "docs" / f"{name}{ending}.png" for ending in ("", "_dark")]
     light, in_dark = (np.asarray(Image.open(x).convert("RGB")) for x in files)

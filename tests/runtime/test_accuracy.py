@@ -13,8 +13,6 @@ import sympy as sp
 from gaussmap.symbolic.surfaces import CATALOGUE
 from numpy.typing import NDArray
 
-pytestmark = pytest.mark.compiled
-
 Array = NDArray[np.float64]
 THREE = ["torus", "ellipsoid_patch", "wavy_graph"]
 OTHERS = ["hyperboloid", "monkey_saddle", "enneper", "catenoid", "moebius_band", "dupin_cyclide"]

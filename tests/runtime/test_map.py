@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-pytestmark = pytest.mark.compiled
-
 Array = NDArray[np.float64]
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 NORMALS = np.concatenate([AXES, gm.fibonacci(300)])

@@ -85,14 +85,12 @@ def check(name: str, frequency: int, count: int, motions: Iterable[str] = MOTION
         np.testing.assert_array_equal(moved, expected)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", SURFACES)
 def test_components_do_not_depend_on_how_a_surface_is_written(name: str) -> None:
     check(name, 2, 20, ["mirrored", "small"])
 
 
 @pytest.mark.slow
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", SURFACES)
 def test_components_of_many_normals_do_not_depend_on_it_either(name: str) -> None:
     check(name, 8, 2000)

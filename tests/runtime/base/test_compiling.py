@@ -35,7 +35,6 @@ def compiled_now(module: str = "gaussmap.kernels") -> Any:
     return numba.njit(outer)
 
 
-@pytest.mark.compiled
 def test_compilation_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
@@ -53,7 +52,6 @@ def test_compilation_is_shown_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> 
     assert terminal.getvalue().endswith(compiling.ERASE)
 
 
-@pytest.mark.compiled
 def test_compilation_is_shown_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its output knows no codes of terminals: spaces erase a line."""
     notebook = type("OutStream", (io.StringIO,), {"__module__": "ipykernel.iostream"})()
@@ -69,7 +67,6 @@ def test_compilation_is_shown_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> 
     assert len(blank) >= len(written.split("\r")[-4])
 
 
-@pytest.mark.compiled
 def test_compilation_is_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     """Not in files, not if it is quick, not if it is of others, and not to who wants quiet."""
     monkeypatch.setattr(compiling, "PATIENCE", 0.0)

@@ -21,8 +21,6 @@ from gaussmap.runtime.base.memory import estimate
 
 from ...refusals import refused
 
-pytestmark = pytest.mark.compiled
-
 directions = gm.directions
 TORUS = gm.surfaces.torus()
 CIRCLE = gm.curves.Curve.from_sympy(("cos(t)", "sin(t)"), "t", (0, "2*pi"), True)

@@ -15,8 +15,6 @@ import pytest
 from gaussmap.runtime.base import progress
 from gaussmap.runtime.base.compiling import NOTICE
 
-pytestmark = pytest.mark.compiled
-
 
 class Terminal(io.StringIO):
     def isatty(self) -> bool:

@@ -167,7 +167,6 @@ def test_seeds_that_are_none(seed):
 # --- as_normals -----------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("frequency", [1, 2, 3, 7, 64, pytest.param(200, marks=pytest.mark.slow)])
 def test_points_stay_as_they_are(frequency: int) -> None:
     """`sample` takes them for unit vectors, and so sees that they are those of an icosahedron."""

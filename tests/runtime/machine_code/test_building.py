@@ -69,7 +69,6 @@ def test_the_list_is_as_it_would_be_written(
     assert signatures.SIGNATURES.read_bytes() == content
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", [*signatures.read()])
 def test_all_listed_kernels_are_there(name: str) -> None:
     kernel = building.kernel_named(name)
@@ -79,7 +78,6 @@ def test_all_listed_kernels_are_there(name: str) -> None:
         assert [signatures.as_json(signatures.as_types(x)) for x in kinds] == kinds
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_what_a_file_has_is_not_compiled_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -132,14 +130,12 @@ print(len(asked) > 50, asked - {*signatures.usual()})
 """
 
 
-@pytest.mark.compiled
 def test_usual_calls_ask_for_usual_kernels_only() -> None:
     """Otherwise they compile where the package was installed: `make kernels`."""
     done = subprocess.run([sys.executable, "-c", USUAL_CALLS], capture_output=True, text=True)
     assert done.stdout == "True set()\n", done.stderr
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_the_bytes_of_a_file_are_those_of_its_sources(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -160,7 +156,6 @@ def test_the_bytes_of_a_file_are_those_of_its_sources(
     assert built[0] == built[1]
 
 
-@pytest.mark.compiled
 def test_what_the_list_lacks(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -27,7 +27,6 @@ def test_the_import_loads_nothing() -> None:
     assert loaded_by("import gaussmap") == set()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("calls", "others"),
     [

@@ -47,7 +47,6 @@ def normal_of_copy(folder: Path) -> tuple[list[float], int]:
     return [float(x) for x in normal], int(compiled)
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_a_changed_formula_is_compiled_again(tmp_path: Path) -> None:
     package = tmp_path / "gaussmap"
@@ -109,7 +108,6 @@ def one_bit(content: bytes) -> bytes:
     return content[:k] + bytes([content[k] ^ 1]) + content[k + 1 :]
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("damage", [nothing, half, garbage, one_bit])
 def test_damaged_machine_code_is_compiled_again(
     damage: Callable[[bytes], bytes], folder: Path
@@ -129,7 +127,6 @@ class Trap:
         return pytest.fail, ("a pickle was read",)
 
 
-@pytest.mark.compiled
 def test_pickles_are_not_read(folder: Path) -> None:
     assert compiled_when(jit.jit(triple)) == 1
     (path,) = folder.glob("*.kernel")
@@ -147,7 +144,6 @@ def halved(pair: Pair, by: int) -> tuple[Any, ...]:
     return pair.first / by, (pair.second / by, by)
 
 
-@pytest.mark.compiled
 def test_kernels_of_tuples_are_kept(folder: Path) -> None:
     results = []
     for is_compiled in (True, False):
@@ -157,7 +153,6 @@ def test_kernels_of_tuples_are_kept(folder: Path) -> None:
     assert results == [(1.5, (2.5, 2))] * 2
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("option", ["NUMBA_OPT", "NUMBA_BOUNDSCHECK"])
 def test_other_options_of_numba_are_other_machine_code(
     option: str, folder: Path, monkeypatch: pytest.MonkeyPatch
@@ -170,7 +165,6 @@ def test_other_options_of_numba_are_other_machine_code(
     assert compiled_when(jit.jit(triple)) == 0
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_two_processes_compile_a_kernel_once(tmp_path: Path) -> None:
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "GAUSSMAP_KERNELS": "0"}
@@ -197,7 +191,6 @@ def test_a_lock_that_is_held_for_too_long_is_not_waited_for(
     second.release()
 
 
-@pytest.mark.compiled
 def test_a_failed_compilation_keeps_no_lock(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(disk, "POLL", None)  # waiting raises TypeError
     kernel = jit.jit(triple)
@@ -206,7 +199,6 @@ def test_a_failed_compilation_keeps_no_lock(folder: Path, monkeypatch: pytest.Mo
             kernel(None)  # pyright: ignore[reportArgumentType]
 
 
-@pytest.mark.compiled
 def test_machine_code_that_cannot_be_saved(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError("No space left on device")
@@ -248,7 +240,6 @@ def test_the_digest_covers_all_that_kernels_are_made_of() -> None:
     assert imported - listed == {sources.PACKAGE / x for x in others}
 
 
-@pytest.mark.compiled
 def test_a_cache_that_cannot_be_written(monkeypatch: pytest.MonkeyPatch) -> None:
     """Kernels are compiled all the same, and not kept."""
     nowhere = Path(os.devnull) / "cache"

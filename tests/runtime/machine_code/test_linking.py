@@ -8,8 +8,6 @@ from gaussmap.runtime.machine_code import building, disk, jit, linking, signatur
 from numba.core import event
 from numba.core.caching import NullCache
 
-pytestmark = pytest.mark.compiled
-
 # Parts that one kernel has for several types, and why.
 COPIES = {
     "decide.unit_of": "the limbs of patches and of normals",

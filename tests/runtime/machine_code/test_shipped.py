@@ -11,8 +11,6 @@ import pytest
 from gaussmap.runtime.machine_code import cache, disk, entries, jit, processors, shipped, sources
 from numba.core import event
 
-pytestmark = pytest.mark.compiled
-
 
 def triple(x: float) -> float:
     return 3.0 * x

@@ -221,7 +221,6 @@ def test_where_the_surface_is_singular_samples_stay_on_the_spline():
     np.testing.assert_allclose(np.linalg.norm(samples.normals, axis=1), 1.0, rtol=1e-12)
 
 
-@pytest.mark.compiled
 @pytest.mark.usefixtures("unproved")
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize("name", ["wavy_graph", "sphere"])
@@ -295,7 +294,6 @@ def test_normals_without_a_sample_are_listed(exponent):
     assert samples.report.proved is None
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("count", [500, pytest.param(5000, marks=pytest.mark.slow)])
 def test_a_count_is_that_of_samples_on_the_surface(count):
     """A torus that crosses itself: its spline rounds the tips, where the surface has no normals."""

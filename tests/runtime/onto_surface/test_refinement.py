@@ -69,7 +69,6 @@ def next_to(normal: Array) -> Array:
 # --- regular points -------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(("shift", "factor"), MOTIONS)
 def test_normals_become_the_prescribed_ones(shift: float, factor: float) -> None:
     torus = gm.surfaces.torus()
@@ -88,7 +87,6 @@ def test_normals_become_the_prescribed_ones(shift: float, factor: float) -> None
     np.testing.assert_allclose(samples.mean, H, rtol=1e-13)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_samples_of_a_coarse_spline_go_on_across_the_ends_of_a_period(sign: float) -> None:
     """The parameters of this torus are uneven: those of its spline are up to a quarter cell off."""
@@ -106,7 +104,6 @@ def test_samples_of_a_coarse_spline_go_on_across_the_ends_of_a_period(sign: floa
     assert np.abs(normals_of(surface, samples.uv) - samples.normals).max() < 2.0 * NORMAL_ERROR
 
 
-@pytest.mark.compiled
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize(("amplitude", "frequency"), [(0.2, 3.0), (0.1, 8.0)])
 def test_curvatures_are_those_of_the_stored_parameters(amplitude: float, frequency: float) -> None:
@@ -132,7 +129,6 @@ def test_curvatures_are_those_of_the_stored_parameters(amplitude: float, frequen
 
 
 @pytest.mark.usefixtures("unproved")
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_next_to_singular_points_normals_are_those_that_are_prescribed() -> None:
     """A spindle cyclide, with two conical points."""
@@ -156,7 +152,6 @@ def test_next_to_singular_points_normals_are_those_that_are_prescribed() -> None
     assert np.abs(samples.gaussian_curvature[there]).max() < 1e8
 
 
-@pytest.mark.compiled
 def test_numerical_derivatives_give_the_same_samples() -> None:
     torus = gm.surfaces.torus()
     numerical = gm.Surface.from_callable(torus.function, torus.domain, (True, True))
@@ -167,7 +162,6 @@ def test_numerical_derivatives_give_the_same_samples() -> None:
     np.testing.assert_allclose(found.gaussian, exact.gaussian, rtol=0.0, atol=1e-7)
 
 
-@pytest.mark.compiled
 def test_samples_without_a_place_on_the_surface_stay_on_the_spline() -> None:
     """The border of the spline has other normals than that of the surface."""
     helicoid, normals = gm.surfaces.helicoid(), gm.fibonacci(3000)
@@ -181,6 +175,7 @@ def test_samples_without_a_place_on_the_surface_stay_on_the_spline() -> None:
     assert (np.abs(np.abs(found.uv[outside]) - [1.0, np.pi]).min(axis=1) < 0.1).all()
 
 
+@pytest.mark.kernels
 def test_a_place_at_the_very_border_is_inside() -> None:
     surface = gm.surfaces.enneper()
     ends = [-1.0, -0.4, 0.3, 1.0]
@@ -195,7 +190,6 @@ def test_a_place_at_the_very_border_is_inside() -> None:
     np.testing.assert_allclose(start, uv, rtol=0.0, atol=1e-11)
 
 
-@pytest.mark.compiled
 def test_flat_points_are_reached_as_far_as_normals_tell() -> None:
     """Newton's method converges to the flat point slowly; its normal is right long before."""
     surface = gm.surfaces.monkey_saddle()
@@ -205,6 +199,7 @@ def test_flat_points_are_reached_as_far_as_normals_tell() -> None:
     assert np.abs(samples.uv).max() < 0.2
 
 
+@pytest.mark.kernels
 def test_a_curvature_of_zero_keeps_its_sign() -> None:
     """At the flat point of a monkey saddle, where two samples may begin."""
     surface = gm.surfaces.monkey_saddle()
@@ -220,7 +215,6 @@ def test_a_curvature_of_zero_keeps_its_sign() -> None:
     np.testing.assert_array_equal(np.signbit(target.gaussian), [False, True])
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("on", ["spline", "surface"])
 def test_aligned_normals_have_the_sum_of_signs_by_the_sign_bit(on: str) -> None:
     """Along the axis of a torus whole circles are parabolic: K is 0 there, or its rounding."""
@@ -236,7 +230,6 @@ def test_aligned_normals_have_the_sum_of_signs_by_the_sign_bit(on: str) -> None:
         assert np.sign(K).sum() != 0
 
 
-@pytest.mark.compiled
 def test_the_seam_of_a_moebius_band_is_no_way_through() -> None:
     band = gm.surfaces.moebius_band()
     samples, _ = refined(band, (48, 12), gm.fibonacci(2000))
@@ -270,6 +263,7 @@ OWN, OTHER = (
 )
 
 
+@pytest.mark.kernels
 def test_samples_that_meet_are_one() -> None:
     """The one that has left its patch goes, whatever the order, and the other side of its fold."""
     assert kept((*HERE, 1.0, OWN, True), (*HERE, 1.0, OTHER, True)) == [True, False]
@@ -282,11 +276,13 @@ def test_samples_that_meet_are_one() -> None:
     assert kept(*fold[::2], (*ELSEWHERE, 1.0, 0, False)) == [True, False, True]
 
 
+@pytest.mark.kernels
 def test_samples_on_both_sides_of_a_seam_meet() -> None:
     ends = (0.0, 0.77, 1.0, OTHER, True), (2.0 * np.pi, 0.77, 1.0, OTHER, True)
     assert kept(*ends) == [True, False]
 
 
+@pytest.mark.kernels
 def test_samples_that_do_not_meet_are_kept() -> None:
     assert all(kept((*HERE, 1.0, OWN, True), (*ELSEWHERE, 1.0, OTHER, True)))
     assert all(kept((*HERE, 1.0, OWN, True), (*HERE, -1.0, OTHER, True)))
@@ -294,12 +290,12 @@ def test_samples_that_do_not_meet_are_kept() -> None:
     assert all(kept((*HERE, 1.0, OWN, False), (*HERE, 0.0, OTHER, False)))
 
 
+@pytest.mark.kernels
 def test_next_to_a_pole_parameters_do_not_matter_and_nothing_goes_along() -> None:
     fold = (*HERE, 1.0, OWN, True), (*HERE, 1.0, OTHER, True), (*ELSEWHERE, -1.0, 0, False)
     assert kept(*fold, at_pole=True) == [True, False, True]
 
 
-@pytest.mark.compiled
 def test_a_point_that_is_covered_twice_is_two_samples() -> None:
     """A torus around which u goes twice: at one point the parameters are a turn apart."""
     torus = gm.surfaces.torus()
@@ -350,7 +346,6 @@ TWICE = [0.04430118180966494, 0.19546534701936175, -0.9797094994971047]
 
 
 @pytest.mark.usefixtures("unproved")
-@pytest.mark.compiled
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize("cells", [(20, 20), None])
 @pytest.mark.parametrize("name", CURVED)
@@ -376,7 +371,6 @@ def test_no_sample_of_a_normal_is_repeated(name: str, cells: tuple[int, int] | N
 
 
 @pytest.mark.usefixtures("unproved")
-@pytest.mark.compiled
 @pytest.mark.filterwarnings("ignore:.*could not be moved")
 @pytest.mark.parametrize("cells", [8, 16])
 def test_folds_of_a_coarse_spline_are_no_folds_of_the_surface(cells: int) -> None:
@@ -408,7 +402,6 @@ def check_once(surface: gm.Surface, cells: int, normals: Array, euler: int = 1) 
     return samples
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(("shift", "factor"), MOTIONS)
 def test_every_normal_of_an_egg_once(shift: float, factor: float) -> None:
     surface = moved(egg, 2, shift, factor)
@@ -431,7 +424,6 @@ def test_every_normal_of_an_egg_once(shift: float, factor: float) -> None:
     assert np.abs(found - samples.normals[away]).max() < error
 
 
-@pytest.mark.compiled
 def test_poles_at_the_ends_of_u() -> None:
     """The same surface with exchanged parameters has opposite normals."""
     along_v = gm.Surface.from_callable(egg, (FULL, LATITUDES), (True, "pole"))
@@ -445,6 +437,7 @@ def test_poles_at_the_ends_of_u() -> None:
     )
 
 
+@pytest.mark.kernels
 def test_curvatures_at_poles() -> None:
     """K and H at the poles of an ellipsoid: c²/(a² b²) and c (a² + b²)/(2 a² b²)."""
     a, b, c = 1.0, 0.6, 0.3
@@ -459,6 +452,7 @@ def test_curvatures_at_poles() -> None:
     np.testing.assert_allclose(H, c * (a * a + b * b) / (2.0 * a * a * b * b), rtol=1e-6)
 
 
+@pytest.mark.kernels
 def test_curvature_at_any_distance_from_a_pole() -> None:
     """A NURBS is an ellipsoid 5 from the origin: its derivatives by the angle are differences."""
     a, b, c = 1.0, 0.7, 1.3
@@ -471,7 +465,6 @@ def test_curvature_at_any_distance_from_a_pole() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.compiled
 @pytest.mark.parametrize(("shift", "factor"), MOTIONS)
 @pytest.mark.parametrize("shape", [egg, blob])
 def test_every_normal_once(

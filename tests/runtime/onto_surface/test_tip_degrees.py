@@ -42,7 +42,6 @@ def directions() -> Array:
     return n / np.linalg.norm(n, axis=1, keepdims=True)
 
 
-@pytest.mark.compiled
 @covering(name=[*WAVES], on=["spline", "surface", "nets"], along_u=[False, True])
 def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, along_u: bool) -> None:
     surface, nets = lemon(name, along_u), None
@@ -74,7 +73,6 @@ def test_the_degree_of_a_closed_surface_with_tips_is_one(name: str, on: str, alo
         np.testing.assert_array_equal(tips.uv[:, int(along_u)], 0.0)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("along_u", [False, True])
 def test_lines_inside_of_the_domain_are_tips(along_u: bool) -> None:
     """A torus that crosses its axis: of normals across it there are two points, and two tips."""
@@ -97,7 +95,6 @@ def test_lines_inside_of_the_domain_are_tips(along_u: bool) -> None:
     assert (trimmed.component == gm.Component.TIP).sum() == len(tips) / 2
 
 
-@pytest.mark.compiled
 def test_faces_and_trimmed_surfaces_have_tips() -> None:
     surface, n = lemon("star", False), directions()[:50]
     found, halves = [], [lemon("star", False, x) for x in (("0", "pi"), ("pi", "2*pi"))]
@@ -118,7 +115,6 @@ def test_faces_and_trimmed_surfaces_have_tips() -> None:
         assert components.tolist() == [gm.Component.REGULAR, gm.Component.TIP][: 1 + tips]
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["round", "star"])
 def test_normals_beside_those_of_a_tip(name: str) -> None:
     """They are nearer to its cone than that through some rays: π²/2048² / 2 is 1.2e-6."""
@@ -133,7 +129,6 @@ def test_normals_beside_those_of_a_tip(name: str) -> None:
         np.testing.assert_array_equal(points.component, gm.Component.REGULAR)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("on", ["spline", "surface"])
 def test_tips_are_samples_and_no_area(on: str) -> None:
     """They are in streams, in reach and in sums; meshes and weights are those without them."""

@@ -27,7 +27,6 @@ def heavy(weight: float) -> gm.Surface:
     return gm.Surface.from_nurbs((3, 3), (knots, knots), points, weights)
 
 
-@pytest.mark.compiled
 def test_few_cells_are_cut_where_tangents_are_nearly_parallel() -> None:
     half = "1/2"
     height = f"1/(1/100000 + (u - {half})**2 + (v - {half})**2)"
@@ -42,7 +41,6 @@ def test_few_cells_are_cut_where_tangents_are_nearly_parallel() -> None:
     np.testing.assert_allclose(found.uv - 0.5, away, rtol=1e-6, atol=1e-15)
 
 
-@pytest.mark.compiled
 def test_a_heavy_control_point_leaves_nothing_open() -> None:
     surface = heavy(1000.0)
     normal = np.array([[0.1, 0.2, 1.0]]) / np.sqrt(1.05)
@@ -53,7 +51,6 @@ def test_a_heavy_control_point_leaves_nothing_open() -> None:
     assert len(found.undecided.numbers) == 0
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("weight", [1e5, 1e9])
 def test_cells_are_bounded_where_cutting_does_not_help(weight: float) -> None:
     index = index_of(heavy(weight))

@@ -14,8 +14,6 @@ import pytest
 from ...shapes import CIRCLE, MERIDIAN, WEIGHTS, conics
 from .judge import Array, counts, jets_at, near, new_index, normals_at, nurbs, unit
 
-pytestmark = pytest.mark.compiled
-
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 AROUND = unit(np.concatenate([gm.icosphere(8), AXES]))
 

@@ -13,8 +13,6 @@ import pytest
 from .judge import Array, unit
 from .nets import Net, revolved, wrong_at
 
-pytestmark = pytest.mark.compiled
-
 HALF = np.sqrt(0.5)
 SHEAR = np.array([[2, 0.3, 0.1], [0, 1.5, 0.4], [0.2, 0, 1]])
 PLAIN = np.eye(3)

@@ -11,8 +11,6 @@ from gaussmap.runtime.proof.index import ProvedIndex
 from .judge import index_of, jets_at, new_index, normals_at, position_of, surface_of
 from .test_proved import ball, cap
 
-pytestmark = pytest.mark.compiled
-
 
 @pytest.mark.parametrize("name", ["ball", "cap", "ellipsoid"])
 def test_bounds_of_discs_hold(name: str) -> None:

@@ -32,8 +32,6 @@ from .judge import (
     unit,
 )
 
-pytestmark = pytest.mark.compiled
-
 TAU = 2.0 * np.pi
 
 # --- all points, by another search ----------------------------------------------------------------

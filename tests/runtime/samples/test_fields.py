@@ -142,7 +142,6 @@ def test_types_that_are_none(dtype):
 # --- samples of few fields ------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 def test_proved_samples_can_be_replaced():
     """They have no patches of a spline."""
     samples = gm.sample("torus", normals=gm.fibonacci(20))

@@ -33,7 +33,6 @@ def sign_sums(spline: gm.Spline, normals: np.ndarray) -> np.ndarray:
     return np.bincount(samples.normal_index, weights=signs, minlength=len(normals))
 
 
-@pytest.mark.compiled
 @given(
     seed=st.integers(0, 2**32 - 1),
     height=st.integers(0, 4),
@@ -80,6 +79,7 @@ def integers_of(vectors: np.ndarray) -> np.ndarray:
     return np.array(scaled, dtype=object).T
 
 
+@pytest.mark.kernels
 def test_forms_on_integers_are_those_of_fractions() -> None:
     spline = torus_of_integers(6, 5, 50, np.zeros((6, 5, 3)))
     spline.coefficients[...] *= 0.3  # no integers any more, and a common exponent to find
@@ -93,6 +93,7 @@ def test_forms_on_integers_are_those_of_fractions() -> None:
         assert (vectors[..., patch] * unit == 8 * power_form(net)).all()
 
 
+@pytest.mark.kernels
 def test_infinitesimal_displacement_agrees_with_a_small_one() -> None:
     """Real displacements in the same order of size give the same signs, for small integers."""
     rng = np.random.default_rng(5)
@@ -133,7 +134,6 @@ def no_long_integers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(exact, "forms_of_pairs", None)
 
 
-@pytest.mark.compiled
 @pytest.mark.usefixtures("no_long_integers")
 @pytest.mark.parametrize("size", [1.0, 0.3, 1e-5, 1e150, 1e-150])
 @pytest.mark.quick_for("0.3", "1e+150")
@@ -143,7 +143,6 @@ def test_compiled_forms_are_those_of_long_integers(size: float) -> None:
     check_forms(spline, *every_pair(spline, np.concatenate([ALIGNED, gm.icosphere(2)])))
 
 
-@pytest.mark.compiled
 @pytest.mark.usefixtures("no_long_integers")
 @pytest.mark.parametrize("count", [2_000, pytest.param(100_000, marks=pytest.mark.slow)])
 def test_random_pairs_are_decided_as_on_long_integers(count: int) -> None:
@@ -155,7 +154,6 @@ def test_random_pairs_are_decided_as_on_long_integers(count: int) -> None:
     assert len(np.unique(signs, axis=0)) == 8
 
 
-@pytest.mark.compiled
 @pytest.mark.usefixtures("no_long_integers")
 @pytest.mark.parametrize("count", [2_000, pytest.param(100_000, marks=pytest.mark.slow)])
 def test_symmetric_pairs_are_decided_as_on_long_integers(count: int) -> None:
@@ -176,7 +174,6 @@ def test_symmetric_pairs_are_decided_as_on_long_integers(count: int) -> None:
     assert set(first[1:, tied].ravel().tolist()) >= set(range(10))
 
 
-@pytest.mark.compiled
 @pytest.mark.usefixtures("no_long_integers")
 def test_the_largest_numbers_do_not_overflow() -> None:
     """All bits are set, and the exponents differ as far as they may: 69 and 133."""
@@ -194,13 +191,13 @@ def test_the_largest_numbers_do_not_overflow() -> None:
         check_forms(spline, *pairs)
 
 
+@pytest.mark.kernels
 def test_numbers_too_long_for_the_kernel_are_long_integers() -> None:
     spline = torus_of_integers(8, 6, 8, np.zeros((8, 6, 3)))
     spline.coefficients[3, 3] *= 1e-200
     check_forms(spline, *every_pair(spline, np.array([[1.0, 0.0, 0.0], [1.0, 1e-170, 1e-290]])))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["catenoid", "hyperboloid"])
 def test_border_vertices_of_a_closed_ring_count_once(name: str) -> None:
     """The first and the last vertex on the border are one place: its normal is asked twice."""
@@ -211,7 +208,6 @@ def test_border_vertices_of_a_closed_ring_count_once(name: str) -> None:
         np.testing.assert_array_equal(np.bincount(samples.normal_index, minlength=13), 1)
 
 
-@pytest.mark.compiled
 def test_equal_normals_are_answered_alike() -> None:
     """Those of the vertices on the border, where rounding lets several patches answer."""
     spline = gm.fit(gm.surfaces.elliptic_paraboloid(), (12, 8))

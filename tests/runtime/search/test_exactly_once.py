@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 from ...products import covering
 from ...shapes import klein_bottle, moved
 
-pytestmark = pytest.mark.compiled
-
 Array = NDArray[np.float64]
 TORUS = gm.surfaces.torus(major=1.0, minor=0.35)
 

@@ -45,7 +45,6 @@ SPLINES = {
     "waves": waves(1e-3),
     "ripples": waves(1e-7),
 }
-EACH = [pytest.param(x, marks=pytest.mark.compiled) if x == "torus" else x for x in SPLINES]
 
 
 def asked(spline: gm.Spline) -> Array:
@@ -78,7 +77,7 @@ def pairs(hits: Hits) -> list[tuple[int, int]]:
     return list(zip(hits.normal_index.tolist(), hits.patch_index.tolist(), strict=True))
 
 
-@pytest.mark.parametrize("name", EACH)
+@pytest.mark.parametrize("name", SPLINES)
 def test_hits_are_those_of_exact_decisions(name: str) -> None:
     """They come by normal and then by patch; a spline that is flat has none."""
     spline = SPLINES[name]
@@ -88,7 +87,6 @@ def test_hits_are_those_of_exact_decisions(name: str) -> None:
     assert len(found) > 0 or name == "flat"
 
 
-@pytest.mark.compiled
 @given(seed=st.integers(0, 2**32 - 1), roughness=st.floats(-8, 1))
 def test_rough_splines(seed: int, roughness: float) -> None:
     """From gentle waves to patches with normals all round: cones of every width."""
@@ -113,7 +111,7 @@ def normals_of(spline: gm.Spline) -> Array:
     return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
 
 
-@pytest.mark.parametrize("name", EACH)
+@pytest.mark.parametrize("name", SPLINES)
 def test_cones_and_slabs_hold_all_normals(name: str) -> None:
     """But for the rounding of the normals of this test, which is that of the control points."""
     spline = SPLINES[name]

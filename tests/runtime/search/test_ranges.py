@@ -59,7 +59,6 @@ def test_one_point_of_the_border_is_one_sample(apart, monkeypatch):
 # --- the same samples in the same order -----------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "sphere", "moebius_band", "wavy_graph"])
 def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
     """More normals and samples than go into one range; normals on symmetry planes among them."""
@@ -78,7 +77,6 @@ def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
                 assert getattr(other, array).tobytes() == getattr(first, array).tobytes()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("threads", [1, 2, 3, 7])
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "sphere"])
 @pytest.mark.quick_for("torus", "sphere")

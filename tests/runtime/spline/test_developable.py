@@ -79,7 +79,6 @@ def test_surfaces_that_are_developable_in_part(share, flat):
     assert developable_share(spline, DENSE) == pytest.approx(share, abs=0.06)
 
 
-@pytest.mark.compiled
 def test_a_point_and_a_curve_are_developable():
     for f in (lambda u, v: np.zeros((*u.shape, 3)), lambda u, v: np.stack([u, u * u, u], axis=-1)):
         spline = gm.fit(gm.Surface.from_callable(f, ((0, 1), (0, 1))), (4, 4))

@@ -123,7 +123,6 @@ def test_the_ring_at_a_pole_is_moved_by_the_error_of_the_spline_only(shape: str)
     assert (tips[1:] <= np.maximum(tips[:-1] / 6.0, 1e-12)).all()
 
 
-@pytest.mark.compiled
 @covering(
     shape=SHAPES,
     rotation=[np.eye(3), ROTATION],
@@ -138,14 +137,12 @@ def test_every_normal_counts_once(
 
 
 @pytest.mark.slow
-@pytest.mark.compiled
 @pytest.mark.parametrize("shape", SHAPES)
 def test_every_one_of_many_normals_counts_once(shape: str):
     spline = gm.fit(moved(shape, ROTATION, 1e9), (128, 128))
     assert (signed_counts(spline, hard_normals(spline, 20_000, 12, 36)) == 1).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("count", [24, 25])
 @pytest.mark.parametrize("axis", [0, 1])
 def test_poles_of_points(count: int, axis: int):

@@ -147,7 +147,6 @@ def test_parameters_that_may_be_negative_or_zero():
     )
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("call", [gm.fit, lambda surface: gm.sample(surface, count=10)])
 def test_parameters_that_make_no_surface(call):
     with pytest.raises(gm.errors.SurfaceError, match="'dupin_cyclide' is not finite at u = "):

@@ -17,7 +17,6 @@ def many(*arguments: Any, **named: Any) -> list[Any]:
     return list(gm.sample_many(*arguments, progress=False, **named))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("asked", [{"count": 300}, {"normals": gm.icosphere(6)}])
 def test_many_is_one_after_the_other(asked: dict[str, Any]):
     surfaces = [TORUS, gm.surfaces.sphere(), gm.fit(gm.surfaces.catenoid(), (16, 16))]
@@ -29,7 +28,6 @@ def test_many_is_one_after_the_other(asked: dict[str, Any]):
         np.testing.assert_array_equal(samples.points, alone.points)
 
 
-@pytest.mark.compiled
 def test_a_bad_surface_does_not_stop_the_others():
     surfaces = [gm.surfaces.sphere(), BROKEN, gm.surfaces.torus(), 3.0, gm.surfaces.catenoid()]
     with pytest.warns(gm.GaussmapWarning) as caught:

@@ -183,7 +183,6 @@ def test_an_edge_of_three_faces():
     says(gm.Part(sheets), warnings=warnings, open_edges=9, closed=False, solids=0)
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_wavy_patches_are_a_closed_body():
     part = gm.Part(globe())
@@ -196,7 +195,6 @@ def test_wavy_patches_are_a_closed_body():
     assert curvature == pytest.approx(4.0 * np.pi, rel=0.02)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     "pieces",
     [

@@ -11,7 +11,6 @@ from .made import noted
 
 for extra in ("trimesh", "rtree", "pythoncdt"):
     pytest.importorskip(extra)
-pytestmark = pytest.mark.compiled
 ALONG = gm.Reach((1, 0, 0.2), 70, unobstructed=True)
 AXIS = np.array([1, 0, 0.2]) / np.hypot(1, 0.2)
 

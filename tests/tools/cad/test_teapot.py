@@ -59,7 +59,6 @@ def test_the_tip_of_the_lid_is_no_point(teapot):
     assert int(teapot.arrays["edge_degenerate"].sum()) == 8  # those of the bottom, too
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_it_is_sampled_and_meshed(teapot):
     samples = gm.sample(teapot, 3000)

@@ -25,7 +25,6 @@ from gaussmap.tools.commands.cli import main
 
 FEW = ["--count", "60", "--cells", "8", "8"]
 
-compiled = pytest.mark.compiled
 posix = pytest.mark.skipif(os.name != "posix", reason="needs POSIX")
 
 GAUSS = ["--density", "gauss"]
@@ -97,7 +96,6 @@ def files(parts: ModuleType) -> None:
 # ── What it does ─────────────────────────────────────────────────────────────────────────────────
 
 
-@compiled
 def test_sample_a_surface_by_name() -> None:
     done = gaussmap("sample", "torus", "--count", "10000", "-o", "torus.ply")
     assert (done.returncode, done.stderr) == (0, "")
@@ -112,7 +110,6 @@ def test_sample_a_surface_by_name() -> None:
     np.testing.assert_allclose(distance, 0.35, rtol=1e-3)
 
 
-@compiled
 def test_tolerance_of_data_and_what_the_summary_says_of_them(capsys):
     x, y = np.meshgrid(np.linspace(-1, 1, 50), np.linspace(-1, 1, 40))
     np.save("heights.npy", 100 * np.exp(-3 * (x * x + y * y)))
@@ -485,7 +482,6 @@ def test_bad_output_is_found_before_the_work(failing: Callable[[BaseException], 
     assert main(["sample", "torus", "-o", "missing/a.ply"]) == 2
 
 
-@compiled
 def test_healpix_that_is_not_installed(capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "astropy_healpix", None)
     assert main(["sample", "torus", "--healpix", "4", *TO]) == 2
@@ -520,7 +516,6 @@ def test_interrupted_in_a_callback(capsys, monkeypatch):
     assert sys.unraisablehook is hook
 
 
-@compiled
 @posix
 def test_interrupted_by_a_signal(tmp_path: Path) -> None:
     # A test run in the background ignores interrupts, and what it starts would do so too.
@@ -543,7 +538,6 @@ def test_interrupted_by_a_signal(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["begun"]
 
 
-@compiled
 @posix
 @pytest.mark.parametrize("command", [["surfaces"], ["--help"]])
 def test_a_reader_that_goes_away(command: list[str]) -> None:
@@ -555,7 +549,6 @@ def test_a_reader_that_goes_away(command: list[str]) -> None:
     assert done.returncode == 141 or command == ["--help"]  # argparse may have swallowed it
 
 
-@compiled
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 def test_standard_output_is_full() -> None:
     with open("/dev/full", "w") as full:
@@ -564,7 +557,6 @@ def test_standard_output_is_full() -> None:
     assert re.fullmatch("gaussmap: error: standard output cannot be written: .*\n", done.stderr)
 
 
-@compiled
 def test_an_old_terminal() -> None:
     """One that knows ASCII only, with Python told to be strict."""
     done = python("-X", "utf8=0", "-m", "gaussmap", "surfaces", encoding="ascii:strict")
@@ -572,7 +564,6 @@ def test_an_old_terminal() -> None:
     assert "x?/a?" in done.stdout
 
 
-@compiled
 def test_heavy_imports_are_lazy() -> None:
     code = (
         "import sys, gaussmap.tools.commands.cli, gaussmap.tools.pictures.plot\n"
@@ -583,7 +574,6 @@ def test_heavy_imports_are_lazy() -> None:
     assert python("-c", code).stdout == "set()\n"
 
 
-@compiled
 def test_help_usage_and_completion_need_no_arrays() -> None:
     asked = [[], ["--help"], ["sample", "--help"], ["sample", "torus"], ["--version"]]
     code = (
@@ -624,7 +614,6 @@ COMMANDS = [
 ]  # fmt: skip
 
 
-@compiled
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
@@ -650,7 +639,6 @@ def test_completion(words, offered, capsys, monkeypatch):
     assert [x if kind == "plain" else f"{kind}:{x}" for kind, _, x in lines] == offered
 
 
-@compiled
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_is_installed(shell: str) -> None:
     if shutil.which(shell) is None:

@@ -24,7 +24,6 @@ def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> N
     assert mesh.n_cells == int(found[2]) == 2 * int(found[1])
 
 
-@pytest.mark.compiled
 def test_samples_that_are_left_out_are_counted(capsys: pytest.CaptureFixture[str]) -> None:
     mesh = gm.sample("wavy_graph", 300, cells=(16, 16)).mesh()
     own = mesh.sample_index[mesh.sample_index >= 0]

@@ -15,8 +15,6 @@ from gaussmap.tools.commands.parser import parser
 
 from ...shapes import same
 
-pytestmark = pytest.mark.compiled
-
 UTM = "EPSG:32617"
 ROWS, COLUMNS = np.indices((9, 11))
 HEIGHTS = 40.0 * np.sin(ROWS / 3.0) * np.cos(COLUMNS / 4.0)

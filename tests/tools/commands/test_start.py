@@ -83,7 +83,6 @@ PUBLIC = {
 }.values()
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_who_compiles_tells(tmp_path: Path) -> None:
     """Whichever name is used first, the notice is there if kernels are."""

@@ -24,6 +24,7 @@ def torus_forms(number: int = 32) -> Forms:
     return Forms(np.stack([np.cos(v) ** 2, zero, zero + 1.0]), first, (width, width))
 
 
+@pytest.mark.kernels
 def test_steps_keep_both_limits_and_use_one_everywhere():
     forms = torus_forms()
     steps = equal_steps(forms, 0.1, 0.08)
@@ -36,7 +37,6 @@ def test_steps_keep_both_limits_and_use_one_everywhere():
     assert np.maximum(*used).min() >= 1.0 - 1e-12
 
 
-@pytest.mark.compiled
 def test_steps_for_a_count_have_it_and_the_smallest_angle():
     """Without a distance the integral of equal steps: ∫∫ du dv / a b, by numbers."""
     forms = torus_forms()
@@ -46,6 +46,7 @@ def test_steps_for_a_count_have_it_and_the_smallest_angle():
     assert steps.angle < others[0].angle < others[1].angle
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("curvature", [0.0, 1.0])
 def test_a_step_spans_half_of_the_domain_at_most(curvature: float):
     """On a plane, whatever its sides, and on a cylinder, along which no normal changes."""
@@ -56,11 +57,11 @@ def test_a_step_spans_half_of_the_domain_at_most(curvature: float):
     np.testing.assert_allclose(steps.along[1], 0.5)
 
 
-@pytest.mark.compiled
 def test_too_small_a_distance_is_made_larger():
     assert steps_for_count(torus_forms(), 100.0, 1e-3).count <= 110.0
 
 
+@pytest.mark.kernels
 def test_lines_are_half_a_step_from_breaks():
     axis = Axis.of(10.0, 20, np.array([4.0]))
     lines = axis.lines(np.ones(len(axis.widths)), np.array([4, 3]))
@@ -68,7 +69,6 @@ def test_lines_are_half_a_step_from_breaks():
     np.testing.assert_allclose(axis.lengths(np.full(len(axis.widths), 2.0)), [2.0, 3.0])
 
 
-@pytest.mark.compiled
 @covering(count=[1, 2, 7, 500], on=["surface", "spline"])
 def test_a_count_is_met_and_lines_are_lines(count: int, on: str):
     samples = gm.sample("torus", count, density="aligned", cells=CELLS, on=on)
@@ -87,7 +87,6 @@ def test_a_count_is_met_and_lines_are_lines(count: int, on: str):
     assert (samples.kind[on_grid] == "grid").all()
 
 
-@pytest.mark.compiled
 def test_fields_are_there_if_asked_or_used():
     asked: dict[str, Any] = {"cells": CELLS, "density": "aligned"}
     few = gm.sample("torus", 300, fields=("points", "row"), **asked)
@@ -105,7 +104,6 @@ def test_fields_are_there_if_asked_or_used():
             gm.sample("torus", 300, fields=("points", "row"), density=density, cells=CELLS)
 
 
-@pytest.mark.compiled
 def test_files_keep_rows_and_columns(tmp_path):
     samples = gm.sample("torus", 300, density="aligned", cells=CELLS)
     for name in ("a.npz", "a.ply"):
@@ -116,7 +114,6 @@ def test_files_keep_rows_and_columns(tmp_path):
         assert again.report.density == "aligned"
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     "asked",
     [{"angle": 12.0}, {"coverage": 0.2}, {"angle": 15, "coverage": 0.3},
@@ -131,7 +128,6 @@ def test_angles_and_coverages_are_kept(asked: dict[str, Any]):
     assert len(samples) == asked.get("count", len(samples))
 
 
-@pytest.mark.compiled
 def test_gaps_for_an_angle_are_as_wide_as_documented():
     """On a cylinder no point is farther from a sample than r/κ, where r is twice the angle.
 
@@ -144,7 +140,6 @@ def test_gaps_for_an_angle_are_as_wide_as_documented():
     assert 0.8 * farthest < samples.coverage() <= farthest
 
 
-@pytest.mark.compiled
 def test_gaps_for_a_count_are_as_wide_as_those_of_usual_samples():
     """On a cylinder, n of these are no closer than √(area / n), and nothing is farther.
 
@@ -156,7 +151,6 @@ def test_gaps_for_a_count_are_as_wide_as_those_of_usual_samples():
     assert 0.9 < samples.coverage() / np.sqrt(2.0 * np.pi / 1000) < 1.25
 
 
-@pytest.mark.compiled
 def test_a_trimmed_grid_keeps_the_count_and_the_trim():
     part = gm.surfaces.torus().trimmed([[(1, 1), (4, 1), (1, 4)]])
     samples = gm.sample(part, 800, density="aligned", cells=CELLS)
@@ -167,7 +161,6 @@ def test_a_trimmed_grid_keeps_the_count_and_the_trim():
     assert (samples.row >= 0).sum() > 500
 
 
-@pytest.mark.compiled
 def test_samples_between_the_lines_of_a_grid_do_not_make_it_another_density():
     samples = gm.sample("torus", 27, density="aligned", cells=CELLS)
     assert samples.row is not None
@@ -175,7 +168,6 @@ def test_samples_between_the_lines_of_a_grid_do_not_make_it_another_density():
     assert samples.report.density == "aligned"
 
 
-@pytest.mark.compiled
 def test_only_aligned_samples_are_on_a_grid():
     """Parameters of a torus are lines of curvature: there a grid has smaller angles."""
     aligned, balanced = (gm.sample("torus", 1000, density=x) for x in ("aligned", "balanced"))
@@ -186,7 +178,6 @@ def test_only_aligned_samples_are_on_a_grid():
     assert aligned.normal_deviation().space < 0.8 * balanced.normal_deviation().space
 
 
-@pytest.mark.compiled
 def test_lines_keep_away_from_jumps_of_curvature():
     """A plane, a quarter of a cylinder and a plane: both joints are breaks."""
 
@@ -218,7 +209,6 @@ def is_half_a_step_away(surface: gm.Surface, u: float, cells: tuple[int, int]) -
     return bool((abs(near / [low[-1] - low[-2], high[1] - high[0]] - 0.5) < 0.03).all())
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(("jump", "is_joint"), [(0.07, False), (0.15, True)])
 def test_curvature_that_changes_little_makes_no_joint(jump: float, is_joint: bool):
     """Two arcs of a profile, of curvature 1 and 1 − jump."""
@@ -234,7 +224,6 @@ def test_curvature_that_changes_little_makes_no_joint(jump: float, is_joint: boo
     assert is_half_a_step_away(surface, 1.0, (64, 8)) == is_joint
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(("share", "is_joint"), [(0.55, False), (0.8, True)])
 def test_a_line_is_a_joint_if_the_sign_changes_along_most_of_it(share: float, is_joint: bool):
     """The two sides of u = 0 curve to opposite sides for v < share, to the same side beyond."""

@@ -8,7 +8,6 @@ from ...products import covering
 from ...shapes import same
 
 
-@pytest.mark.compiled
 @covering(
     name=["torus", "wavy_graph", "moebius_band", "enneper", "helicoid"], count=[1000, 1700, 3000]
 )
@@ -17,7 +16,6 @@ def test_a_count_is_met_within_a_hundredth(name, count):
     assert abs(len(samples) - count) <= count / 100
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
 def test_a_count_is_concluded_from_a_smaller_one(name, monkeypatch):
     spline = gm.fit(gm.surfaces.surface(name))

@@ -10,7 +10,6 @@ from gaussmap.tools.density.space import Space
 from ...products import covering
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "plane"])
 def test_what_is_filled_up_is_far_from_all_samples(name):
     """Also from those that came for places between the candidates."""
@@ -26,7 +25,6 @@ def test_what_is_filled_up_is_far_from_all_samples(name):
         assert np.linalg.norm(points[:k][same] - points[k], axis=1).min() > cover.radius
 
 
-@pytest.mark.compiled
 @covering(density=["uniform", "balanced"], name=["torus", "catenoid", "wavy_graph"])
 def test_candidates_for_a_count_are_evaluated_once(name, density, monkeypatch):
     """The radius that a count leaves is known well enough before."""
@@ -41,7 +39,6 @@ def test_candidates_for_a_count_are_evaluated_once(name, density, monkeypatch):
     assert len(taken) == 1
 
 
-@pytest.mark.compiled
 @covering(width=[1e-9, 1e-4], count=[10, 50, 200])
 def test_samples_of_a_narrow_strip_stand_in_a_row(width, count, monkeypatch):
     """As many places as for other surfaces are looked at: the area says nothing of the gaps."""

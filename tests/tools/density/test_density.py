@@ -28,7 +28,6 @@ SQUARE = ((0.0, 1.0), (0.0, 1.0))
 # --- how many -------------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("density", DENSITIES)
 @pytest.mark.parametrize("name", [*gm.surfaces.names(), "klein bottle"])
 @pytest.mark.quick_for("torus", "plane", "monkey_saddle")
@@ -43,7 +42,6 @@ def test_counts_are_exact(name, density):
                 assert np.isfinite(getattr(samples, field)).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("density", DENSITIES)
 def test_samples_lie_on_the_spline(density):
     spline = gm.fit(DENTS, (9, 8))
@@ -58,7 +56,6 @@ def test_samples_lie_on_the_spline(density):
     np.testing.assert_allclose(samples.support, support, rtol=0, atol=1e-14)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("density", ["gauss", "uniform"])
 def test_samples_on_a_spline_have_its_curvatures(density):
     """By its 2-jets, where K has one sign and the other; H is positive where it is convex."""
@@ -81,7 +78,6 @@ def test_samples_on_a_spline_have_its_curvatures(density):
     np.testing.assert_allclose(samples.mean_curvature, H, rtol=0, atol=1e-9 * largest**0.5)
 
 
-@pytest.mark.compiled
 def test_what_has_no_area_is_refused():
     line = gm.Surface.from_callable(lambda u, v: np.stack([u, 0 * u, 0 * u], axis=-1), SQUARE)
     amounts = [{"count": 10}, {"coverage": 0.1}, {"angle": 20.0}, {"normals": [[0, 0, 1]]}]
@@ -93,7 +89,6 @@ def test_what_has_no_area_is_refused():
 # --- which ones -----------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band", "ellipsoid"])
 @pytest.mark.quick_for("torus", "moebius_band")
 def test_all_samples_of_the_normals_are_kept(name):
@@ -110,7 +105,6 @@ def test_all_samples_of_the_normals_are_kept(name):
         assert (plain.kind == "normal").all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("asked", [{"count": 300}, {"angle": 15.0}, {"coverage": 0.3}])
 def test_samples_of_normals_come_first(asked):
     samples = gm.sample(gm.fit(TORUS, (12, 12)), **asked)
@@ -121,7 +115,6 @@ def test_samples_of_normals_come_first(asked):
     assert (np.diff(pairs) > 0).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("density", ["uniform", 1.0])
 def test_covers_alone_answer_no_normals(density):
     samples = gm.sample(gm.fit(TORUS, (8, 8)), count=100, density=density)
@@ -129,7 +122,6 @@ def test_covers_alone_answer_no_normals(density):
     assert samples.report.normals == 0
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     "asked",
     [{"count": 700}]
@@ -157,7 +149,6 @@ def test_the_same_for_any_number_of_threads(asked: dict[str, Any], monkeypatch):
             assert found.report == expected.report
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "plane"])
 @pytest.mark.quick_for("torus")
 def test_parts_make_covers_hardly_worse(name, monkeypatch):
@@ -173,7 +164,6 @@ def test_parts_make_covers_hardly_worse(name, monkeypatch):
 # --- what they hold -------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @covering(
     fields=[("points",), ("normal_index", "uv"), ("normals", "support")],
     dtype=[np.float32, np.float64],
@@ -194,7 +184,6 @@ def test_fields_and_types(fields, dtype):
 # --- how dense ------------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("alpha", [0.25, 0.5, 1.0, 1.5])
 @pytest.mark.quick_for("0.25", "1.5")
 def test_density_is_a_power_of_the_curvature(alpha):
@@ -223,7 +212,6 @@ def test_density_is_a_power_of_the_curvature(alpha):
         assert abs(found - expected) <= expected * 2 * spacing / width
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("count", [500, 5000])
 def test_uniform_goes_by_area(count):
     """Not by parameters: with x = u³, half of the cells have an eighth of the area.
@@ -239,7 +227,6 @@ def test_uniform_goes_by_area(count):
     assert 1 / 3 < 7 * inner / (count - inner) < 3
 
 
-@pytest.mark.compiled
 def test_balanced_is_dense_where_it_bends_and_not_blind_where_it_is_flat():
     """A cylinder beside a plane: κ² against λ, which is 0.8 of the mean of κ²."""
     radius, flat = 0.5, 4.0
@@ -261,14 +248,12 @@ def test_balanced_is_dense_where_it_bends_and_not_blind_where_it_is_flat():
     assert (~bent).sum() > 300
 
 
-@pytest.mark.compiled
 def test_a_surface_without_curvature_is_covered_evenly_by_any_power():
     spline = gm.fit(gm.surfaces.cylinder(), (8, 6))
     uniform = gm.sample(spline, count=100, density="uniform")
     same(gm.sample(spline, count=100, density=2.0), uniform)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("alpha", [0.5, 1.0, 4.0])
 def test_gaps_of_a_power_are_bounded_where_the_surface_is_flat(alpha):
     """A dent in a strip that is 120,000 times as long as it is wide.
@@ -288,14 +273,12 @@ def test_gaps_of_a_power_are_bounded_where_the_surface_is_flat(alpha):
     assert most / 2.0 < (np.abs(samples.points[:, 0]) > 5.0).sum() < most
 
 
-@pytest.mark.compiled
 def test_nothing_warns_of_what_is_covered():
     for name in ("plane", "cylinder", "cone"):
         samples = gm.sample(gm.surfaces.surface(name), count=60, cells=(12, 12))
         assert samples.report.developable_share == pytest.approx(1.0)
 
 
-@pytest.mark.compiled
 def test_a_count_is_divided_well():
     """With fewer samples at normals, angles are wider; with more, gaps are."""
     samples = gm.sample("catenoid", 1000, cells=(32, 32))

@@ -25,7 +25,6 @@ def gaps(points: np.ndarray, beside: np.ndarray, first: np.ndarray) -> np.ndarra
     return KDTree(first).query(points)[0] / beside
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("density", ["gauss", "balanced", "uniform"])
 def test_every_beginning_is_spread_as_the_whole(waves: gm.Spline, density: str) -> None:
     # All normals of a graph are on one side, so that only distances count. Those chosen within a
@@ -43,7 +42,6 @@ def test_every_beginning_is_spread_as_the_whole(waves: gm.Spline, density: str) 
         assert left <= min(nearest[: count - 1]) * np.sqrt(2.0) * (1.0 + 1e-12)
 
 
-@pytest.mark.compiled
 def test_the_samples_are_the_same_in_another_order() -> None:
     samples = gm.sample(gm.surfaces.torus(), count=1_000)
     ordered = samples.progressive()
@@ -58,7 +56,6 @@ def test_the_samples_are_the_same_in_another_order() -> None:
     assert ordered.spline is samples.spline
 
 
-@pytest.mark.compiled
 @covering(scale=[1e-12, 1.0, 1e12], move=[0.0, 1e6])
 def test_size_and_place_do_not_matter(waves: gm.Spline, scale: float, move: float) -> None:
     samples = gm.sample(waves, count=300)
@@ -68,13 +65,13 @@ def test_size_and_place_do_not_matter(waves: gm.Spline, scale: float, move: floa
     assert gaps(samples.points, np.ones(300), first).max() < 0.6
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("count", [0, 1, 2, 7, 8])
 def test_few_samples(waves: gm.Spline, count: int) -> None:
     samples = gm.sample(waves, count=50)[:count]
     assert len(samples.progressive()) == count
 
 
+@pytest.mark.kernels
 def test_samples_at_one_place() -> None:
     points = np.repeat(np.arange(30.0).reshape(10, 3), 20, axis=0)
     normals = np.tile([0.0, 0.0, 1.0], (200, 1))
@@ -84,12 +81,12 @@ def test_samples_at_one_place() -> None:
     assert sorted(progressive_order(np.zeros((50, 3)), normals[:50])) == list(range(50))
 
 
-@pytest.mark.compiled
 def test_normals_are_needed(waves: gm.Spline) -> None:
     samples = gm.sample(waves, count=50, fields=("points",))
     refused("'normals'", samples.progressive, error=gm.errors.MissingFieldError)
 
 
+@pytest.mark.kernels
 def test_paths_visit_each_sample_and_are_short() -> None:
     """On a grid, the shortest path has links of length 1."""
     grid = np.indices((12, 20, 1)).reshape(3, -1).T.astype(np.float64)
@@ -101,6 +98,7 @@ def test_paths_visit_each_sample_and_are_short() -> None:
         assert sorted(path_order(few)) == list(range(len(few)))
 
 
+@pytest.mark.kernels
 def test_samples_in_an_order_that_is_not_known() -> None:
     samples = gm.sample("torus", 20, cells=(8, 8))
     refused("no order of samples", samples.in_order, "tour", error=gm.errors.UnknownNameError)

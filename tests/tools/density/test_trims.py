@@ -27,7 +27,6 @@ def pieces():
     return [space_on(gm.fit(x, (16, 16)), x, None).pieces[0] for x in surfaces]
 
 
-@pytest.mark.compiled
 def test_places_are_inside_as_each_piece_says(pieces, monkeypatch):
     """Those of whole periods away, too, and however many at a time."""
     rng, every = np.random.default_rng(1), Trims(pieces)
@@ -41,7 +40,6 @@ def test_places_are_inside_as_each_piece_says(pieces, monkeypatch):
     np.testing.assert_array_equal(every.contains(numbers, places), inside)
 
 
-@pytest.mark.compiled
 def test_cells_do_not_depend_on_blocks(pieces, monkeypatch):
     def cells():
         space = space_on(gm.fit(gm.surfaces.torus(), (16, 16)), gm.surfaces.torus(), None)

@@ -52,7 +52,6 @@ def voronoi(found: tuple[Cells, Sides], samples: Array) -> Voronoi:
 
 
 @pytest.mark.parametrize("cut", [False, True])
-@pytest.mark.compiled
 def test_samples_move_to_the_mean(cut):
     """Weighted by the third derivative of w² d⁴; fixed samples and those on another side stay.
 
@@ -77,7 +76,6 @@ def test_samples_move_to_the_mean(cut):
         np.testing.assert_allclose(place, expected, atol=1e-5)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("cut", [False, True])
 def test_the_widest_gaps_are_found_after_samples_have_moved(cut):
     (cells, sides), samples = plane(cut=cut), samples_of(30, 2)
@@ -97,6 +95,7 @@ def test_the_widest_gaps_are_found_after_samples_have_moved(cut):
     np.testing.assert_allclose(gaps[:, 0], cells.rows[rows, 6])
 
 
+@pytest.mark.kernels
 def test_places_far_from_all_samples_are_found():
     """Where no sample is near the bucket of a candidate, its place counts."""
     (cells, sides), samples = plane(cut=True), samples_of(1, 4)
@@ -111,7 +110,6 @@ def test_places_far_from_all_samples_are_found():
     assert (places == cells.places[rows])[far].all()
 
 
-@pytest.mark.compiled
 def test_angles_to_nearest_samples_are_gaps_up_to_a_bound():
     """Samples with another normal make gaps around them, as wide as the chord between normals.
 
@@ -133,7 +131,6 @@ def test_angles_to_nearest_samples_are_gaps_up_to_a_bound():
     assert len(rows) > 1
 
 
-@pytest.mark.compiled
 def test_samples_on_the_other_side_of_a_thin_wall_stay_there():
     """The centre of a sample may be nearer to the places of the other side."""
     cells, sides = plane()
@@ -148,7 +145,6 @@ def test_samples_on_the_other_side_of_a_thin_wall_stay_there():
     assert ((rows < len(cells)) == (moved < 9)).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("threads", [1, 2])
 def test_parts_of_candidates_have_the_centres_and_gaps_of_the_whole(threads, monkeypatch):
     (cells, sides), samples = plane(), samples_of(30, 2)

@@ -68,7 +68,6 @@ class TestFiles:
         refused("has no triangles", empty.write, tmp_path / "square.ply")
         assert not list(Path(tmp_path).iterdir())
 
-    @pytest.mark.compiled
     def test_trimesh_reads_gltf_that_is_closed(self, tmp_path):
         """Vertices at seams and poles are there once, as in the mesh."""
         trimesh = pytest.importorskip("trimesh")

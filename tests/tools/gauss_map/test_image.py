@@ -291,7 +291,6 @@ def test_points_are_in_the_images_that_contain_their_normal(name: str) -> None:
     assert count.max() > 1
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_solid_angles_of_a_spline_are_those_of_its_patches() -> None:
     images = gm.gauss_map.GaussianImages.of_spline(gm.surfaces.dupin_cyclide(), (8, 6))

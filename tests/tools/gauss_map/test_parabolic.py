@@ -37,6 +37,7 @@ def distances(points: Array, polylines: list[Array]) -> Array:
 # --- one patch ------------------------------------------------------------------------------------
 
 
+@pytest.mark.kernels
 def test_lines_hold_parabolic_points_with_one_normal() -> None:
     for seed in range(40):
         net = np.random.default_rng(seed).integers(-9, 10, (6, 3)).astype(float)
@@ -59,6 +60,7 @@ def test_lines_hold_parabolic_points_with_one_normal() -> None:
                 np.testing.assert_allclose(height, 0.0, atol=1e-12)
 
 
+@pytest.mark.kernels
 def test_lines_given_in_advance() -> None:
     """p = (½u², uv, ½v²) + d u + e v with D(N) = (v + 2)² u, see `test_image`."""
     lines = gm.gauss_map.parabolic_lines(
@@ -76,6 +78,7 @@ def test_lines_given_in_advance() -> None:
     assert double.segment is None
 
 
+@pytest.mark.kernels
 def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
     generator = np.random.default_rng(3)
     numbers = []
@@ -99,6 +102,7 @@ def test_pieces_make_up_the_triangle_and_have_one_sign() -> None:
     assert set(numbers) >= {1, 2, 3}
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize(
     ("factor", "shift", "seeds", "error"),
     [(1e-150, 0.0, range(10), 1e-9), (1e100, 0.0, range(10), 1e-9), (1 / 3, 1e6, [1], 1e-7)],
@@ -117,6 +121,7 @@ def test_scale_does_not_matter_and_translation_costs_its_rounding(factor, shift,
 X, Y, Z, O = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)  # noqa: E741
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize(
     ("vectors", "expected"),
     [
@@ -143,6 +148,7 @@ def test_classes(vectors, expected) -> None:
         assert [piece.sign for piece in gm.gauss_map.split_patch(net)] == [0]
 
 
+@pytest.mark.kernels
 def test_an_isolated_parabolic_point_has_no_say() -> None:
     """In the middle of the piece v < 2/3, at u = v = 1/3, the curvature vanishes."""
     net = [[1, -1, 0], [1, 0, -1], [-1, 1, 1], [-1, 1, 0], [1, 1, -1], [1, -1, -1]]
@@ -153,7 +159,6 @@ def test_an_isolated_parabolic_point_has_no_say() -> None:
     assert gm.gauss_map.classify_patches([net]).tolist() == [PatchClass.MIXED]
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("part", [8, pytest.param(1, marks=pytest.mark.slow)])
 def test_classes_of_many_patches_are_those_of_each(part: int) -> None:
     """Random and degenerate nets of all sizes; K of both signs inside, counted without lines."""
@@ -176,6 +181,7 @@ def test_classes_of_many_patches_are_those_of_each(part: int) -> None:
         assert (found == PatchClass.MIXED) == (signs == {1, -1})
 
 
+@pytest.mark.kernels
 def test_messages_name_the_net() -> None:
     nets = np.ones((4, 6, 3))
     nets[2, 3, 1] = np.nan
@@ -183,7 +189,6 @@ def test_messages_name_the_net() -> None:
     refused("nets are too large", gm.gauss_map.classify_patches, np.full((2, 6, 3), 1e305))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("name", "allowed"),
     [
@@ -205,7 +210,6 @@ def test_classes_of_splines(name: str, allowed: set) -> None:
 # --- splines --------------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("cells", [(16, 16), (24, 17), (64, 48)])
 @pytest.mark.quick_for("cells0", "cells2")
 def test_parabolic_circles_of_a_torus_spline(cells: tuple[int, int]) -> None:
@@ -222,7 +226,6 @@ def test_parabolic_circles_of_a_torus_spline(cells: tuple[int, int]) -> None:
         np.testing.assert_allclose(curve.points[0], curve.points[-1], atol=1e-12)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["cone", "dupin_cyclide", "moebius_band", "wavy_graph"])
 @pytest.mark.quick_for("wavy_graph")
 def test_curvature_changes_sign_across_the_polylines_of_a_spline(name: str) -> None:
@@ -263,7 +266,6 @@ def along(polyline: Array, parts: int) -> Array:
     return ((1.0 - share) * polyline[:-1] + share * polyline[1:]).reshape(-1, polyline.shape[1])
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_grids_are_splines() -> None:
     u, v = np.meshgrid(np.linspace(-1, 1, 40), np.linspace(-1, 1, 40), indexing="ij")
@@ -281,7 +283,6 @@ def test_grids_are_splines() -> None:
 # --- surfaces -------------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("by", ["formulas", "operations", "differences"])
 def test_curvature_of_the_torus_is_exact_up_to_its_error(by: str) -> None:
     torus = gm.surfaces.torus(major=1.0, minor=0.35)
@@ -309,7 +310,6 @@ def test_curvature_of_the_torus_is_exact_up_to_its_error(by: str) -> None:
     np.testing.assert_allclose(hessian[:, 0], 0.0, atol=1e4 * rounding)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("factor", [1e-12, 1.0, 1e12])
 def test_torus(factor: float) -> None:
     found = gm.gauss_map.parabolic_points(gm.surfaces.torus(major=factor, minor=0.35 * factor))
@@ -324,7 +324,6 @@ def test_torus(factor: float) -> None:
         np.testing.assert_allclose(np.abs(curve.points[:, 2]), 0.35 * factor, rtol=1e-12)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-5])
 def test_polylines_are_within_the_tolerance_of_the_curve(tolerance: float) -> None:
     """The circle of the torus, in space: the polyline departs from it by no more than asked."""
@@ -337,7 +336,6 @@ def test_polylines_are_within_the_tolerance_of_the_curve(tolerance: float) -> No
         assert distances(circle, [curve.points]).max() <= tolerance * size
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("scale", [0.5, 1e-6, 10.0])
 @pytest.mark.quick_for("0.5")
 def test_monkey_saddle_has_one_point(scale: float) -> None:
@@ -370,7 +368,6 @@ def off_the_net(places: Array) -> Array:
     return np.minimum(*off)
 
 
-@pytest.mark.compiled
 def test_wavy_graph_has_a_net_of_curves() -> None:
     found = gm.gauss_map.parabolic_points(gm.surfaces.wavy_graph(), tolerance=1e-4)
     vertices = np.concatenate([curve.uv for curve in found.curves])
@@ -390,7 +387,6 @@ def crossings(curves: Sequence[gm.gauss_map.ImageCurve]) -> Array:
     return places[counts == 4]
 
 
-@pytest.mark.compiled
 def test_curves_end_where_they_cross() -> None:
     """The 6 lines of the wavy graph cross at 5 places inside: 6 + 2·5 arcs."""
     found = gm.gauss_map.parabolic_points(gm.surfaces.wavy_graph())
@@ -400,7 +396,6 @@ def test_curves_end_where_they_cross() -> None:
     np.testing.assert_allclose(crossings(found.curves), expected, atol=1e-8)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("slope", [1.0, 0.3, 0.05])
 @pytest.mark.slow
 def test_curves_cross_at_any_angle(slope: float) -> None:
@@ -418,7 +413,6 @@ def test_curves_cross_at_any_angle(slope: float) -> None:
         assert (np.abs(K(u, v)) <= 1e-4 * np.hypot(K_u(u, v), K_v(u, v)) + 1e-9).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_curves_behind_a_crossing_near_the_border_are_whole() -> None:
     """K of z = sin u sin v vanishes where u ± v is an odd multiple of π/2: at a crossing that is
@@ -441,7 +435,6 @@ def test_curves_behind_a_crossing_near_the_border_are_whole() -> None:
         assert (np.abs(ends - place).max(axis=1) < 1e-8).sum() == 4
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("ratio", [2, 3, 4])
 def test_two_curves_in_one_cell_are_joined_the_right_way(ratio: int) -> None:
     """z = 20u² + h with h_vv = p² − r q² + 0.002: branches of a hyperbola less than a cell apart.
@@ -460,7 +453,6 @@ def test_two_curves_in_one_cell_are_joined_the_right_way(ratio: int) -> None:
     assert sorted(bool(side.any()) for side in sides) == [False, True]
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_steep_waves_are_resolved() -> None:
     """z = sin 50u sin 40v: K vanishes where cos(50u + 40v) cos(50u − 40v) = 0, however steep."""
@@ -474,7 +466,6 @@ def test_steep_waves_are_resolved() -> None:
     assert len(found.flat) == 0
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("size", "factor", "sharp"),
     [(5.0, 1.0, 1.0), (3.0, 1.0, 2.0), (2.0, 1.0, 10.0), (1.0, 0.1, 50.0)],
@@ -491,7 +482,6 @@ def test_bump_has_one_circle(size: float, factor: float, sharp: float) -> None:
     assert len(found.flat) == 0
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("domain", "ends"),
     [(((0.0, 2 * np.pi), (-np.pi / 2, np.pi / 2)), True),
@@ -517,7 +507,6 @@ def test_curves_on_the_border_are_curves(domain, ends: bool) -> None:
     assert len(found.flat) == 0
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_closed_curve_smaller_than_all_cells_is_isolated() -> None:
     """z = x³ − 3 x y² + e r²: K vanishes on the circle r = e/3, which one rectangle has to meet."""
@@ -542,7 +531,6 @@ def strip(width: float) -> gm.Surface:
     return graph(f)
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 @pytest.mark.parametrize("width", [0.02, 0.006])
 def test_curves_close_to_each_other_are_two(width: float) -> None:
@@ -557,7 +545,6 @@ def test_curves_close_to_each_other_are_two(width: float) -> None:
         np.testing.assert_allclose(np.abs(v - 0.1003), exact, atol=2e-6)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("f", "box"),
     [
@@ -577,7 +564,6 @@ def test_zeros_in_too_many_rectangles_are_not_lost(f, box) -> None:
     assert (zero.box[1] >= [0.0, max(0.0, high[1] - 0.02)]).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_panels_with_a_large_error_are_not_flat() -> None:
     """Half twisted and bent, steep at the lower border: K, which has both signs there, is known."""
@@ -592,7 +578,6 @@ def test_panels_with_a_large_error_are_not_flat() -> None:
     assert ends[:, 1].min() == -1.0  # one of them reaches the lower border
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     "name", ["ellipsoid", "ellipsoid_patch", "sphere", "catenoid", "helicoid", "moebius_band",
              "enneper", "hyperboloid", "elliptic_paraboloid", "hyperbolic_paraboloid"]
@@ -607,7 +592,6 @@ def test_surfaces_of_one_sign_have_none(name: str) -> None:
     assert not found.developable
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     "of",
     [gm.surfaces.cylinder(), gm.surfaces.cone(), gm.surfaces.plane(),
@@ -621,7 +605,6 @@ def test_developable_surfaces_and_splines_say_so(of: gm.Surface | gm.Spline) -> 
     assert len(found.flat) == 1
 
 
-@pytest.mark.compiled
 def test_planes_touch_a_dupin_cyclide_along_its_parabolic_curves() -> None:
     """A parabolic curve of a ring cyclide is a circle, in which one plane touches it."""
     found = gm.gauss_map.parabolic_points(gm.surfaces.dupin_cyclide())
@@ -636,7 +619,6 @@ def test_planes_touch_a_dupin_cyclide_along_its_parabolic_curves() -> None:
             assert np.abs(height).max() < 1e-6  # of second order in the step
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [np.abs, np.fabs])
 def test_a_crease_between_panels_gives_nothing_false(
@@ -655,11 +637,13 @@ def test_a_crease_between_panels_gives_nothing_false(
     assert len(found.flat) == 0
 
 
+@pytest.mark.kernels
 def test_cells_are_panels() -> None:
     found = gm.gauss_map.parabolic_points(gm.surfaces.torus(), cells=(3, 5))
     assert [curve.closed for curve in found.curves] == [True, True]
 
 
+@pytest.mark.kernels
 def test_results_print_in_one_line() -> None:
     torus = gm.surfaces.torus()
     found = gm.gauss_map.parabolic_points(torus, cells=(8, 8))
@@ -676,6 +660,7 @@ def test_results_print_in_one_line() -> None:
 # --- chains ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.kernels
 def test_chains() -> None:
     def segment(a: int, b: int) -> tuple:
         return a, b, np.array([[a, 0.0], [b, 0.0]])
@@ -694,6 +679,7 @@ def test_chains() -> None:
 # --- bad input ------------------------------------------------------------------------------------
 
 
+@pytest.mark.kernels
 def test_bad_input() -> None:
     for tolerance in (0.0, -1.0, 1.0, np.nan, "small", None, 1e-9):
         refused("tolerance", gm.gauss_map.parabolic_points, "torus", tolerance=tolerance)
@@ -709,6 +695,7 @@ def test_bad_input() -> None:
     refused("NaN", gm.gauss_map.classify_patches, np.full((1, 6, 3), np.nan))
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("shift", [0.0, 1e9])
 def test_what_cannot_be_known_is_said(shift: float) -> None:
     """A surface that is one point, and one whose coordinates have no digits for its curvature."""
@@ -723,7 +710,6 @@ def test_what_cannot_be_known_is_said(shift: float) -> None:
     assert not found.developable
 
 
-@pytest.mark.compiled
 def test_curvature_is_known_where_points_have_no_digits() -> None:
     """The operations of z = u³ + v³ + 10⁹ have exact derivatives: K ∝ u v."""
     found = gm.gauss_map.parabolic_points(graph(lambda u, v: u**3 + v**3 + 1e9))

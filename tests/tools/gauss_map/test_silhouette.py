@@ -19,8 +19,6 @@ TORUS = gm.surfaces.torus(major=MAJOR, minor=MINOR)
 AXES = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, 0, -5]]
 DIRECTIONS = [*AXES, [1, 1, 0], [1, -1, 1], [1, 2, 3], [-0.3, 0.1, 1e-9]]
 
-compiled = pytest.mark.compiled
-
 
 def unit(direction: Any) -> Array:
     return np.asarray(direction, dtype=float) / np.linalg.norm(direction)
@@ -44,7 +42,6 @@ def test_a_great_circle_goes_round_its_axis(direction: Any) -> None:
 # --- exact cases ----------------------------------------------------------------------------------
 
 
-@compiled
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_silhouette_of_a_sphere_is_a_great_circle(direction: Any) -> None:
     """Support functions of surfaces of size 1 are off by 1e-5 (docs/orders.md)."""
@@ -56,7 +53,6 @@ def test_silhouette_of_a_sphere_is_a_great_circle(direction: Any) -> None:
     assert np.abs(samples.points @ unit(direction)).max() < 2e-3  # normals are of second order
 
 
-@compiled
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_silhouette_of_a_torus(direction: Any) -> None:
     """h = r ± R √(n_x² + n_y²), outside (K > 0) and inside (K < 0)."""
@@ -77,7 +73,6 @@ def test_silhouette_of_a_torus(direction: Any) -> None:
 # --- every point once -----------------------------------------------------------------------------
 
 
-@compiled
 @covering(direction=DIRECTIONS, normals=[1, 2, 10, 90, 97, 180], cells=[(16, 16), (33, 20)])
 def test_every_normal_has_its_points_once(direction: Any, normals: int, cells: Any) -> None:
     """Σ sign K = 0 on a torus; 10 and 90 normals contain the axes, where the torus is parabolic."""
@@ -92,7 +87,6 @@ def test_every_normal_has_its_points_once(direction: Any, normals: int, cells: A
     assert (sheets[generic] == 2).all()
 
 
-@compiled
 def test_its_normals_are_those_of_the_spline_there() -> None:
     """N·d = 0 at the parameters; and where N·d changes its sign along u, there is a sample."""
     spline = gm.fit(gm.surfaces.wavy_graph(), (24, 24))
@@ -109,7 +103,6 @@ def test_its_normals_are_those_of_the_spline_there() -> None:
     assert distances.max() < 0.05 * (u1 - u0)
 
 
-@compiled
 def test_samples_are_ordered_by_normal_and_then_by_patch() -> None:
     samples = gm.silhouette(TORUS, [1, 2, 3], count=200, cells=(16, 16))
     order = np.lexsort((samples.arrays()["patch_index"], samples.normal_index))
@@ -118,7 +111,6 @@ def test_samples_are_ordered_by_normal_and_then_by_patch() -> None:
     assert samples.spline.cells == (16, 16)
 
 
-@compiled
 @pytest.mark.parametrize(("factor", "shift"), [(1e12, 0.0), (1e-12, 0.0), (1.0, 1e6)])
 def test_far_and_of_any_size(factor: float, shift: float) -> None:
     moved = gm.Surface(
@@ -145,7 +137,6 @@ def is_closed(line: NDArray[np.int64]) -> bool:
     return len(line) > 1 and line[0] == line[-1]
 
 
-@compiled
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_the_polyline_of_a_sphere_goes_round_once(direction: Any) -> None:
     """Over the poles, too: its points have the angles of their normals."""
@@ -157,7 +148,6 @@ def test_the_polyline_of_a_sphere_goes_round_once(direction: Any) -> None:
     assert (steps == 1).all() or (steps == 99).all()
 
 
-@compiled
 @covering(direction=[[1, 2, 3], [0.3, -1, 0.5], [0, 0, 1], [0, 1, 4]], cells=[(16, 16), (40, 27)])
 def test_polylines_of_a_torus(direction: Any, cells: Any) -> None:
     """Its contour generator tan v = −(d_x cos u + d_y sin u) / d_z is two closed curves."""
@@ -177,7 +167,6 @@ def test_polylines_of_a_torus(direction: Any, cells: Any) -> None:
         assert (side > 0).all() or (side < 0).all()
 
 
-@compiled
 def test_polylines_end_at_borders_and_pass_parabolic_points() -> None:
     """Those of a graph seen from the side: steps are as the curve in (u, v) is."""
     samples = gm.silhouette(gm.surfaces.wavy_graph(), [1.0, 0.3, 0.15], count=2000, cells=(24, 24))
@@ -194,7 +183,6 @@ def test_polylines_end_at_borders_and_pass_parabolic_points() -> None:
     assert any(mixed)
 
 
-@compiled
 @pytest.mark.parametrize(
     ("name", "closed"), [("ellipsoid", [True]), ("catenoid", [True]), ("moebius_band", [False] * 2)]
 )
@@ -207,7 +195,6 @@ def test_polylines_of_other_surfaces(name: str, closed: list[bool]) -> None:
         assert steps.max() < 0.05 * np.ptp(samples.points, axis=0).max()
 
 
-@compiled
 @covering(first=[-np.pi, 0.0, -2.0], sign=[1.0, -1.0])
 def test_polylines_follow_open_borders(first: float, sign: float) -> None:
     """Normals of a helicoid are perpendicular to x on the rulings v = kπ, two of them borders."""
@@ -228,7 +215,6 @@ def test_polylines_follow_open_borders(first: float, sign: float) -> None:
         assert (steps > 0.0).all() or (steps < 0.0).all()
 
 
-@compiled
 def test_polylines_are_cut_at_a_trim() -> None:
     low, high = 0.1, 2.5
     square = [[low, 0.2], [high, 0.2], [high, 6.0], [low, 6.0]]
@@ -244,7 +230,6 @@ def test_polylines_are_cut_at_a_trim() -> None:
     assert not any(map(is_closed, samples.polylines))
 
 
-@compiled
 def test_what_is_made_of_a_silhouette() -> None:
     outline = gm.silhouette(TORUS, [1, 2, 3], count=100)
     again = pickle.loads(pickle.dumps(outline))
@@ -263,7 +248,6 @@ def test_what_is_made_of_a_silhouette() -> None:
 # --- count, fields, warnings ----------------------------------------------------------------------
 
 
-@compiled
 @covering(name=["plane", "cylinder", "cone"], direction=[[0, 0, 1], [1, 2, 3]])
 def test_developable_surfaces_warn(name: str, direction: Any) -> None:
     with pytest.warns(gm.GaussmapWarning, match="flat or developable") as said:
@@ -273,7 +257,6 @@ def test_developable_surfaces_warn(name: str, direction: Any) -> None:
         assert len(samples) == 0
 
 
-@compiled
 def test_no_silhouette() -> None:
     """A bowl seen from above has no vertical tangent plane."""
     bowl = gm.surfaces.elliptic_paraboloid()
@@ -311,7 +294,6 @@ def test_counts_that_are_none(count: Any) -> None:
         gm.silhouette(TORUS, [0, 0, 1], count=count)
 
 
-@compiled
 @pytest.mark.parametrize("name", ["torus", "wavy_graph", "moebius_band"])
 def test_it_lies_on_the_surface_and_has_its_count(name: str) -> None:
     """With the surface's own derivatives, at parabolic points too."""
@@ -337,7 +319,6 @@ VIEWPOINT = (3.0, 1.5, 1.6)
 SIGHTS: list[dict[str, Any]] = [{"viewpoint": VIEWPOINT}, {"direction": (-3.0, -1.5, -1.6)}]
 
 
-@compiled
 @covering(
     name=["torus", "ellipsoid", "wavy_graph", "moebius_band", "catenoid"], on=["surface", "spline"]
 )
@@ -355,7 +336,6 @@ def test_normals_are_perpendicular_to_lines_of_sight(name: str, on: str) -> None
     np.testing.assert_allclose(own.evaluate(*outline.uv.T), outline.points, atol=1e-12)
 
 
-@compiled
 def test_a_sphere_from_a_viewpoint() -> None:
     """The circle x·p = r²."""
     sphere, eye = gm.surfaces.sphere(radius=2.0), np.array(VIEWPOINT)
@@ -367,7 +347,6 @@ def test_a_sphere_from_a_viewpoint() -> None:
     assert (outline.normal_index == -1).all()
 
 
-@compiled
 def test_contours_are_complete_on_a_grid() -> None:
     """Where N·(x − p) changes its sign along u, there is a point."""
     outline = gm.silhouette(gm.surfaces.wavy_graph(), viewpoint=VIEWPOINT, count=2_000)
@@ -380,7 +359,6 @@ def test_contours_are_complete_on_a_grid() -> None:
     assert np.linalg.norm(middles[:, None] - outline.uv, axis=2).min(axis=1).max() < 0.05
 
 
-@compiled
 def test_far_viewpoints_are_directions_and_trims_cut() -> None:
     far = gm.silhouette(TORUS, viewpoint=1e8 * np.array(DIRECTIONS[-2]), count=200)
     assert np.abs(far.normals @ unit(DIRECTIONS[-2])).max() < 1e-7
@@ -391,7 +369,6 @@ def test_far_viewpoints_are_directions_and_trims_cut() -> None:
     assert not any(map(is_closed, part.polylines))
 
 
-@compiled
 @pytest.mark.parametrize("sight", SIGHTS, ids=["viewpoint", "direction"])
 def test_visible_parts_of_a_torus(sight: dict[str, Any]) -> None:
     """Rays to the eye, with the implicit equation; wrong at most next to cusps and junctions."""

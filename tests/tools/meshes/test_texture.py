@@ -17,7 +17,6 @@ KLEIN = gm.Surface.from_callable(klein, (TURN, TURN), periodic=("mirrored", True
 SURFACES = ["torus", "sphere", "moebius_band", "cylinder", "wavy_graph", "cone", KLEIN]
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("surface", SURFACES, ids=lambda x: getattr(x, "name", x))
 def test_texture_coordinates_do_not_jump(surface: gm.Surface | str) -> None:
     mesh = gm.sample(surface, 1500, cells=(24, 24)).mesh()
@@ -28,7 +27,6 @@ def test_texture_coordinates_do_not_jump(surface: gm.Surface | str) -> None:
     assert found.max() < 1.5
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["torus", "sphere", "cylinder"])
 def test_they_are_the_parameters_less_whole_periods(name: str) -> None:
     mesh = gm.sample(name, 1500, cells=(24, 24)).mesh()
@@ -41,6 +39,7 @@ def test_they_are_the_parameters_less_whole_periods(name: str) -> None:
     assert 0.0 < crossing.mean() < 0.3
 
 
+@pytest.mark.kernels
 def test_without_a_domain_they_are_the_parameters() -> None:
     corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]])
     triangle, index = np.array([[0, 1, 2]]), np.arange(3)
@@ -48,7 +47,6 @@ def test_without_a_domain_they_are_the_parameters() -> None:
     assert np.array_equal(mesh.corner_uv, mesh.uv[triangle])
 
 
-@pytest.mark.compiled
 def test_files_have_them(tmp_path) -> None:
     trimesh = pytest.importorskip("trimesh")
     mesh = gm.sample("sphere", 500, cells=(16, 16)).mesh()

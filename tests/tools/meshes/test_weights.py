@@ -31,7 +31,6 @@ def errors(surface: gm.Surface, count: int, density: str, volume: float) -> np.n
     )
 
 
-@pytest.mark.compiled
 @pytest.mark.quick_for("uniform")
 @pytest.mark.parametrize("density", ["balanced", "uniform"])
 @pytest.mark.parametrize(
@@ -53,7 +52,6 @@ def test_integrals_converge(surface: gm.Surface, volume: float, density: str) ->
     assert curvature > 4.0 or fine[2] < 2e-3  # next to poles K is that of the spline
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("scale", [1e-12, 1.0, 1e12])
 def test_a_plane_is_exact(scale: float) -> None:
     plane = gm.Surface.from_sympy(
@@ -68,7 +66,6 @@ def test_a_plane_is_exact(scale: float) -> None:
     np.testing.assert_allclose(centre / scale, [0.5, 1.0, 3.5], atol=0.01)
 
 
-@pytest.mark.compiled
 def test_areas_that_numbers_do_not_hold_are_refused() -> None:
     usual = gm.sample(TORUS, 300, cells=(16, 16)).weights()
     for scale, said in ((2.0**540, "too large"), (2.0**-540, "too small"), (2.0**-450, "")):
@@ -79,7 +76,6 @@ def test_areas_that_numbers_do_not_hold_are_refused() -> None:
             np.testing.assert_allclose(samples.weights() / scale / scale, usual, rtol=1e-9)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["moebius_band", "catenoid", "sphere", "cone"])
 def test_all_kinds_of_surfaces(name: str) -> None:
     spline = gm.fit(getattr(gm.surfaces, name)())
@@ -87,7 +83,6 @@ def test_all_kinds_of_surfaces(name: str) -> None:
     assert samples.weights().sum() == pytest.approx(area_of(spline), rel=2e-3)
 
 
-@pytest.mark.compiled
 def test_samples_at_one_place_share_a_weight() -> None:
     samples = gm.sample(TORUS, count=500)
     twice = gm.Samples.concatenate([samples, samples])
@@ -96,7 +91,6 @@ def test_samples_at_one_place_share_a_weight() -> None:
     assert (np.minimum(weights[:500], weights[500:]) == 0.0).all()
 
 
-@pytest.mark.compiled
 def test_a_part_of_a_surface_needs_an_angle() -> None:
     samples = gm.sample(TORUS, count=2_000)
     half = samples[samples.points[:, 0] > 0.0]

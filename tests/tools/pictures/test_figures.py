@@ -19,8 +19,6 @@ from mpl_toolkits.mplot3d.art3d import Path3DCollection
 
 from ...refusals import refused
 
-pytestmark = pytest.mark.compiled  # every picture evaluates a fine mesh
-
 
 @pytest.fixture(scope="module")
 def samples() -> gm.Samples:

@@ -11,7 +11,6 @@ import pytest
 from ...refusals import refused
 
 pytest.importorskip("matplotlib")
-pytestmark = pytest.mark.compiled
 
 
 def texts(figure: Any) -> set[str]:

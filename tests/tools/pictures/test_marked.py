@@ -6,8 +6,6 @@ import pytest
 from gaussmap.tools.pictures.marked import Marked, marked
 from gaussmap.tools.pictures.scene import scene_of, view
 
-pytestmark = pytest.mark.compiled
-
 
 def test_both_points_of_a_torus_are_visible() -> None:
     torus = gm.fit(gm.surfaces.torus(), cells=(24, 24))

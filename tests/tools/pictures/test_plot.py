@@ -22,8 +22,6 @@ from matplotlib.text import Text
 
 from ...refusals import refused
 
-pytestmark = pytest.mark.compiled  # every picture evaluates a fine mesh
-
 SIZE = (920, 1800, 4)
 
 

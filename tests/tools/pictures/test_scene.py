@@ -10,8 +10,6 @@ from gaussmap.tools.pictures.scene import (
     view,
 )
 
-pytestmark = pytest.mark.compiled  # every scene evaluates a fine mesh
-
 
 def test_a_convex_surface_hides_its_back() -> None:
     spline = gm.fit(gm.surfaces.sphere())

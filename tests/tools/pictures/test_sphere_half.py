@@ -16,7 +16,6 @@ def test_the_view_of_the_sphere(mean: tuple[float, float, float] | None) -> None
     np.testing.assert_allclose(seen_from[2], vectors[0] if vectors.any() else view()[2], atol=1e-12)
 
 
-@pytest.mark.compiled
 def test_the_legend_counts_normals_of_each_kind() -> None:
     from matplotlib.figure import Figure
 

@@ -2,11 +2,8 @@ from __future__ import annotations
 
 import gaussmap as gm
 import numpy as np
-import pytest
 from gaussmap.tools.pictures.scene import view
 from gaussmap.tools.pictures.support_globes import branches_of, values_on_globe
-
-pytestmark = pytest.mark.compiled
 
 
 def test_a_torus_has_two_branches() -> None:

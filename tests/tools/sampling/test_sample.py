@@ -23,7 +23,6 @@ CORNERS = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]) / 2
 # --- how many -------------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", CURVED)
 def test_count(name):
     spline = gm.fit(gm.surfaces.surface(name))
@@ -34,7 +33,6 @@ def test_count(name):
         assert samples.report.developable_share == 0.0
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", CURVED)
 @pytest.mark.filterwarnings("ignore::gaussmap.GaussmapWarning")
 @pytest.mark.quick_for("torus", "sphere", "moebius_band", "wavy_graph")
@@ -45,7 +43,6 @@ def test_small_counts(name):
         assert abs(len(gm.sample(spline, count=count, density="gauss")) - count) <= 8
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("factor", [1e-12, 1e12, 1e-200, 1e200])
 @pytest.mark.parametrize("name", ["wavy_graph", "torus"])
 @pytest.mark.quick_for("torus")
@@ -55,7 +52,6 @@ def test_count_in_any_unit_of_length(name, factor):
     assert abs(len(samples) - 2000) <= 100
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("cells", [(4, 4), (5, 4), (6, 5)])
 def test_count_where_the_first_guess_is_wrong(cells):
     """On so few cells the quadrature of the solid angle is 6 to 12 % off."""
@@ -64,7 +60,6 @@ def test_count_where_the_first_guess_is_wrong(cells):
     assert abs(len(samples) - 2000) <= 40
 
 
-@pytest.mark.compiled
 def test_count_on_a_thin_gaussian_image():
     """A graph so flat that its normals fill 10⁻⁶ of the sphere: the lattice is cut to them."""
     dish = gm.surfaces.elliptic_paraboloid(a=30.0, b=40.0)
@@ -73,7 +68,6 @@ def test_count_on_a_thin_gaussian_image():
         assert abs(len(samples) - 2000) <= 100
 
 
-@pytest.mark.compiled
 def test_count_is_not_met_and_said_so():
     """A ribbon round a great circle: the Gaussian image is too thin for a hundredfold lattice."""
     ribbon = gm.Surface.from_callable(
@@ -119,7 +113,6 @@ def test_cells_are_for_surfaces():
 # --- what is flat ---------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", DEVELOPABLE)
 def test_developable_surfaces_are_warned_of(name):
     surface = gm.surfaces.surface(name)
@@ -133,7 +126,6 @@ def test_developable_surfaces_are_warned_of(name):
         gm.sample(surface, count=500, density="gauss")
 
 
-@pytest.mark.compiled
 def test_normals_outside_the_gaussian_image_are_warned_of():
     with pytest.warns(gm.GaussmapWarning, match="none of the normals lies in its Gaussian image"):
         samples = gm.sample(
@@ -144,7 +136,6 @@ def test_normals_outside_the_gaussian_image_are_warned_of():
     assert samples.report.normals == samples.report.proved == 2
 
 
-@pytest.mark.compiled
 def test_a_surface_whose_bending_is_lost_in_rounding_is_warned_of():
     wire = gm.surfaces.torus(minor=1e-14)
     with pytest.warns(gm.GaussmapWarning, match="developable up to the rounding"):
@@ -156,7 +147,6 @@ def test_a_surface_whose_bending_is_lost_in_rounding_is_warned_of():
     )
 
 
-@pytest.mark.compiled
 def test_half_a_surface_is_flat():
     bent = gm.Surface.from_callable(
         lambda u, v: np.stack([u, v, 0.1 * np.maximum(u, 0) ** 3 * (1 + v * v)], axis=-1),
@@ -198,7 +188,6 @@ def test_samples_answer_their_normals(name, cells):
     assert ((found * samples.normals).sum(axis=1) > 0).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", SURFACES)
 @pytest.mark.parametrize("cells", [(10, 7), (7, 12)])
 def test_patch_index_is_that_of_uv(name, cells):
@@ -218,7 +207,6 @@ def test_patch_index_is_that_of_uv(name, cells):
     assert (samples.uv <= high + 1e-12).all()
 
 
-@pytest.mark.compiled
 def test_samples_of_a_list_and_of_one_normal():
     several = gm.sample(TORUS, normals=[[0, 0, 1], [3, 0, 0], [0, 1, 1]], cells=(16, 16))
     assert np.bincount(several.normal_index).tolist()[1:] == [2, 2]
@@ -252,7 +240,6 @@ def test_the_length_of_normals_does_not_matter(factor):
         np.testing.assert_allclose(getattr(scaled, name), getattr(plain, name), rtol=0, atol=1e-12)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("exponent", [-300, -1, 1, 300])
 @pytest.mark.parametrize("name", ["torus", "moebius_band", "sphere"])
 def test_powers_of_two_change_no_bit(name, exponent):
@@ -282,7 +269,6 @@ def test_opposite_normals_see_the_other_side():
     np.testing.assert_allclose(turns, np.round(turns), rtol=0, atol=1e-12)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("count", [None, 500])
 def test_arrays_and_surfaces_are_left_alone(count):
     normals = np.array([[0.0, 0.0, 2.0], [0.0, 3.0, 0.0], [1.0, 1.0, 1.0]])
@@ -299,7 +285,6 @@ def test_arrays_and_surfaces_are_left_alone(count):
     np.testing.assert_array_equal(gm.sample(spline, **asked).points, again.points)
 
 
-@pytest.mark.compiled
 def test_sizes_at_the_end_of_double_precision():
     """The same normals, and curvatures that overflow with their sign; smaller ones are refused."""
     plain = gm.sample(TORUS, normals=gm.icosphere(5), cells=(16, 16))
@@ -336,7 +321,6 @@ def solid_angles_and_areas(name, bins):
     ]
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["ellipsoid", "wavy_graph", "moebius_band", "torus"])
 def test_density_is_gaussian_curvature(name):
     """Counts follow ∫|K| dA closer than independent samples would, and do not follow area."""

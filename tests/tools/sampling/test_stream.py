@@ -45,7 +45,6 @@ def test_one_patch_with_more_samples_than_a_chunk():
     same(gm.Samples.concatenate(chunks), whole)
 
 
-@pytest.mark.compiled
 def test_the_proof_of_a_block_is_counted_once(monkeypatch):
     normals = np.concatenate([gm.fibonacci(100), [[0.0, 0.0, 1.0]]])
     # The piece of the circle is too short to be found.
@@ -144,7 +143,6 @@ def test_errors_come_at_once(arguments, error):
 # --- at once --------------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 def test_streams_in_several_python_threads():
     whole = gm.sample(TORUS, normals=gm.icosphere(8))
     narrow = gm.sample(TORUS, normals=gm.icosphere(8), fields=("points",), dtype=np.float32)
@@ -196,7 +194,6 @@ print(came, peak() - before)
 """
 
 
-@pytest.mark.compiled
 @pytest.mark.skipif(sys.platform != "linux", reason="the peak is in other units")
 @pytest.mark.slow
 def test_memory_is_bounded():

@@ -26,6 +26,7 @@ BEAM = given("sqrt((n_x + n_y)**2 + 1/9) + sqrt((n_x - n_y)**2 + 1/9) + 3*sqrt(n
 # --- exact sums -----------------------------------------------------------------------------------
 
 
+@pytest.mark.kernels
 def test_spheres() -> None:
     sums = gm.convolve(given("2 + n_x"), given("1 - 3*n_y"), NORMALS)
     assert np.abs(sums.points - [1, -3, 0] - 3 * NORMALS).max() <= 16 * EPS * 4
@@ -44,7 +45,6 @@ EXACT = given("sqrt(n_x**2 + 9*n_y**2/16 + n_z**2/4)")
 EXACT_SMALL = given("sqrt(9*n_x**2 + 16*n_y**2 + 4*n_z**2)/10 + n_x + 2*n_y + 3*n_z")
 
 
-@pytest.mark.compiled
 def test_points_of_surfaces_are_exact() -> None:
     """At poles, too, where a side of the domain collapses."""
     normals = np.concatenate([gm.icosphere(6), AXES])
@@ -62,7 +62,6 @@ def test_points_of_surfaces_are_exact() -> None:
     assert sums.on_surface.all()
 
 
-@pytest.mark.compiled
 def test_what_is_not_proved_is_listed() -> None:
     """The normals ±z of a torus are those of circles, of which a trim leaves hardly anything."""
     normals = np.concatenate([NORMALS, AXES])
@@ -79,7 +78,6 @@ def test_what_is_not_proved_is_listed() -> None:
     )
 
 
-@pytest.mark.compiled
 def test_how_far_sums_of_splines_are_off_is_said() -> None:
     """Also for a spline in an operation, and a sum of a spline and a surface."""
     one, two = gm.fit(BODY, (32, 32)), gm.fit(SMALL, (24, 24))
@@ -115,7 +113,6 @@ def pairwise(first: Array, second: Array) -> Array:
     return (first[:, None] + second).reshape(-1, 3)
 
 
-@pytest.mark.compiled
 @pytest.mark.quick_for("boxes", "box and ellipsoid")
 @pytest.mark.parametrize(
     "pair",
@@ -146,6 +143,7 @@ def test_against_the_hull_of_all_sums(pair: tuple[Any, Any]) -> None:
     assert (h - distances <= 1.01 * largest * (1 - np.cos(angle))).all()
 
 
+@pytest.mark.kernels
 def test_a_sum_with_the_reflected_body() -> None:
     """For bodies A, B: x ∈ A ⊕ (−B) where A and x + B meet; h is h_A(n) + h_B(−n)."""
     away = given("sqrt(n_x**2 + n_y**2 + 4*n_z**2) + 5*n_x + n_y*n_z*n_x/9")
@@ -158,7 +156,6 @@ def test_a_sum_with_the_reflected_body() -> None:
 # --- all pairs, and what is told of them ----------------------------------------------------------
 
 
-@pytest.mark.compiled
 def test_all_pairs_of_branches() -> None:
     torus = gm.fit(gm.surfaces.torus(), (32, 24))
     turned = of_spline(torus).rotated(np.eye(3)[[1, 2, 0]])
@@ -185,7 +182,6 @@ def test_all_pairs_of_branches() -> None:
     assert (sums.report.normals, sums.report.samples) == (362, len(sums))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(("factor", "shift"), [(1e12, 0.0), (1e-12, 0.0), (1.0, 1e6)])
 def test_far_and_of_any_size(factor: float, shift: float) -> None:
     """K scales with 1/L²; it has lost some digits where the sum of the radii is nearly 0."""
@@ -203,7 +199,6 @@ def test_far_and_of_any_size(factor: float, shift: float) -> None:
     assert np.abs(moved.points - expected).max() <= 16 * EPS * (4 * factor + shift)
 
 
-@pytest.mark.compiled
 def test_a_convolution_is_samples(tmp_path: Any) -> None:
     sums = gm.convolve(gm.fit(gm.surfaces.torus(), (16, 16)), ELLIPSOID, gm.icosphere(4))
     outer = sums[sums.elliptic]
@@ -227,7 +222,6 @@ def test_a_convolution_is_samples(tmp_path: Any) -> None:
     assert (type(both), len(both)) == (gm.Samples, len(outer) + len(sums))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("cells", [None, (8, 8)])
 def test_what_normals_cannot_see_is_said(cells: Any) -> None:
     for name in ("plane", "cylinder"):
@@ -238,7 +232,6 @@ def test_what_normals_cannot_see_is_said(cells: Any) -> None:
         assert sums.first_uv.shape == (0, 2)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("prefer", ["shape", "normals"])
 @pytest.mark.parametrize("scale", [1.0, 1e-9, -1e9])
 def test_the_mesh_of_a_minkowski_sum(scale: float, prefer: Any) -> None:
@@ -265,7 +258,6 @@ def test_the_mesh_of_a_minkowski_sum(scale: float, prefer: Any) -> None:
         assert volume == pytest.approx(np.sign(scale) * hull.volume, rel=1e-12)
 
 
-@pytest.mark.compiled
 def test_sums_without_a_mesh() -> None:
     """Those that fold, of which there are few, and with gaps, unless these are to stay."""
     folded = given("sqrt(n_x**2 + 4*n_y**2 + 9*n_z**2) - 1")  # the least radius is 1/3
@@ -283,6 +275,7 @@ def test_sums_without_a_mesh() -> None:
     assert upper.mesh(angle=45).euler_characteristic == 1
 
 
+@pytest.mark.kernels
 def test_surfaces_without_a_common_normal() -> None:
     upper, lower = given("1", domain="n_z > 0"), given("1", domain="n_z < 0")
     with pytest.warns(gm.GaussmapWarning, match="no normal has points on both") as said:
@@ -290,13 +283,13 @@ def test_surfaces_without_a_common_normal() -> None:
     assert said[0].filename == __file__
 
 
-@pytest.mark.compiled
 def test_one_normal() -> None:
     sums = gm.convolve(gm.surfaces.torus(), ELLIPSOID, [[0, 3, 4]], cells=(16, 16))
     assert sums.normals.tolist() == [[0, 0.6, 0.8]] * 2
     assert sums.rows.tolist() == [[0, 0], [1, 0]]
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -86,7 +86,6 @@ def test_what_an_offset_keeps() -> None:
         assert (getattr(before.offset(0.0), name) == getattr(before, name)).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("d", [0.1, -0.2])
 def test_it_is_the_offset_of_the_support_function(d: float) -> None:
     """The same kernel for K and H; its points are moved as here."""
@@ -102,7 +101,6 @@ def test_it_is_the_offset_of_the_support_function(d: float) -> None:
     assert np.abs(moved.support[order] - branches.support).max() <= 8 * EPS
 
 
-@pytest.mark.compiled
 def test_float32_is_rounded_once() -> None:
     spline, normals = gm.fit(gm.surfaces.torus(), (32, 24)), gm.fibonacci(500)
     narrow = gm.sample(spline, normals=normals, dtype=np.float32).offset(0.1)
@@ -206,7 +204,6 @@ def from_torus(points: np.ndarray) -> np.ndarray:
     return np.abs(np.hypot(np.hypot(x, y) - 1.0, z) - 0.35)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(("d", "scale"), [(0.7, 1e-9), (-0.36, 1e9), (0.5, 1.0)])
 @pytest.mark.quick_for("0.7")
 def test_a_trimmed_offset_is_as_far_as_its_distance(d: float, scale: float) -> None:
@@ -222,7 +219,6 @@ def test_a_trimmed_offset_is_as_far_as_its_distance(d: float, scale: float) -> N
     assert moved.offset_of.trimmed == (d != 0.5)
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_trimmed_by_brute_force() -> None:
     """By the distances of 10⁵ points; no warning, as all that folds is left out."""
@@ -240,7 +236,6 @@ def test_trimmed_by_brute_force() -> None:
     refused("by 1, trimmed' has no mesh", moved.mesh)
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_a_thin_body_is_trimmed_away() -> None:
     """It is .0496 thick; 20,000 samples are too far apart to find that everywhere."""
@@ -248,7 +243,6 @@ def test_a_thin_body_is_trimmed_away() -> None:
     assert len(samples.offset(-0.025, trimmed=True)) == 0
 
 
-@pytest.mark.compiled
 @pytest.mark.slow
 def test_a_trimmed_offset_of_a_part(parts: Any) -> None:
     """Into a box: what stays is as far from all walls as from its own."""
@@ -263,7 +257,6 @@ def test_a_trimmed_offset_of_a_part(parts: Any) -> None:
     refused("an offset of a CAD part has no mesh", samples.offset(0.1).mesh)
 
 
-@pytest.mark.compiled
 def test_what_cannot_be_trimmed() -> None:
     refused("do not hold their surface", exact_torus().offset, 0.1, trimmed=True)
     samples = gm.sample("torus", 100, cells=(16, 16))

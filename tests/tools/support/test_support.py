@@ -29,6 +29,7 @@ def close(actual: NDArray[Any], expected: NDArray[Any], size: float, ulps: int =
 # --- expressions ----------------------------------------------------------------------------------
 
 
+@pytest.mark.kernels
 def test_ellipsoid() -> None:
     """The envelope of √(nᵀAn) is A n/h, on xᵀA⁻¹x = 1, with K = h⁴/det A."""
     branches = given(ELLIPSOID).branches(NORMALS)
@@ -50,6 +51,7 @@ def test_ellipsoid() -> None:
     assert branches.elliptic.all()
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("h", [2, 2.0, "2", "2*sqrt(n_x**2 + n_y**2 + n_z**2)", sp.Integer(2)])
 def test_constant_is_a_sphere(h: object) -> None:
     branches = given(h).branches(NORMALS)
@@ -60,7 +62,6 @@ def test_constant_is_a_sphere(h: object) -> None:
     close(branches.mean_curvature, np.full(len(NORMALS), 0.5), 1.0)
 
 
-@pytest.mark.compiled
 def test_linear_is_a_point() -> None:
     """Both radii are 0, exactly, and the curvature is infinite."""
     branches = given("3*n_x - n_y/4 + 1e6*n_z").branches(NORMALS)
@@ -71,6 +72,7 @@ def test_linear_is_a_point() -> None:
     assert np.isnan(branches.mean_curvature).all()
 
 
+@pytest.mark.kernels
 def test_an_extension_off_the_sphere_changes_nothing() -> None:
     """n_x² + n_y² is 1 − n_z² on the sphere; |n| may be put anywhere."""
     first, second = (given(h) for h in ("n_x**2 + n_y**2", "1 - n_z**2"))
@@ -81,13 +83,13 @@ def test_an_extension_off_the_sphere_changes_nothing() -> None:
         close(other.hessian, expected.hessian, 8.0)
 
 
+@pytest.mark.kernels
 def test_length_of_normals_does_not_matter() -> None:
     support = given("n_x**3 + n_y")
     long = NORMALS * np.exp(np.linspace(-300.0, 300.0, len(NORMALS)))[:, None]
     close(support.envelope(long), support.envelope(NORMALS), 16.0)
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("exponent", [-150, 150])
 def test_scales(exponent: int) -> None:
     s = 10.0**exponent
@@ -97,7 +99,6 @@ def test_scales(exponent: int) -> None:
     close(branches.gaussian_curvature * s * s, expected.gaussian_curvature, 64.0)
 
 
-@pytest.mark.compiled
 def test_domain() -> None:
     """Where h is not real there is no branch; nor where the condition does not hold."""
     half = given("sqrt(n_z)")
@@ -114,7 +115,6 @@ def test_domain() -> None:
     assert nothing.hessian.shape == (0, 3, 3)
 
 
-@pytest.mark.compiled
 def test_other_powers_and_functions() -> None:
     """|n|₄ at (1, 1, 1)/√3 has the point 3^(−3/4) (1, 1, 1): compare with central differences."""
     support = given("(n_x**4 + n_y**4 + n_z**4)**(1/4)")
@@ -133,6 +133,7 @@ def test_other_powers_and_functions() -> None:
     np.testing.assert_allclose(moved[0], here.hessian[0] @ t[0], atol=1e-7)
 
 
+@pytest.mark.kernels
 def test_cube() -> None:
     """|n_x| + |n_y| + |n_z|: every generic normal sees a vertex of the cube, a point."""
     normals = gm.fibonacci(50)
@@ -141,6 +142,7 @@ def test_cube() -> None:
     assert not branches.principal_radii.any()
 
 
+@pytest.mark.kernels
 def test_names_of_the_normal() -> None:
     x, y, z = sp.symbols("x y z")
     expected = given("n_x**2 + 2*n_y*n_z").envelope(NORMALS)
@@ -159,7 +161,6 @@ def torus() -> gm.Spline:
     return gm.fit(gm.surfaces.torus(major=1.0, minor=0.35), (48, 48))
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("normals", [gm.icosphere(12), gm.fibonacci(5000)], ids=["ico", "fib"])
 def test_spline_has_the_branches_that_sampling_finds(torus: gm.Spline, normals: Array) -> None:
     branches = gm.SupportFunction.of_spline(torus).branches(normals)
@@ -170,7 +171,6 @@ def test_spline_has_the_branches_that_sampling_finds(torus: gm.Spline, normals: 
     assert (branches.normals == normals[branches.normal_index]).all()
 
 
-@pytest.mark.compiled
 def test_hessian_of_a_spline_is_that_of_its_curvatures(torus: gm.Spline) -> None:
     """Hess n = 0; trace and determinant on the tangent plane are those of K and H."""
     branches = gm.SupportFunction.of_spline(torus).branches(gm.fibonacci(5000))
@@ -189,7 +189,6 @@ def test_hessian_of_a_spline_is_that_of_its_curvatures(torus: gm.Spline) -> None
     assert (np.abs(eigenvalues - expected) <= error[:, None]).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("name", ["plane", "cylinder"])
 def test_developable_surfaces_have_no_branch(name: str) -> None:
     support = gm.SupportFunction.of_spline(gm.surfaces.surface(name), (8, 8))
@@ -197,7 +196,6 @@ def test_developable_surfaces_have_no_branch(name: str) -> None:
     assert len(support.branches([[0.0, 0.0, 1.0]])) == 0
 
 
-@pytest.mark.compiled
 def test_parabolic_normals_keep_the_sign(torus: gm.Spline) -> None:
     """At ±z the plane touches the torus along circles: curvature ±0, and an infinite radius."""
     branches = gm.SupportFunction.of_spline(torus).branches([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
@@ -207,7 +205,6 @@ def test_parabolic_normals_keep_the_sign(torus: gm.Spline) -> None:
     assert not np.isfinite(branches.principal_radii).all()
 
 
-@pytest.mark.compiled
 def test_hessian_at_poles_is_taken_where_the_curvatures_are() -> None:
     """Next to the singular point, at 2⁻²⁰: a radius that small has lost 20 of the 43 bits."""
     poles = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0, 1e-9, 1.0]]
@@ -217,6 +214,7 @@ def test_hessian_at_poles_is_taken_where_the_curvatures_are() -> None:
     assert np.abs(product - 1).max() < 2.0**-20
 
 
+@pytest.mark.kernels
 def test_small_spline_without_compilation() -> None:
     """A bowl z = u² + v²: the spline is exact, x = (−n_x, −n_y, ·)/(2 n_z)."""
     bowl = gm.Surface.from_callable(
@@ -235,7 +233,6 @@ def test_small_spline_without_compilation() -> None:
     close(1 / branches.principal_radii.prod(axis=1), 4 / g**2, 4.0, 2**14)
 
 
-@pytest.mark.compiled
 def test_several_branches_are_no_single_value(torus: gm.Spline) -> None:
     support = gm.SupportFunction.of_spline(torus)
     for call in (support, support.envelope):
@@ -245,6 +242,7 @@ def test_several_branches_are_no_single_value(torus: gm.Spline) -> None:
 # --- what is shown --------------------------------------------------------------------------------
 
 
+@pytest.mark.kernels
 def test_text_and_latex() -> None:
     support = given("n_x**3 + 2*n_y")
     assert repr(support) == "SupportFunction(h = n_x**3 + 2*n_y)"

@@ -69,7 +69,6 @@ def check_same(actual: Branches, expected: Branches, size: float) -> None:
 # --- translation, scaling, rotation, reversal of a spline -----------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("shift", [[2.0, -3.0, 0.5], [0.0, 0.0, 4096.0]])
 def test_translation(torus: gm.Spline, shift: list[float]) -> None:
     """Differences of coefficients stay the same, exactly: so does all but the points."""
@@ -86,7 +85,6 @@ def test_translation(torus: gm.Spline, shift: list[float]) -> None:
     )
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("factor", [4.0, -0.5, 2.0**-40, -(2.0**60)])
 def test_scaling_by_powers_of_two(torus: gm.Spline, factor: float) -> None:
     """Also for s < 0: p_u × p_v keeps its direction, and radii change their sign."""
@@ -100,7 +98,6 @@ def test_scaling_by_powers_of_two(torus: gm.Spline, factor: float) -> None:
     assert (scaled.mean_curvature == base.mean_curvature / factor).all()
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize(
     ("axis", "angle"), [([0, 0, 1], np.pi / 2), ([1, 2, 3], 1.0), ([-1, 0.2, 0], 3.0)]
 )
@@ -110,7 +107,6 @@ def test_rotation(torus: gm.Spline, axis: list[float], angle: float) -> None:
     check_same(moved, of_spline(torus).rotated(R).branches(NORMALS), 1.35)
 
 
-@pytest.mark.compiled
 def test_rotated_torus_keeps_the_sum_rule(torus: gm.Spline) -> None:
     """Icosahedral normals lie on its boundaries of patches before and after a symmetry."""
     quarter = [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
@@ -124,7 +120,6 @@ def test_rotated_torus_keeps_the_sum_rule(torus: gm.Spline) -> None:
         assert not np.bincount(branches.normal_index, signs, minlength=len(normals)).any()
 
 
-@pytest.mark.compiled
 def test_reversal(torus: gm.Spline) -> None:
     """Exchanging u and v turns every normal round."""
     swapped = gm.Spline(
@@ -148,7 +143,6 @@ def test_reversal(torus: gm.Spline) -> None:
 # --- offset ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("distance", [0.1, -0.2, 0.0])
 def test_offset_of_a_spline(torus: gm.Spline, distance: float) -> None:
     """x + d n, and both radii grow by d; K and H follow, also where they come from elsewhere."""
@@ -166,7 +160,6 @@ def test_offset_of_a_spline(torus: gm.Spline, distance: float) -> None:
     assert (np.abs(product - 1) <= 8 * error * size / shortest**2).all()
 
 
-@pytest.mark.compiled
 def test_offset_of_a_point_is_a_sphere() -> None:
     branches = given("n_x - 2*n_y").offset(-3.0).branches(NORMALS)
     assert np.abs(branches.points - [1.0, -2.0, 0.0] + 3 * NORMALS).max() <= 8 * EPS
@@ -178,6 +171,7 @@ def test_offset_of_a_point_is_a_sphere() -> None:
 # --- sums -----------------------------------------------------------------------------------------
 
 
+@pytest.mark.kernels
 def test_convolution_of_ellipsoids() -> None:
     """The sum of objects, one expression for the sum, and the sum of points agree: eq. (7)."""
     first, second = map(given, ELLIPSOIDS)
@@ -194,7 +188,6 @@ def test_convolution_of_ellipsoids() -> None:
     assert np.isnan(convolution.uv).all()
 
 
-@pytest.mark.compiled
 def test_convolution_with_a_sphere_is_the_offset(torus: gm.Spline) -> None:
     for support in (of_spline(torus), given(ELLIPSOIDS[0]), gm.SupportFunction.of_patch(MIXED)):
         offset = support.offset(0.25).branches(NORMALS)
@@ -207,7 +200,6 @@ def test_convolution_with_a_sphere_is_the_offset(torus: gm.Spline) -> None:
             assert np.abs(branches.hessian - offset.hessian).max() <= 64 * EPS
 
 
-@pytest.mark.compiled
 def test_convolution_with_a_point_is_the_translation(torus: gm.Spline) -> None:
     moved = (of_spline(torus) + given("2*n_x - n_z")).branches(NORMALS)
     translated = of_spline(torus).translated([2.0, 0.0, -1.0]).branches(NORMALS)
@@ -215,6 +207,7 @@ def test_convolution_with_a_point_is_the_translation(torus: gm.Spline) -> None:
     assert (moved.hessian == translated.hessian).all()
 
 
+@pytest.mark.kernels
 def test_sums_have_the_common_domain() -> None:
     patch = gm.SupportFunction.of_patch(MIXED)
     upper = given("1 + n_x", domain="n_z > 0")
@@ -239,7 +232,6 @@ COMPOSITIONS: dict[str, Callable[[gm.SupportFunction], gm.SupportFunction]] = {
 }
 
 
-@pytest.mark.compiled
 @pytest.mark.parametrize("operation", COMPOSITIONS.values(), ids=COMPOSITIONS)
 @pytest.mark.parametrize("h", [ELLIPSOIDS[1], "n_x**3 + n_y*n_z + 2"])
 @pytest.mark.quick_for("all")
@@ -254,6 +246,7 @@ def test_expression_of_a_composition(operation: Any, h: str) -> None:
     assert composed.domain == sp.true
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize("operation", COMPOSITIONS.values(), ids=COMPOSITIONS)
 def test_domain_of_a_composition(operation: Any) -> None:
     x, y, z = NORMAL
@@ -262,6 +255,7 @@ def test_domain_of_a_composition(operation: Any) -> None:
     assert (composed.contains(NORMALS) == condition(*NORMALS.T)).all()
 
 
+@pytest.mark.kernels
 def test_operations_change_nothing_before() -> None:
     ellipsoid = given(ELLIPSOIDS[0])
     before = ellipsoid.branches(NORMALS)
@@ -273,6 +267,7 @@ def test_operations_change_nothing_before() -> None:
     assert "translated by (1.0, 0.0, 0.0)" in repr(COMPOSITIONS["all"](ellipsoid))
 
 
+@pytest.mark.kernels
 def test_an_offset_to_a_point_is_one() -> None:
     branches = gm.SupportFunction.from_sympy("1").offset(-1).branches(gm.fibonacci(2000))
     assert (branches.principal_radii == 0.0).all()
@@ -280,6 +275,7 @@ def test_an_offset_to_a_point_is_one() -> None:
     assert branches.elliptic.all()
 
 
+@pytest.mark.kernels
 def test_sums_of_several() -> None:
     h = gm.SupportFunction.from_sympy("1")
     several: Any = sum([h, h, h], start=0)
@@ -288,6 +284,7 @@ def test_sums_of_several() -> None:
         _: Any = 1 + h
 
 
+@pytest.mark.kernels
 @pytest.mark.parametrize(("distance", "share"), [(0.25, 0.0), (-1.0, 1.0)])
 def test_an_offset_looks_at_radii_only_where_they_may_vanish(monkeypatch, distance, share) -> None:
     """Of a unit sphere: at the distance −1 all radii are 0, elsewhere none."""
@@ -303,6 +300,7 @@ def test_an_offset_looks_at_radii_only_where_they_may_vanish(monkeypatch, distan
     assert sum(asked) == share * len(NORMALS)
 
 
+@pytest.mark.kernels
 def test_operations_say_their_names_and_domains() -> None:
     half = gm.SupportFunction.from_sympy("2", domain="n_z > 0")
     moved = half.offset(1).scaled(2).translated([1, 0, 0])

@@ -17,7 +17,6 @@ from gaussmap.tools.viewer import view as module
 from ...refusals import refused
 
 pytest.importorskip("plotly")
-pytestmark = pytest.mark.compiled
 
 
 @pytest.fixture(scope="module")
