@@ -11,7 +11,6 @@ from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST
 from gaussmap.tools.batch.manifest import ManifestRow, manifest_schema
 from gaussmap.tools.batch.part_files import points_schema, write_manifest, write_part
 
-pytest.importorskip("pyarrow")
 PAGE = (Path(__file__).parents[2] / "docs" / "datasets.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 FIELDS = tuple(name for name in COLUMNS if name not in EDGE_NAMES)

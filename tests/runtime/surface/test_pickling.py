@@ -96,7 +96,6 @@ if __name__ == "__main__":
 @pytest.mark.slow
 def test_surfaces_in_other_processes(tmp_path):
     """With spawn, as on macOS and Windows, and with joblib's loky."""
-    pytest.importorskip("joblib")
     script = tmp_path / "script.py"
     script.write_text(SCRIPT)
     run = subprocess.run(

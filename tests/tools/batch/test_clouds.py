@@ -14,7 +14,6 @@ import pytest
 from ...refusals import refused
 from . import made
 
-pytest.importorskip("pyarrow")
 pytestmark = pytest.mark.filterwarnings("ignore:part [0-9]+ has")
 # The first columns of points are the number of the part and the row.
 PART, ROW = 0, 1

@@ -15,7 +15,6 @@ from gaussmap.tools.batch.workers import Tally
 
 from .made import data_of, waves
 
-pytest.importorskip("pyarrow")
 distributed = pytest.importorskip("distributed")
 PARTS = 40
 HOW: dict[str, Any] = {

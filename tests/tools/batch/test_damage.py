@@ -13,7 +13,6 @@ from gaussmap.tools.batch.part_files import row_of
 
 from . import made
 
-pytest.importorskip("pyarrow")
 pytestmark = pytest.mark.filterwarnings("ignore:part [0-9]+ has")
 
 ASKED = {

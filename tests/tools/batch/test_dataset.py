@@ -12,7 +12,6 @@ from gaussmap.tools.batch.manifest import COLUMNS as MANIFEST_COLUMNS
 from ...refusals import refused
 from . import made
 
-pytest.importorskip("pyarrow")
 PARTS, SAMPLES = len(made.COUNTS), sum(made.COUNTS)
 
 

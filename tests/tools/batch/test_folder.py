@@ -25,7 +25,6 @@ from ...full_disk import tiny_disk
 from ...refusals import refused
 from . import made
 
-pytest.importorskip("pyarrow")
 KNOWN = made.settings(asked={"count": 5})
 
 

@@ -18,8 +18,6 @@ from gaussmap.tools.batch.making import limits_of
 from ...refusals import refused
 from .made import data_of, waves
 
-pytest.importorskip("pyarrow")
-pytest.importorskip("cloudpickle")
 ASKED: dict[str, Any] = {"density": "uniform", "cells": (8, 8), "dtype": "float32"}
 
 

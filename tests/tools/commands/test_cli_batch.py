@@ -15,7 +15,6 @@ from gaussmap.tools.commands.part_lists import listed
 
 from ...refusals import refused
 
-pytest.importorskip("pyarrow")
 SMALL = ["--cells", "8", "8", "--count", "50", "--density", "uniform", "--float32"]
 
 

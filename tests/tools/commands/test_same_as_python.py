@@ -248,7 +248,6 @@ def test_pictures(options, figure, capsys):
 @pytest.mark.slow
 def test_data_sets() -> None:
     """With the count that is the default, and all that is for data sets only."""
-    pytest.importorskip("pyarrow")
     words = ["batch", "torus", "--fields", "points,normals,normal_index", "--float32", "--measure"]
     words += ["--workers", "1", "--quiet", "-o", "one"]
     assert main(words) == 0

@@ -22,7 +22,6 @@ DTYPES = pytest.mark.parametrize("dtype", [np.float64, np.float32])
 class TestPandas:
     @DTYPES
     def test_columns_are_those_of_a_csv_file(self, tmp_path, dtype):
-        pytest.importorskip("pandas")
         found = samples(dtype=dtype)
         frame = found.to_dataframe()
         found.write(tmp_path / "noise.csv")
@@ -35,12 +34,10 @@ class TestPandas:
             np.testing.assert_array_equal(frame[name], column.astype(expected))
 
     def test_fewer_fields_and_no_samples(self):
-        pytest.importorskip("pandas")
         assert list(samples(fields=("points",)).to_dataframe()) == ["x", "y", "z"]
         assert samples(0).to_dataframe().shape == (0, 13)
 
     def test_it_copies(self):
-        pytest.importorskip("pandas")
         found = samples()
         frame = found.to_dataframe()
         frame.loc[0, "x"] = 100.0

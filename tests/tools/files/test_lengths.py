@@ -55,7 +55,6 @@ def test_tables_of_parts_name_the_unit(tmp_path):
 
 @pytest.mark.parametrize(("crs", "name"), [("EPSG:32617", "x [m]"), ("EPSG:2263", "x [us-ft]")])
 def test_terrain_has_the_unit_of_its_reference_system(crs, name, tmp_path):
-    pytest.importorskip("rasterio")
     samples, unit = gm.sample(terrain(crs), 20), name[3:-1]
     assert header(samples, tmp_path)[0] == name
     report = samples.report

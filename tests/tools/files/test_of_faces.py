@@ -31,8 +31,6 @@ def radius_of(face) -> str:
 
 @pytest.mark.parametrize("least", [0, 1000])
 def test_rows_name_the_face_of_the_file(samples, tmp_path, monkeypatch, least):
-    if least == 0:
-        pytest.importorskip("polars")
     monkeypatch.setattr(tables, "WORTH_AN_IMPORT", least)
     samples.write(tmp_path / "a.csv")
     rows = rows_of(tmp_path / "a.csv")

@@ -93,7 +93,6 @@ def written(samples: gm.Samples, monkeypatch: pytest.MonkeyPatch, least: int) ->
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_polars_writes_the_same_numbers(monkeypatch, dtype):
-    pytest.importorskip("polars")
     monkeypatch.setattr(tables, "ROWS_OF_POLARS", 400)
     samples = noise(1000, dtype)
     texts = written(samples, monkeypatch, 0), written(samples, monkeypatch, 1001)
@@ -107,7 +106,6 @@ def test_polars_writes_the_same_numbers(monkeypatch, dtype):
 
 
 def test_polars_writes_meshes(tmp_path, monkeypatch):
-    pytest.importorskip("polars")
     vertices, normals = np.random.default_rng(1).random((2, 5, 3))
     triangles = np.array([[0, 1, 2], [4, 3, 2]])
     mesh = gm.Mesh(vertices, normals, np.zeros((5, 2)), triangles, np.arange(5))
@@ -132,8 +130,6 @@ def test_text_without_polars(monkeypatch):
 
 @pytest.mark.parametrize("least", [0, 9])
 def test_numbers_have_no_digits_more_than_it_takes(monkeypatch, least):
-    if least == 0:
-        pytest.importorskip("polars")
     monkeypatch.setattr(tables, "WORTH_AN_IMPORT", least)
     file, numbers = io.BytesIO(), np.array([10.2, 0.1, 1.0 / 3.0, -250.0])
     tables.write_rows(file, "{},{}\n", [numbers, np.arange(4)])

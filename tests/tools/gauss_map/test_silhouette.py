@@ -372,7 +372,6 @@ def test_far_viewpoints_are_directions_and_trims_cut() -> None:
 @pytest.mark.parametrize("sight", SIGHTS, ids=["viewpoint", "direction"])
 def test_visible_parts_of_a_torus(sight: dict[str, Any]) -> None:
     """Rays to the eye, with the implicit equation; wrong at most next to cusps and junctions."""
-    pytest.importorskip("rtree")
     outline = gm.silhouette(TORUS, count=200, **sight)
     seen = outline.visible(by=gm.sample(TORUS, 4_000).mesh())
     to_eye = VIEWPOINT - outline.points if "viewpoint" in sight else -np.array([sight["direction"]])
@@ -388,7 +387,6 @@ def test_visible_parts_of_a_torus(sight: dict[str, Any]) -> None:
 
 
 def test_nothing_is_visible_of_no_points() -> None:
-    pytest.importorskip("rtree")
     with pytest.warns(gm.GaussmapWarning, match="0 samples"):
         outline = gm.silhouette("plane", viewpoint=(1, 1, 5), cells=(8, 8))
     assert outline.visible().shape == (0,)

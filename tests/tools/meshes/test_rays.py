@@ -8,13 +8,11 @@ from gaussmap.tools.meshes.rays import unobstructed
 from ...refusals import refused
 
 trimesh = pytest.importorskip("trimesh")
-pytest.importorskip("rtree")
 pytestmark = pytest.mark.compiled
 
 
 @pytest.fixture(scope="module")
 def bracket() -> gm.Samples:
-    pytest.importorskip("pythoncdt")
     return gm.sample(gm.read_part(f"{gm.__path__[0]}/docs/gallery/bracket.npz"), 300)
 
 

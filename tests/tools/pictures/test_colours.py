@@ -7,8 +7,6 @@ import numpy as np
 import pytest
 from gaussmap.tools.pictures.colours import Colours, colours_of
 
-pytest.importorskip("matplotlib")
-
 
 def colours(curvatures: np.ndarray) -> Colours:
     """The colours of samples of given Gaussian curvatures."""

@@ -10,8 +10,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.tools.pictures.scene import scene_of, view
-
-pytest.importorskip("matplotlib")
 from matplotlib import image
 from matplotlib.figure import Figure
 from matplotlib.text import Text

@@ -10,8 +10,6 @@ import pytest
 
 from ...refusals import refused
 
-pytest.importorskip("matplotlib")
-
 
 def texts(figure: Any) -> set[str]:
     from matplotlib.text import Text

@@ -14,8 +14,6 @@ import numpy as np
 import pytest
 from gaussmap.tools.pictures import palette
 from gaussmap.tools.pictures.plot import check_target, write_figure
-
-pytest.importorskip("matplotlib")
 from matplotlib import colors, image
 from matplotlib.figure import Figure
 from matplotlib.text import Text

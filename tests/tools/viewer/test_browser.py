@@ -9,7 +9,6 @@ import gaussmap as gm
 import numpy as np
 import pytest
 
-pytest.importorskip("plotly")
 pytestmark = pytest.mark.slow
 ON_SCREEN = """(() => {{
     const plot = byId("{plot}"), box = plot.getBoundingClientRect();

@@ -16,8 +16,6 @@ from gaussmap.tools.viewer import view as module
 
 from ...refusals import refused
 
-pytest.importorskip("plotly")
-
 
 @pytest.fixture(scope="module")
 def samples() -> gm.Samples:
