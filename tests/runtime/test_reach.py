@@ -1,7 +1,5 @@
 """`reach`: samples whose normals are within an angle of an axis, with everything guaranteed."""
 
-from __future__ import annotations
-
 import pickle
 from typing import Any
 

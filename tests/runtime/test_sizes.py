@@ -1,7 +1,5 @@
 """Surfaces of any size that float64 holds: all is that of the surface of size 1, scaled."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

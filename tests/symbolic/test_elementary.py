@@ -1,7 +1,5 @@
 """Elementary functions: coefficients, their extremes and roundings, compared with mpmath."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any

@@ -1,7 +1,5 @@
 """Formulas of users as compiled functions, by the emitter of this project."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import gaussmap as gm

@@ -1,7 +1,5 @@
 """Mistakes of the first minute: one sentence that says what to do."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from pathlib import Path

@@ -3,8 +3,6 @@
 tracemalloc sees all arrays of NumPy, but not what Qhull takes.
 """
 
-from __future__ import annotations
-
 import re
 import tracemalloc
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """What a terminal shows while work takes longer than a second."""
 
-from __future__ import annotations
-
 import inspect
 import io
 import re

@@ -1,7 +1,5 @@
 """Newton's method for samples on the surface: normals, marks, borders, poles."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Normals of flat points, circles and rulings: one sample for each component, with its index."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial

@@ -1,7 +1,5 @@
 """Components of the points with one normal that are not regular."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

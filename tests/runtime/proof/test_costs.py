@@ -1,7 +1,5 @@
 """The index of a surface has a bounded number of cells, and is fine where it has to be."""
 
-from __future__ import annotations
-
 import gaussmap as gm
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """The proof at joints: lines where smooth parts of a surface meet, with points in closed form."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial

@@ -1,7 +1,5 @@
 """Components of NURBS surfaces at special and random normals; `nets.py` judges regular points."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

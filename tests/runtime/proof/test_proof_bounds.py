@@ -1,7 +1,5 @@
 """The bounds of the proof hold, and are not much too wide; wrong ones are noticed."""
 
-from __future__ import annotations
-
 import gaussmap as gm
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """The proved search on few cells, also without compilation: every way to an answer once."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import gaussmap as gm

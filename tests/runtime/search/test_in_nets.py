@@ -1,7 +1,5 @@
 """Nets: joints at poles, where many patches meet."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import gaussmap as gm

@@ -1,7 +1,5 @@
 """Meshes of splines of nets: closed where the nets are, with normals that smooth joints share."""
 
-from __future__ import annotations
-
 import gaussmap as gm
 import numpy as np
 import pytest

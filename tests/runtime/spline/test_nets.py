@@ -1,7 +1,5 @@
 """Splines of users' own nets: joints, and every point with a normal exactly once."""
 
-from __future__ import annotations
-
 import pickle
 from fractions import Fraction
 

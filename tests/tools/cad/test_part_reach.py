@@ -1,7 +1,5 @@
 """Samples of parts whose normals are within an angle of an axis."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import gaussmap as gm

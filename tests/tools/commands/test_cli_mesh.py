@@ -1,7 +1,5 @@
 """`gaussmap mesh`."""
 
-from __future__ import annotations
-
 import re
 
 import gaussmap as gm

@@ -1,7 +1,5 @@
 """Samples on the curve itself: all of them, on it, with the prescribed normals."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import gaussmap as gm

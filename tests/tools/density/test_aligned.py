@@ -1,7 +1,5 @@
 """Samples on graded grids."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import gaussmap as gm

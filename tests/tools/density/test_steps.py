@@ -1,7 +1,5 @@
 """The steps of graded grids where one of the forms is that of an exact cylinder."""
 
-from __future__ import annotations
-
 import numpy as np
 from gaussmap.tools.density.kernels.steps import shared_steps
 

@@ -1,7 +1,5 @@
 """Files of samples: whole and exact, or refused in one sentence, whatever happens to them."""
 
-from __future__ import annotations
-
 import errno
 import json
 import os

@@ -1,7 +1,5 @@
 """Samples and meshes as objects of other libraries, which are not needed until then."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from collections.abc import Callable

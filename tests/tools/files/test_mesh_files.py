@@ -1,7 +1,5 @@
 """What stands in files of meshes, to the last bit."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import gaussmap as gm

@@ -1,7 +1,5 @@
 """The mesh as a file, read back by other libraries."""
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Headers of .ply files that gaussmap did not write, some of them in order to harm."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import gaussmap as gm

@@ -1,7 +1,5 @@
 """Tables in files: what pyarrow and pandas read, and text by Polars and without it."""
 
-from __future__ import annotations
-
 import importlib.util
 import io
 import json

@@ -1,7 +1,5 @@
 """Triangles in front of others."""
 
-from __future__ import annotations
-
 import numpy as np
 from gaussmap.tools.meshes import front
 from gaussmap.tools.meshes.front import Front, in_front

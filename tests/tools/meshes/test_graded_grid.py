@@ -1,7 +1,5 @@
 """Meshes of samples on a graded grid: topology, samples between its lines, and other samples."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import gaussmap as gm

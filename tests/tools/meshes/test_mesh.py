@@ -1,7 +1,5 @@
 """The mesh as an object."""
 
-from __future__ import annotations
-
 import pickle
 
 import gaussmap as gm

@@ -1,7 +1,5 @@
 """Meshes through samples: topology, seams, poles, borders, flips, and samples that are too few."""
 
-from __future__ import annotations
-
 import pickle
 import warnings
 from collections.abc import Callable

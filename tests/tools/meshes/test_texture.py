@@ -1,7 +1,5 @@
 """Texture coordinates: continuous in each triangle, and the parameters of each corner."""
 
-from __future__ import annotations
-
 import gaussmap as gm
 import numpy as np
 import pytest

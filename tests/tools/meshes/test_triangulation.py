@@ -1,7 +1,5 @@
 """Triangulations that are made in strips, and which triangles share an edge."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`gm.plot` and `samples.plot`: figures from Python."""
 
-from __future__ import annotations
-
 import importlib.util
 from io import BytesIO
 from types import ModuleType

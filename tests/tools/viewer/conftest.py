@@ -1,7 +1,5 @@
 """A headless Chromium that is driven through a pipe, by the DevTools protocol."""
 
-from __future__ import annotations
-
 import json
 import os
 import select

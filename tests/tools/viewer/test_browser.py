@@ -1,7 +1,5 @@
 """The page of `samples.view` in headless Chromium: real clicks, drags and taps."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
