@@ -61,7 +61,6 @@ def test_the_two_commands_are_targets() -> None:
 def test_the_formula_is_that_of_the_patch() -> None:
     """The one in LaTeX, read by SymPy, against the derived one."""
     shown = re.match(r"h\(n\) = n \\cdot p - \\frac\{(.*)\}\{(.*)\}, .*\n", blocks("math")[0])
-    assert shown is not None
     definitions = gm.formulas["support_function"].definitions
     symbols = {str(symbol): symbol for symbol, _ in definitions}
     numerator, denominator = (

@@ -170,7 +170,6 @@ def test_functions_without_a_proof_have_larger_errors() -> None:
     away = np.abs(found.values - (np.hypot(*DIRECTIONS.T[:2]) + 0.35))
     assert (away <= found.errors).all()
     misfit = gm.fit(torus, (16, 16)).misfit
-    assert misfit is not None
     assert 1e-12 < found.errors.max() < 2.0 * misfit.distance
 
 

@@ -53,7 +53,6 @@ def test_samples_are_on_the_surface(request_):
     torus = gm.surfaces.torus()
     samples = gm.sample(torus, **request_, cells=CELLS, on="surface")
     there = samples.on_surface
-    assert there is not None
     # The only normals without an isolated point: along the axis, where K = 0 on circles.
     along = np.abs(samples.normals[:, 2]) > 1.0 - 1e-6
     assert (there | along).all()
@@ -138,8 +137,6 @@ def test_a_coverage_below_the_misfit_is_reached_as_far_as_possible():
     ):
         samples = gm.sample(torus, coverage=0.05, cells=(6, 6))
     report = samples.report
-    assert report.coverage is not None
-    assert report.fit_distance is not None
     assert 0.05 < report.coverage <= 1.1 * 0.025 + 2.0 * report.fit_distance
 
 
@@ -275,7 +272,6 @@ def superellipsoid(exponent: float) -> gm.Surface:
 def test_normals_without_a_sample_are_listed(exponent):
     normals = gm.fibonacci(300)
     samples = gm.sample(superellipsoid(exponent), normals=normals)
-    assert samples.on_surface is not None
     assert samples.on_surface.all()
     assert samples.report.undecided is not None
     found = np.bincount(samples.normal_index, minlength=300)
@@ -301,7 +297,6 @@ def test_a_count_is_that_of_samples_on_the_surface(count):
     domain = ((0, "2*pi"), (0, "2*pi"))
     spindle = gm.Surface.from_sympy(position, ("u", "v"), domain, (True, True))
     samples = gm.sample(spindle, count, density="gauss")
-    assert samples.on_surface is not None
     assert samples.on_surface.all()
     assert abs(len(samples) - count) <= 0.02 * count + 5
     assert samples.report.undecided is None

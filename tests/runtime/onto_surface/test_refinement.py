@@ -375,7 +375,6 @@ def test_folds_of_a_coarse_spline_are_no_folds_of_the_surface(cells: int) -> Non
     band, normals = gm.surfaces.moebius_band(), gm.fibonacci(3000)
     folded = gm.sample(band, normals=normals, cells=(cells, cells), on="spline")
     samples = gm.sample(band, normals=normals, cells=(cells, cells), on="surface")
-    assert samples.on_surface is not None
     assert samples.on_surface.all()
     assert (samples.gaussian_curvature < 0.0).all()
     assert (folded.gaussian_curvature > 0.0).any()
@@ -412,7 +411,6 @@ def test_every_normal_of_an_egg_once(shift: float, factor: float) -> None:
     wanted = np.concatenate(normals)
     samples = check_once(surface, 20, wanted)
     assert len(samples) == len(wanted)
-    assert samples.on_surface is not None
     assert samples.on_surface.all()
     assert (samples.gaussian_curvature > 0.0).all()
     # Far from the origin, differences tell normals to ε |x|/step of a surface of size 1.

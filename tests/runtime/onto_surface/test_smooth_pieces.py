@@ -99,7 +99,6 @@ def test_points_of_all_pieces_are_proved():
     on_edge = samples.normal_index[samples.component == gm.Component.CREASE]
     assert np.array_equal(on_edge, np.flatnonzero(latitude <= LOW))
     assert (report_of(samples).proved, report_of(samples).undecided) == (len(normals), ())
-    assert samples.uv_radius is not None
     assert (samples.uv_radius < 1e-8).all()
     known = gm.GaussMap(barrel())
     assert np.array_equal(known.count(normals), counts)

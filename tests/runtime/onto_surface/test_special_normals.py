@@ -112,7 +112,6 @@ def test_each_component_has_one_sample(name: str, move: str) -> None:
     special = samples[samples.component != REGULAR]
     np.testing.assert_array_equal(special.gaussian_curvature, 0.0)
     isolated = special[special.component == ISOLATED]
-    assert isolated.uv_radius is not None
     assert (isolated.uv_radius <= 0.02).all()  # 1 % of the domain
     # x_u and x_v are unit vectors there, and change by at most a tenth within the radius.
     at = np.linalg.norm(np.linalg.solve(matrix, (isolated.points - away).T), axis=0)
@@ -157,7 +156,6 @@ def test_pieces_inside_of_a_trim_have_one_sample_each(name: str) -> None:
         assert (samples.report.proved, samples.report.undecided) == (1, ())
         curves = samples[samples.component == CURVE]
         assert len(curves) == pieces
-        assert side.trim is not None
         assert side.trim.contains(curves.uv).all()
         own = side.normals(*curves.uv.T)
         np.testing.assert_allclose(own - [0.0, 0.0, sign], 0.0, atol=1e-12)

@@ -64,7 +64,6 @@ def test_float32_is_float64_rounded_once(dtype):
 def test_components_are_those_of_prescribed_normals(tmp_path, on):
     torus, codes = gm.surfaces.torus(), [gm.Component.REGULAR] * 2
     at_normal = gm.GaussMap(torus, cells=(12, 8), on=on).points([[1, 0, 0]])
-    assert at_normal.component is not None
     assert (at_normal.component.dtype, at_normal.component.tolist()) == (np.uint8, codes)
     assert gm.sample(torus, 50, cells=(12, 8), on=on).component is None
     for name in ("a.npz", "a.ply"):

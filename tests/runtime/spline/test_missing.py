@@ -30,7 +30,6 @@ def sphere() -> np.ndarray:
 
 
 def known(surface: gm.Surface) -> Known:
-    assert surface.trim is not None
     (part,) = surface.trim.parts
     assert isinstance(part, Known)
     return part
@@ -48,8 +47,6 @@ def check_against(surface: gm.Surface, whole: gm.Surface) -> None:
     assert np.abs(samples.points - other.evaluate(*samples.uv.T)).max() < 1e-14
     for cells in None, (12, 12):  # what is left out does not count
         off, of_whole = gm.fit(surface, cells).misfit, gm.fit(whole, cells).misfit
-        assert off is not None
-        assert of_whole is not None
         assert off.distance <= of_whole.distance
 
 
@@ -88,7 +85,6 @@ def test_three_ways_to_say_it():
     large = np.where(np.isnan(island()), 3.4028235e38, island()).astype(np.float32)
     np.testing.assert_array_equal(known(terrain(large, nodata=3.4028235e38)).patches, expected)
     grid = terrain(HEIGHTS).grid
-    assert grid is not None
     points = grid.copy()
     points[3, 4, 1] = -1234.0
     assert not known(gm.Surface.from_grid(points, nodata=-1234)).patches.all()
@@ -119,7 +115,6 @@ def test_a_rounded_or_a_wrong_number_for_missing_data_is_said(value, given):
 def test_other_cells_depend_on_more():
     samples = gm.sample(terrain(island()), 200, cells=(8, 8))
     spline = samples.spline
-    assert spline is not None
     assert spline.trim is not None
     other = gm.fit(terrain(HEIGHTS), (8, 8))
     np.testing.assert_allclose(samples.points, other.evaluate(*samples.uv.T), atol=1e-14)
@@ -131,7 +126,6 @@ def test_a_part_of_what_is_left():
     samples = gm.sample(surface, 100)
     assert (samples.uv[:, 0] > 1.0).all()
     trim = terrain(island()).trim
-    assert trim is not None
     assert trim.contains(samples.uv).all()
 
 

@@ -52,8 +52,6 @@ def test_normals_are_those_of_the_surface(parts: int) -> None:
     outwards = np.stack([x - x / np.hypot(x, y), y - y / np.hypot(x, y), z], axis=1)
     outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
     angles = np.degrees(np.arccos(np.clip((outwards * mesh.normals).sum(axis=1), -1.0, 1.0)))
-    assert spline.misfit is not None
-    assert spline.misfit.angle is not None
     assert angles.max() < 1.5 * spline.misfit.angle
     assert np.abs(np.linalg.norm(mesh.normals, axis=1) - 1.0).max() < 1e-14
 

@@ -59,7 +59,6 @@ def regular(samples: gm.Samples) -> gm.Samples:
 def collapsed(spline: AnySpline) -> NDArray[np.bool_]:
     """Return the patches without samples."""
     found = tips_of(spline)
-    assert found is not None
     return found.collapsed
 
 

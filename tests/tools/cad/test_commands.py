@@ -1,7 +1,5 @@
 """CAD parts on the command line."""
 
-# pyright: reportOptionalMemberAccess=false
-
 import csv
 from dataclasses import replace
 

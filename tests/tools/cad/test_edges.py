@@ -1,7 +1,6 @@
 """Samples on the sharp edges of parts made of numbers."""
 
-# pyright: reportOptionalMemberAccess=false, reportOptionalOperand=false, reportOperatorIssue=false
-# pyright: reportArgumentType=false, reportOptionalSubscript=false, reportCallIssue=false
+# pyright: reportArgumentType=false, reportCallIssue=false
 # pyright: reportAttributeAccessIssue=false
 
 import itertools

@@ -1,7 +1,5 @@
 """Surfaces of faces: exact derivatives, domains and their ends, trims, normals."""
 
-# pyright: reportOptionalMemberAccess=false
-
 import math
 
 import gaussmap as gm

@@ -381,7 +381,6 @@ def test_kinds_and_dimensions(surface, kind, sizes, matrix, is_flipped):
     np.testing.assert_allclose(again[:, 0], jets[:, 0], atol=1e-13)
     np.testing.assert_allclose(tangents, jets[:, 1:3], atol=1e-13)
     trim = face.surface.trim
-    assert trim is not None
     assert trim.contains((own @ [u, v]).T).all()
 
 

@@ -59,7 +59,6 @@ def test_edges_are_reached_if_both_faces_are() -> None:
     sides = gm.sample(box(), 100, edges=True, reach=((1, 1, 0), 50.0))
     assert (whole.report.edge_samples or 0) > (sides.report.edge_samples or 0) > 0
     on_edge = sides.kind == "edge"
-    assert sides.other_normals is not None
     assert angles(sides.other_normals[on_edge], (1, 1, 0)).max() <= 50.0 + ROUNDING
 
 
@@ -107,7 +106,6 @@ def test_summaries_name_the_reach_and_the_error_of_edges(
     samples = gm.sample(whole, 60, density="uniform", reach=reach)
     assert samples.report.reach == (0.0, 0.0, 1.0, 170.0, 0.0, 0.0, 0.0, 0.05)
     error = samples.report.edge_error
-    assert error is not None
     assert least <= error < least + 1e-4
     more = f" + {error:.2g}{unit} (their error)" if least else ""
     said = f"; in reach: normals within 170° of (0, 0, 1), at least 0.05{unit}{more} from edges"

@@ -1,7 +1,6 @@
 """Samples of parts: one count, coverage and angle for all faces, and what samples know."""
 
-# pyright: reportOptionalMemberAccess=false, reportOptionalOperand=false, reportOperatorIssue=false
-# pyright: reportArgumentType=false, reportAttributeAccessIssue=false, reportOptionalIterable=false
+# pyright: reportArgumentType=false, reportAttributeAccessIssue=false
 
 import math
 import pickle
@@ -187,7 +186,6 @@ def test_an_angle_that_takes_millions_of_samples_is_refused():
     tube = needle(1e-4)
     said = r"about (\S+) million samples .* on face 0 .* ask for (\S+) degrees or more, or"
     found = re.search(said, refused(said, gm.sample, tube, angle=3.5))
-    assert found is not None
     millions, enough = map(float, found.groups())  # of two digits and more
     assert enough == pytest.approx(3.5 * math.sqrt(millions / 2.0), rel=0.06)
     assert len(gm.sample(tube, 50)) == 50

@@ -1,8 +1,7 @@
 """Points of faces with given normals, against oracles that share no code with the project."""
 
-# pyright: reportOptionalMemberAccess=false, reportOptionalSubscript=false
 # pyright: reportArgumentType=false, reportAttributeAccessIssue=false
-# pyright: reportOptionalIterable=false, reportCallIssue=false
+# pyright: reportCallIssue=false
 
 import itertools
 import math

@@ -1,6 +1,6 @@
 """Parts in files: the same again, and one sentence for anything else."""
 
-# pyright: reportOptionalMemberAccess=false, reportArgumentType=false
+# pyright: reportArgumentType=false
 
 import io
 import json

@@ -16,7 +16,6 @@ def test_a_mesh_is_written(suffix: str, capsys: pytest.CaptureFixture[str]) -> N
     out, err = capsys.readouterr()
     pattern = rf"torus\.{suffix}: (\d+) vertices, (\d+) triangles, closed; 95 % have .*\n"
     found = re.fullmatch(pattern, out)
-    assert found is not None
     assert err == ""
     mesh = pytest.importorskip("pyvista").read(f"torus.{suffix}")
     assert mesh.n_cells == int(found[2]) == 2 * int(found[1])

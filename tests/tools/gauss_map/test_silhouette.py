@@ -305,7 +305,6 @@ def test_it_lies_on_the_surface_and_has_its_count(name: str) -> None:
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     assert np.abs(normals @ axis).max() < 2e-12
     assert np.abs(jets[:, 0] - outline.points).max() < 1e-12
-    assert outline.on_surface is not None
     assert outline.on_surface.all()
     assert (outline.report.on, outline.report.unrefined) == ("surface", 0)
     on_spline = gm.silhouette(surface, axis, count=400, on="spline")
@@ -381,7 +380,6 @@ def test_visible_parts_of_a_torus(sight: dict[str, Any]) -> None:
     assert 0.1 < free[outline.hyperbolic].mean() < 0.9
     assert (seen != free).mean() < 0.04
     again = pickle.loads(pickle.dumps(outline))
-    assert again.eye is not None
     assert again.eye.far == ("direction" in sight)
     assert callable(again.view)  # no field hides the method of samples
 

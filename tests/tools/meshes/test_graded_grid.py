@@ -221,7 +221,6 @@ class TestAligned:
             surface = surface.trimmed(within=lambda u, v: u + v < 5.0)
         samples = gm.sample(surface, 400, density="aligned", cells=(16, 16))
         if name == "part of a grid":
-            assert samples.column is not None
             samples = samples[samples.column % 5 != 3]
         assert isinstance(samples.spline, gm.Spline)
         check_nodes(samples)
@@ -247,7 +246,6 @@ class TestAligned:
 
     def test_a_part_by_angle(self):
         samples = gm.sample("torus", 700, density="aligned", cells=(16, 16))
-        assert samples.row is not None
         whole, part = samples.mesh(angle=90.0), samples[samples.row > 3].mesh(angle=30.0)
         check("torus", whole)
         assert len(part.boundary_edges) > 0

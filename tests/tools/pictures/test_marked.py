@@ -9,7 +9,6 @@ def test_both_points_of_a_torus_are_visible() -> None:
     torus = gm.fit(gm.surfaces.torus(), cells=(24, 24))
     samples = gm.sample(torus, normals=gm.fibonacci(300))
     found = marked(samples, scene_of(torus).visible(samples.points), view())
-    assert found is not None
     assert np.count_nonzero(found.visible) == np.count_nonzero(found.samples) == 2
     assert (samples.normals[found.samples] == found.normal).all()
     assert 0.3 < np.linalg.norm(view()[:2] @ found.normal) < 0.95  # an arrow that is seen
@@ -22,7 +21,6 @@ def test_rare_samples_are_not_marked() -> None:
     visible = ~few
     visible[np.flatnonzero(few)[0]] = True  # one visible sample, where the others have two
     found = marked(samples, visible, view())
-    assert found is not None
     assert not (found.samples & few).any()
 
 

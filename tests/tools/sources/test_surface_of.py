@@ -23,7 +23,6 @@ def test_cells() -> None:
     assert found is torus
     assert cells is not None
     misfit = gm.fit(torus, cells).misfit
-    assert misfit is not None
     assert misfit.distance <= 0.1
     spline, cells = with_tolerance(gm.Surface.from_grid(POINTS), Named(tolerance=0.1))
     assert isinstance(spline, gm.Spline)

@@ -215,7 +215,6 @@ def test_a_trimmed_offset_is_as_far_as_its_distance(d: float, scale: float) -> N
     assert len(moved) == np.count_nonzero(distances >= abs(d) - 1e-4)
     assert (len(moved) < 500) == (d != 0.5)
     assert from_torus(moved.points / scale).min(initial=1.0) >= abs(d) - 1e-4
-    assert moved.offset_of is not None
     assert moved.offset_of.trimmed == (d != 0.5)
 
 

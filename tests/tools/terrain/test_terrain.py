@@ -49,7 +49,6 @@ def world(path: Path) -> np.ndarray:
 
 
 def assert_same_points(surface: gm.Surface, expected: np.ndarray, atol: float = 1e-9) -> None:
-    assert surface.grid is not None
     found = surface.grid.reshape(-1, 3)
     expected = expected.reshape(-1, 3)
     order = [np.lexsort(x.round(3).T) for x in (found, expected)]
@@ -75,7 +74,6 @@ def test_points_are_where_rasterio_says(tmp_path: Path, transform: Affine, kind:
     path = write(tmp_path / "dem.tif", transform=transform, crs="EPSG:32617", tags=tags)
     surface = gm.terrain(path)
     assert_same_points(surface, world(path))
-    assert surface.georeference is not None
     assert surface.georeference.crs == "EPSG:32617"
     if transform.is_rectilinear:
         u, v = (np.mean(x) for x in surface.domain)
@@ -95,7 +93,6 @@ def test_degrees_become_the_zone_of_utm(tmp_path: Path) -> None:
         expected[..., 0], expected[..., 1] = np.reshape(x, SHAPE), np.reshape(y, SHAPE)
         assert_same_points(surface, expected, 1e-6)
         assert surface.georeference == gm.fit(surface).georeference
-        assert surface.georeference is not None
         assert surface.georeference.crs == f"EPSG:{number}"
 
 
@@ -104,7 +101,6 @@ def test_arrays_of_degrees_are_refused_or_projected() -> None:
     refused("look like degrees", gm.terrain, HEIGHTS, x=x, y=y)
     surface = gm.terrain(HEIGHTS, x=x, y=y, source_crs=4326)
     same = gm.terrain(HEIGHTS, *(), x=np.broadcast_to(x, SHAPE), y=y, crs="EPSG:4326")
-    assert surface.grid is not None
     np.testing.assert_array_equal(surface.grid, same.grid)
     dx, dy = np.ptp(surface.grid[..., 0]), np.ptp(surface.grid[..., 1])
     assert 1420 < dx < 1510  # 16 thousandths of 111.3 km · cos 36.7°, and the turn of the grid
@@ -164,7 +160,6 @@ def test_nodata_scale_and_offset(tmp_path: Path, kind: str) -> None:
     tags = {"scales": (0.5,), "offsets": (100.0,)}
     path = write(tmp_path / "dem.tif", stored, nodata=7, tags=tags, **PLACED)
     surface = gm.terrain(path)
-    assert surface.grid is not None
     heights = surface.grid[..., 2].T[::-1]
     np.testing.assert_array_equal(np.isnan(heights), missing)
     np.testing.assert_array_equal(heights[~missing], 0.5 * stored[~missing] + 100.0)
@@ -173,7 +168,6 @@ def test_nodata_scale_and_offset(tmp_path: Path, kind: str) -> None:
     at = (rows - 0.5).round().astype(int), (columns - 0.5).round().astype(int)
     assert not missing[at].any()
     other = gm.terrain(path, nodata=float(stored[0, 0]))
-    assert other.grid is not None
     assert np.isnan(other.grid[0, -1, 2])
     assert not np.isnan(other.grid[8, 6, 2])
 
@@ -182,7 +176,6 @@ def test_bands_masks_and_units(tmp_path: Path) -> None:
     two = np.stack([HEIGHTS, HEIGHTS + 5.0]).astype("f4")
     path = write(tmp_path / "two.tif", two, tags={"units": ("metre", "foot")}, **PLACED)
     first = gm.terrain(path)
-    assert first.grid is not None
     assert first.grid[0, -1, 2] == two[0, 0, 0]
     refused("heights in foot and x, y in met", gm.terrain, path, band=2)
     refused("has 2 bands, and no band 3", gm.terrain, path, band=3)
@@ -260,7 +253,6 @@ def test_an_ascii_grid(tmp_path: Path) -> None:
     np.savetxt(path, np.nan_to_num(heights, nan=-9999), "%.9g", header=lines, comments="")
     surface = gm.terrain(path, source_crs="EPSG:32617")
     np.testing.assert_array_equal(surface.grid, whole)
-    assert surface.georeference is not None
     assert surface.georeference.crs == "EPSG:32617"
     path.write_text("ncols")
     refused("damaged or is no ASCII grid", gm.terrain, path, error=gm.errors.FileError)
@@ -288,7 +280,6 @@ def test_too_large_files(tmp_path: Path) -> None:
 def test_an_origin_is_subtracted_and_kept(tmp_path: Path) -> None:
     path, origin = write(tmp_path / "dem.tif", **PLACED), (500_000.0, 4_099_000.0, 100.0)
     far, near = gm.terrain(path), gm.terrain(path, origin=origin)
-    assert far.grid is not None
     np.testing.assert_array_equal(near.grid, far.grid - origin)
     samples = gm.sample(near, 100)
     assert samples.report.origin == origin

@@ -27,7 +27,6 @@ def samples() -> gm.Samples:
 def read_page(text: str) -> dict[str, Any]:
     """Return the data of a page, with arrays (k,) in place of their texts."""
     found = re.search(r'<script type="application/json"[^>]*>(.*?)</script>', text, re.DOTALL)
-    assert found is not None
     data = json.loads(found[1])
     kinds = {"points": "<f4", "normals": "<f4", "vertices": "<f4", "kind": "u1", "prescribed": "u1"}
     for name in (*kinds, "neighbours", "triangles"):

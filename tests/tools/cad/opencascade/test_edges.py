@@ -1,7 +1,7 @@
 """Samples on sharp edges against what Open CASCADE says of both faces."""
 
-# pyright: reportMissingImports=false, reportOptionalSubscript=false, reportOptionalOperand=false
-# pyright: reportArgumentType=false, reportOptionalMemberAccess=false
+# pyright: reportMissingImports=false
+# pyright: reportArgumentType=false
 
 import gaussmap as gm
 import numpy as np
