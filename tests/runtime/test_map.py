@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ..refusals import refused
+
 Array = NDArray[np.float64]
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 NORMALS = np.concatenate([AXES, gm.fibonacci(300)])
@@ -141,10 +143,8 @@ def test_surfaces_of_several_pieces_have_maps():
     [{"surface": "toru"}, {"surface": 3}, {"surface": "torus", "on": "moon"}, {"surface": [1, 2]}],
 )
 def test_unusable_arguments_are_refused_at_once(arguments):
-    with pytest.raises(gm.GaussmapError):
-        gm.GaussMap(**arguments)
-    with pytest.raises(gm.GaussmapError):
-        gm.sample(**arguments, normals=AXES)
+    refused("", gm.GaussMap, **arguments, error=gm.GaussmapError)
+    refused("", gm.sample, **arguments, normals=AXES, error=gm.GaussmapError)
 
 
 def test_a_point_of_no_curvature_counts_with_its_sign_bit() -> None:

@@ -180,8 +180,7 @@ def test_concatenation():
     proofs = [replace(FULL, report=replace(FULL.report, proved=k, undecided=())) for k in (2, 3)]
     assert Samples.concatenate(proofs).report.proved == 5
     for unusable in ([], [FULL, narrow()], [FULL, narrow(None, dtype="f4")], [1], [FULL, None]):
-        with pytest.raises(gm.errors.InputError):
-            Samples.concatenate(unusable)  # pyright: ignore[reportArgumentType]
+        refused("", Samples.concatenate, unusable)  # pyright: ignore[reportArgumentType]
 
 
 # --- files ----------------------------------------------------------------------------------------

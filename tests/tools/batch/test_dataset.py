@@ -82,8 +82,7 @@ def test_parts_that_are_not_there(dataset, part, error, text):
      (3, gm.errors.InputError)],
 )  # fmt: skip
 def test_columns_that_are_not_there(dataset, columns, error):
-    with pytest.raises(error):
-        dataset.manifest(columns)
+    refused("", dataset.manifest, columns, error=error)
 
 
 def test_a_sequence(dataset):
@@ -107,8 +106,7 @@ def test_parts_are_seen_as_they_are_done(tmp_path):
     assert dataset.manifest().equals(whole, check_metadata=True)
     part_path(tmp_path, 4).unlink()
     assert len(dataset) == len(dataset.manifest(["part"])) == PARTS - 1
-    with pytest.raises(gm.errors.UnknownNameError):
-        dataset.samples(4)
+    refused("", dataset.samples, 4, error=gm.errors.UnknownNameError)
     for part in range(PARTS):
         part_path(tmp_path, part).unlink(missing_ok=True)
     assert dataset.summary() == "0 parts with 0 samples"

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from gaussmap.tools.files.numpy_files import read_array
 
+from ...refusals import refused
+
 
 def npy(array: Any) -> bytes:
     file = io.BytesIO()
@@ -46,8 +48,7 @@ def test_a_bomb_is_refused_before_anything_is_unpacked(bomb, capsys, monkeypatch
 
     monkeypatch.setattr(zipfile.ZipFile, "open", fail)
     for read in (gm.read_samples, gm.read_part):
-        with pytest.raises(gm.errors.FileError):
-            read(bomb)
+        refused("", read, bomb, error=gm.errors.FileError)
     with pytest.raises(
         gm.errors.FileError, match=r"would unpack to 419 MB, more than 100 times as much"
     ):
@@ -62,8 +63,7 @@ def test_a_size_that_lies_is_noticed(bomb, tmp_path):
     struct.pack_into("<I", data, directory + 24, 4096)  # the size that the directory tells
     path = tmp_path / "lie.npz"
     path.write_bytes(data)
-    with pytest.raises(gm.errors.FileError):
-        read_array(str(path))
+    refused("", read_array, str(path), error=gm.errors.FileError)
 
 
 @pytest.mark.parametrize("shape", ["(9999999999999,)", "(99, 99)", "(-1,)"])
@@ -73,8 +73,7 @@ def test_shapes_that_lie(tmp_path, shape):
     whole = npy(np.arange(4.0)).replace(text, f"{shape}, }}".encode(), 1)
     assert len(whole) == len(data)
     write(tmp_path / "a.npz", points=whole)
-    with pytest.raises(gm.errors.FileError):
-        read_array(str(tmp_path / "a.npz"))
+    refused("", read_array, str(tmp_path / "a.npz"), error=gm.errors.FileError)
 
 
 def test_what_is_compressed_well_but_small_is_read(tmp_path):
@@ -87,6 +86,5 @@ def test_names_lead_nowhere(tmp_path):
     inner = tmp_path / "a" / "b"
     inner.mkdir(parents=True)
     write(inner / "a.npz", **{"../../evil": npy(np.ones(3)), "/etc/evil": npy(np.ones(4))})
-    with pytest.raises(gm.errors.FileError):
-        gm.read_samples(inner / "a.npz")
+    refused("", gm.read_samples, inner / "a.npz", error=gm.errors.FileError)
     assert [x.name for x in tmp_path.rglob("*")] == ["a", "b", "a.npz"]

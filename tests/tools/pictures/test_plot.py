@@ -149,8 +149,7 @@ def test_nothing_half_written(torus, tmp_path, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(Figure, "savefig", half)
-    with pytest.raises(KeyboardInterrupt):
-        plotted(torus, path, count=50)
+    refused("", plotted, torus, path, count=50, error=KeyboardInterrupt)
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.png", "old")]
 
 
@@ -214,5 +213,4 @@ def test_the_picture_of_a_gauss_map_has_its_folds_and_cusps(parts: ModuleType) -
     cusps = [x for x in sphere.lines if x.get_marker() == "o"]
     assert sum(np.size(x.get_xdata()) for x in cusps) == 1
     assert surface.figure.texts[0].get_text() == "1 fold with 1 cusp"
-    with pytest.raises(gm.errors.InputError, match="are for surfaces, not for parts"):
-        gm.GaussMap(parts.box()).plot()
+    refused("are for surfaces, not for parts", gm.GaussMap(parts.box()).plot)

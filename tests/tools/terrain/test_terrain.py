@@ -236,10 +236,8 @@ def test_what_has_no_place_is_refused(tmp_path: Path) -> None:
         {}, {"x": np.arange(17.0)}, {"spacing": (0, 1)}, {"spacing": "a"}
     ]  # fmt: skip
     for arguments in incomplete:
-        with pytest.raises(gm.errors.InputError):
-            gm.terrain(HEIGHTS, **arguments)
-    with pytest.raises(gm.errors.InputError):
-        gm.terrain(HEIGHTS[0], spacing=(1, 1))
+        refused("", gm.terrain, HEIGHTS, **arguments)
+    refused("", gm.terrain, HEIGHTS[0], spacing=(1, 1))
 
 
 def test_an_ascii_grid(tmp_path: Path) -> None:
