@@ -36,13 +36,9 @@ def curvature_of_torus(v: np.ndarray) -> np.ndarray:
 
 
 REQUESTS: list[dict[str, Any]] = [
-    {"normals": gm.icosphere(6)},
-    {"count": 300},
-    {"count": 300, "density": "gauss"},
-    {"count": 300, "density": 0.5},
-    {"angle": 15.0},
-    {"coverage": 0.2},
-]
+    {"normals": gm.icosphere(6)}, {"count": 300}, {"count": 300, "density": "gauss"},
+    {"count": 300, "density": 0.5}, {"angle": 15.0}, {"coverage": 0.2},
+]  # fmt: skip
 
 
 MIXED: list[dict[str, Any]] = [{"normals": gm.icosphere(4)}, {"count": 60}]

@@ -145,13 +145,9 @@ def test_symbolic_derivatives_are_filled_by_numerical_ones():
 def saddle_derivatives(u, v):
     zero, one = np.zeros_like(u), np.ones_like(u)
     rows = [
-        (u, v, u * v + u * u),
-        (one, zero, v + 2 * u),
-        (zero, one, u),
-        (zero, zero, 2 * one),
-        (zero, zero, one),
-        (zero, zero, zero),
-    ]
+        (u, v, u * v + u * u), (one, zero, v + 2 * u), (zero, one, u), (zero, zero, 2 * one),
+        (zero, zero, one), (zero, zero, zero),
+    ]  # fmt: skip
     return np.stack([np.stack(x, axis=-1) for x in rows], axis=-2)
 
 

@@ -108,13 +108,9 @@ def check(surface: gm.Surface, found: tuple[np.ndarray, ...]) -> None:
 # --- tests ----------------------------------------------------------------------------------------
 
 CASES = [
-    ((3, 3), KNOTS, False),
-    ((3, 3), KNOTS, True),
-    ((2, 4), KNOTS[:2], True),
-    ((3, 2), (0.6, 0.6, 1.3), False),
-    ((1, 3), (), True),
-    ((6, 5), KNOTS[:1], True),
-]
+    ((3, 3), KNOTS, False), ((3, 3), KNOTS, True), ((2, 4), KNOTS[:2], True),
+    ((3, 2), (0.6, 0.6, 1.3), False), ((1, 3), (), True), ((6, 5), KNOTS[:1], True),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("width", [0.2, 0.02, 1e-6, 0.0])
