@@ -13,17 +13,7 @@ import sympy as sp
 from .formula import Formula
 from .notation import flat, scalar, substitute
 from .offset import BASIS, LINEAR_FIELD, MOVED, SPHERICAL_FIELD, n0, n1, n2
-from .patch import (
-    CLOSED_CURVATURE,
-    FORMS,
-    NET,
-    ORIENTATION,
-    POWER_FORM,
-    SUPPORT_FUNCTION,
-    n,
-    u,
-    v,
-)
+from .patch import CLOSED_CURVATURE, FORMS, NET, ORIENTATION, POWER_FORM, SUPPORT_FUNCTION, n, u, v
 from .reading import ReadingError, read
 
 PAPER_NORMAL = (scalar("n_1"), scalar("n_2"), scalar("n_3"))
@@ -43,9 +33,7 @@ class BezierTriangle:
     """
 
     def __init__(
-        self,
-        control_points: Iterable[Iterable[object]],
-        normal: Sequence[sp.Symbol] = PAPER_NORMAL,
+        self, control_points: Iterable[Iterable[object]], normal: Sequence[sp.Symbol] = PAPER_NORMAL
     ) -> None:
         """Raise ValueError unless given six points of three real coordinates, and three symbols.
 

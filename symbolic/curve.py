@@ -110,11 +110,7 @@ TANGENT = Formula.build(
     "The tangent vector, and the normal: the tangent after a quarter turn clockwise.",
     source=f"eq. (1), in the plane: {SECTION}",
     inputs=[a, b, t],
-    outputs=[
-        ("p_t", sp.diff(POINT, t)),
-        ("N_x", p_t.components[1]),
-        ("N_y", -p_t.components[0]),
-    ],
+    outputs=[("p_t", sp.diff(POINT, t)), ("N_x", p_t.components[1]), ("N_y", -p_t.components[0])],
 )
 
 

@@ -35,11 +35,7 @@ GROUPS: tuple[Group, ...] = (
     ("hessian", "Hessian", "The entries of a Hessian, a symmetric matrix.", HESSIAN),
 )
 # A formula takes the whole tuple as one argument if its inputs contain these fields.
-NEEDED = {
-    "patch": set(vectors("abcde")),
-    "arc": set(plane_vectors("ab")),
-    "hessian": set(HESSIAN),
-}
+NEEDED = {"patch": set(vectors("abcde")), "arc": set(plane_vectors("ab")), "hessian": set(HESSIAN)}
 
 
 # The type of the tuple of numbers for each kind of vector symbol, with the sentence of its

@@ -163,8 +163,7 @@ def CONE_NORMAL() -> Parts:
     quotient = _quotient(along_u.cross(along_v), u, -angle)
     R, x, y = map(scalar, ("R", "x", "y"))
     return Parts(
-        inputs=[R, x, y],
-        outputs=[("q", substitute(quotient, {radius: R, sp.sin(angle): x, v: y}))],
+        inputs=[R, x, y], outputs=[("q", substitute(quotient, {radius: R, sp.sin(angle): x, v: y}))]
     )
 
 

@@ -23,12 +23,7 @@ E, F, G, L = (scalar(x) for x in "EFGL")
 
 FIRST_FORM = [("E", Dot(d, d)), ("F", Dot(d, e)), ("G", Dot(e, e))]
 # The normal N, and the second fundamental form times the length of N.
-NORMAL_AND_SECOND_FORM = [
-    ("N", Cross(d, e)),
-    ("A", Dot(N, a)),
-    ("B", Dot(N, b)),
-    ("C", Dot(N, c)),
-]
+NORMAL_AND_SECOND_FORM = [("N", Cross(d, e)), ("A", Dot(N, a)), ("B", Dot(N, b)), ("C", Dot(N, c))]
 
 AT_JET = Formula.build(
     "at_jet",
@@ -70,13 +65,7 @@ NEWTON = Formula.build(
     "the patch that osculates the surface. $s$ is the squared sine of the angle between $n$ and "
     "the normal $N$ of the surface, $q = n × N$, and $m$ has the sign of the cosine.",
     inputs=[*VECTORS, n],
-    terms=[
-        *FORM_TERMS,
-        ("D", SOLUTION.D),
-        ("r", 1 / D),
-        ("q", Q * d - P * e),
-        ("N", Cross(d, e)),
-    ],
+    terms=[*FORM_TERMS, ("D", SOLUTION.D), ("r", 1 / D), ("q", Q * d - P * e), ("N", Cross(d, e))],
     outputs=[
         ("u", SOLUTION.U * r),
         ("v", SOLUTION.V * r),

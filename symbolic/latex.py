@@ -196,10 +196,7 @@ def _operations(formula: Formula) -> str:
 
 
 def _converted(
-    sentence: str,
-    *,
-    mathematics: Callable[[str], str],
-    plain: Callable[[str], str] = str,
+    sentence: str, *, mathematics: Callable[[str], str], plain: Callable[[str], str] = str
 ) -> str:
     """Return a sentence with mathematics (between dollar signs) and other text converted."""
     parts = sentence.split("$")

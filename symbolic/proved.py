@@ -85,12 +85,7 @@ REMAINDERS = Formula.build(
 def EXCESSES() -> Parts:
     """Bound both derivatives over the cell, and their combinations without t and without s."""
     along, across = P + A * s + B * t, Q + B * s + C * t
-    linear = {
-        "e1": along,
-        "e2": across,
-        "e3": C * along - B * across,
-        "e4": A * across - B * along,
-    }
+    linear = {"e1": along, "e2": across, "e3": C * along - B * across, "e4": A * across - B * along}
     outputs = []
     for name, form in linear.items():
         value = substitute(form, {s: sp.S.Zero, t: sp.S.Zero})
@@ -260,10 +255,7 @@ FOLD_EXTREME = Formula.build(
     inputs=[*LINEAR_FORMS, G0, G1, G2, k, m, c2, first, second],
     terms=[
         ("o3", (sp.Abs(P) + first) / m),
-        (
-            "g",
-            sp.Abs(C - B**2 / A) + (G2 + 2 * k * G1 + k**2 * G0) * off + second * (1 + k) ** 2,
-        ),
+        ("g", sp.Abs(C - B**2 / A) + (G2 + 2 * k * G1 + k**2 * G0) * off + second * (1 + k) ** 2),
         ("h", first + k * (sp.Abs(P) + first)),
     ],
     outputs=[

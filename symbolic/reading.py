@@ -235,9 +235,7 @@ def replaced(expression: Any, rules: Mapping[Any, Any]) -> Any:  # noqa: ANN401 
     return of(expression) if rules else expression
 
 
-def with_shared_parts(
-    expressions: Iterable[Any],
-) -> tuple[list[tuple[sp.Symbol, Any]], list[Any]]:
+def with_shared_parts(expressions: Iterable[Any]) -> tuple[list[tuple[sp.Symbol, Any]], list[Any]]:
     """Return definitions of symbols for parts that are used several times, and the expressions.
 
     Symbols replace these parts in the expressions, and in the definitions.

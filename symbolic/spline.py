@@ -202,8 +202,7 @@ def edge_moments() -> Mapping[tuple[int, int], Fraction]:
 
 
 def coefficient_weights(
-    *orbits: Sequence[Point],
-    moments: Moments = functional_moments,
+    *orbits: Sequence[Point], moments: Moments = functional_moments
 ) -> list[Fraction]:
     """Return the weights of a functional with given moments: one weight for each orbit of points.
 

@@ -187,11 +187,7 @@ SPHERE = ParametricSurface(
     name="sphere",
     sentence="The whole sphere around the origin, with the longitude u, the latitude v, poles on "
     "the z axis, and outward normals.",
-    position=(
-        radius * sp.cos(u) * sp.cos(v),
-        radius * sp.sin(u) * sp.cos(v),
-        radius * sp.sin(v),
-    ),
+    position=(radius * sp.cos(u) * sp.cos(v), radius * sp.sin(u) * sp.cos(v), radius * sp.sin(v)),
     u=u,
     v=v,
     parameters=(Parameter(radius, sp.Rational(1), "The radius."),),
@@ -276,11 +272,7 @@ CATENOID = ParametricSurface(
     name="catenoid",
     sentence="The minimal surface √(x² + y²) = radius cosh(z/radius), cut off at z = ±radius; u is "
     "the angle around the z axis, v = z/radius. Normals point away from the axis.",
-    position=(
-        radius * sp.cosh(v) * sp.cos(u),
-        radius * sp.cosh(v) * sp.sin(u),
-        radius * v,
-    ),
+    position=(radius * sp.cosh(v) * sp.cos(u), radius * sp.cosh(v) * sp.sin(u), radius * v),
     u=u,
     v=v,
     parameters=(Parameter(radius, sp.Rational(1), "The radius of the waist."),),

@@ -149,10 +149,7 @@ def test_public_names_are_used(path: Path) -> None:
         ("from gaussmap.runtime.base.errors import shown", None),
         ("from gaussmap.runtime import search", None),
         ("from gaussmap.runtime.search.exact import _places", "gaussmap.runtime.search"),
-        (
-            "from gaussmap.runtime.search import exact; exact._places",
-            "gaussmap.runtime.search",
-        ),
+        ("from gaussmap.runtime.search import exact; exact._places", "gaussmap.runtime.search"),
         ("from gaussmap.generated.patch import forms", "gaussmap.runtime.samples"),
         ("from gaussmap.benchmarks import guard", None),
         ("from ..search.test_exact import OPEN", "gaussmap.runtime.spline"),

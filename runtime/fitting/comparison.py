@@ -345,11 +345,7 @@ def _belonging(surface: Surface, parts: Array) -> Indices:
 
 
 def _known(
-    surface: Surface,
-    parts: Array,
-    points: Array,
-    some: Indices,
-    size: tuple[float, float],
+    surface: Surface, parts: Array, points: Array, some: Indices, size: tuple[float, float]
 ) -> Known:
     """Evaluate a surface at test points, with normals at some of them; see `_normals`."""
     normals = _normals(surface, parts[:, some], *size)

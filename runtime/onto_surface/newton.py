@@ -111,11 +111,7 @@ def refine(surface: Surface, spline: Spline, target: Target, threads: int | None
 
 
 def _refine_away(
-    surface: Surface,
-    spline: Spline,
-    charts: list[PoleChart],
-    target: Target,
-    threads: int | None,
+    surface: Surface, spline: Spline, charts: list[PoleChart], target: Target, threads: int | None
 ) -> list[Indices]:
     """Do `refine` for samples away from poles; return for each chart the samples near its pole.
 

@@ -30,12 +30,7 @@ from .apexes import Apex, apexes_of
 from .components import Undecided, boxes_of, components_of, with_kinds
 from .discs import PoleDisc
 from .grid_lines import joints_of, lines_of
-from .kernels.answers import (
-    BORDER,
-    BOX,
-    Answers,
-    merge_places,
-)
+from .kernels.answers import BORDER, BOX, Answers, merge_places
 from .kernels.cell_bounds import OPEN, REACH, WIDE, CellBounds, Work, cut_cells
 from .kernels.components import indices_around
 from .kernels.discs import decide_discs
@@ -366,10 +361,7 @@ class ProvedIndex:
         return answers
 
     def _merged(
-        self,
-        answers: list[Answers],
-        parts: list[Places],
-        count: int,
+        self, answers: list[Answers], parts: list[Places], count: int
     ) -> tuple[Places, list[Answers]]:
         """Return the solutions of `answers` that are not in `parts`, each once, and more answers.
 

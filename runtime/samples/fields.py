@@ -172,9 +172,7 @@ def new_field(
 
 
 def regular(
-    count: int,
-    fields: Sequence[str],
-    memory: Mapping[str, NDArray[Any]] = MappingProxyType({}),
+    count: int, fields: Sequence[str], memory: Mapping[str, NDArray[Any]] = MappingProxyType({})
 ) -> dict[str, NDArray[Any]]:
     """Return {"component": codes of `count` regular points}; {} without "component" in `fields`."""
     found = {x: new_field(x, count, dtype_of(x, "f8"), memory) for x in GIVEN_NAMES if x in fields}

@@ -86,10 +86,7 @@ def decide(
 
 
 def decided_forms(
-    spline: Spline,
-    patches: NDArray[np.int64],
-    normals: NDArray[np.float64],
-    threads: int | None,
+    spline: Spline, patches: NDArray[np.int64], normals: NDArray[np.float64], threads: int | None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int8]]:
     """Return U/D and V/D (k, 2), |D| (k,), and exact signs of U, V, W (k, 3), for k pairs.
 
@@ -189,10 +186,7 @@ def _poles_at(spline: Spline, places: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def _first_of_each_place(
-    spline: Spline,
-    numbers: NDArray[np.int64],
-    place: NDArray[np.float64],
-    near: NDArray[np.bool_],
+    spline: Spline, numbers: NDArray[np.int64], place: NDArray[np.float64], near: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
     """Return a mask of the hits to keep.
 

@@ -18,13 +18,7 @@ from ..domain.domain import Boundary, Domain
 from ..domain.inside import extremes_around
 from .kernels.spline import control_nets, patches_at
 from .poles import spread_missing, without_poles
-from .quasi_interpolant import (
-    Border,
-    coefficients_with_ring,
-    from_grid,
-    from_values,
-    values_at,
-)
+from .quasi_interpolant import Border, coefficients_with_ring, from_grid, from_values, values_at
 
 # The usual values of missing elevations.
 USUAL_NODATA = (-9999.0, -99999.0, -32768.0, float(np.finfo(np.float32).min))

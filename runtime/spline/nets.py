@@ -229,11 +229,7 @@ def vectors_of_nets(nets: Array) -> Array:
 
 @staticmethod
 def from_nets(
-    nets: ArrayLike,
-    triangles: ArrayLike | None = None,
-    *,
-    name: str = "nets",
-    smooth: float = 0.01,
+    nets: ArrayLike, triangles: ArrayLike | None = None, *, name: str = "nets", smooth: float = 0.01
 ) -> NetSpline:
     """Return a spline of quadratic Bézier triangles on any triangulation.
 

@@ -162,11 +162,7 @@ def moved_inside(u: Array, v: Array, domain: Domain, boundary: Boundary) -> tupl
 
 
 def differences(
-    function: Function,
-    u: Array,
-    v: Array,
-    steps: tuple[float, float],
-    bounds: Bounds = EVERYWHERE,
+    function: Function, u: Array, v: Array, steps: tuple[float, float], bounds: Bounds = EVERYWHERE
 ) -> tuple[Array, Array]:
     """Return x, x_u, x_v, x_uu, x_uv, x_vv of a function by differences of nine points.
 
@@ -257,11 +253,7 @@ def shifts_inside(
 
 
 def nodes_between(
-    values: Array,
-    offsets: Indices,
-    step: float | Array,
-    low: float | Array,
-    high: float | Array,
+    values: Array, offsets: Indices, step: float | Array, low: float | Array, high: float | Array
 ) -> Array:
     """Return the nodes values + offsets × step of differences.
 

@@ -15,14 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..base.checks import text, with_gaps
 from ..base.errors import InputError
 from ..base.georeference import Georeference
-from ..domain.domain import (
-    Assumed,
-    Boundary,
-    Domain,
-    Periodic,
-    checked_boundary,
-    checked_domain,
-)
+from ..domain.domain import Assumed, Boundary, Domain, Periodic, checked_boundary, checked_domain
 from ..domain.trim import Trim, trimmed_by
 from ..spline.quasi_interpolant import fit_grid
 from .derivatives import Evaluation

@@ -11,12 +11,7 @@ from gaussmap.benchmarks.peers.forms import Torus
 from gaussmap.benchmarks.peers.metrics import Errors, Places
 from gaussmap.benchmarks.peers.peer import Peer, Turns
 from gaussmap.benchmarks.peers.untuned import UNTUNED
-from gaussmap.benchmarks.quality import (
-    measure,
-    meshers,
-    surfaces,
-    ways,
-)
+from gaussmap.benchmarks.quality import measure, meshers, surfaces, ways
 from gaussmap.benchmarks.quality.opening import opening
 
 ROOT = Path(__file__).parents[2]

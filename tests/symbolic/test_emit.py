@@ -16,14 +16,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from gaussmap.generated import vectors
-from gaussmap.symbolic import (
-    emit,
-    files,
-    formulas,
-    loops,
-    support,
-    surfaces,
-)
+from gaussmap.symbolic import emit, files, formulas, loops, support, surfaces
 from gaussmap.symbolic.__main__ import main
 from gaussmap.symbolic.formula import Formula
 from gaussmap.symbolic.notation import VectorSymbol, scalar

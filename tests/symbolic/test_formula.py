@@ -5,10 +5,7 @@ import sys
 
 import pytest
 import sympy as sp
-from gaussmap.symbolic import (
-    Formula,
-    formulas,
-)
+from gaussmap.symbolic import Formula, formulas
 from gaussmap.symbolic.formula import BEYOND_THE_PAPER, Parts, compose, formula
 from gaussmap.symbolic.notation import (
     Cross,

@@ -87,10 +87,7 @@ def test_names(name, bold, latex):
         ("principal_radii", r"R_{1} R_{2} &= \frac{|\mathbf{N}|^{2}}{D}"),
         ("orientation", r"2 c_{3} &= \det(\nabla U, \nabla V, \nabla D)"),
         ("gaussian_curvature_closed_form", r"K &= \frac{D^{5}}{c_{3}^{2} |\mathbf{n}|^{4}}"),
-        (
-            "coefficient",
-            r"\mu &= 2 f - \frac{1}{4} \bigl( g_{0} + g_{1} + g_{2} + g_{3} \bigr)",
-        ),
+        ("coefficient", r"\mu &= 2 f - \frac{1}{4} \bigl( g_{0} + g_{1} + g_{2} + g_{3} \bigr)"),
         ("control_normals", r"\mathbf{N}_{200} &= \mathbf{s}_{100} \times \mathbf{t}_{100} \\"),
     ],
 )

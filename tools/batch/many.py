@@ -82,11 +82,7 @@ def sample_many(
 
 @overload
 def sample_many(
-    surfaces: Iterable[Source],
-    count: int | None = None,
-    *,
-    out: PathLike,
-    **how: Unpack[_Stored],
+    surfaces: Iterable[Source], count: int | None = None, *, out: PathLike, **how: Unpack[_Stored]
 ) -> Dataset: ...
 
 

@@ -33,11 +33,7 @@ TOLERANCE = 1e-6
 
 
 def part_of_surfaces(
-    _: Part,
-    surfaces: Sequence[Surface | str],
-    tolerance: float | None,
-    name: str,
-    unit: str | None,
+    _: Part, surfaces: Sequence[Surface | str], tolerance: float | None, name: str, unit: str | None
 ) -> Part:
     """Return the result of `Part([...])`; raises the exceptions of `Part`."""
     held, known = _checked(surfaces), None if unit is None else checked_unit(unit)

@@ -285,12 +285,7 @@ class Meshing:
 
     @classmethod
     def of(
-        cls,
-        part: Part,
-        whole: PartSpace,
-        count: int,
-        failed: dict[int, str],
-        spaced: type[Spacing],
+        cls, part: Part, whole: PartSpace, count: int, failed: dict[int, str], spaced: type[Spacing]
     ) -> Meshing:
         """Return the start of a mesh of those pieces of a space that have not failed."""
         pieces = tuple(x for x in whole.pieces if x.face.index not in failed)

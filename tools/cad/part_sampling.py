@@ -89,11 +89,7 @@ def _check(request: Request, edges: bool) -> None:
 
 
 def _report(
-    part: Part,
-    space: PartSpace,
-    cover: Cover,
-    arrays: Mapping[str, NDArray[Any]],
-    request: Request,
+    part: Part, space: PartSpace, cover: Cover, arrays: Mapping[str, NDArray[Any]], request: Request
 ) -> SamplingReport:
     held = np.union1d(cover.added.pieces, cover.at_normals.pieces)
     return SamplingReport(

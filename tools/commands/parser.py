@@ -14,14 +14,7 @@ import click
 from ... import __version__
 from ...runtime.base.limits import MOST, MOST_FREQUENCY
 from ...runtime.samples.fields import ARRAY_NAMES_ON_SURFACE, EDGE_NAMES, PART_NAMES
-from .completion import (
-    PROGRAM,
-    SHELLS,
-    densities,
-    formula_names,
-    surface_names,
-    surfaces_and_files,
-)
+from .completion import PROGRAM, SHELLS, densities, formula_names, surface_names, surfaces_and_files
 from .options import (
     Command,
     Option,

@@ -329,11 +329,7 @@ def find(spline: CurveSpline | CurveArcs, normals: Array) -> Hits:
     first = np.where(steps > 0, places[:-1], places[:-1] - 1)
     owner, number = repeated(counts)
     ranks = first[owner] + signs[owner] * number
-    return Hits(
-        owner,
-        order[np.mod(ranks, len(normals))],
-        signs[owner].astype(np.float64),
-    )
+    return Hits(owner, order[np.mod(ranks, len(normals))], signs[owner].astype(np.float64))
 
 
 def _places(spline: CurveSpline | CurveArcs, angles: Array) -> NDArray[np.int64]:

@@ -73,11 +73,7 @@ def _apart(pieces: Indices, places: Array, trims: Trims) -> Array:
 
 
 def places_along(
-    trims: Trims,
-    lines: BorderLines,
-    target: TargetDensity,
-    step: float,
-    turn: float,
+    trims: Trims, lines: BorderLines, target: TargetDensity, step: float, turn: float
 ) -> tuple[Indices, Array, Array]:
     """Return parameters just inside boundaries, about step/√w apart; w is the target density.
 

@@ -52,10 +52,7 @@ def _by_count(space: Space, count: int, show_count: Callable[[int], object]) -> 
 
 
 def _by_errors(
-    space: Space,
-    angle: float | None,
-    distance: float | None,
-    show_count: Callable[[int], object],
+    space: Space, angle: float | None, distance: float | None, show_count: Callable[[int], object]
 ) -> Cover:
     """Return a cover for an angle in degrees, or a scaled coverage, or both."""
     rate = math.sqrt(space.smallest)

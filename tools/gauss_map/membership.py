@@ -166,12 +166,7 @@ def _ends(row: tuple[int, int, int], corners: list[Place]) -> list[Place]:
     return sorted(found)
 
 
-def _has_direction(
-    patch: Patch,
-    n: Vector,
-    first: Place,
-    last: Place,
-) -> bool:
+def _has_direction(patch: Patch, n: Vector, first: Place, last: Place) -> bool:
     """Return whether N·n is positive somewhere on the segment between two parameter pairs."""
 
     def towards(u: Fraction, v: Fraction) -> Fraction:

@@ -93,10 +93,7 @@ class ParabolicPoints:
 
 
 def parabolic_points(
-    surface: Surface | Spline | str,
-    *,
-    tolerance: float = 1e-4,
-    cells: Sequence[int] | None = None,
+    surface: Surface | Spline | str, *, tolerance: float = 1e-4, cells: Sequence[int] | None = None
 ) -> ParabolicPoints:
     """Find the parabolic points of a surface or a spline (paper, Sect. 3.2 and Remark 3.1).
 

@@ -192,12 +192,7 @@ def silhouette(
     report = replace(report, on=geometry.on, unrefined=unrefined)
     warn_of(report, asked, stacklevel=3)
     return Silhouette(
-        **chosen,
-        report=report,
-        spline=spline,
-        surface=geometry.surface,
-        polylines=lines,
-        eye=view,
+        **chosen, report=report, spline=spline, surface=geometry.surface, polylines=lines, eye=view
     )
 
 

@@ -117,12 +117,7 @@ class SplineSource:
         else:
             hessian = np.empty((len(hits), 3, 3))
             kernels.hessians_of_patches(
-                self.spline.coefficients,
-                self.spline.scale,
-                patches,
-                normals[rows],
-                known,
-                hessian,
+                self.spline.coefficients, self.spline.scale, patches, normals[rows], known, hessian
             )
         return Sheets(
             rows, fields["points"], hessian, fields["gaussian_curvature"],

@@ -38,10 +38,7 @@ MESH = SimpleNamespace(vertices=np.zeros((3, 3)), faces=np.zeros((1, 3), int))
         (Path("a.step"), r"gm\.sample\(gm\.read_cad\('a\.step'\), \.\.\.\)"),
         (surface_factory.sphere(), r"make one by gm\.Surface\.from_nurbs\(surface\)\."),
         (geomdl.NURBS.Surface(), r"make one by gm\.Surface\.from_nurbs\(surface\)\."),
-        (
-            ["torus", "sphere"],
-            r"not list; gm\.Part\(surfaces\) .* gm\.sample_many\(surfaces, ",
-        ),
+        (["torus", "sphere"], r"not list; gm\.Part\(surfaces\) .* gm\.sample_many\(surfaces, "),
         ((gm.surfaces.torus(),), r"not tuple; gm\.Part\(surfaces\) makes one of several"),
         ([[1.0, 2.0, 3.0]], r"not list; make one by gm\.Surface\.from_callable"),
         (MESH, "not SimpleNamespace; meshes are not taken"),

@@ -6,10 +6,7 @@ from typing import Any
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.runtime.samples.fields import (
-    ARRAY_NAMES,
-    ARRAY_NAMES_ON_SURFACE,
-)
+from gaussmap.runtime.samples.fields import ARRAY_NAMES, ARRAY_NAMES_ON_SURFACE
 from gaussmap.runtime.samples.report import SamplingReport, warn_of
 from gaussmap.runtime.samples.samples import Samples
 from hypothesis import given

@@ -19,12 +19,7 @@ import pyarrow
 import pytest
 from gaussmap.runtime.samples.report import SamplingReport
 from gaussmap.tools.files import formats
-from gaussmap.tools.files.formats import (
-    READABLE_SUFFIXES,
-    SUFFIXES,
-    read_samples,
-    write_samples,
-)
+from gaussmap.tools.files.formats import READABLE_SUFFIXES, SUFFIXES, read_samples, write_samples
 from gaussmap.tools.files.paths import atomic_path, check_target
 
 from ...full_disk import tiny_disk

@@ -1,12 +1,7 @@
 import gaussmap as gm
 import numpy as np
 import pytest
-from gaussmap.tools.pictures.scene import (
-    divided,
-    height_factor,
-    scene_of,
-    view,
-)
+from gaussmap.tools.pictures.scene import divided, height_factor, scene_of, view
 
 
 def test_a_convex_surface_hides_its_back() -> None:

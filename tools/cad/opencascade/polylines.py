@@ -22,12 +22,7 @@ LEAST_COSINE = 0.5
 
 
 def one_sided(
-    evaluate: Evaluator,
-    first: float,
-    last: float,
-    pieces: int,
-    tolerance: Array,
-    keep_left: bool,
+    evaluate: Evaluator, first: float, last: float, pieces: int, tolerance: Array, keep_left: bool
 ) -> Array:
     """Return points (k, 2) of a polyline from one end of a smooth curve to the other.
 
