@@ -81,4 +81,5 @@ def test_what_is_not_several_surfaces(surfaces):
 def test_many_of_nothing():
     assert many([], count=10) == []
     for asked in ({"count": 0}, {"normals": []}, {"count": 5, "threads": 0}):
-        refused("", many, [], **asked)
+        with pytest.raises(gm.errors.InputError):
+            many([], **asked)
