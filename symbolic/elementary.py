@@ -229,7 +229,11 @@ def _horner(function: Any, first: int, last: int, result: Any = sp.S.Zero) -> An
 
 
 def _sinc_series(order: int) -> Any:  # noqa: ANN401
-    """Return the Taylor coefficient of sin(x)/x of an order, at x, as a series in x and z = x²."""
+    """Return the `order`-th Taylor coefficient, at a point x, of the function sin(x)/x.
+
+    It is written as a truncated power series of x: a polynomial in z = x², times x if the order is
+    odd.
+    """
     result: Any = sp.S.Zero
     for power in range(LAST, order - 1, -2):
         coefficient = (-1) ** (power // 2) * sp.binomial(power, order) / sp.factorial(power + 1)

@@ -66,7 +66,7 @@ def page(surfaces: Sequence[OnSurface], load: float | None = None) -> str:
     columns = COLUMNS.format(places=PLACES, last=LAST, clouds=ROUNDS)
     parts = [wrapped(columns)]
     for on in surfaces:
-        title = f"## {on.form.label}\n\nNamed `{on.form.name}` in the text.\n"
+        title = f"## {on.form.label}\n\nIts name in the benchmarks is `{on.form.name}`.\n"
         parts += [title, folded("Points and meshes", points_table(on), mesh_table(on))]
     parts += ["## The machine\n", wrapped("\n".join([*machine(), *busy(load)]))]
     text = "\n".join(parts)

@@ -165,7 +165,8 @@ def _refine_at_pole(
         part.uv[:] = chart.places(part.uv)
         parameters.solve(part, np.arange(len(part.uv)), 0)
         part.uv[:] = chart.parameters(part.uv)
-        # The fields are evaluated at u and v: finite differences by s and t have larger errors.
+        # Evaluate the fields as for all other samples: finite differences are by s and t near the
+        # pole (`PoleChart.next_to`), and by u and v elsewhere, where their errors are smaller.
         found = part.state == FOUND
         points, _, gaussian, mean = evaluate_on_surface(
             chart.surface, spline, part.uv[found], threads=1

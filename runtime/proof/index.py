@@ -39,9 +39,10 @@ from .kernels.places import Boxes, decide_normals
 from .kernels.sorting import Sorted, count_places, order_places, put_places, start_normals
 from .poles import Cap, poles_of
 
-# Irregular cells are cut into four at most LEVELS times. Cells without a narrow cone of normals are
-# cut up to ROUNDS times more, as long as this adds at most MOST cells per cell of the grid. For the
-# coarse grids of NURBS, whose cells may be knot spans, at least FEWEST cells are counted.
+# Cells that are not regular (`is_done` in kernels/cell_bounds.py) are cut into four, at most LEVELS
+# times. Then cells without a narrow cone of normals are cut into four, in at most ROUNDS rounds, as
+# long as all rounds together add at most MOST · max(k, FEWEST) cells, where the grid has k cells.
+# FEWEST is for the coarse grids of NURBS, whose cells may be knot spans.
 LEVELS, ROUNDS, MOST, FEWEST = 2, 3, 8, 256
 CELLS = (64, 64)
 # Whether a surface has normals at all is tested on PROBES cells, shrunk by the factor SMALL.

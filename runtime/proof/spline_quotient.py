@@ -116,7 +116,11 @@ def _expanded(
 def _as_polynomials(
     spline: Polynomials, axis: int, tables: tuple[Array, Array], scale: float, length: float
 ) -> Polynomials:
-    """Return the spline, in the other parameter and r, with given coefficients and errors."""
+    """Return `Polynomials` with the given tables: the coefficients, and bounds of their errors.
+
+    The first parameter is the parameter of `spline` whose index is not `axis`. The second one is r,
+    with the single span [0, length]; the coefficients are those of powers of scale · r.
+    """
     table, errors = (np.ascontiguousarray(x[:, None]) for x in tables)
     if axis == 1:
         breaks, smooth, frames = spline.breaks_u, spline.smooth_u, spline.frames_u

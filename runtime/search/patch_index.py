@@ -39,7 +39,7 @@ BINS_PER_PIECE = 7.0
 KEYS_PER_PIECE = 16
 # Normals are sorted by bins with at least this many normals on average.
 NORMALS_PER_BIN = 4
-# The size of bins is chosen from about this number of pieces, evenly spaced among all.
+# The size of bins is computed from a subset of about this many pieces, at evenly spaced indices.
 LOOKED_AT = 1 << 10
 # If all normals are in a cap, bins cover only this cap, unless the tangent of half its opening
 # angle exceeds WIDEST_CAP. Smaller tangents than NARROWEST_CAP are replaced by NARROWEST_CAP.

@@ -57,8 +57,8 @@ class Nurbs(Differentiable):
     def jets(self, u: Array, v: Array) -> Array:
         """Return x, x_u, x_v, x_uu, x_uv, x_vv (k, 6, 3) at u (k,) and v (k,).
 
-        The parameters are not checked. Outside the domain, the polynomials of the last knot spans
-        are continued.
+        The parameters are not checked. Periodic parameters are reduced to their period; along other
+        parameters, the polynomials of the first and the last knot span are continued.
         """
         jets = np.empty((len(u), 6, 3))
         u, v = np.array(u), np.array(v)  # Kernels would be compiled anew for other memory layouts

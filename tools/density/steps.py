@@ -188,8 +188,9 @@ def _typical(forms: Forms) -> float:
 def _steps(forms: Forms, limits: tuple[float, float], share: float) -> Steps:
     """Return the steps for limits of the squared diagonals in normal space and in space.
 
-    At first, steps along u are `share` times the longest that the limits allow. Then steps along v,
-    and at last steps along u, are as long as possible.
+    The steps along u are first set to `share` times the longest ones that the limits allow. With
+    these, the steps along v are made as long as the limits allow; then the steps along u are made
+    as long as the limits allow with these steps along v.
     """
     along = np.empty(len(forms.widths[0])), np.empty(len(forms.widths[1]))
     shared_steps(*forms.arrays, limits, share, SHORTEST, LONGEST, *along)

@@ -105,10 +105,11 @@ class PatchNormals:
 
     @cached_property
     def _bound(self) -> float:
-        """A bound of the rounding errors of the forms U, V, W, as for the patches of a spline.
+        """A bound of the rounding errors of the forms U, V, W, like that in `put_piece`.
 
-        It does not vanish with the vectors a, b, c: they are differences of control points, which
-        are scaled to about 1 and have rounding errors of that size.
+        It is positive even if a, b, c are 0. These vectors are combinations of differences of
+        control points; the largest difference is about 1, so that a linear form, such as n·a, has
+        an error of up to about FORM_ERROR, however short its vector is.
         """
         error = FORM_ERROR * (sum(self._sizes) + FORM_ERROR)
         return 32.0 * LONGEST_SQUARED * error

@@ -133,9 +133,10 @@ class _Trim:
         return added
 
     def is_inside(self, whole: Vertices, triangles: Indices, possible: Flags, sure: Flags) -> Flags:
-        """Return a mask of the triangles inside the trim; their vertices must be `possible`.
+        """Return a mask of the triangles inside the trim.
 
-        A triangle with a `sure` vertex is inside; any other triangle is inside if its centroid is.
+        `possible` and `sure` are masks of the vertices. A triangle is inside if all its vertices
+        are `possible` and, in addition, one of them is `sure` or the centroid is inside the trim.
         """
         kept = np.asarray(possible[triangles].all(axis=1))
         unsure = np.flatnonzero(kept & ~sure[triangles].any(axis=1))
