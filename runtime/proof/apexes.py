@@ -76,20 +76,21 @@ class Apex:
         """
         sides = open_.boxes.reshape(-1, 2, 2)
         away = np.abs(sides[:, self.axis] - self.end)
-        if self.normal is None:
-            return open_, np.empty((0, 6)), np.empty(0, np.int64)
         size = np.ptp(self.domain[self.axis])
         near = (away.min(axis=1) <= BESIDE * size) & (away.max(axis=1) <= SMALL * size)
+        kinds = open_.kinds.copy()
+        if self.normal is None:
+            kinds[near] = OPEN_BOX  # gradients are small everywhere: they are no sign of a curve
+            return open_._replace(kinds=kinds), np.empty((0, 6)), np.empty(0, np.int64)
         apart = np.linalg.norm(normals[open_.numbers] - self.normal, axis=1)
         rows, found, keep = list[Array](), dict[int, float](), np.ones(len(near), np.bool_)
-        kinds = open_.kinds.copy()
         for k in np.flatnonzero(near).tolist():
             reach = max(away[k].max(), LEAST * size)
             beside, signs = self._beside(reach)
             turned = np.linalg.norm(beside - self.normal, axis=1)
             if turned.max() > WIDE or turned.min() <= 4.0 * ONE or (signs != signs[0]).any():
                 continue
-            kinds[k] = OPEN_BOX  # gradients are small everywhere: they are no sign of a curve
+            kinds[k] = OPEN_BOX
             keep[k], number = ONE < apart[k] <= 2.0 * turned.max(), int(open_.numbers[k])
             if apart[k] <= ONE:
                 found[number] = max(reach, abs(found.get(number, 0.0))) * signs[0]

@@ -26,7 +26,10 @@ def jumps_of(tape: Tape, axis: int, low: float, high: float) -> Array:
     """
     x = tape.spline
     breaks, smooth = ((x.breaks_u, x.smooth_u), (x.breaks_v, x.smooth_v))[axis]
-    jumps = breaks[smooth < 2]
+    rough = smooth < 2
+    if not x.periods[axis, 1] > 0.0:  # beyond both ends, the spline continues as polynomials
+        rough[:1] = rough[-1:] = False
+    jumps = breaks[rough]
     (rows,) = np.nonzero(tape.operations[:, 0] == SPLINE)
     if axis == 0 and len(rows) > 0 and tape.operations[rows[0], 3] == 1:
         jumps = tape.numbers[rows[0], 0] - jumps  # u is reversed

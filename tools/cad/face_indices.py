@@ -16,6 +16,7 @@ from ...runtime.onto_surface.proved import index_of
 from ...runtime.proof.ball import Ball
 from ...runtime.proof.index import ProvedIndex, ProvedPlaces, Undecided
 from ...runtime.proof.kernels.answers import KINDS
+from ...runtime.surface.derivatives import normals_of_jets
 from ...runtime.surface.sides import with_found_sides
 from ...runtime.surface.surface import Surface
 from ...runtime.tape.kernels.points import Tape
@@ -36,9 +37,11 @@ CLOSE = 1e-3
 # The length of a side is measured at this number of points.
 PLACES = 5
 OPEN_BOX = KINDS.index("open")
-# Where faces of a file meet smoothly, rounded numbers leave a small gap between their normals.
-# Therefore surfaces are searched beyond their open sides and trims, by this fraction of the domain.
-GAP = 1e-9
+# Where faces of a file meet smoothly, rounded numbers leave gaps between their normals, of GAP at
+# most. Therefore surfaces are searched beyond their open sides, by the fraction BEYOND of the
+# domain. A point found there counts if its normal differs by at most TURNED from that at the side.
+GAP, BEYOND = 1e-9, 1e-6
+TURNED = 1.5 * GAP
 # The indices of the Taylor coefficients of order 1 and 2 in arrays of bounds.
 U1, V1, U2, U1V1, V2 = range(1, 6)
 
@@ -51,7 +54,7 @@ def face_index(
     if simple.kind in ROUND:
         return RoundFace.of(simple, surface.domain, is_reversed=is_reversed)
     if simple.kind != "offset" or simple.basis is None:
-        return SmoothPieces.of(surface, 0.0 if simple.surface is not None else GAP)
+        return SmoothPieces.of(surface, 0.0 if simple.surface is not None else BEYOND)
     basis = face_surface(simple.basis, domain, is_reversed=is_reversed)
     index = face_index(simple.basis, basis, domain, is_reversed=is_reversed)
     if index is None or basis.tape is None:
@@ -85,7 +88,9 @@ class SmoothPieces:
 
     def query(self, normals: Array, threads: int | None = None) -> FacePlaces:
         """Return all points with unit normals (S, 3)."""
-        return joined([_inside(x.query(normals, threads), piece) for x, piece in self.pieces])
+        return joined(
+            [_inside(x.query(normals, threads), piece, normals) for x, piece in self.pieces]
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,20 +176,26 @@ def _on_side(surface: Surface, axis: int, end: int) -> Array:
     return surface.jets(*(places if axis == 0 else places[::-1]))[:, 0]
 
 
-def _inside(found: ProvedPlaces, piece: Surface) -> FacePlaces:
+def _inside(found: ProvedPlaces, piece: Surface, normals: Array) -> FacePlaces:
     """Move points and undecided boxes from beyond open sides into the domain of a piece.
 
-    The radius of a point grows by the distance that it moved. Boxes entirely outside are left out.
+    The radius of a point grows by the distance that it moved. Points with other normals than the
+    side beside them, and boxes farther outside than `GAP` times the domain, are left out.
     """
     is_open = np.array(piece.boundary) == "open"
     low, high = np.where(is_open, piece.domain, [-np.inf, np.inf]).T
     uv, open_ = np.clip(found.uv, low, high), found.undecided
-    sides = open_.boxes.reshape(-1, 2, 2)
-    within = ((sides[:, :, 0] < high) & (sides[:, :, 1] > low)).all(axis=1)
+    keep = np.ones(len(uv), np.bool_)
+    (out,) = np.nonzero((uv != found.uv).any(axis=1))
+    at_side = normals_of_jets(piece.unchecked_jets(*uv[out].T.copy()))
+    keep[out] = np.linalg.norm(at_side - normals[found.numbers[out]], axis=1) <= TURNED
+    sides, gap = open_.boxes.reshape(-1, 2, 2), GAP * np.ptp(piece.domain, axis=1)
+    within = ((sides[:, :, 0] < high + gap) & (sides[:, :, 1] > low - gap)).all(axis=1)
     open_, sides = Undecided._make(x[within] for x in open_), sides[within]
     boxes = np.clip(sides, low[:, None], high[:, None])
     return FacePlaces(
-        found.numbers, uv, found.radius + np.abs(found.uv - uv), found.sign.astype(np.float64),
+        found.numbers[keep], uv[keep], (found.radius + np.abs(found.uv - uv))[keep],
+        found.sign[keep].astype(np.float64),
         open_._replace(boxes=boxes.reshape(-1, 4), uv=np.clip(open_.uv, low, high)),
     )  # fmt: skip
 
