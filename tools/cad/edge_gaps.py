@@ -107,7 +107,8 @@ class EdgeGaps:
     1 is that of N × t. Normals of the first face at places `shares` (P,) of the edges `owner` (P,)
     are in a `tree`, and in `cells` of directions; `spread` (P, 3) is half the difference of their
     neighbours. Normals in gaps of an edge are within `slack` of its own, and within `reach` of some
-    in the tree. Lines inside of a face are edges, too, with the same piece twice.
+    in the tree. Lines inside of a face are edges, too, with the same piece twice. Edges end or
+    cross at `corners` (C, 3).
     """
 
     space: PartSpace
@@ -124,6 +125,7 @@ class EdgeGaps:
     reach: float
     tree: KDTree
     cells: Flags
+    corners: Array
 
     @classmethod
     def of(cls, part: Part) -> EdgeGaps | None:
@@ -190,7 +192,13 @@ class EdgeGaps:
         return cls(
             space, pieces, starts, steps, inward, closed, slack, owner, shares, normals, spread,
             float((apart + slack).max()), tree_of(normals), cells,
+            _corners(space, _Lines._make(x[known] for x in lines)),
         )  # fmt: skip
+
+    def beside_corners(self, points: Array, reach: Array) -> Flags:
+        """Return whether points (k, 3) of edges are within `reach` (k,) of a corner."""
+        away = np.linalg.norm(points[:, None] - self.corners, axis=2)
+        return away.min(axis=1) <= reach
 
     def at(self, normals: Array) -> AtEdges:
         """Return the points of edges with unit normals (S, 3)."""
@@ -342,6 +350,18 @@ def _inside_faces(space: PartSpace) -> Iterator[_Lines]:
                 )
                 places = starts[:, None] + SHARES[:, None, None] * steps[:, None]
                 yield _Lines(np.array([[k, k]]), starts, steps, np.array([axis]), places)
+
+
+def _corners(space: PartSpace, lines: _Lines) -> Array:
+    """Return the ends of lines, and the points where lines inside of a face cross (C, 3)."""
+    pieces, ends = lines.pieces[:, 0], lines.starts[:, 0]
+    uv = [ends, ends + lines.steps[:, 0]]
+    one, other = np.nonzero(
+        (lines.axes[:, None] == 0) & (lines.axes == 1) & (pieces[:, None] == pieces)
+    )
+    uv.append(np.stack([ends[one, 0], ends[other, 1]], axis=1))
+    owner = np.concatenate([pieces, pieces, pieces[one]])
+    return at_places(space, owner, np.concatenate(uv)).vectors[:, 0]
 
 
 def _inward(space: PartSpace, lines: _Lines, side: int) -> Array:

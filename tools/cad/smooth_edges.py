@@ -119,6 +119,7 @@ def _with_gaps(space: PartSpace, given: Given, gaps: EdgeGaps | None) -> tuple[G
     radius = largest_radius(*np.moveaxis(at.curvatures, 2, 0))
     reach, widest = _reach(2.0 * at.gaps[:, None], radius, size), radius.max(axis=1) / size
     settled = at.settled & (widest * np.sqrt(at.gaps) <= SURE)
+    settled &= ~gaps.beside_corners(at.points, _reach(gaps.slack.max(), radius, size).max(axis=1))
     is_inside = at.pieces[:, 0] == at.pieces[:, 1]
     for k, side in np.argwhere((pieces >= 0) & (settled & ~is_inside)[:, None]).tolist():
         key = at.numbers[k] * len(space.pieces) + pieces[k, side]
