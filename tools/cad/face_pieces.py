@@ -39,7 +39,7 @@ from .face_indices import GAP, face_index
 from .face_places import FaceIndex, FacePlaces
 from .faces import own_parameters
 from .part import Face
-from .records import Geometry
+from .records import KINDS, Geometry
 
 Array, Indices = NDArray[np.float64], NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -68,14 +68,6 @@ CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 CELLS_A_PART, FEWEST, MOST = 3, 64, 256
 # A raster of a face has about RASTER² positions.
 RASTER = 64
-# For each kind of face, whether u is an angle, and whether v is an angle.
-ANGLES = {
-    "cylinder": (True, False),
-    "cone": (True, False),
-    "sphere": (True, True),
-    "torus": (True, True),
-    "revolution": (True, False),
-}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -382,7 +374,8 @@ def _lines(face: Face, geometry: Geometry, axis: int, ends: tuple[float, float])
         parts = min(max(PARTS_OF_SPAN, math.ceil(degree / 2)), most)
     if geometry.surface is not None:
         parts = PARTS_OF_SURFACE
-    if ANGLES.get(geometry.kind, (False, False))[axis]:
+    kind = KINDS[geometry.kind]
+    if (kind.u, kind.v)[axis] == "angle":
         parts = math.ceil((ends[1] - ends[0]) / ANGLE)
     if parts == 1:
         return lines

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,21 +22,34 @@ Wire = list[tuple[int, int, bool]]
 # The reason of failure for faces without area. Volumes and meshes do not need these faces.
 NO_AREA = "its area is zero"
 
-# The kinds of faces, and how many numbers each has (see `saving`). Append only, since files store
-# indices into this list. "unknown" is for failed faces of unknown kind, "surface" for faces that
-# have a `Surface` in memory, which files cannot hold.
-KINDS: dict[str, int] = {
-    "plane": 12,
-    "cylinder": 13,
-    "cone": 14,
-    "sphere": 13,
-    "torus": 14,
-    "nurbs": 0,
-    "revolution": 6,
-    "extrusion": 3,
-    "offset": 1,
-    "unknown": 0,
-    "surface": 0,
+
+class Kind(NamedTuple):
+    """A kind of face: how many numbers it has (see `saving`), and the indices of the lengths in it.
+
+    `u` and `v` say whether these parameters are lengths, angles, or neither.
+    """
+
+    numbers: int
+    lengths: tuple[int, ...] = ()
+    u: str = ""
+    v: str = ""
+
+
+# The kinds of faces. Append only, since files store indices into this list. "unknown" is for failed
+# faces of unknown kind, "surface" for faces that have a `Surface` in memory, which files cannot
+# hold. The parameters of an offset are those of its basis.
+KINDS = {
+    "plane": Kind(12, (0, 1, 2), "length", "length"),
+    "cylinder": Kind(13, (0, 1, 2, 12), "angle", "length"),
+    "cone": Kind(14, (0, 1, 2, 12), "angle", "length"),
+    "sphere": Kind(13, (0, 1, 2, 12), "angle", "angle"),
+    "torus": Kind(14, (0, 1, 2, 12, 13), "angle", "angle"),
+    "nurbs": Kind(0),
+    "revolution": Kind(6, (0, 1, 2), "angle"),
+    "extrusion": Kind(3, v="length"),
+    "offset": Kind(1, (0,)),
+    "unknown": Kind(0),
+    "surface": Kind(0),
 }
 
 

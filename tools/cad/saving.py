@@ -70,18 +70,18 @@ from numpy.typing import NDArray
 from ..files.archives import archive_of
 from ..files.paths import PathLike, atomic_path, checked_path, known_suffix
 from ..files.reading import UnusableError, opened
-from .part_arrays import FORMAT, VERSION, packed
-from .records import KINDS, PartRecord
+from .part_arrays import FORMAT, VERSION
+from .records import KINDS
 
 SUFFIXES = (".npz",)
 # The largest size of the unpacked arrays of a file. A part of 100,000 faces takes about 1 GB.
 MOST_BYTES = 4 << 30
 Arrays = dict[str, NDArray[Any]]
 
-# For each array, the letter of its type and its shape: equal letters are equal lengths, "*" is any
-# length.
+# For each array, the letter of its type and its shape. Equal letters are equal lengths. "S:K"
+# is the length S + 1 of indices: S runs begin there, and the last index is K, the number of rows.
 SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
-    "about": ("B", ("*",)),
+    "about": ("B", ("A",)),
     "reversed": ("?", ("F",)),
     "area": ("d", ("F",)),
     "solid_index": ("q", ("F",)),
@@ -91,28 +91,28 @@ SHAPES: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "kind": ("b", ("S",)),
     "basis": ("q", ("S",)),
     "net": ("q", ("S",)),
-    "numbers": ("d", ("*",)),
-    "number_starts": ("q", ("S+1",)),
+    "numbers": ("d", ("K",)),
+    "number_starts": ("q", ("S:K",)),
     "net_degrees": ("q", ("N", 2)),
     "net_shapes": ("q", ("N", 2)),
-    "knots": ("d", ("*",)),
-    "knot_starts": ("q", ("N+1",)),
-    "net_points": ("d", ("*", 4)),
-    "net_point_starts": ("q", ("N+1",)),
-    "loop_points": ("d", ("*", 2)),
-    "loop_point_starts": ("q", ("L+1",)),
-    "face_loops": ("q", ("F+1",)),
+    "knots": ("d", ("T",)),
+    "knot_starts": ("q", ("N:T",)),
+    "net_points": ("d", ("C", 4)),
+    "net_point_starts": ("q", ("N:C",)),
+    "loop_points": ("d", ("P", 2)),
+    "loop_point_starts": ("q", ("L:P",)),
+    "face_loops": ("q", ("F:L",)),
     "vertices": ("d", ("V", 3)),
     "edge_vertices": ("q", ("E", 2)),
     "edge_degenerate": ("?", ("E",)),
-    "edge_side_starts": ("q", ("E+1",)),
+    "edge_side_starts": ("q", ("E:U",)),
     "side_faces": ("q", ("U",)),
-    "side_points": ("d", ("*", 4)),
-    "side_point_starts": ("q", ("U+1",)),
+    "side_points": ("d", ("Q", 4)),
+    "side_point_starts": ("q", ("U:Q",)),
     "wire_sides": ("q", ("R",)),
     "wire_reversed": ("?", ("R",)),
-    "wire_side_starts": ("q", ("W+1",)),
-    "face_wires": ("q", ("F+1",)),
+    "wire_side_starts": ("q", ("W:R",)),
+    "face_wires": ("q", ("F:W",)),
 }
 MOST_DEGREE = 25
 # The types of the entries of `about`: one value, a list, or a dictionary by the index of the face.
@@ -134,11 +134,6 @@ WRONG_AREA, FAR_AWAY = "its area is out of range", "its boundary is outside of i
 LEAST_AREA, MOST_AREA = 1e-150, 1e150
 # Loops may exceed the domain by this fraction of its size.
 SLACK = 1e-6
-
-
-def write_record(record: PartRecord, path: PathLike) -> None:
-    """Write a part that was just read; FileError if the file cannot be written."""
-    write_arrays(packed(record), path)
 
 
 def write_arrays(arrays: Mapping[str, NDArray[Any]], path: PathLike) -> None:
@@ -190,19 +185,6 @@ def checked_arrays(arrays: Arrays) -> tuple[Arrays, dict[str, Any]]:
         raise UnusableError("comes from another version of gaussmap; read the CAD file again.")
     found = {name: _typed(name, arrays[name]) for name in SHAPES}
     _check_lengths(found)
-    for starts, rows in (
-        ("number_starts", len(found["numbers"])),
-        ("knot_starts", len(found["knots"])),
-        ("net_point_starts", len(found["net_points"])),
-        ("loop_point_starts", len(found["loop_points"])),
-        ("edge_side_starts", len(found["side_faces"])),
-        ("side_point_starts", len(found["side_points"])),
-        ("wire_side_starts", len(found["wire_sides"])),
-        ("face_wires", len(found["wire_side_starts"]) - 1),
-        ("face_loops", len(found["loop_point_starts"]) - 1),
-    ):
-        array = found[starts]
-        _require(array[0] == 0 and array[-1] == rows and (np.diff(array) >= 0).all(), starts)
     _check_surfaces(found)
     _check_nets(found)
     faces = len(found["area"])
@@ -240,21 +222,26 @@ def _typed(name: str, array: NDArray[Any]) -> NDArray[Any]:
 
 
 def _check_lengths(arrays: Arrays) -> None:
+    """Check the shapes of all arrays, and that the indices of runs increase up to their end."""
     lengths: dict[str, int] = {}
     for name, (_, shape) in SHAPES.items():
         for length, wanted in zip(arrays[name].shape, shape, strict=True):
             if isinstance(wanted, int):
                 _require(length == wanted, name)
-            elif wanted != "*":
-                letter, more = wanted[0], wanted.endswith("+1")
-                _require(lengths.setdefault(letter, length - more) == length - more >= 0, name)
+            else:
+                count = length - (":" in wanted)
+                _require(lengths.setdefault(wanted[0], count) == count >= 0, name)
     _require(lengths["F"] <= lengths["S"], "kind")
+    for name, (_, (first, *_)) in SHAPES.items():
+        if ":" in str(first):
+            starts, rows = arrays[name], lengths[str(first)[2]]
+            _require(starts[0] == 0 and starts[-1] == rows and (np.diff(starts) >= 0).all(), name)
 
 
 def _check_surfaces(arrays: Arrays) -> None:
     """Check that each surface has the numbers, the net and the basis that its kind needs."""
     kind, net, basis = arrays["kind"], arrays["net"], arrays["basis"]
-    names, sizes = list(KINDS), np.array(list(KINDS.values()))
+    names, sizes = list(KINDS), np.array([x.numbers for x in KINDS.values()])
     _require(_within(kind, 0, len(names)), "kind")
     _require((kind != names.index("surface")).all(), "kind")
     failed = kind == names.index("unknown")

@@ -7,21 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .records import FaceRecord, Geometry
-
-# For each kind of face: the indices of its numbers that are lengths; whether u and v are lengths.
-LENGTHS: dict[str, tuple[tuple[int, ...], tuple[bool, bool]]] = {
-    "plane": ((0, 1, 2), (True, True)),
-    "cylinder": ((0, 1, 2, 12), (False, True)),
-    "cone": ((0, 1, 2, 12), (False, True)),
-    "sphere": ((0, 1, 2, 12), (False, False)),
-    "torus": ((0, 1, 2, 12, 13), (False, False)),
-    "nurbs": ((), (False, False)),
-    "revolution": ((0, 1, 2), (False, False)),
-    "extrusion": ((), (False, True)),
-    "offset": ((0,), (False, False)),
-    "unknown": ((), (False, False)),
-}
+from .records import KINDS, FaceRecord, Geometry
 
 
 def with_unit(face: FaceRecord, factor: float) -> FaceRecord:
@@ -43,12 +29,13 @@ def scaled_parameters(geometry: Geometry, factor: float) -> NDArray[np.float64]:
     """Return the factors (2,) by which u and v change if lengths are multiplied by `factor`."""
     while geometry.basis is not None:
         geometry = geometry.basis
-    return np.where(LENGTHS[geometry.kind][1], factor, 1.0)
+    kind = KINDS[geometry.kind]
+    return np.where([x == "length" for x in (kind.u, kind.v)], factor, 1.0)
 
 
 def _scaled(geometry: Geometry, factor: float) -> Geometry:
-    numbers, places = np.array(geometry.numbers, dtype=np.float64), LENGTHS[geometry.kind][0]
-    numbers[list(places)] *= factor
+    numbers = np.array(geometry.numbers, dtype=np.float64)
+    numbers[list(KINDS[geometry.kind].lengths)] *= factor
     net, basis = geometry.net, geometry.basis
     return Geometry(
         geometry.kind,

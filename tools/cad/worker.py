@@ -47,11 +47,12 @@ def _read(request: dict[str, str], folder: Path) -> str:
         from .opencascade.parts import part_record
     except ImportError as error:
         return f"cannot be read: Open CASCADE does not load ({error})."
-    from .saving import write_record
+    from .part_arrays import packed
+    from .saving import write_arrays
 
     try:
         record = part_record(source, request["name"], request["unit"])
-        write_record(record, folder / PART)
+        write_arrays(packed(record), folder / PART)
     except UnusableError as error:
         return str(error)
     except MemoryError:

@@ -50,17 +50,11 @@ class Cells:
 
     def __getitem__(self, chosen: Indices | Flags | slice) -> Cells:
         """Return the selected cells."""
-        return Cells(*(x[chosen] for x in self._arrays))
+        return Cells(*(x[chosen] for x in vars(self).values()))
 
     def __add__(self, other: Cells) -> Cells:
         """Return these cells, followed by the cells of `other`."""
         return joined([self, other])
-
-    @property
-    def _arrays(self) -> tuple[NDArray, ...]:
-        return (
-            self.pieces, self.boxes, self.places, self.whole, self.limits, self.rows, self.numbers,
-        )  # fmt: skip
 
     def with_rows(self) -> Cells:
         """Return the same cells with rows and numbers filled with 0."""
@@ -84,7 +78,7 @@ class Cells:
 
     def write(self, rows: Indices, cells: Cells) -> None:
         """Replace the cells with the indices `rows` by the same number of other cells."""
-        for mine, others in zip(self._arrays, cells._arrays, strict=True):
+        for mine, others in zip(vars(self).values(), vars(cells).values(), strict=True):
             mine[rows] = others
 
     # --- radii and chords -------------------------------------------------------------------------
@@ -108,8 +102,8 @@ def joined(parts: Sequence[Cells]) -> Cells:
     parts = [x for x in parts if len(x)] or parts[:1]
     if len(parts) == 1:
         return parts[0]
-    arrays = zip(*(x._arrays for x in parts), strict=True)
-    return Cells(*(np.concatenate(x) for x in arrays))
+    arrays = zip(*(vars(x).values() for x in parts), strict=True)
+    return Cells(*map(np.concatenate, arrays))
 
 
 def merged(parts: Sequence[Cells]) -> Cells:
@@ -120,7 +114,8 @@ def merged(parts: Sequence[Cells]) -> Cells:
     pieces = np.concatenate([x.pieces for x in parts])
     if (np.diff(pieces) >= 0).all():
         return joined(parts)
-    order, arrays = np.argsort(pieces, kind="stable"), zip(*(x._arrays for x in parts), strict=True)
+    order = np.argsort(pieces, kind="stable")
+    arrays = zip(*(vars(x).values() for x in parts), strict=True)
     return Cells(*(np.concatenate(x)[order] for x in arrays))
 
 

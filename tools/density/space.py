@@ -70,6 +70,8 @@ BLOCK = 1 << 16
 FLAT_CURVATURE = 1e-6
 # K is also evaluated at this part of the way from the place of a cell to its corner.
 BESIDE = 0.3
+# The cached attributes that `Space._with` copies.
+SHARED = ("areas", "unit", "centre", "sizes", "trims")
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,9 +209,7 @@ class Space:
         first = replace(self.first, rows=self.first.rows.copy())
         first.rows[:, 6] = 0.0
         target, held = TargetDensity(floor=1.0), {"first": first}
-        space = replace(self, target=target, developable=frozenset(), sources={}, _held=held)
-        space.__dict__.update(self._shared)
-        return space
+        return self._with(target=target, developable=frozenset(), sources={}, _held=held)
 
     @property
     def exact(self) -> Space:
@@ -217,28 +217,21 @@ class Space:
         pieces = tuple(x.exact for x in self.pieces)
         if all(x is y for x, y in zip(pieces, self.pieces, strict=True)):
             return self
-        made = replace(self, pieces=pieces)
-        made.__dict__.update(self._shared)
-        return made
+        return self._with(pieces=pieces)
 
     def to_power(self, exponent: float) -> Self:
         """Return the space with another exponent of its target density; its cells are kept.
 
         The target density must be a power of κ alone: `target.gauss_weight` is 0.
         """
-        first, borders = (replace(x, rows=x.rows.copy()) for x in (self.first, self.borders))
-        for found in (first, borders):
+        made = self._with(target=self.target._replace(exponent=exponent), _held=self._copies())
+        for found in (made.first, made.borders):
             found.rows[:, 6] **= exponent / self.target.exponent
-        target, held = self.target._replace(exponent=exponent), {"first": first, "borders": borders}
-        made = replace(self, target=target, _held=held)
-        made.__dict__.update(self._shared)
         return made
 
     def between(self, floor: float, ceiling: float = math.inf) -> Space:
         """Return the same space with another floor and ceiling of the target density."""
-        made = replace(self, target=self.target._replace(floor=floor, ceiling=ceiling))
-        made.__dict__.update(self._shared)
-        return made
+        return self._with(target=self.target._replace(floor=floor, ceiling=ceiling))
 
     def graded(self, count: int) -> Self:
         """Return the same space with sizes that grow slowly, for a number of samples.
@@ -256,12 +249,10 @@ class Space:
 
     def with_sources(self, sources: Mapping[int, Sources]) -> Self:
         """Return the same space with other bounds of sizes; its cells and boundaries are kept."""
-        first = replace(self.first, rows=self.first.rows.copy())
-        borders = replace(self.borders, rows=self.borders.rows.copy())
-        made = replace(self, sources=sources, _held={"first": first, "borders": borders})
-        made.__dict__.update(self._shared)
-        made.grade(first.pieces, first.rows)
-        made.grade(np.repeat(borders.pieces, np.diff(borders.starts)), borders.rows)
+        made = self._with(sources=sources, _held=self._copies())
+        made.grade(made.first.pieces, made.first.rows)
+        lines = made.borders
+        made.grade(np.repeat(lines.pieces, np.diff(lines.starts)), lines.rows)
         return made
 
     @property
@@ -269,10 +260,16 @@ class Space:
         """The target densities (M,) of the first cells."""
         return np.clip(self.first.rows[:, 6], self.target.floor, self.target.ceiling)
 
-    @property
-    def _shared(self) -> dict[str, object]:
-        """The cached attributes that spaces of the same pieces share."""
-        return {x: getattr(self, x) for x in ("areas", "unit", "centre", "sizes", "trims")}
+    def _with(self, **changes: object) -> Self:
+        """Return a space with other fields, for pieces with the same areas, domains and trims."""
+        made = replace(self, **changes)
+        vars(made).update({x: getattr(self, x) for x in SHARED})
+        return made
+
+    def _copies(self) -> dict[str, Any]:
+        """Return `first` and `borders` with copies of their rows, to be changed."""
+        both = {"first": self.first, "borders": self.borders}
+        return {x: replace(y, rows=y.rows.copy()) for x, y in both.items()}
 
     def scaled_points(self, points: NDArray[np.floating]) -> Array:
         """Return scaled points (N, 3); InputError unless they are finite."""
