@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.memory import check_memory
 from ...runtime.base.progress import tell
-from ...runtime.domain.domain import Boundary, BoundaryCondition
+from ...runtime.domain.domain import Boundary
 from ...runtime.onto_surface.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
 from ...runtime.spline.tips import collapsed_sides
@@ -126,16 +126,8 @@ def triangulated(samples: Samples, spline: Spline, must_be_whole: bool = True) -
     return Triangulated(
         spline.name, uv, vertices.sample, vertices.is_free,
         points, normals, triangles, sides, adjacent, vertices.is_node(samples),
-        spline.domain, _with_points_as_poles(spline, boundary),
+        spline.domain, boundary_of(spline, every=True),
     )  # fmt: skip
-
-
-def _with_points_as_poles(spline: Spline, boundary: Boundary) -> Boundary:
-    """Return the boundary conditions, in which every collapsed side becomes a pole."""
-    ends: list[list[BoundaryCondition]] = [[*kinds] for kinds in boundary]
-    for axis, place in collapsed_sides(spline):
-        ends[axis][place] = "pole"
-    return (ends[0][0], ends[0][1]), (ends[1][0], ends[1][1])
 
 
 def _triangles(

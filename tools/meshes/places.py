@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from ...generated.mesh import border_spacing
 from ...runtime.base.formula_calls import python_function
-from ...runtime.domain.domain import Boundary, BoundaryCondition, BoundaryPair
+from ...runtime.domain.domain import Boundary, BoundaryCondition
 from ...runtime.spline.spline import Spline
-from ...runtime.spline.tips import is_point
+from ...runtime.spline.tips import collapsed_sides
 
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
@@ -70,17 +70,13 @@ def on_side(axis: int, place: float, t: Array) -> Array:
     return np.stack([fixed, t] if axis == 0 else [t, fixed], axis=1)
 
 
-def boundary_of(spline: Spline) -> Boundary:
+def boundary_of(spline: Spline, *, every: bool = False) -> Boundary:
     """Return the boundary conditions of a spline, with poles.
 
-    A collapsed side is a pole if the parameter along it is periodic.
+    A collapsed side is a pole if the parameter along it is periodic; with `every`, also if not.
     """
-    found: list[BoundaryPair] = []
-    for axis, ends in enumerate(spline.boundary):
-        closes = spline.boundary[1 - axis][0] == "periodic"
-        kinds: list[BoundaryCondition] = [
-            "pole" if closes and end == "open" and is_point(spline, axis, place) else end
-            for place, end in enumerate(ends)
-        ]
-        found.append((kinds[0], kinds[1]))
-    return found[0], found[1]
+    ends: list[list[BoundaryCondition]] = [[*kinds] for kinds in spline.boundary]
+    for axis, place in collapsed_sides(spline):
+        if every or spline.boundary[1 - axis][0] == "periodic":
+            ends[axis][place] = "pole"
+    return (ends[0][0], ends[0][1]), (ends[1][0], ends[1][1])
