@@ -66,7 +66,7 @@ def edges_of(space: PartSpace, *, seams: bool = False) -> Edges:
 
     With `seams`, return also the seams, which have the same piece on both sides.
     """
-    part = space.pieces[0].face.part
+    part = space.part
     known = np.full(len(part), -1)
     known[[x.face.index for x in space.pieces]] = np.arange(len(space.pieces))
     faces, points, starts = between_two(part, seams=seams)

@@ -60,7 +60,7 @@ class MeshEdges:
     def of(cls, spacing: Spacing) -> MeshEdges:
         """Return the edges that have known parameters on a piece."""
         space = spacing.space
-        arrays = space.pieces[0].face.part.arrays
+        arrays = space.part.arrays
         edges = len(arrays["edge_vertices"])
         owner = np.repeat(np.arange(edges), np.diff(arrays["edge_side_starts"]))
         piece_of = np.full(len(arrays["area"]), -1)
@@ -83,7 +83,7 @@ class MeshEdges:
     @property
     def arrays(self) -> dict[str, Indices]:
         """The arrays of the part."""
-        return self.space.pieces[0].face.part.arrays
+        return self.space.part.arrays
 
     def is_known(self, face: Face) -> bool:
         """Return whether a face has wires, and known parameters along all their edges."""
@@ -107,14 +107,14 @@ class MeshEdges:
         """A mask of the edges (E,) that may have vertices between their ends."""
         return self.used & (self.arrays["edge_degenerate"] == 0)
 
-    def _steps_for(self, count: int) -> Indices:
-        """Return the numbers of steps (E,) of edges in a mesh of `count` ≥ `least` vertices.
+    def _steps_for_count(self) -> Indices:
+        """Return the numbers of steps (E,) of edges in a mesh; see `sampled`.
 
         The step length is the smallest one that leaves enough vertices for the interior of faces.
         If no face needs interior vertices, all vertices are on edges: edges with the longest steps
         get further steps.
         """
-        costs = self._costs[:, -1]
+        costs, count = self._costs[:, -1], self.spacing.count
         low = max(self.spacing.smallest_step, costs.sum() / (count + len(costs)))
         steps = self._steps(low) if low > 0.0 else self._steps(math.inf)
         if low > 0.0 and self._total(steps, low) > count:
@@ -217,14 +217,14 @@ class MeshEdges:
                 found[rows] = own_parameters(face.surface, found[rows], is_reversed=True)
         return found
 
-    def sampled(self, count: int) -> SampledEdges:
-        """Return the vertices on edges in a mesh of `count` ≥ `least` vertices.
+    def sampled(self) -> SampledEdges:
+        """Return the vertices on edges in a mesh, whose count must be `least` or more.
 
         Edges are coarser than the interior of faces if equally fine edges would take too many
         vertices.
         """
         points, ends = self._vertices
-        steps, first = self._steps_for(count), len(points)
+        steps, first = self._steps_for_count(), len(points)
         shares, numbers = {}, {}
         even = np.linspace(0.0, 1.0, PLACES + 1)
         for edge in np.flatnonzero(self.used).tolist():

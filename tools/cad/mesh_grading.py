@@ -21,14 +21,14 @@ GROWTH = 0.55
 UNEVEN = 0.5
 
 
-def graded(edges: MeshEdges, count: int) -> PartSpace:
+def graded(edges: MeshEdges) -> PartSpace:
     """Return the space of `edges` with sizes that grow slowly from the edges into the faces.
 
-    At an edge, the size is the length of its segments in a mesh of `count` vertices. Segments that
-    are hardly shorter than the largest size on a face do not change the sizes on that face.
+    At an edge, the size is the length of its segments in a mesh. Segments that are hardly shorter
+    than the largest size on a face do not change the sizes on that face.
     """
-    space, sampled = edges.space, edges.sampled(count)
-    step, points = step_of(space, count), space.scaled_points(sampled.points)
+    space, sampled = edges.space, edges.sampled()
+    step, points = step_of(space, edges.spacing.count), space.scaled_points(sampled.points)
     largest, sources = np.zeros(len(space.pieces)), dict[int, Sources]()
     np.maximum.at(largest, space.first.pieces, space.densities**-0.5)
     for k, sides in grouped(edges.pieces):

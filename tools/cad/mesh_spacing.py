@@ -10,18 +10,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from ...runtime.onto_surface.on_spline import OnSpline
 from ...runtime.surface.derivatives import normals_of_jets
 from ..density.kernels.sizing import TargetDensity
-from ..density.piece import Piece
 from ..density.space import Space
 from .edge_sampling import step_of
 from .face_pieces import FacePiece
@@ -107,8 +104,8 @@ class ByNormals(Spacing):
     @cached_property
     def pieces(self) -> list[TurnedPiece]:
         """The planes of all pieces, in units of their steps; they do not overlap."""
-        planes = [TurnedPiece.of(x, k) for k, x in enumerate(self.space.pieces)]
-        steps = _best_steps(planes, self.count).tolist()
+        planes = [TurnedPiece.of_piece(x, k) for k, x in enumerate(self.space.pieces)]
+        steps = _best_steps(planes, self.space.areas, self.count).tolist()
         return [x.in_steps(y) for x, y in zip(planes, steps, strict=True)]
 
     @cached_property
@@ -153,16 +150,15 @@ class ByNormals(Spacing):
         return turned.turned(uv) if turned.turns else super().plane(piece, uv, tangents)
 
 
-def _best_steps(planes: list[TurnedPiece], count: int) -> Array:
+def _best_steps(planes: list[TurnedPiece], areas: Array, count: int) -> Array:
     """Return the steps in the planes of faces that minimize the mean angle for `count` vertices.
 
     The angle between triangles and normals is proportional to the step s. A face with perimeter p
     and area F in its plane has p/s vertices on its boundary and F/s² inside. At the minimum, the
     area of a face in space times the derivative of its mean angle by s is the derivative of its
     number of vertices by s, up to a factor that all faces share. No step exceeds `LONGEST` times
-    the mean step.
+    the mean step. `areas` are those of the faces in space.
     """
-    areas = np.array([x.piece.size**2 for x in planes])
     around = np.array([x.perimeter if x.turns else 0.0 for x in planes])
     inside = np.array([0.0 if x.is_ruled else x.size**2 for x in planes])
     curved = around > 0.0
@@ -212,26 +208,26 @@ def _lengths_and_turns(points: Array) -> tuple[Array, Array]:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class TurnedPiece(Piece):
+class TurnedPiece(FacePiece):
     """A face mapped to a plane: the coordinates are angles of the normal along u and along v.
 
     `knots` are values of u and of v, and `lengths` the coordinates of these values. The difference
     of two successive coordinates is the largest angle, over all parameter lines, between the
-    normals at the two values. `turns` is the larger one of the total angles along u and along v. A
-    sphere is not mapped to a plane, but to a sphere of radius 1.
+    normals at the two values. `turns` is the larger one of the total angles along u and along v,
+    and `measure` the area in the plane. A sphere is not mapped to a plane, but to a sphere of
+    radius 1.
     """
 
-    piece: FacePiece
     number: int
     knots: tuple[Array, Array]
     lengths: tuple[Array, Array]
     turns: float
     is_ruled: bool
-    area: float
+    measure: float
     step: float = 1.0
 
     @classmethod
-    def of(cls, piece: FacePiece, number: int) -> TurnedPiece:
+    def of_piece(cls, piece: FacePiece, number: int) -> TurnedPiece:
         """Return the plane of a face."""
         knots = tuple(_places(piece, axis) for axis in (0, 1))
         places = np.stack(np.meshgrid(*knots, indexing="ij"), axis=-1)
@@ -246,17 +242,17 @@ class TurnedPiece(Piece):
             least = LEAST * turns * np.diff(values) / np.ptp(values)
             lengths.append(np.concatenate([[0.0], np.cumsum(np.maximum(steps, least))]))
         return cls(
-            label=piece.label, domain=piece.domain, trim=piece.trim, indices=piece.indices,
-            piece=piece, number=number, knots=(knots[0], knots[1]),
-            lengths=(lengths[0], lengths[1]), turns=turns if turns > RULED else 0.0,
-            is_ruled=min(totals) <= RULED, area=_area(piece, knots, lengths),
+            **{x.name: getattr(piece, x.name) for x in fields(FacePiece)},
+            number=number, knots=(knots[0], knots[1]), lengths=(lengths[0], lengths[1]),
+            turns=turns if turns > RULED else 0.0, is_ruled=min(totals) <= RULED,
+            measure=_area(piece, knots, lengths),
         )  # fmt: skip
 
     def in_steps(self, step: float) -> TurnedPiece:
         """Return this plane in units of a step."""
         return replace(
             self, lengths=(self.lengths[0] / step, self.lengths[1] / step),
-            area=self.area / step**2, step=step,
+            measure=self.measure / step**2, step=step,
         )  # fmt: skip
 
     @property
@@ -275,8 +271,8 @@ class TurnedPiece(Piece):
         """Return 2-jets (k, 6, 3) of the plane, or of the sphere."""
         found, places = np.zeros((len(u), 6, 3)), np.stack([u, v], axis=1)
         if self._radius:
-            found = self.piece.jets(u, v)
-            found[:, 0] -= self.piece.jets(*self.piece.middle)[0, 0]
+            found = super().jets(u, v)
+            found[:, 0] -= super().jets(*self.middle)[0, 0]
             found /= self._radius * self.step
         else:
             found[:, 0, :2] = self.turned(places)
@@ -290,33 +286,13 @@ class TurnedPiece(Piece):
     @property
     def _radius(self) -> float:
         """The radius of a sphere, 0 for other faces."""
-        return self.piece.face.dimensions["radius"] if self.piece.face.kind == "sphere" else 0.0
+        return self.face.dimensions["radius"] if self.face.kind == "sphere" else 0.0
 
     @cached_property
     def size(self) -> float:
         """The square root of the area in the plane, or on the sphere."""
-        size = self.piece.size / (self._radius * self.step) if self._radius else 0.0
-        return size or math.sqrt(self.area)
-
-    @property
-    def polygons(self) -> list[Array]:
-        """The polygons of the face."""
-        return self.piece.polygons
-
-    @property
-    def boxes(self) -> Array:
-        """The boxes of the face."""
-        return self.piece.boxes
-
-    def geometries(self, threads: int | None) -> list[OnSpline]:
-        """Return the splines on which points of the face are searched."""
-        return self.piece.geometries(threads)
-
-    def fields_at(
-        self, uv: Array, rows: Array, fields: Sequence[str], dtype: DTypeLike
-    ) -> dict[str, NDArray[Any]]:
-        """Return the fields of the face."""
-        return self.piece.fields_at(uv, rows, fields, dtype)
+        size = super().size / (self._radius * self.step) if self._radius else 0.0
+        return size or math.sqrt(self.measure)
 
 
 def _places(piece: FacePiece, axis: int) -> Array:

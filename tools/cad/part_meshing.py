@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -110,11 +110,11 @@ def mesh_of_part(
     }
     made: tuple[PartMesh, bool] | SurfaceError
     try:
-        made = mesh_and_soundness(part, whole, count, failed, spaced)
+        made = mesh_and_soundness(whole, count, failed, spaced)
     except SurfaceError as error:
         made = error
     if refuse and (isinstance(made, SurfaceError) or not made[1]):
-        _check_larger(part, whole, count, failed, spaced, known)
+        _check_larger(whole, count, MANY * known.least, failed, spaced)
     if isinstance(made, SurfaceError):
         raise made
     mesh, is_proper = made
@@ -161,7 +161,7 @@ def _inward(mesh: PartMesh, whole: PartSpace, rows: Indices) -> str:
 
 
 def mesh_and_soundness(
-    part: Part, whole: PartSpace, count: int, failed: Mapping[int, str], spaced: type[Spacing]
+    whole: PartSpace, count: int, failed: Mapping[int, str], spaced: type[Spacing]
 ) -> tuple[PartMesh, bool]:
     """Return a mesh, and whether it is sound: no triangle points inward, and no face is missing.
 
@@ -169,7 +169,7 @@ def mesh_and_soundness(
     """
     lacking = dict(failed)
     while True:
-        meshing = Meshing.of(part, whole, count, lacking, spaced)
+        meshing = Meshing.of(whole, count, lacking, spaced)
         bad = meshing.refine()
         if not bad:
             try:
@@ -183,21 +183,16 @@ def mesh_and_soundness(
 
 
 def _check_larger(
-    part: Part,
-    whole: PartSpace,
-    count: int,
-    failed: Mapping[int, str],
-    spaced: type[Spacing],
-    edges: MeshEdges,
+    whole: PartSpace, count: int, most: int, failed: Mapping[int, str], spaced: type[Spacing]
 ) -> None:
-    """Raise InputError if a larger count, up to a limit, gives a mesh without faults."""
+    """Raise InputError if a larger count, below `most`, gives a mesh without faults."""
     larger = math.ceil(MORE * count)
-    while larger < MANY * edges.least:
+    while larger < most:
         with suppress(SurfaceError):  # no face has triangles
-            if mesh_and_soundness(part, whole, larger, failed, spaced)[1]:
+            if mesh_and_soundness(whole, larger, failed, spaced)[1]:
                 raise InputError(
-                    f"a mesh of part {part.name!r} with {count:,} vertices would lack faces, or "
-                    f"have triangles that point inward; {larger:,} are enough."
+                    f"a mesh of part {whole.part.name!r} with {count:,} vertices would lack faces, "
+                    f"or have triangles that point inward; {larger:,} are enough."
                 )
         larger = math.ceil(MORE * larger)
 
@@ -277,21 +272,28 @@ class Corners:
 class Meshing:
     """A mesh of a part under construction; `failed` are the missing faces, with reasons."""
 
-    part: Part
-    space: PartSpace
     edges: MeshEdges
-    count: int
     failed: dict[int, str]
+
+    @property
+    def space(self) -> PartSpace:
+        """The space of the pieces that are meshed."""
+        return self.edges.space
+
+    @property
+    def count(self) -> int:
+        """The number of vertices."""
+        return self.edges.spacing.count
 
     @classmethod
     def of(
-        cls, part: Part, whole: PartSpace, count: int, failed: dict[int, str], spaced: type[Spacing]
+        cls, whole: PartSpace, count: int, failed: dict[int, str], spaced: type[Spacing]
     ) -> Meshing:
         """Return the start of a mesh of those pieces of a space that have not failed."""
         pieces = tuple(x for x in whole.pieces if x.face.index not in failed)
         if not pieces:
             reason = next(iter(failed.values()))
-            raise SurfaceError(f"no face of part {part.name!r} can be meshed: {reason}")
+            raise SurfaceError(f"no face of part {whole.part.name!r} can be meshed: {reason}")
         held = whole._held if len(pieces) == len(whole.pieces) else {}
         made: Space = replace(whole, pieces=pieces, _held=held)
         if whole.target.curvature_weight > 0.0:
@@ -302,9 +304,8 @@ class Meshing:
         assert isinstance(made, PartSpace)
         edges = MeshEdges.of(spaced(made, count))
         if spaced.by_shape and edges.least <= count:
-            made = graded(edges, count)
-            edges = MeshEdges.of(spaced(made, count))
-        return cls(part, made, edges, count, failed)
+            edges = MeshEdges.of(spaced(graded(edges), count))
+        return cls(edges, failed)
 
     def refine(self) -> dict[int, str]:
         """Divide edges until the boundary of no face crosses itself.
@@ -387,10 +388,10 @@ class Meshing:
     def _sampled(self) -> SampledEdges:
         if self.edges.least > self.count:
             raise InputError(
-                f"a mesh of part {self.part.name!r} needs at least {self.edges.least:,} "
+                f"a mesh of part {self.space.part.name!r} needs at least {self.edges.least:,} "
                 f"vertices for its edges, and there are {self.count:,} samples; take more."
             )
-        return self.edges.sampled(self.count)
+        return self.edges.sampled()
 
     def _borders(self, sampled: SampledEdges) -> list[FaceBorder]:
         return [FaceBorder.of(x, sampled) for x in self.space.pieces]
@@ -490,19 +491,15 @@ class Meshing:
         uv[corners.numbers[::-1]] = corners.known.uv[::-1]
         triangles = corners.triangles
         vertices, normals = corners.numbers[triangles], corners.normals(self.space, triangles)
-        faces = np.array([x.face.index for x in self.space.pieces])
+        faces, nothing = [x.face.index for x in self.space.pieces], np.empty(0, dtype=np.int64)
+        part, is_point = self.space.part, self.edges.arrays["edge_degenerate"].tolist()
+        lines = [nothing if x else sampled.numbers.get(k, nothing) for k, x in enumerate(is_point)]
         return PartMesh(
             points, mean_normals(vertices, normals, count), uv, vertices,
-            np.full(count, -1), self.part.name,
-            corner_normals=normals, face_index=faces[corners.pieces[triangles[:, 0]]],
-            lines=tuple(self._lines(sampled)), failed=self.failed, unit=self.part.unit,
+            np.full(count, -1), part.name,
+            corner_normals=normals, face_index=np.array(faces)[corners.pieces[triangles[:, 0]]],
+            lines=tuple(lines), failed=self.failed, unit=part.unit,
         )  # fmt: skip
-
-    def _lines(self, sampled: SampledEdges) -> Iterator[Indices]:
-        degenerate = self.edges.arrays["edge_degenerate"].tolist()
-        for edge, is_point in enumerate(degenerate):
-            nothing = is_point or edge not in sampled.numbers
-            yield np.empty(0, dtype=np.int64) if nothing else sampled.numbers[edge]
 
 
 # --- faults ---------------------------------------------------------------------------------------

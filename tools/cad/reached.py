@@ -102,8 +102,7 @@ def _sides(space: PartSpace) -> Iterator[tuple[int, Segments]]:
 
     Smooth seams and degenerate edges are left out.
     """
-    part = space.pieces[0].face.part
-    arrays, number = part.arrays, {x.face.index: k for k, x in enumerate(space.pieces)}
+    arrays, number = space.part.arrays, {x.face.index: k for k, x in enumerate(space.pieces)}
     places = np.split(arrays["side_points"], arrays["side_point_starts"][1:-1])
     for edge, (first, last) in enumerate(itertools.pairwise(arrays["edge_side_starts"].tolist())):
         faces = arrays["side_faces"][first:last].tolist()

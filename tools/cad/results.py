@@ -29,6 +29,11 @@ class PartSpace(Space):
     pieces: tuple[FacePiece, ...]
     failed: Mapping[int, str] = field(default_factory=dict)
 
+    @property
+    def part(self) -> Part:
+        """The part."""
+        return self.pieces[0].face.part
+
 
 def space_of(
     part: Part, threads: int | None, target: TargetDensity | None = None, reach: Reach | None = None

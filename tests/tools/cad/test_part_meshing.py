@@ -212,7 +212,7 @@ def test_a_face_whose_border_crosses_itself_is_missing():
 
 def test_larger_counts_are_tried_up_to_a_bound(monkeypatch):
     """The edges of a box need 8 vertices: counts below 16 times that are tried."""
-    tried = noted(monkeypatch, meshing, "mesh_and_soundness", lambda given, _: given[2])
+    tried = noted(monkeypatch, meshing, "mesh_and_soundness", lambda given, _: given[1])
     with pytest.warns(gm.GaussmapWarning, match="crosses itself"):
         gm.sample(crossed_box(), 60).mesh()
     assert tried == [60, 72, 87, 105, 126]
@@ -409,13 +409,13 @@ def test_normals_of_waves_are_seen():
         return np.stack([u, v, slope / (10.0 * np.pi) * np.sin(10.0 * np.pi * u + 0.7)], axis=-1)
 
     wavy = gm.Part([gm.Surface.from_callable(waves, ((0.0, 1.0), (0.0, 1.0)))])
-    turned = TurnedPiece.of(FacePiece.of(wavy.faces[0]), 0)
+    turned = TurnedPiece.of_piece(FacePiece.of(wavy.faces[0]), 0)
     assert turned.lengths[0][-1] == pytest.approx(20.0 * np.arctan(slope), rel=0.05)
 
 
 def test_a_parameter_along_which_normals_do_not_turn_counts_a_little():
     """Otherwise a cylinder would have no area in its plane."""
-    turned = TurnedPiece.of(FacePiece.of(CYLINDER.faces[0]), 0)
+    turned = TurnedPiece.of_piece(FacePiece.of(CYLINDER.faces[0]), 0)
     assert turned.lengths[0][-1] == pytest.approx(TURN, rel=1e-3)
     assert turned.lengths[1][-1] == pytest.approx(1e-3 * turned.lengths[0][-1], rel=1e-12)
 
@@ -442,7 +442,7 @@ def test_sizes_grow_slowly_from_edges():
 def test_candidates_for_a_count_are_as_dense_as_cells_near_edges():
     """Light candidates have the sizes that grow from the edges; else meshes are thin there."""
     whole = space_of(cylinder(height=0.02), None)
-    space = graded(MeshEdges.of(Spacing(whole, 1500)), 1500)
+    space = graded(MeshEdges.of(Spacing(whole, 1500)))
     radius = 0.02 * np.sqrt(space.area)
     cells, (light, _) = space.cut(radius), space.candidates(radius)
     assert cells.rows[:, 6].max() > 5.0 * space.target.floor
