@@ -95,8 +95,8 @@ def normalized(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def unit_or_zero(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return vectors (k, 3) divided by their lengths; zero vectors stay 0."""
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    """Return vectors (…, 3) divided by their lengths; zero vectors stay 0."""
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
 
 

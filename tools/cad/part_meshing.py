@@ -23,7 +23,7 @@ from ...runtime.base.memory import check_memory
 from ...runtime.base.progress import tell
 from ...runtime.base.wording import plural
 from ...runtime.samples.samples import Samples
-from ..density.cells import Cells, by_piece
+from ..density.cells import Cells, runs
 from ..density.cover import Cover
 from ..density.filling import Filling, target_of
 from ..density.grid import Grid
@@ -450,7 +450,7 @@ class Meshing:
         order = np.argsort(added.pieces, kind="stable")
         cells, spacing = added[order], self.edges.spacing
         cells = replace(cells, pieces=spacing.covered[1][cells.pieces]) if len(cells) else cells
-        rows = dict(by_piece(cells))
+        rows = dict(runs(cells.pieces))
         inner = [cells.places[rows.get(k, slice(0, 0))] for k in range(len(borders))]
         numbers = [names[order[rows.get(k, slice(0, 0))]] for k in range(len(borders))]
         counts = [len(x.uv) + len(y) for x, y in zip(borders, inner, strict=True)]

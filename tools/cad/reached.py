@@ -17,7 +17,7 @@ from ...runtime.map import GaussMap
 from ...runtime.onto_surface.on_spline import on_grids
 from ...runtime.samples.samples import Samples
 from ...runtime.surface.surface import Surface
-from ..density.cells import AREA, by_piece
+from ..density.cells import AREA, runs
 from ..density.kernels.sizing import TargetDensity
 from ..edge_distance import AwayFrom
 from ..meshes.front import FreeAlong
@@ -156,7 +156,7 @@ def weights_of(part: Part, samples: Samples) -> Array:
     space = reached(part, None, reach=samples.report._in_reach)
     points = space.scaled_points(samples.points)
     cells = space.uniform.cut(math.sqrt(space.area / (CELLS_A_SAMPLE * max(len(samples), 1))))
-    for k, rows in by_piece(cells):
+    for k, rows in runs(cells.pieces):
         piece = space.pieces[k]
         here = np.flatnonzero((faces == piece.face.index) & inner)
         if len(here):

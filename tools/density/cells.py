@@ -137,11 +137,6 @@ def into_parts(cells: Cells, parts: Indices) -> Cells:
     return new_cells(cells.pieces[owner], boxes, cells.whole[owner], cells.limits[owner])
 
 
-def by_piece(cells: Cells) -> Iterator[tuple[int, slice]]:
-    """Yield the index of each piece and the slice of its cells; cells are sorted by piece."""
-    yield from runs(cells.pieces)
-
-
 def runs(numbers: Indices) -> Iterator[tuple[int, slice]]:
     """Yield the runs of equal integers in an array (k,): the integer, and the slice of the run."""
     ends = (np.flatnonzero(np.diff(numbers)) + 1).tolist()

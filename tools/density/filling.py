@@ -19,7 +19,7 @@ from ...runtime.onto_surface.smooth_pieces import LEAST_IMAGE
 from ...runtime.samples.fields import dtype_of
 from .angles import MARGIN, choose_apart, chord_of, cover_normals
 from .at_normals import Given, at_count, at_lattices, at_normals
-from .cells import Cells, by_piece, joined
+from .cells import Cells, joined, runs
 from .cover import Cover
 from .coverage import coverage
 from .deviation import widest_angle
@@ -133,7 +133,7 @@ def fields_of(cover: Cover, fields: Sequence[str], dtype: DTypeLike) -> dict[str
     order = np.argsort(added.pieces, kind="stable")
     added = added[order]
     pieces = cover.space.pieces
-    parts = [_of_piece(pieces[k], added[rows], fields, dtype) for k, rows in by_piece(added)]
+    parts = [_of_piece(pieces[k], added[rows], fields, dtype) for k, rows in runs(added.pieces)]
     found = {}
     for name in fields:
         given = cover.at_normals.array(name, dtype)

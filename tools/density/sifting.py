@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...runtime.base.aliases import Array, Flags, Indices
-from .cells import Cells, by_piece, runs
+from .cells import Cells, runs
 from .trims import Trims
 
 # Cells that the boundary intersects are tested at SUB² points, their subplaces.
@@ -57,7 +57,7 @@ def beside(trims: Trims, lost: Cells, pixels: Indices) -> tuple[Indices, Array]:
     Return the indices (k,) of the pieces, and the parameters (k, 2) of the points.
     """
     owners, places = [np.empty(0, dtype=np.int64)], [np.empty((0, 2))]
-    for k, rows in by_piece(lost):
+    for k, rows in runs(lost.pieces):
         n = int(pixels[k])
         border = trims.pieces[k].border(n)
         assert border is not None

@@ -27,7 +27,6 @@ from .cells import (
     RADIUS,
     Cells,
     Sides,
-    by_piece,
     grouped,
     halved,
     into_parts,
@@ -152,7 +151,7 @@ class Space:
     @property
     def longest(self) -> float:
         """The largest extent of a piece along x, y or z, times √w for the least density w."""
-        points = (self.first.rows[found, :3] for _, found in by_piece(self.first))
+        points = (self.first.rows[found, :3] for _, found in runs(self.first.pieces))
         return math.sqrt(self.smallest) * max(float(np.ptp(x, axis=0).max()) for x in points)
 
     @property
@@ -242,7 +241,7 @@ class Space:
         growth, sizes = growth_for(count, self.integral), self.densities**-0.5
         found = {
             k: bounds_of(self.first.rows[cells, :3], sizes[cells], growth)
-            for k, cells in by_piece(self.first)
+            for k, cells in runs(self.first.pieces)
         }
         sources = {k: x for k, x in found.items() if x is not None}
         return self.with_sources(sources) if sources else self
@@ -311,7 +310,7 @@ class Space:
         A piece whose cells in `first` are all singular is left out.
         """
         first, rows, wanted = self.first, [], set(pieces.tolist())
-        for k, found in by_piece(first):
+        for k, found in runs(first.pieces):
             if k in wanted:
                 points, areas = first.rows[found, :3], first.numbers[found, AREA]
                 regular = first.rows[found, 3:6].any(axis=1)
@@ -546,7 +545,7 @@ class Space:
         the target density of these pieces are equal.
         """
         groups, last, room = list[list[tuple[int, slice]]](), None, 0
-        for k, rows in by_piece(cells):
+        for k, rows in runs(cells.pieces):
             kind = k in self.developable, *self.pieces[k].finest.tolist()
             for first in range(rows.start, rows.stop, CELLS_AT_A_TIME):
                 part = slice(first, min(first + CELLS_AT_A_TIME, rows.stop))

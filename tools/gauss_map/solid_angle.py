@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ...generated.gaussian_image import boundary_arc
 from ...runtime.base.formula_calls import python_function, vector
+from ...runtime.directions.unit import unit_or_zero
 from .kernels.solid_angle import integrate_arcs
 
 Array = NDArray[np.float64]
@@ -72,10 +73,8 @@ def by_boundary(normals: Array, about: float) -> float:
     arcs = np.concatenate(boundary_of(normals[None]))
     columns = map(vector, np.moveaxis(arcs[..., None, :], 1, 0))
     arc, _ = python_function(boundary_arc)(*columns, np.linspace(0.0, 1.0, SAMPLES))
-    curve = np.stack(arc)
-    lengths = np.linalg.norm(curve, axis=0)
-    curve = np.divide(curve, lengths, out=np.zeros_like(curve), where=lengths > 0.0)
-    pole = POLES[int((POLES @ curve.reshape(3, -1)).min(axis=1).argmax())]
+    curve = unit_or_zero(np.stack(arc, axis=-1)).reshape(-1, 3)
+    pole = POLES[int((POLES @ curve.T).min(axis=1).argmax())]
     whole = float(integrate(arcs, np.tile(pole, (len(arcs), 1))).sum())
     better = math.remainder(whole - about, 4.0 * math.pi)
     return about + better if abs(better) < LEFT_OUT else about
@@ -193,13 +192,12 @@ def _near_mean(normals: Array) -> tuple[Array, NDArray[np.bool_]]:
     The mask says whether all control normals of a triangle are near their mean.
     """
     net = normals.reshape(-1, 9, 3)
-    lengths = np.linalg.norm(net, axis=2, keepdims=True)
-    directions = np.divide(net, lengths, out=np.zeros_like(net), where=lengths > 0.0)
+    directions = unit_or_zero(net)
     means = directions.sum(axis=1)
     sizes = np.linalg.norm(means, axis=1, keepdims=True)
     means = np.divide(means, sizes, out=np.zeros_like(means), where=sizes > SMALL)
     cosines = np.einsum("kix,kx->ki", directions, means)
-    cosines[lengths[..., 0] == 0.0] = 1.0
+    cosines[~directions.any(axis=2)] = 1.0
     return means, (cosines.min(axis=1) > NARROW) & (sizes[:, 0] > SMALL)
 
 
@@ -241,5 +239,4 @@ def first_directions(arcs: Array) -> Array:
     """Return the first nonzero control normal (k, 3) of each arc, scaled to unit length."""
     nonzero = arcs.any(axis=2)
     first = np.take_along_axis(arcs, nonzero.argmax(axis=1)[:, None, None], axis=1)[:, 0]
-    length = np.linalg.norm(first, axis=1, keepdims=True)
-    return np.divide(first, length, out=np.zeros_like(first), where=length > 0.0)
+    return unit_or_zero(first)

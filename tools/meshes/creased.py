@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.checks import checked_array
+from ...runtime.directions.unit import unit_or_zero
 from .mesh import Mesh
 
 # Normals at a point count as equal if they agree to this number of decimals.
@@ -91,10 +92,4 @@ def mean_normals(
     """
     total = np.zeros((count, 3))
     np.add.at(total, triangles, corner_normals)
-    return unit(total)
-
-
-def unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return vectors (…, 3) divided by their lengths; zero vectors remain."""
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return vectors / np.where(lengths > 0.0, lengths, 1.0)
+    return unit_or_zero(total)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ...runtime.base.errors import InputError, shown
 from ...runtime.base.memory import check_memory
 from ...runtime.base.progress import tell
+from ...runtime.directions.unit import unit_or_zero
 from ...runtime.domain.domain import Boundary
 from ...runtime.onto_surface.newton import evaluate_on_surface
 from ...runtime.spline.spline import Spline
@@ -234,5 +235,4 @@ def _fill_missing(normals: Array, triangles: Indices, sides: Indices) -> None:
     corners, side = triangles[touching], sides[touching, :, None]
     sums = np.zeros_like(normals)
     np.add.at(sums, corners, side * (side * normals[corners]).sum(axis=1, keepdims=True))
-    lengths = np.linalg.norm(sums[missing], axis=1, keepdims=True)
-    normals[missing] = sums[missing] / np.where(lengths > 0.0, lengths, 1.0)
+    normals[missing] = unit_or_zero(sums[missing])

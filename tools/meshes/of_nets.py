@@ -9,8 +9,9 @@ import numpy as np
 from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.checks import whole_number
 from ...runtime.base.memory import check_memory
+from ...runtime.directions.unit import unit_or_zero
 from ...runtime.spline.joints import linked
-from .creased import CreasedMesh, mean_normals, unit
+from .creased import CreasedMesh, mean_normals
 
 if TYPE_CHECKING:
     from ...runtime.spline.nets import NetSpline
@@ -140,13 +141,13 @@ def _normals(spline: NetSpline, patches: Indices, uv: Array, smooth: Links) -> A
     agree.
     """
     N, singular = spline.normals_in_patches(patches, uv)
-    own = unit(N)
+    own = unit_or_zero(N)
     count, group = linked(len(own), *smooth)
     regular = _any(count, group, ~singular)
     total = np.zeros((count, 3))
     some = np.flatnonzero(~singular | ~regular[group])
     np.add.at(total, group[some], own[some])
-    shared = unit(total)[group]
+    shared = unit_or_zero(total)[group]
     chord = 2.0 * np.sin(0.5 * np.radians(spline.smooth))
     apart = _any(count, group, np.linalg.norm(own - shared, axis=1) > chord) & ~regular
     return np.where(apart[group, None], own, shared)

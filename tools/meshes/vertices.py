@@ -67,7 +67,7 @@ class Vertices:
         tree = tree_of(before_offset(samples)[sample] * spline.scale)
         fixed = [*_poles(inner, tree, spline, boundary), *_sides(inner, tree, spline, boundary)]
         for part in fixed:
-            inner = inner.without(part.sample)
+            inner = inner.chosen(~np.isin(inner.sample, part.sample))
         return cls.joined([inner, *fixed]).apart(boundary)
 
     @classmethod
@@ -80,10 +80,6 @@ class Vertices:
         """Return the vertices of all parts."""
         names = ("positions", "sample", "is_free")
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
-
-    def without(self, sample: Indices) -> Vertices:
-        """Return these vertices without the given samples."""
-        return self.chosen(~np.isin(self.sample, sample))
 
     def chosen(self, kept: NDArray[np.bool_]) -> Vertices:
         """Return a selection of the vertices."""

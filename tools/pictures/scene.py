@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...runtime.base.errors import InputError, SurfaceError
+from ...runtime.directions.unit import unit_or_zero
 from ...runtime.domain.trim import Trim
 from ...runtime.fitting.fit import spline_of
 from ...runtime.samples.samples import Samples
@@ -89,9 +90,7 @@ class Scene:
         """The brightness (Q,) of the quadrangles, 0 … 1; the light comes from the upper left."""
         a, b, c, d = np.moveaxis(self.seen(self.quadrangles), 1, 0)
         size = np.abs([c - a, d - b]).max() or 1.0
-        normals = np.cross((c - a) / size, (d - b) / size)
-        length = np.linalg.norm(normals, axis=1, keepdims=True)
-        normals /= np.where(length > 0.0, length, 1.0)
+        normals = unit_or_zero(np.cross((c - a) / size, (d - b) / size))
         normals *= np.where(normals[:, 2:] < 0.0, -1.0, 1.0)  # both sides are lit
         lamp = np.array([-0.45, 0.6, 0.7])
         return np.clip(normals @ (lamp / np.linalg.norm(lamp)), 0.0, 1.0)
