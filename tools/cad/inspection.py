@@ -120,13 +120,9 @@ def faces_said(content: bytes, form: str) -> int:
     if form == "STEP":
         return len({x for shell in SHELL.findall(content) for x in REFERENCE.findall(shell)})
     if form == "IGES":
-        return sum(1 for x in _directory(content) if x[:8].strip() in IGES_FACES)
+        directory = [x for x in content.splitlines() if x[72:73] == b"D"]  # two lines an entity
+        return sum(x[:8].strip() in IGES_FACES for x in directory[::2])
     return 0
-
-
-def _directory(content: bytes) -> list[bytes]:
-    """Return the first line of each entity in the directory of an IGES file."""
-    return [x for x in content.splitlines() if x[72:73] == b"D"][::2]
 
 
 def is_part_file(source: str | None) -> bool:

@@ -47,8 +47,11 @@ def volume_of(part: Part) -> float:
     for k, why in space.failed.items():
         if closed[k] and k not in {x.index for x in part.failed}:
             raise SurfaceError(why)
-    centre, pieces = space.centre, [x for x in space.pieces if closed[x.face.index]]
-    return sum(x.face.area * _mean_height(x, centre) for x in pieces) / 3.0
+    pieces = [x for x in space.pieces if closed[x.face.index]]
+    # The area of a face is exact to about 1e-6; that inside of its boundary polygons need not be.
+    integrals = (integrals_of(x, space.centre) for x in pieces)
+    means = (heights / area for heights, area in integrals)
+    return sum(x.face.area * mean for x, mean in zip(pieces, means, strict=True)) / 3.0
 
 
 def _closed_faces(part: Part) -> Flags:
@@ -61,16 +64,6 @@ def _closed_faces(part: Part) -> Flags:
     open_ = (np.diff(starts) != 2) & ~part.arrays["edge_degenerate"]
     lacking = np.union1d(solids[faces[open_[owner]]], solids[[x.index for x in part.failed]])
     return (solids >= 0) & ~np.isin(solids, lacking)
-
-
-def _mean_height(piece: FacePiece, centre: Array) -> float:
-    """Return the mean of (x − c)·n over a face, where c is `centre`.
-
-    `volume_of` multiplies this mean by `Face.area`, which is exact to about 1e-6. So the area
-    inside the boundary polygons need not be exact.
-    """
-    heights, area = integrals_of(piece, centre)
-    return heights / area
 
 
 def integrals_of(piece: FacePiece, centre: Array) -> tuple[float, float]:

@@ -115,11 +115,13 @@ class Cover:
 
     def to_count(self, count: int) -> None:
         """Add samples until there are `count` samples in total."""
-        radius, largest = WIDEST * self._radius_for(count), self._largest_radius
+        radius = WIDEST * self._radius_for(count)
+        # A few samples cover the surface, even a narrow strip, with this radius.
+        largest = max(math.sqrt(self.space.integral), 0.5 * self.space.longest)
         self._begin(radius, count)
         while self.count == count > self.fixed + 1 and radius < largest:
             # The first chosen candidates used up the count, perhaps not in the widest gaps.
-            self.remove_added()
+            self._replace_added(self.added[: self.fixed - self.given])
             radius *= 2.0
             self._begin(radius, count)
         self.fill_up(count)
@@ -272,10 +274,6 @@ class Cover:
         cells = points_of(pieces, places[order], self.space.sizes[pieces], limits)
         return self.space.light(cells, keep=True)[0], order
 
-    def remove_added(self) -> None:
-        """Remove all samples that were added, except those of the grid."""
-        self._replace_added(self.added[: self.fixed - self.given])
-
     def _radius_for(self, count: int) -> float:
         """Return the radius at which about `count` samples cover the surface.
 
@@ -283,11 +281,6 @@ class Cover:
         """
         packed = math.sqrt(PACKED * self.space.integral / count)
         return max(packed, 0.5 * self.space.longest / count)
-
-    @property
-    def _largest_radius(self) -> float:
-        """A radius at which a few samples cover the surface, even a narrow strip."""
-        return max(math.sqrt(self.space.integral), 0.5 * self.space.longest)
 
     def _begin(self, radius: float, count: int) -> None:
         self.take_candidates(radius / WIDEST, radius, light=True)

@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...runtime.base.aliases import Array, Flags, Indices
 from ...runtime.base.repeats import repeated
 from ...runtime.domain.domain import Boundary
 from ...runtime.domain.loops import Loops
 from ...runtime.domain.trim import TrimPart
 from ...runtime.spline.missing import Known
 from ...runtime.spline.spline import Spline
-from ..gauss_map.chains import Segment, joined
+from ..gauss_map.chains import Segment, continued, joined
+from ..gauss_map.sign_changes import sign_changes
 from .places import ON_SIDE, uv_at, wrapped
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 # The number of steps, per cell, into which polylines are cut.
 STEPS_A_CELL = 8
@@ -62,11 +60,8 @@ def _lines(part: TrimPart, spline: Spline) -> list[Array]:
         closed = [np.concatenate([x, x[:1]]) for x in part.polygons]
         return [(x - low) / (high - low) for x in closed]
     if isinstance(part, Known):
-        segments = list(_edges_of_known(part, spline.boundary))
-    else:
-        segments = list(_changes(part, spline))
-        return [_refined(line, part, spline) for line, _ in joined(segments)]
-    return [line for line, _ in joined(segments)]
+        return [line for line, _ in joined(list(_edges_of_known(part, spline.boundary)))]
+    return [_refined(line, part, spline) for line in _changes(part, spline)]
 
 
 def _dense(line: Array, spline: Spline) -> Array:
@@ -169,29 +164,21 @@ def _edges_of_known(part: Known, boundary: Boundary) -> Iterator[Segment]:
 # --- predicates -----------------------------------------------------------------------------------
 
 
-def _changes(part: TrimPart, spline: Spline) -> Iterator[Segment]:
-    """Yield the polylines on which a condition changes.
-
-    They are contours between nodes of a grid, moved to the change of the condition by bisection.
-    """
-    from contourpy import LineType, contour_generator
-
+def _changes(part: TrimPart, spline: Spline) -> list[Array]:
+    """Return the polylines on which a condition changes: between nodes of a grid, by bisection."""
     counts = np.clip(NODES_A_CELL * np.array(spline.cells), FEWEST, MOST)
-    closes = np.array([ends[0] == "periodic" for ends in spline.boundary])
+    in_u, in_v = ("periodic" if x == "periodic" else "open" for x, _ in spline.boundary)
     nodes = np.moveaxis(np.indices(tuple((counts + 1).tolist())), 0, -1) / counts
     inside = part.contains(_uv(nodes.reshape(-1, 2), spline)).reshape(nodes.shape[:2])
-    for axis in np.flatnonzero(closes):
+    for axis, kind in enumerate((in_u, in_v)):
         rows = np.swapaxes(inside, 0, axis)
-        rows[-1] = rows[0]
-    # contourpy counts the second axis first.
-    contours = contour_generator(z=inside.T.astype(np.float64), line_type=LineType.Separate)
-    for found in contours.lines(0.5):
-        line = np.asarray(found)
-        low, high = np.floor(line).astype(np.int64), np.ceil(line)
-        at_low = inside[low[:, 0], low[:, 1]]
-        places = _bisected(low / counts, high / counts, at_low, part, spline)
-        start, end = np.where(closes, line[[0, -1]] % counts, line[[0, -1]]).tolist()
-        yield tuple(start), tuple(end), places
+        rows[-1] = rows[0] if kind == "periodic" else rows[-1]
+
+    def places(low: Indices, high: Indices) -> Array:
+        return _bisected(low / counts, high / counts, inside[tuple(low.T)], part, spline)
+
+    lines = sign_changes(np.where(inside, 1.0, -1.0), (in_u, in_v), places)
+    return [continued(parts) for parts, _ in lines]
 
 
 def _refined(line: Array, part: TrimPart, spline: Spline) -> Array:

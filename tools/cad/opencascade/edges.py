@@ -8,7 +8,6 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -98,7 +97,7 @@ def _ordered(face: Any, reader: FaceReader) -> EdgeCurves:  # noqa: ANN401
 
 def _record(known: Known, scales: list[Array], vertices: _Vertices) -> EdgeRecord:
     """Return the record of an edge; parameters are NaN on faces where it has no p-curve."""
-    shares = _shares(max((_points(x) for x in known.curves if x), default=2))
+    shares = np.linspace(0.0, 1.0, max((_points(x) for x in known.curves if x), default=2))
     sides = np.full((len(shares), len(known.faces), 4), np.nan)
     for k, (face, curve) in enumerate(zip(known.faces, known.curves, strict=True)):
         if curve is not None:
@@ -132,11 +131,6 @@ class _Vertices:
         if place == len(self._points):
             self._points.append(BRep_Tool.Pnt_s(vertex).Coord())
         return place
-
-
-@cache
-def _shares(number: int) -> Array:
-    return np.linspace(0.0, 1.0, number)
 
 
 def _points(curve: PCurve) -> int:

@@ -14,7 +14,6 @@ from OCP.TopoDS import TopoDS
 from ....runtime.base.wording import plural
 from ...files.lengths import METRES
 from ...files.reading import UnusableError
-from ..damaged_step import LostFace
 from ..records import FaceRecord, Geometry, PartRecord
 from ..source import Source
 from ..units import with_unit
@@ -51,7 +50,8 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
     if all(x.reason for x in faces):
         why = faces[0].reason if faces else lost[0].reason
         raise UnusableError(f"has no face that can be used: of the first one, {why}.")
-    missing = said - _different(found.faces) - len(lost)
+    # Copies in several placements count as one face.
+    missing = said - len({Key(x.shape, placed=False) for x in found.faces}) - len(lost)
     if missing > 0:
         document.warnings.append(
             f"{missing} of {said} faces are missing: Open CASCADE cannot make them; export the "
@@ -73,7 +73,10 @@ def part_record(source: Source, name: str, unit: str | None) -> PartRecord:
         in_unit,
         METRES[in_unit],
         found.closed,
-        [*(with_unit(x, factor) for x in faces), *map(_lost_face, lost)],
+        [
+            *(with_unit(x, factor) for x in faces),
+            *(FaceRecord(Geometry("unknown"), name=x.name, reason=x.reason) for x in lost),
+        ],
         found.solid_names,
         topology.edges,
         topology.vertices,
@@ -117,12 +120,3 @@ def _others(document: Document) -> str:
 def _face(face: PlacedFace, reader: FaceReader) -> FaceRecord:
     record = reader.record(TopoDS.Face(face.shape))
     return replace(record, name=face.name, color=face.color, solid_index=face.solid)
-
-
-def _different(faces: list[PlacedFace]) -> int:
-    """Return the number of different faces: copies in several placements count as one face."""
-    return len({Key(x.shape, placed=False) for x in faces})
-
-
-def _lost_face(face: LostFace) -> FaceRecord:
-    return FaceRecord(Geometry("unknown"), name=face.name, reason=face.reason)

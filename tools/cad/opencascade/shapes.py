@@ -8,7 +8,7 @@ The code uses only names that versions 7.9 and 8.0 share.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import cache
+from importlib import import_module
 from typing import Any
 
 from OCP.TopExp import TopExp_Explorer
@@ -45,7 +45,9 @@ class Key:
 
 def sequence(old: str, new: str) -> Any:  # noqa: ANN401
     """Return an empty collection of the class `old` ("module.name") in 7.9, or `new` in 8.0."""
-    return _collection(old, new)()
+    module, name = old.split(".")
+    made = getattr(import_module(f"OCP.{module}"), name, None)
+    return (made or getattr(import_module("OCP.collections"), new))()
 
 
 def indexed_shapes() -> Any:  # noqa: ANN401
@@ -53,15 +55,6 @@ def indexed_shapes() -> Any:  # noqa: ANN401
     return sequence(
         "TopTools.TopTools_IndexedMapOfShape", "IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher"
     )
-
-
-@cache
-def _collection(old: str, new: str) -> Any:  # noqa: ANN401
-    import importlib
-
-    module, name = old.split(".")
-    made = getattr(importlib.import_module(f"OCP.{module}"), name, None)
-    return made or getattr(importlib.import_module("OCP.collections"), new)
 
 
 def direct_class(thing: Any) -> str:  # noqa: ANN401
