@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -79,21 +78,18 @@ def _outward(shell: Shell, heights: Sequence[float]) -> Shell:
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """Points (k, 3) spread over a closed shell, and its outward normals (k, 3) there."""
+    """Points (k, 3) over a closed shell, a tree of them, and outward normals (k, 3) there."""
 
     points: Array
     normals: Array
+    tree: KDTree
 
     @classmethod
     def of(cls, shell: Shell, pieces: Sequence[FacePiece]) -> _Points:
         jets = [pieces[face].on_raster() for face in shell.signs]
         signs = np.repeat(list(shell.signs.values()), [len(x) for x in jets])
         jets = np.concatenate(jets)
-        return cls(jets[:, 0], signs[:, None] * normals_of_jets(jets))
-
-    @cached_property
-    def tree(self) -> KDTree:
-        return tree_of(self.points)
+        return cls(jets[:, 0], signs[:, None] * normals_of_jets(jets), tree_of(jets[:, 0]))
 
     def hold(self, other: _Points) -> bool:
         """Return whether another shell is inside this one.
