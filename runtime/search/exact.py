@@ -33,8 +33,9 @@ PAIRS_AT_A_TIME = 1 << 10
 # many such integers, each of about a hundred bytes.
 LONG_PAIRS_AT_A_TIME = 1 << 14
 # A distance in the parameter plane, in cells: hits of one normal at the open boundary that are
-# closer than this count as one point, and a hit that is closer to a pole counts as at the pole. The
-# distance is far more than rounding errors, which are below 1e-14, and far less than a cell.
+# closer than this count as one point, and a hit that is closer to a pole, or to a corner of a net,
+# counts as there. The distance is far more than rounding errors, which are below 1e-14, and far
+# less than a cell.
 SAME_PLACE = 1e-6
 
 
@@ -79,7 +80,8 @@ def decide(
     which, regular = which[towards], regular[towards]
     number, sign = numbers[which], signs[which, 0]
     place = _in_cells(spline, patches[which], local[which])
-    keep = _first_of_each_place(spline, number, place, near[which])
+    periods = np.where([x[0] == "periodic" for x in spline.boundary], spline.cells, np.inf)
+    keep = first_of_each_place(number, place, near[which], periods)
     keep[keep] = uncancelled(number[keep], _poles_at(spline, place[keep]), sign[keep])
     at = np.column_stack([local[which], sign.astype(np.float64), regular])
     return Decision(which[keep], at[keep])
@@ -185,12 +187,16 @@ def _poles_at(spline: Spline, places: NDArray[np.float64]) -> NDArray[np.int64]:
 # --- the open boundary ----------------------------------------------------------------------------
 
 
-def _first_of_each_place(
-    spline: Spline, numbers: NDArray[np.int64], place: NDArray[np.float64], near: NDArray[np.bool_]
+def first_of_each_place(
+    numbers: NDArray[np.int64],
+    place: NDArray[np.float64],
+    near: NDArray[np.bool_],
+    periods: NDArray[np.float64] | float = np.inf,
 ) -> NDArray[np.bool_]:
     """Return a mask of the hits to keep.
 
-    A hit `near` the open boundary is left out if it coincides with another hit that is kept.
+    A hit `near` the open boundary is left out if it coincides with another hit that is kept: if both
+    have the same normal, and the positions `place` (k, d) are equal up to the `periods` (d,).
     """
     keep = np.ones(len(place), dtype=bool)
     if not near.any():
@@ -199,10 +205,8 @@ def _first_of_each_place(
     first, last = (np.searchsorted(numbers[order], numbers, side) for side in ("left", "right"))
     for k in np.flatnonzero(near):
         others = order[first[k] : last[k]]
-        apart = place[others] - place[k]
-        for axis, (ends, cells) in enumerate(zip(spline.boundary, spline.cells, strict=True)):
-            if ends[0] == "periodic":
-                apart[:, axis] -= cells * np.round(apart[:, axis] / cells)
-        same = (np.abs(apart).max(axis=1) < SAME_PLACE) & keep[others] & (others != k)
+        apart = np.abs(place[others] - place[k])
+        apart = np.minimum(apart, np.abs(periods - apart))
+        same = (apart.max(axis=1) < SAME_PLACE) & keep[others] & (others != k)
         keep[k] = not same.any()
     return keep

@@ -27,7 +27,7 @@ from ..base.tolerances import FORM_ERROR, SINGULAR_POINT
 from ..spline.joints import EDGES
 from ..spline.nets import NetSpline, vectors_of_nets
 from ..spline.tips import tips_of
-from .exact import Decision
+from .exact import SAME_PLACE, Decision, first_of_each_place
 from .long_integers import (
     Integers,
     displaced_forms,
@@ -85,19 +85,28 @@ def _rounding(spline: NetSpline, rows: Indices | slice = ALL) -> Array:
     return FORM_ERROR * _largest(spline, rows) + spline.noise
 
 
-def decide_in_nets(spline: NetSpline, patches: Indices, normals: Array) -> Decision:
+def decide_in_nets(
+    spline: NetSpline, patches: Indices, normals: Array, numbers: Indices
+) -> Decision:
     """Decide which of the pairs (patches[k], normals[k]) are hits, by boundary cones of edges.
 
-    At an edge on the boundary of the spline, a pair is a hit if the form of the edge is 0 up to its
-    error.
+    `numbers[k]` is the index of the normal. At an edge on the boundary of the spline, a pair is a
+    hit if the form of the edge is 0 up to its error; of such hits at one corner, one is kept.
     """
     _, *forms = python_function(formulas.forms)(spline.patch(patches), vector(normals))
     values, errors = np.stack(forms, axis=1), errors_of(spline)[patches, None]
     signs = np.where(np.abs(values) > errors, np.sign(values), 0.0).astype(np.int8)
+    topology = spline.topology
+    on_border = topology.on_border.reshape(-1, 3)[patches]
     inside, local = _decided(spline, patches, normals, signs)
     _decide_at_poles(spline, patches, normals, inside, local)
     which = np.flatnonzero(inside)
-    local = local[which]
+    local, near = local[which], ((signs == 0) & on_border)[which].any(axis=1)
+    bars = np.column_stack([local[:, :2], 1.0 - local[:, 0] - local[:, 1]])
+    corner = topology.corners[1][patches[which], bars.argmax(axis=1)]
+    place = np.where(bars.max(axis=1) > 1.0 - SAME_PLACE, corner, -1 - np.arange(len(which)))
+    keep = first_of_each_place(numbers[which], place[:, None].astype(np.float64), near)
+    which, local = which[keep], local[keep]
     _, singular = spline.normals_in_patches(patches[which], local[:, :2])
     towards = np.where(singular[:, None], SINGULAR_POINT, 0.0) * (1.0 / 3.0 - local[:, :2])
     return Decision(which, np.concatenate([local, local[:, :2] + towards], axis=1))

@@ -139,7 +139,7 @@ def _decided(
         order = np.lexsort((numbers, patches))
         patches, numbers = patches[order], numbers[order]
         if isinstance(spline, NetSpline):
-            decision = decide_in_nets(spline, patches, normals[numbers])
+            decision = decide_in_nets(spline, patches, normals[numbers], numbers)
         else:
             forgiven = np.where(on_border(spline, patches), bounds[order], 0.0)
             decision = decide(spline, patches, normals[numbers], numbers, forgiven, threads)

@@ -269,14 +269,18 @@ def test_open_border_belongs_to_the_surface(
         np.testing.assert_allclose(np.sort(samples.uv[:, 1 - axis]), along, rtol=0, atol=tolerance)
 
 
-def test_corners_of_the_border_come_once() -> None:
+@pytest.mark.parametrize("kind", ["grid", "nets"])
+def test_vertices_of_the_border_come_once(kind: str) -> None:
     bowl = gm.Surface.from_callable(
         lambda u, v: np.stack([u, v, 0.5 * (u * u + v * v)], axis=-1), ((0.0, 1.0), (0.0, 1.0))
     )
-    corners = np.array([[-x, -y, 1.0] for x in (0.0, 1.0) for y in (0.0, 1.0)])
+    steps = np.arange(5) / 4.0
+    vertices = np.array([[-x, -y, 1.0] for x in steps for y in steps if {x, y} & {0.0, 1.0}])
     for cells in ((3, 3), (8, 8), (5, 9)):
-        samples = gm.sample(bowl, normals=corners, cells=cells, on="spline")
-        assert sorted(samples.normal_index.tolist()) == [0, 1, 2, 3]
+        spline = gm.fit(bowl, cells)
+        spline = spline if kind == "grid" else gm.Spline.from_nets(spline.control_nets)
+        samples = gm.sample(spline, normals=vertices)
+        assert samples.normal_index.tolist() == list(range(len(vertices)))
 
 
 @pytest.mark.parametrize("name", ["klein", "moebius"])
