@@ -1,6 +1,7 @@
 """Points with given normals on edges where faces meet smoothly: only one face keeps each point.
 
-This is the face of lowest index. Likewise, only one face keeps a component, a curve or region of
+This is the face of lowest index; of two points on the seam of a face, the first one is kept.
+Likewise, only one face keeps a component, a curve or region of
 points with one normal, that extends over several faces; points of other faces at the ends of the
 component are left out.
 """
@@ -21,7 +22,7 @@ from ...runtime.spline.joints import linked
 from ..density.at_normals import Given, PieceSamples
 from ..density.cells import grouped
 from .edge_gaps import EdgeGaps, largest_radius
-from .edges import Edges, at_places, edges_of
+from .edges import Edges, at_places, between_two, edges_of
 from .face_indices import GAP
 from .part import Part
 from .results import PartSpace
@@ -56,7 +57,8 @@ def each_once(space: PartSpace, given: Given) -> Given:
     if not given.same_normals:
         return given
     given, alone = _with_gaps(space, given, EdgeGaps.of(part))
-    if len(space.pieces) < 2:
+    seamed = kept(part, _have_seams, lambda: _have_seams(part))
+    if len(space.pieces) < 2 and not seamed.any():
         return given
     points = given.array("points", np.float64)
     faces = np.array([x.face.index for x in space.pieces])[given.pieces]
@@ -68,16 +70,21 @@ def each_once(space: PartSpace, given: Given) -> Given:
     along, size = points @ DIRECTION, space.size / space.unit
     slack = _reach(GAP, largest_radius(K, H), size)
     order = np.lexsort((along, *keys))
-    points, faces, keys, along = points[order], faces[order], keys[:, order], along[order]
+    ranks = faces * len(order) + np.arange(len(order))
+    points, ranks, keys, along = points[order], ranks[order], keys[:, order], along[order]
+    # Of one face, the points of a seam are those whose parameters are far apart.
+    shares = given.array("uv", np.float64) / space.sizes[given.pieces] * seamed[faces][:, None]
+    faces, shares = faces[order], shares[order]
     lost, slack, alone = np.zeros(len(order), dtype=np.bool_), slack[order], alone[order]
     for step in range(1, len(order)):
         near = (keys[:, step:] == keys[:, :-step]).all(axis=0)
         near &= along[step:] - along[:-step] <= slack.max()
         if not near.any():
             break
-        first, second, apart = faces[:-step], faces[step:], points[step:] - points[:-step]
+        first, second, apart = ranks[:-step], ranks[step:], points[step:] - points[:-step]
         near &= np.linalg.norm(apart, axis=1) <= np.maximum(slack[step:], slack[:-step])
-        near &= (first != second) & ~(alone[step:] & alone[:-step])
+        turned = (np.abs(shares[step:] - shares[:-step]) > 0.5).any(axis=1)
+        near &= ((faces[:-step] != faces[step:]) | turned) & ~(alone[step:] & alone[:-step])
         lost[step:] |= near & (first < second)
         lost[:-step] |= near & (first > second)
     keep = np.ones(len(order), dtype=np.bool_)
@@ -222,6 +229,13 @@ def _compared(edges: Edges, owner: Indices, normals: Array, at: Array) -> tuple[
     pieces = np.repeat(edges.pieces[owner].ravel(), m)
     found = at_places(edges.space, pieces, uv.reshape(-1, 2)).normals.reshape(count, 2, m, 3)
     return uv, np.linalg.norm(found - normals[:, None, None], axis=3)
+
+
+def _have_seams(part: Part) -> Flags:
+    """Return whether faces (F,) meet themselves along an edge."""
+    found, faces = np.zeros(len(part), np.bool_), between_two(part, seams=True)[0]
+    found[faces[faces[:, 0] == faces[:, 1], 0]] = True
+    return found
 
 
 def _connected(part: Part) -> Indices:

@@ -60,6 +60,14 @@ def test_each_point_of_a_torus_is_there_once(v):
     assert (gauss_map.degree(latitude(v) @ TILT.T) == 0).all()
 
 
+def test_each_point_of_a_seam_is_there_once():
+    zone = cut(gm.surfaces.sphere(), (0, TURN), (-1.0, 1.0), np.diag([1.0, 2.0, 1.0]))
+    angles = np.linspace(-0.9, 0.9, 20)
+    samples = gm.GaussMap(gm.Part([zone])).points(meridian(angles))
+    assert samples.normal_index.tolist() == list(range(20))
+    np.testing.assert_allclose(samples.uv, np.stack([0.0 * angles, angles], axis=1), atol=1e-9)
+
+
 def test_where_curvature_changes_its_sign_both_faces_have_the_point():
     """A ball with a neck: the Gauss map has a fold at the edge, with two points or none beside."""
     v, radius = 0.5, 0.5
