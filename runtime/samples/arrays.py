@@ -170,14 +170,16 @@ class SampleArrays:
         {'points': (50, 3), 'uv': (50, 2)}
 
         """
-        found: dict[str, NDArray[Any]] = {}
+        return dict(self._named())
+
+    def _named(self) -> Iterator[tuple[str, NDArray[Any]]]:
+        """Yield the fields with their names."""
         for name in COLUMNS:
             with suppress(AttributeError):
                 # Not with getattr: it would call __getattr__, which calls this method.
                 array = object.__getattribute__(self, name)
                 if array is not None:
-                    found[name] = array
-        return found
+                    yield name, array
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -271,7 +273,7 @@ class SampleArrays:
         return np.where(np.hypot(x, y) > 0.0, np.degrees(np.arctan2(x, y)) % 360.0, np.nan)
 
     def __len__(self) -> int:
-        return len(next(iter(self.arrays().values())))
+        return len(next(self._named())[1])
 
     def __array__(
         self, dtype: DTypeLike | None = None, copy: bool | None = None

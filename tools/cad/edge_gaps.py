@@ -24,7 +24,7 @@ from ...runtime.surface.creases import CREASE_ANGLE
 from ...runtime.surface.derivatives import normals_of_jets
 from ..density.cells import grouped
 from .edges import at_places, edges_of
-from .face_indices import GAP
+from .face_indices import GAP, TURNED
 from .part import Part
 from .results import PartSpace, space_of
 
@@ -35,20 +35,19 @@ if TYPE_CHECKING:
 # off a straight line by more than STRAIGHT times the domain.
 WIDEST, STRAIGHT = math.radians(CREASE_ANGLE), 1e-12
 # A face is developable where the larger radius of curvature exceeds FLAT times the size of edges.
+# Coordinates rounded to 6 digits bend a developable face less than that.
 FLAT = 1e6
-# Gaps are measured at MEASURED points of an edge. Normals along it are known at FEWEST to MOST
-# places, at most FINE apart if that suffices.
-MEASURED, FINE, FEWEST, MOST = 7, 0.01, 65, 2048
+# Gaps are measured at MEASURED points of an edge. Normals along it are known at PLACES places; if
+# neighbours differ by more than JUMP, the edge has a pole or a corner between them.
+MEASURED, PLACES, JUMP = 7, 257, 0.25
 SHARES = (np.arange(MEASURED) + 0.5) / MEASURED
 # Edges are in cells of directions with this number of cells per unit.
 CELLS = 20
-# Two places of an edge with one normal differ by more than APART in their shares, unless they are
-# beside a corner. Shares that differ by SAME at most are one.
-APART, SAME = 1e-6, 1e-9
-# The search beyond sides finds points whose normals are up to BEYOND from those of the edge.
-BEYOND = 16.0 * GAP
-# STEPS of Newton's method lead to the place of an edge where |n·t| is at most SETTLED.
-STEPS, SETTLED = 5, 1e-12
+# STEPS of Newton's method lead to a place of an edge where |n·t| is at most SETTLED. Where the
+# derivative of n·t vanishes, too, the place is known up to the root of that. Places closer than
+# APART are one; it is settled if they are closer than SAME.
+STEPS, SETTLED, SAME = 4, 1e-12, 1e-9
+APART = math.sqrt(SETTLED)
 # A side of an edge is inside of the face if places at this distance are, relative to the domain.
 BESIDE = 1e-6
 
@@ -104,11 +103,11 @@ class EdgeGaps:
 
     Neither face is developable. Edge i goes from `starts`[i] (2, 2) by `steps`[i] (2, 2) on both
     `pieces`[i] of the space; it may be `closed`. The faces are on the sides `inward`[i] (2,) of it:
-    1 is that of N × t. Normals of the first face at places `shares` (P,) of the edges `owner` (P,)
-    are in a `tree`, and in `cells` of directions; `spread` (P, 3) is half the difference of their
-    neighbours. Normals in gaps of an edge are within `slack` of its own, and within `reach` of some
-    in the tree. Lines inside of a face are edges, too, with the same piece twice. Edges end or
-    cross at `corners` (C, 3).
+    1 is that of N × t. Normals of the first face at PLACES places of each edge are in a `tree`, and
+    in `cells` of directions. At each place, `spread` (3,) is the change of the normal from place to
+    place, and `bends` the length of the change of this change. Normals in gaps are within `slack`
+    of those of their edge, and within `reach` of some in the tree. Lines inside of a face are
+    edges, too, with the same piece twice. Edges end or cross at `corners` (C, 3).
     """
 
     space: PartSpace
@@ -117,11 +116,10 @@ class EdgeGaps:
     steps: Array
     inward: Array
     closed: Flags
-    slack: Array
-    owner: Indices
-    shares: Array
     normals: Array
     spread: Array
+    bends: Array
+    slack: float
     reach: float
     tree: KDTree
     cells: Flags
@@ -137,8 +135,7 @@ class EdgeGaps:
         lines = _Lines._make(
             map(np.concatenate, zip(_between_faces(space), *_inside_faces(space), strict=True))
         )
-        count = len(lines.pieces)
-        if count == 0:
+        if len(lines.pieces) == 0:
             return None
         sides = [
             at_places(
@@ -146,53 +143,46 @@ class EdgeGaps:
             )
             for k in (0, 1)
         ]
-        gaps = np.linalg.norm(sides[1].normals - sides[0].normals, axis=1).reshape(count, MEASURED)
+        gaps = np.linalg.norm(sides[1].normals - sides[0].normals, axis=1).reshape(-1, MEASURED)
         radii = np.maximum(*(largest_radius(*x.curvatures.T) for x in sides))
         size = float(np.ptp(sides[0].vectors[:, 0], axis=0).max())
-        bent = radii.reshape(count, MEASURED).min(axis=1) <= FLAT * size
-        widest = gaps.max(axis=1, initial=0.0, where=gaps <= WIDEST)
-        some = np.flatnonzero((widest > GAP) & bent)
-        return cls._along(space, _Lines._make(x[some] for x in lines), widest[some], size)
-
-    @classmethod
-    def _along(cls, space: PartSpace, lines: _Lines, widest: Array, size: float) -> EdgeGaps | None:
-        """Return edges with the normals along them, without those whose sides are unknown."""
+        bent = radii.reshape(-1, MEASURED).min(axis=1) <= FLAT * size
+        some = ((gaps > GAP) & (gaps <= WIDEST)).any(axis=1) & bent
+        lines, gaps = _Lines._make(x[some] for x in lines), gaps[some]
         inward = np.stack([_inward(space, lines, k) for k in (0, 1)], axis=1)
         known = (inward != 0.0).all(axis=1)
         if not known.any():
             return None
-        inward, widest = inward[known], widest[known]
-        pieces, starts, steps = lines.pieces[known], lines.starts[known], lines.steps[known]
-        each = np.full(len(pieces), FEWEST)
-        while True:
-            firsts = np.cumsum(each) - each
-            owner, number = repeated(each)
-            shares = number / (each[owner] - 1.0)
-            uv = starts[owner, 0] + shares[:, None] * steps[owner, 0]
-            places = at_places(space, pieces[owner, 0], uv)
-            normals, last = places.normals, each[owner] - 1
-            index = np.arange(len(owner))
-            before, after = index - (number > 0), index + (number < last)
-            spread = (normals[after] - normals[before]) / (after - before)[:, None]
-            is_pole = (normals == 0.0).all(axis=1)
-            spread[is_pole[before] | is_pole[after]] = 0.0
-            apart = np.maximum.reduceat(np.linalg.norm(spread, axis=1), firsts)
-            more = (apart > FINE) & (each < MOST)
-            if not more.any():
-                break
-            each = np.where(more, 2 * each - 1, each)
-        points = places.vectors[:, 0]
-        away = np.linalg.norm(points[firsts + each - 1] - points[firsts], axis=1)
-        closed = away <= SAME * size
+        lines = _Lines._make(x[known] for x in lines)
+        # Gaps are measured at some places only, and may be wider at others.
+        slack = min(4.0 * float(gaps[known].max()), WIDEST) + TURNED
+        return cls._along(space, lines, inward[known], size, slack)
+
+    @classmethod
+    def _along(
+        cls, space: PartSpace, lines: _Lines, inward: Array, size: float, slack: float
+    ) -> EdgeGaps:
+        """Return edges with the normals along them."""
+        pieces, starts, steps = lines[:3]
+        shares = np.linspace(0.0, 1.0, PLACES)[:, None]
+        uv = starts[:, :1] + shares * steps[:, :1]
+        places = at_places(space, np.repeat(pieces[:, 0], PLACES), uv.reshape(-1, 2))
+        points, normals = (x.reshape(-1, PLACES, 3) for x in (places.vectors[:, 0], places.normals))
+        closed = np.linalg.norm(points[:, -1] - points[:, 0], axis=1) <= SAME * size
+        change = np.diff(normals, axis=1)
+        change[np.linalg.norm(change, axis=2) > JUMP] = 0.0
+        before, after = (
+            np.pad(change, ((0, 0), x, (0, 0)), "edge").reshape(-1, 3) for x in ((1, 0), (0, 1))
+        )
+        spread, bends = (before + after) / 2.0, np.linalg.norm(after - before, axis=1)
+        reach = np.linalg.norm(spread, axis=1) + bends + slack
         cells = np.zeros((2 * CELLS + 5,) * 3, np.bool_)
-        around = np.array(_cell_of(normals))
+        around = np.array(_cell_of(places.normals))
         for step in np.indices((3, 3, 3)).reshape(3, -1, 1).swapaxes(0, 1) - 1:
             cells[tuple(around + step)] = True
-        slack = np.minimum(4.0 * widest, WIDEST) + BEYOND  # gaps are measured at some places
         return cls(
-            space, pieces, starts, steps, inward, closed, slack, owner, shares, normals, spread,
-            float((apart + slack).max()), tree_of(normals), cells,
-            _corners(space, _Lines._make(x[known] for x in lines)),
+            space, pieces, starts, steps, inward, closed, places.normals, spread, bends,
+            slack, float(reach.max()), tree_of(places.normals), cells, _corners(space, lines),
         )  # fmt: skip
 
     def beside_corners(self, points: Array, reach: Array) -> Flags:
@@ -202,37 +192,24 @@ class EdgeGaps:
 
     def at(self, normals: Array) -> AtEdges:
         """Return the points of edges with unit normals (S, 3)."""
-        (near,) = np.nonzero(self.cells[_cell_of(normals)])
-        found = self.tree.query_ball_point(normals[near], self.reach)
-        numbers = np.repeat(near, [len(x) for x in found])
-        rows = np.concatenate([np.empty(0, np.int64), *found]).astype(np.int64)
-        away, spread = normals[numbers] - self.normals[rows], self.spread[rows]
-        size = np.maximum(np.einsum("kx,kx->k", spread, spread), 1e-300)
-        away -= (np.einsum("kx,kx->k", away, spread) / size)[:, None] * spread
-        keep = np.linalg.norm(away, axis=1) <= size + self.slack[self.owner[rows]]
-        numbers, rows = numbers[keep], rows[keep]
-        owner, shares = self.owner[rows], self.shares[rows]
-        one = self._solved(owner, 0, shares, normals[numbers])
-        close = np.linalg.norm(one.normals - normals[numbers], axis=1) <= self.slack[owner]
-        numbers, owner, shares = numbers[close], owner[close], shares[close]
-        one = _Side._make(x[close] for x in one)
-        other = self._solved(owner, 1, shares, normals[numbers])
+        numbers, owner, shares = self._near(normals)
+        given = normals[numbers]
+        one, other = (self._solved(owner, k, shares, given) for k in (0, 1))
         gaps = np.linalg.norm(other.normals - one.normals, axis=1)
         near = (gaps > GAP) & (gaps <= WIDEST)
         for x in (one, other):
-            near &= np.linalg.norm(x.normals - normals[numbers], axis=1) <= gaps + BEYOND
-        numbers, owner = numbers[near], owner[near]
-        one, other = (_Side._make(x[near] for x in side) for side in (one, other))
+            near &= np.linalg.norm(x.normals - given, axis=1) <= gaps + TURNED
         settled = np.maximum(one.off, other.off) <= SETTLED
         share = np.where(self.closed[owner] & (one.share >= 1.0 - SAME), 0.0, one.share)
         # Neighbours lead to one place, as do both ends of a closed edge.
-        order = np.lexsort((~settled, share, owner, numbers))
+        order = np.lexsort((share, owner, numbers))
+        order = order[near[order]]
         same = (np.diff(numbers[order]) == 0) & (np.diff(owner[order]) == 0)
-        near = np.append(False, same & (np.diff(share[order]) <= APART))[: len(order)]
-        firsts = np.flatnonzero(~near)
-        low = np.minimum.reduceat(np.where(settled, share, np.inf)[order], firsts)
-        high = np.maximum.reduceat(np.where(settled, share, -np.inf)[order], firsts)
-        rows, settled = order[firsts], (low <= high) & (high <= low + SAME)
+        same &= np.diff(share[order]) <= APART
+        firsts = np.flatnonzero(np.append(True, ~same)[: len(order)])
+        rows, lasts = order[firsts], order[np.append(firsts, len(order))[1:] - 1]
+        settled = np.logical_and.reduceat(settled[order], firsts)
+        settled &= share[lasts] <= share[rows] + SAME
 
         def both(name: str) -> Array:
             return np.stack([getattr(x, name)[rows] for x in (one, other)], axis=1)
@@ -242,29 +219,42 @@ class EdgeGaps:
             both("slope"), both("along"), both("curvatures"), settled,
         )  # fmt: skip
 
+    def _near(self, normals: Array) -> tuple[Indices, Indices, Array]:
+        """Return where edges may have the normals (S, 3): indices of normals, edges, and shares."""
+        (near,) = np.nonzero(self.cells[_cell_of(normals)])
+        found = self.tree.query_ball_point(normals[near], self.reach)
+        numbers = np.repeat(near, [len(x) for x in found])
+        rows = np.concatenate([np.empty(0, np.int64), *found]).astype(np.int64)
+        away, spread = normals[numbers] - self.normals[rows], self.spread[rows]
+        size = np.maximum(np.einsum("kx,kx->k", spread, spread), 1e-300)
+        steps = np.einsum("kx,kx->k", away, spread) / size
+        away -= steps[:, None] * spread
+        near = np.linalg.norm(away, axis=1) <= self.bends[rows] + self.slack
+        near &= np.abs(steps) <= 1.0
+        owner, place = np.divmod(rows[near], PLACES)
+        shares = np.clip((place + steps[near]) / (PLACES - 1.0), 0.0, 1.0)
+        return numbers[near], owner, shares
+
     def _solved(self, edges: Indices, side: int, shares: Array, normals: Array) -> _Side:
         """Return the places of edges, near `shares` (k,), where n·t = 0 on one side."""
         pieces, starts, steps = (x[edges, side] for x in (self.pieces, self.starts, self.steps))
         du, dv = steps.T[:, :, None]
-
-        def derivatives(shares: Array) -> tuple[Array, Array, Array, Array]:
+        second = np.empty(0)
+        for _ in range(STEPS):
             jets = _jets(self.space, pieces, starts + shares[:, None] * steps)
             tangents = jets[:, 1] * du + jets[:, 2] * dv
             bends = jets[:, 3] * du * du + 2.0 * jets[:, 4] * du * dv + jets[:, 5] * dv * dv
             first, second = (np.einsum("kx,kx->k", x, normals) for x in (tangents, bends))
-            return first, second, tangents, jets[:, 0]
-
-        for _ in range(STEPS):
-            first, second, *_ = derivatives(shares)
             move = np.divide(first, second, out=np.zeros_like(first), where=second != 0.0)
             shares = np.clip(shares - move, 0.0, 1.0)
-        first, second, tangents, points = derivatives(shares)
-        uv = starts + shares[:, None] * steps
-        places, lengths = at_places(self.space, pieces, uv), np.linalg.norm(tangents, axis=1)
-        inward = self.inward[edges, side] / lengths
-        slope = inward * np.einsum("kx,kx->k", np.cross(places.normals, tangents), normals)
-        off = np.abs(first) / lengths
-        return _Side(points, uv, places.normals, slope, second, places.curvatures, off, shares)
+        at = at_places(self.space, pieces, starts + shares[:, None] * steps)
+        tangents = np.einsum("ki,kix->kx", steps, at.vectors[:, 1:])
+        tangents /= np.linalg.norm(tangents, axis=1, keepdims=True)
+        inwards = self.inward[edges, side, None] * np.cross(at.normals, tangents)
+        slope, off = (np.einsum("kx,kx->k", x, normals) for x in (inwards, tangents))
+        return _Side(
+            at.vectors[:, 0], at.uv, at.normals, slope, second, at.curvatures, np.abs(off), shares
+        )
 
 
 class _Side(NamedTuple):

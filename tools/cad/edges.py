@@ -206,8 +206,9 @@ def at_places(space: PartSpace, owner: Indices, uv: Array) -> Places:
         curvatures[rows] = np.stack([K, H], axis=1)
     lengths = np.linalg.norm(vectors[:, 1:], axis=2) * space.sizes[owner]
     collapsed = lengths.min(axis=1) * COLLAPSED <= lengths.max(axis=1)
-    balls = np.array([x.face.kind == "sphere" for x in space.pieces])
-    normals[collapsed & ~balls[owner]] = 0.0
+    for k in np.flatnonzero(collapsed):
+        if space.pieces[owner[k]].face.kind != "sphere":
+            normals[k] = 0.0
     return Places(places, vectors, normals, curvatures, collapsed)
 
 

@@ -246,10 +246,12 @@ class FacePiece(Piece):
         the domain; without the latter part it is at most `FAR` times the domain.
         """
         trim, inside = self.surface.trim, self.contains(uv)
-        if trim is None or self.face.geometry.surface is not None or inside.all():
+        if trim is None or inside.all() or self.face.geometry.surface is not None:
             return inside
         (out,) = np.nonzero(~inside)
         out = out[_any_inside(trim, uv[out, None] + FAR * self.sizes * CORNERS)]
+        if len(out) == 0:
+            return inside
         jets = self.jets(*uv[out].T.copy())
         normals, lengths = normals_of_jets(jets), np.linalg.norm(jets[:, 1:3], axis=2)
         a, b, c = np.einsum("kjx,kx->jk", jets[:, 3:], normals)[:, :, None]

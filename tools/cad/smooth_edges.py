@@ -97,7 +97,10 @@ def _kept(given: Given, keep: Flags) -> list[PieceSamples]:
     """Return some of the samples, flags (N,)."""
     ends = np.cumsum([len(x.samples) for x in given.found])[:-1]
     parts = np.split(keep, ends) if given.found else ()
-    return [x._replace(samples=x.samples[y]) for x, y in zip(given.found, parts, strict=True)]
+    return [
+        x if y.all() else x._replace(samples=x.samples[y])
+        for x, y in zip(given.found, parts, strict=True)
+    ]
 
 
 def _reach(gap: Array | float, radius: Array, size: float) -> Array:
@@ -126,14 +129,16 @@ def _with_gaps(space: PartSpace, given: Given, gaps: EdgeGaps | None) -> tuple[G
     radius = largest_radius(*np.moveaxis(at.curvatures, 2, 0))
     reach, widest = _reach(2.0 * at.gaps[:, None], radius, size), radius.max(axis=1) / size
     settled = at.settled & (widest * np.sqrt(at.gaps) <= SURE)
-    settled &= ~gaps.beside_corners(at.points, _reach(gaps.slack.max(), radius, size).max(axis=1))
+    settled &= ~gaps.beside_corners(at.points, _reach(gaps.slack, radius, size).max(axis=1))
     is_inside = at.pieces[:, 0] == at.pieces[:, 1]
-    for k, side in np.argwhere((pieces >= 0) & (settled & ~is_inside)[:, None]).tolist():
+    for k, side in np.argwhere((pieces >= 0) & settled[:, None]).tolist():
         key = at.numbers[k] * len(space.pieces) + pieces[k, side]
         rows = order[slice(*np.searchsorted(keys[order], [key, key + 1]))]
         away = np.linalg.norm(points[rows] - at.points[k], axis=1)
         rows = rows[regular[rows] & (away <= reach[k, side])]
-        distinct[rows] = keep[rows] = at.has[k, side]
+        distinct[rows] = True
+        if not is_inside[k]:
+            keep[rows] = at.has[k, side]
     side = np.where(pieces < 0, len(space.pieces), pieces).argmin(axis=1)
     owner, uv = pieces[np.arange(len(side)), side], at.uv[np.arange(len(side)), side]
     for k, rows in grouped(np.where(is_inside, owner, -1)):
