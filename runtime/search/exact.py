@@ -195,8 +195,8 @@ def first_of_each_place(
 ) -> NDArray[np.bool_]:
     """Return a mask of the hits to keep.
 
-    A hit `near` the open boundary is left out if it coincides with another hit that is kept: if both
-    have the same normal, and the positions `place` (k, d) are equal up to the `periods` (d,).
+    A hit `near` the open boundary is left out if it coincides with another hit that is kept: both
+    have the same normal, and equal positions `place` (k, d) up to the `periods` (d,).
     """
     keep = np.ones(len(place), dtype=bool)
     if not near.any():

@@ -32,9 +32,6 @@ from .results import PartSpace
 # the gap between faces, at most FAR. This is right since, near a smooth edge, no two points have
 # the same normal and the same sign of K.
 SAME, FAR = 1e-8, 1e-5
-# K keeps its sign next to an edge if the larger radius of curvature, times the root of the gap, is
-# at most SURE, relative to the size.
-SURE = 0.25
 # Points are sorted by their coordinates along this direction. Few of these are equal, even on
 # symmetric parts.
 DIRECTION = np.array([0.52, 0.47, 0.71])
@@ -112,7 +109,7 @@ def _with_gaps(space: PartSpace, given: Given, gaps: EdgeGaps | None) -> tuple[G
     """Return points with those of edges with gaps, and which of them are distinct from others.
 
     Points that the search beyond the sides of a face found in a gap are left out. Normals beside
-    corners are undecided, and so are those where K may change its sign next to the edge.
+    corners are undecided.
     """
     count = len(given)
     keep, distinct = np.ones(count, np.bool_), np.zeros(count, np.bool_)
@@ -127,9 +124,8 @@ def _with_gaps(space: PartSpace, given: Given, gaps: EdgeGaps | None) -> tuple[G
     keys = normals * len(space.pieces) + given.pieces
     order = np.argsort(keys, kind="stable")
     radius = largest_radius(*np.moveaxis(at.curvatures, 2, 0))
-    reach, widest = _reach(2.0 * at.gaps[:, None], radius, size), radius.max(axis=1) / size
-    settled = at.settled & (widest * np.sqrt(at.gaps) <= SURE)
-    settled &= ~gaps.beside_corners(at.points, _reach(gaps.slack, radius, size).max(axis=1))
+    reach, far = (_reach(x, radius, size) for x in (2.0 * at.gaps[:, None], gaps.slack))
+    settled = at.settled & ~gaps.beside_corners(at.points, far.max(axis=1))
     is_inside = at.pieces[:, 0] == at.pieces[:, 1]
     for k, side in np.argwhere((pieces >= 0) & settled[:, None]).tolist():
         key = at.numbers[k] * len(space.pieces) + pieces[k, side]
