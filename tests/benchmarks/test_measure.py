@@ -2,7 +2,6 @@
 
 import dataclasses
 
-import numpy as np
 import pytest
 from gaussmap.benchmarks.peers import measure
 from gaussmap.benchmarks.peers.catalogue import RECIPE
@@ -15,10 +14,6 @@ FORM = pytest.mark.parametrize("form", FORMS, ids=lambda x: x.name)
 
 @pytest.fixture(autouse=True)
 def small(monkeypatch):
-    def nearest(samples, places):
-        return np.linalg.norm(places[:, None] - samples, axis=2).argmin(axis=1)
-
-    monkeypatch.setattr(measure, "nearest_by_tree", nearest)
     monkeypatch.setattr(measure, "MILLION", 2_000)
     monkeypatch.setattr(measure, "JUDGED", 500)
     measure.normals_for.cache_clear()

@@ -10,6 +10,7 @@ import pytest
 from gaussmap.benchmarks.peers import cad, machine, metrics, peer, recipe
 from gaussmap.benchmarks.peers.catalogue import RECIPE
 from gaussmap.benchmarks.peers.forms import Torus, Waves
+from gaussmap.benchmarks.peers.metrics import nearest_by_tree as nearest
 from gaussmap.benchmarks.peers.opening import opening
 from gaussmap.benchmarks.peers.peer import Peer
 from gaussmap.benchmarks.peers.untuned import Boss
@@ -20,11 +21,6 @@ FORM = pytest.mark.parametrize("form", JUDGED, ids=lambda x: x.name)
 INVERTED = pytest.mark.parametrize(
     "form", [x for x in JUDGED if x.name != "hills"], ids=lambda x: x.name
 )
-
-
-def nearest(samples, places):
-    """Compare all with all, where SciPy is not installed."""
-    return np.linalg.norm(places[:, None] - samples, axis=2).argmin(axis=1)
 
 
 def places_inside(form, count, margin=1e-3):

@@ -8,18 +8,13 @@ import gaussmap as gm
 import numpy as np
 import pytest
 from gaussmap.benchmarks.peers.forms import Torus
-from gaussmap.benchmarks.peers.metrics import Errors, Places
+from gaussmap.benchmarks.peers.metrics import Errors, Places, nearest_by_tree
 from gaussmap.benchmarks.peers.peer import Peer, Turns
 from gaussmap.benchmarks.peers.untuned import UNTUNED
 from gaussmap.benchmarks.quality import measure, meshers, surfaces, ways
 from gaussmap.benchmarks.quality.opening import opening
 
 ROOT = Path(__file__).parents[2]
-
-
-def nearest(samples, places):
-    """Compare all with all, where SciPy is not installed."""
-    return np.linalg.norm(places[:, None] - samples, axis=2).argmin(axis=1)
 
 
 # --- ways -----------------------------------------------------------------------------------------
@@ -36,7 +31,7 @@ def test_the_exact_method_takes_the_normals_of_gauss(form):
     asked = ways.normals_of_gauss(form, 500)
     apart = np.linalg.norm(normals[:, None] - asked, axis=2).min(axis=1)
     assert apart.max() < 1e-14
-    twins = nearest(exact, found.points)
+    twins = nearest_by_tree(exact, found.points)
     off = np.linalg.norm(exact[twins] - found.points, axis=1)
     assert np.median(off) < 1e-3
 
@@ -67,7 +62,6 @@ def test_the_small_fillets():
 
 @pytest.fixture
 def few(monkeypatch):
-    monkeypatch.setattr(measure, "nearest_by_tree", nearest)
     monkeypatch.setattr(measure, "COUNTS", (200, 400))
     monkeypatch.setattr(measure, "LAST", 400)
     monkeypatch.setattr(measure.Places, "of", lambda form, of=Places.of: of(form, 300))

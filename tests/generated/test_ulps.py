@@ -26,14 +26,14 @@ from typing import Any
 import numpy as np
 import pytest
 from gaussmap.generated import patch, support_function
-from gaussmap.generated.vectors import Patch, Vector
 from gaussmap.runtime.machine_code.jit import jit
 from gaussmap.symbolic import formulas
-from gaussmap.symbolic.emit import arguments
 from gaussmap.symbolic.emit import grouped as outputs_in_groups
 from gaussmap.symbolic.notation import VectorSymbol
 from hypothesis import assume, given
 from hypothesis import strategies as st
+
+from ..symbolic.calls import flat, grouped
 
 UNIT = Fraction(1, 2**53)
 
@@ -99,29 +99,6 @@ class Term:
 quotients: list[Term] = []
 
 
-def flat(result: Any) -> list[Any]:
-    """Return the numbers in nested tuples, one after the other."""
-    return [x for y in result for x in flat(y)] if isinstance(result, tuple) else [result]
-
-
-def grouped(name: str, inputs: dict[str, Any]) -> list[Any]:
-    """Return the arguments of the function of a formula: patches, vectors and numbers."""
-
-    def vector(symbol: Any) -> Vector:
-        return Vector(*(inputs[x.name] for x in symbol.components))
-
-    result = []
-    for argument, symbols in arguments(formula_of(name)).items():
-        if argument == "patch":
-            held = {x.name: vector(x) for x in symbols}
-            result.append(Patch(**({"p": held["a"]} | held)))
-        else:
-            (symbol,) = symbols
-            is_vector = isinstance(symbol, VectorSymbol)
-            result.append(vector(symbol) if is_vector else inputs[symbol.name])
-    return result
-
-
 def inputs_of(name: str) -> list[str]:
     return [symbol.name for symbol in formula_of(name).in_components().inputs]
 
@@ -142,8 +119,8 @@ def results(name: str, inputs: dict[str, Any], *, run_compiled: bool) -> list[An
         function = getattr(patch, name)
         if not run_compiled:
             function = getattr(function, "py_func", function)
-        return flat(function(*grouped(name, inputs)))
-    vectors, normal = grouped(name, inputs)
+        return flat(function(*grouped(formula_of(name), inputs).values()))
+    vectors, normal = grouped(formula_of(name), inputs).values()
     kind = np.float64 if run_compiled else object
     shapes = [(1, 3, 3) if group else (1, 3) if isinstance(x[0], VectorSymbol) else (1,)
               for group, x in outputs_in_groups(formula_of(name).outputs)]  # fmt: skip
@@ -258,7 +235,9 @@ def test_small_integers_are_exact(name, data):
     """Without a quotient all values on the way are integers or halves below 2⁵³."""
     inputs = data.draw(numbers(name, st.integers(-15, 15).map(float)))
     for term, result in zip(
-        exact(name, inputs), flat(getattr(patch, name)(*grouped(name, inputs))), strict=True
+        exact(name, inputs),
+        flat(getattr(patch, name)(*grouped(formula_of(name), inputs).values())),
+        strict=True,
     ):
         assert Fraction(result) == term.value
 

@@ -22,6 +22,8 @@ from gaussmap.symbolic.formula import Formula
 from gaussmap.symbolic.notation import VectorSymbol, scalar
 from gaussmap.symbolic.positions import position
 
+from .calls import flat, grouped
+
 LOOPS = "support_function.py"
 PYTHON_FILES = sorted(path.name for path in files.GENERATED.glob("*.py"))
 POSITIONS = {name: position(surface) for name, surface in surfaces.CATALOGUE.items()}
@@ -70,32 +72,6 @@ def inputs_of(formula, seed: int) -> dict[str, Any]:
         x.name: mp.mpf(2 * generator.randint(-40, 40) + 1) / (2 * generator.randint(1, 15))
         for x in formula.in_components().inputs
     }
-
-
-def grouped(formula, inputs: dict[str, Any]) -> dict[str, Any]:
-    """Return the arguments of the function of a formula, vectors as named tuples."""
-
-    def value(symbol: sp.Symbol) -> Any:
-        if not isinstance(symbol, VectorSymbol):
-            return inputs[symbol.name]
-        kind = getattr(vectors, emit.KINDS[type(symbol)][0])
-        components: list[Any] = [inputs[x.name] for x in symbol.components]
-        return kind(*components)
-
-    types = {"patch": vectors.Patch, "arc": vectors.Arc, "hessian": vectors.Hessian}
-    result = {}
-    for name, symbols in emit.arguments(formula).items():
-        if name in types:
-            held = dict.fromkeys(types[name]._fields) | {x.name: value(x) for x in symbols}
-            result[name] = types[name](**held)
-        else:
-            result[name] = value(symbols[0])
-    return result
-
-
-def flat(result: Any) -> list[Any]:
-    """Return the numbers in nested tuples, one after the other."""
-    return [x for y in result for x in flat(y)] if isinstance(result, tuple) else [result]
 
 
 def expected(formula, inputs: dict[str, Any]) -> list[Any]:

@@ -14,6 +14,7 @@ from scipy.spatial import KDTree
 
 from ...products import covering
 from ...refusals import refused
+from ...shapes import same
 
 UNIT = ((0.0, 1.0), (0.0, 1.0))
 OPEN: Boundary = (("open", "open"), ("open", "open"))
@@ -307,8 +308,7 @@ class TestSampling:
         joined = gm.Samples.concatenate(chunks)
         assert max(map(len, chunks)) <= 64
         assert min(map(len, chunks)) > 0
-        for name in samples.fields:
-            np.testing.assert_array_equal(getattr(samples, name), getattr(joined, name))
+        same(samples, joined)
 
     def test_a_stream_of_nothing_is_one_empty_chunk(self):
         spline = gm.fit(PARTS["predicate"], (12, 12))

@@ -10,7 +10,7 @@ from gaussmap.runtime.onto_surface.on_surface import geometry_of
 
 from ...products import covering
 from ...refusals import refused
-from ...shapes import egg, egg_surface
+from ...shapes import egg, egg_surface, same
 
 CELLS = (12, 12)
 NORMAL_ERROR = 1e-12  # radians
@@ -166,18 +166,6 @@ class TestPoles:
         assert share / 1.5 < found < share * 1.5
 
 
-class TestStream:
-    def test_it_is_the_sampling(self):
-        whole = gm.sample("torus", 300, density="gauss", cells=CELLS, on="surface")
-        chunks = [*gm.sample_stream("torus", 300, chunk=70, cells=CELLS, on="surface")]
-        assert all(len(chunk) == 70 for chunk in chunks[:-1])
-        joined = gm.Samples.concatenate(chunks)
-        assert joined.report.on == "surface"
-        assert joined.report.unrefined == whole.report.unrefined
-        for name in FIELDS_ON_SURFACE:
-            np.testing.assert_array_equal(getattr(joined, name), getattr(whole, name))
-
-
 class TestArguments:
     def test_splines_and_data_have_no_other_surface(self):
         spline = gm.fit("torus", CELLS)
@@ -228,9 +216,7 @@ def test_chunks_make_the_whole(name: str, monkeypatch: pytest.MonkeyPatch) -> No
             chunks = list(gm.sample_stream(surface, chunk=size, **known))
             assert [len(x) for x in chunks[:-1]] == [size] * (len(chunks) - 1)
             joined = gm.Samples.concatenate(chunks)
-            assert joined.fields == whole.fields
-            for field in whole.fields:
-                assert (getattr(joined, field) == getattr(whole, field)).all()
+            same(joined, whole)
             assert joined.report.unrefined == whole.report.unrefined
 
 
@@ -239,8 +225,7 @@ def test_proved_samples_do_not_depend_on_cells(name: str) -> None:
     """Bit for bit."""
     normals = np.concatenate([gm.fibonacci(200), np.eye(3), -np.eye(3)])
     one, other = (gm.sample(name, normals=normals, cells=x) for x in ((32, 32), (30, 41)))
-    for field in one.fields:
-        np.testing.assert_array_equal(getattr(one, field), getattr(other, field), err_msg=field)
+    same(one, other)
 
 
 # --- points of the spline that cannot be moved ----------------------------------------------------
@@ -299,4 +284,6 @@ def test_a_count_is_that_of_samples_on_the_surface(count):
     turned = np.cross(samples.normals, normals_at(spindle, samples.uv))
     assert np.linalg.norm(turned, axis=1).max() < 1e-9
     streamed = gm.Samples.concatenate(list(gm.sample_stream(spindle, count, chunk=100)))
-    np.testing.assert_array_equal(streamed.points, samples.points)
+    same(streamed, samples)
+    assert streamed.report.on == "surface"
+    assert streamed.report.unrefined == samples.report.unrefined

@@ -10,7 +10,7 @@ from gaussmap.runtime.onto_surface.newton import FOUND, Target, evaluate_on_surf
 from gaussmap.runtime.onto_surface.repeats import kept_once
 from numpy.typing import NDArray
 
-from ...shapes import HALF, MERIDIAN, egg, klein, revolved
+from ...shapes import HALF, MERIDIAN, egg, klein, revolved, same
 
 Array = NDArray[np.float64]
 NORMAL_ERROR = 1e-12  # radians
@@ -364,8 +364,7 @@ def test_no_sample_of_a_normal_is_repeated(name: str, cells: tuple[int, int] | N
     stream = gm.sample_stream(surface, normals=normals, cells=cells, chunk=500)
     joined = gm.Samples.concatenate(stream)
     assert joined.report.undecided == on_surface.report.undecided
-    for field in on_surface.fields:
-        np.testing.assert_array_equal(getattr(joined, field), getattr(on_surface, field))
+    same(joined, on_surface)
 
 
 @pytest.mark.usefixtures("unproved")

@@ -13,6 +13,7 @@ from gaussmap.runtime.samples.fields import ARRAY_NAMES, FLOAT_NAMES
 from gaussmap.runtime.samples.samples import Samples
 
 from ...refusals import refused
+from ...shapes import same
 
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
 NORMALS = gm.icosphere(6)
@@ -160,19 +161,15 @@ def test_files_copies_pickles_and_parts(fields, dtype, tmp_path):
     for other in (copy.copy(samples), copy.deepcopy(samples), pickle.loads(pickle.dumps(samples)),
                   samples[whole], Samples.concatenate([samples[:5], samples[5:]]),
                   *map(gm.read_samples, paths)):  # fmt: skip
-        assert other.fields == samples.fields
         assert other.report == samples.report
-        for name in fields:
-            assert getattr(other, name).dtype == getattr(samples, name).dtype
-            assert getattr(other, name).tobytes() == getattr(samples, name).tobytes()
+        same(other, samples)
 
 
 def test_concatenation():
     parts = [FULL[:10], FULL[10:10], FULL[10:]]
     joined = Samples.concatenate(iter(parts))
     assert joined.report == FULL.report
-    for name in ARRAY_NAMES:
-        assert getattr(joined, name).tobytes() == getattr(FULL, name).tobytes()
+    same(joined, FULL)
     other = replace(FULL, report=replace(FULL.report, surface="other", normals=3))
     report = Samples.concatenate([FULL, other]).report
     assert (report.surface, report.normals) == ("several surfaces", None)

@@ -10,15 +10,10 @@ import pytest
 from gaussmap.runtime.search import exact, search
 from gaussmap.runtime.search import hits as fill
 
+from ...shapes import same
+
 # The vertices of the icosphere lie in planes of symmetry: some samples are decided exactly.
 SPLINE, NORMALS = gm.fit(gm.surfaces.torus(), (12, 8)), gm.icosphere(6)
-
-
-def same(one, other):
-    assert one.fields == other.fields
-    for name in one.fields:
-        assert getattr(one, name).dtype == getattr(other, name).dtype
-        assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
 
 
 # --- what is stored -------------------------------------------------------------------------------
@@ -73,8 +68,7 @@ def test_any_number_of_threads_gives_the_same_bits(name, monkeypatch):
         assert len(first) > 600
         for other in others:
             assert other.report == first.report
-            for array in first.fields:
-                assert getattr(other, array).tobytes() == getattr(first, array).tobytes()
+            same(other, first)
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 7])

@@ -68,10 +68,8 @@ ASKED: list[tuple[str, Made]] = [
     ("--density 0.5 --count 60", torus(count=60, density=0.5)),
     ("--density balanced --frequency 2", torus(normals=gm.icosphere(2), density="balanced")),
     ("--reach 1 0 1 40 --count 60", torus(count=60, reach=((1, 0, 1), 40.0))),
-    (
-        "--slope 20 60 --aspect 180 45 --count 60",
-        torus(count=60, reach=gm.Reach(slope=(20, 60), aspect=(180, 45))),
-    ),
+    ("--slope 20 60 --aspect 180 45 --count 60",
+     torus(count=60, reach=gm.Reach(slope=(20, 60), aspect=(180, 45)))),
     ("--offset -.2 --count 60", lambda: torus(count=60)().offset(-0.2)),
     ("--offset .7 --trimmed --count 60", lambda: torus(count=60)().offset(0.7, trimmed=True)),
     ("--on spline --count 60", torus(count=60, on="spline")),
@@ -84,18 +82,10 @@ ASKED: list[tuple[str, Made]] = [
      lambda: gm.sample(gm.surfaces.torus(major=2, minor=0.2), 60, **SMALL)),
 ]  # fmt: skip
 OTHERS: list[tuple[str, str, Made]] = [
-    (
-        "torus",
-        "--tolerance 0.01",
-        lambda: gm.sample("torus", 60, cells=gm.fit("torus", tolerance=0.01).cells),
-    ),
-    (
-        "heights.npy --spacing 30 -30",
-        "--tolerance 5",
-        lambda: gm.sample(
-            gm.fit(gm.Surface.from_grid(HEIGHTS, spacing=(30, -30)), tolerance=5.0), 60
-        ),
-    ),
+    ("torus", "--tolerance 0.01", lambda: gm.sample(
+        "torus", 60, cells=gm.fit("torus", tolerance=0.01).cells)),
+    ("heights.npy --spacing 30 -30", "--tolerance 5", lambda: gm.sample(
+        gm.fit(gm.Surface.from_grid(HEIGHTS, spacing=(30, -30)), tolerance=5.0), 60)),
     ("heights.npy", "--spacing 30 -30", lambda: gm.sample(
         gm.Surface.from_grid(HEIGHTS, spacing=(30, -30)), 60)),
     ("heights.npy --spacing 30 -30", "--nodata 0", elevations(nodata=0.0)),
