@@ -15,14 +15,7 @@ from ... import __version__
 from ...runtime.base.limits import MOST, MOST_FREQUENCY
 from ...runtime.samples.fields import ARRAY_NAMES_ON_SURFACE, EDGE_NAMES, PART_NAMES
 from .completion import PROGRAM, SHELLS, densities, formula_names, surface_names, surfaces_and_files
-from .options import (
-    Command,
-    Option,
-    Program,
-    density,
-    number,
-    whole,
-)  # fmt: skip
+from .options import Command, Option, Program, density, number, whole
 from .surface_options import cad_options, made_options, surface_argument, surface_options
 
 SETTINGS = {"help_option_names": ["-h", "--help"]}

@@ -1,3 +1,4 @@
+import errno
 import io
 import os
 import re
@@ -8,6 +9,7 @@ import sys
 import time
 import warnings
 from collections.abc import Callable
+from functools import partial
 from itertools import cycle
 from pathlib import Path
 from types import ModuleType
@@ -18,7 +20,7 @@ import gaussmap as gm
 import numpy as np
 import pytest
 import rasterio
-from gaussmap.tools.commands import sampled
+from gaussmap.tools.commands import sampled, support
 from gaussmap.tools.commands.cli import main
 
 FEW = ["--count", "60", "--cells", "8", "8"]
@@ -41,17 +43,15 @@ def gaussmap(*arguments: str, **how: Any) -> subprocess.CompletedProcess[str]:
     return python("-m", "gaussmap", *arguments, **how)
 
 
+def raised(error: BaseException, *_: object, **__: object) -> None:
+    raise error
+
+
 @pytest.fixture
 def failing(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException], None]:
     """Let the work of `gaussmap sample` raise an error."""
 
-    def fail(error: BaseException) -> None:
-        def sample(*_: object, **__: object) -> None:
-            raise error
-
-        monkeypatch.setattr(sampled, "sample_and_normals", sample)
-
-    return fail
+    return lambda error: monkeypatch.setattr(sampled, "sample_and_normals", partial(raised, error))
 
 
 @pytest.fixture
@@ -474,10 +474,25 @@ def test_an_error_is_one_line(command, message, capsys):
     assert {path: path.is_file() and path.read_bytes() for path in Path().iterdir()} == before
 
 
-def test_bad_output_is_found_before_the_work(failing: Callable[[BaseException], None]) -> None:
-    failing(AssertionError("worked in vain"))
-    assert main(["sample", "torus", "-o", "a.stl"]) == 2
-    assert main(["sample", "torus", "-o", "missing/a.ply"]) == 2
+@pytest.mark.parametrize(
+    ("command", "suffix"), {**dict.fromkeys(("sample", "mesh", "support"), "ply"), "plot": "png",
+                            "view": "html"}.items(),
+)  # fmt: skip
+def test_bad_output_is_found_before_the_work(command, suffix, failing, monkeypatch, capsys):
+    vain = AssertionError("worked in vain")
+    failing(vain)
+    monkeypatch.setattr(support, "GaussMap", partial(raised, vain))
+    asked = (
+        ("a.dat", "suffix '.dat'"),
+        (f"no/a.{suffix}", "does not exist"),
+        (f"a.{suffix}", "denied"),
+    )
+    for target, said in asked:
+        if said == "denied":
+            denied = PermissionError(errno.EACCES, "Permission denied")
+            monkeypatch.setattr(Path, "touch", partial(raised, denied))
+        assert main([command, "torus", "-o", target]) == 2
+        assert said in capsys.readouterr().err
 
 
 def test_healpix_that_is_not_installed(capsys, monkeypatch):

@@ -12,17 +12,7 @@ from OCP.BOPAlgo import BOPAlgo_Builder
 from OCP.BRep import BRep_Tool
 
 from ....refusals import refused
-from .shapes import (
-    SOLIDS,
-    as_nurbs,
-    box,
-    compound,
-    face,
-    faces_of,
-    loose_faces,
-    torus,
-    volume_of,
-)  # fmt: skip
+from .shapes import SOLIDS, as_nurbs, box, compound, face, faces_of, loose_faces, torus, volume_of
 
 # The smallest angles in degrees where they are small: at the tip of a cone nothing is flipped.
 THIN = {"cone": 0.2}
